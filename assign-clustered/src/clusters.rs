@@ -1,0 +1,220 @@
+//! How the view frustum is cut into clusters.
+
+use std::{fmt, str::FromStr};
+
+use assign::{AssignError, Projection, View};
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
+
+/// The size of clusters: pixels of a tile, and the number of depth slices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClusterSize {
+    /// Width and height of a tile, pixels.
+    pub tile_px: [u32; 2],
+    /// Depth slices.
+    pub slices: u32,
+}
+
+/// More clusters than this are refused: their records alone would take 128 MiB.
+const MAX_CLUSTERS: u64 = 1 << 24;
+
+impl ClusterSize {
+    /// Checks each field.
+    pub fn check(&self) -> Result<(), AssignError> {
+        let fail = |field: &str, value: u32, accepted: &str| {
+            Err(AssignError::Parameter {
+                field: format!("cluster {field}"),
+                value: value.to_string(),
+                accepted: accepted.into(),
+            })
+        };
+        if let Some(&value) = self.tile_px.iter().find(|t| !(1..=16_384).contains(*t)) {
+            return fail("tile size", value, "1 to 16384 pixels");
+        }
+        if !(1..=1024).contains(&self.slices) {
+            return fail("slice count", self.slices, "1 to 1024");
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for ClusterSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}x{}", self.tile_px[0], self.tile_px[1], self.slices)
+    }
+}
+
+impl FromStr for ClusterSize {
+    type Err = AssignError;
+
+    /// Reads `WIDTHxHEIGHTxSLICES`.
+    fn from_str(text: &str) -> Result<Self, AssignError> {
+        let fail = || AssignError::Parameter {
+            field: "cluster size".into(),
+            value: text.into(),
+            accepted: "WIDTHxHEIGHTxSLICES, tile pixels and slice count, such as 64x64x24".into(),
+        };
+        let numbers: Vec<u32> = text
+            .split('x')
+            .map(|part| part.parse().map_err(|_| fail()))
+            .collect::<Result<_, _>>()?;
+        let [width, height, slices] = numbers[..] else {
+            return Err(fail());
+        };
+        let size = Self {
+            tile_px: [width, height],
+            slices,
+        };
+        size.check()?;
+        Ok(size)
+    }
+}
+
+/// What the shaders know of the clusters: `struct Clusters`. 48 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ClustersUniform {
+    /// Clusters along x, y and depth.
+    pub counts: [u32; 3],
+    /// Slices per octave of depth (exponential) or per metre (even).
+    pub slices_per_unit: f32,
+    /// Pixels of a tile.
+    pub tile_px: [u32; 2],
+    /// Upper left pixel of the viewport.
+    pub origin_px: [u32; 2],
+    /// View depth at which slice 0 begins, metres.
+    pub first_m: f32,
+    /// View depth of the near plane, metres.
+    pub near_m: f32,
+    /// View depth of the far plane, metres, or [`UNBOUNDED`].
+    pub far_m: f32,
+    /// 1 where slices grow exponentially.
+    pub exponential: u32,
+}
+
+/// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
+pub const UNBOUNDED: f32 = 3.4e38;
+
+impl ClustersUniform {
+    /// Cuts `view` into clusters.
+    ///
+    /// Slices run from the near to the far plane, exponentially in a perspective view (Enhuber
+    /// 2019, equation 3.3), evenly in an orthographic one. Without a far plane they run to the
+    /// farthest point that a light reaches (`light_bounds`), and the last one goes on to infinity.
+    pub fn new(
+        size: ClusterSize,
+        view: &View,
+        light_bounds: Option<(Vec3, Vec3)>,
+    ) -> Result<Self, AssignError> {
+        let viewport = [view.viewport.width, view.viewport.height];
+        let counts = [
+            viewport[0].div_ceil(size.tile_px[0]),
+            viewport[1].div_ceil(size.tile_px[1]),
+            size.slices,
+        ];
+        let total = counts.iter().map(|&n| u64::from(n)).product::<u64>();
+        if total > MAX_CLUSTERS {
+            return Err(AssignError::Parameter {
+                field: "cluster size".into(),
+                value: format!(
+                    "{size} at {}x{}: {total} clusters",
+                    viewport[0], viewport[1]
+                ),
+                accepted: format!("at most {MAX_CLUSTERS} clusters: larger tiles, fewer slices"),
+            });
+        }
+        let near = view.near_m;
+        let last = view
+            .far_m
+            .unwrap_or_else(|| deepest(view, light_bounds).clamp(2.0 * near, 1e30 * near));
+        let exponential = matches!(view.projection, Projection::Perspective { .. });
+        let span = if exponential {
+            (last / near).log2()
+        } else {
+            last - near
+        };
+        Ok(Self {
+            counts,
+            slices_per_unit: size.slices as f32 / span,
+            tile_px: size.tile_px,
+            origin_px: [view.viewport.x, view.viewport.y],
+            first_m: near,
+            near_m: near,
+            far_m: view.far_m.unwrap_or(UNBOUNDED),
+            exponential: u32::from(exponential),
+        })
+    }
+
+    /// Number of clusters.
+    pub fn group_count(&self) -> u32 {
+        self.counts.iter().product()
+    }
+}
+
+/// The greatest view depth inside a world-space box, metres; 0 without a box.
+fn deepest(view: &View, bounds: Option<(Vec3, Vec3)>) -> f32 {
+    let Some((min, max)) = bounds else { return 0.0 };
+    // View depth is linear in position: each coordinate's better end, one by one.
+    let depth = -Vec4::new(
+        view.world_to_view.x_axis.z,
+        view.world_to_view.y_axis.z,
+        view.world_to_view.z_axis.z,
+        view.world_to_view.w_axis.z,
+    );
+    let axis = depth.truncate();
+    (axis * min).max(axis * max).element_sum() + depth.w
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_parse_and_print_alike() {
+        let size: ClusterSize = "64x32x24".parse().unwrap();
+        assert_eq!(size.to_string(), "64x32x24");
+        for bad in [
+            "",
+            "64",
+            "64x64",
+            "0x64x24",
+            "64x64x0",
+            "axbxc",
+            "64x64x24x2",
+        ] {
+            let error = bad.parse::<ClusterSize>().unwrap_err().to_string();
+            assert!(error.contains("must be"), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn slices_span_near_to_far() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
+        view.far_m = Some(512.0);
+        let size = "64x64x20".parse().unwrap();
+        let clusters = ClustersUniform::new(size, &view, None).unwrap();
+        assert_eq!(clusters.counts, [3, 1, 20]);
+        // Ten octaves, two slices each.
+        assert_eq!(clusters.slices_per_unit, 2.0);
+    }
+
+    #[test]
+    fn an_infinite_view_is_sliced_to_the_farthest_light() {
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [64, 64]);
+        let bounds = Some((Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE));
+        let size = "64x64x8".parse().unwrap();
+        let clusters = ClustersUniform::new(size, &view, bounds).unwrap();
+        assert_eq!(clusters.slices_per_unit, 2.0);
+        assert_eq!(clusters.far_m, UNBOUNDED);
+        // Lights behind the camera leave one octave.
+        let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
+        let clusters = ClustersUniform::new(size, &view, behind).unwrap();
+        assert_eq!(clusters.slices_per_unit, 8.0);
+    }
+
+    #[test]
+    fn too_many_clusters_are_refused() {
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [16_384, 16_384]);
+        assert!(ClustersUniform::new("1x1x1".parse().unwrap(), &view, None).is_err());
+    }
+}

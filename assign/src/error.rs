@@ -1,0 +1,78 @@
+//! What can go wrong before a frame.
+
+use thiserror::Error;
+
+use crate::ViewError;
+
+/// Why lists cannot be made. Raised before the first pass of a frame, never as a wrong image.
+#[derive(Clone, Debug, Error)]
+pub enum AssignError {
+    /// No adapter that wgpu can drive.
+    #[error(
+        "no GPU adapter found ({looked_for}): install a Vulkan driver, or the software one (Debian: mesa-vulkan-drivers)"
+    )]
+    NoAdapter {
+        /// What was looked for.
+        looked_for: String,
+    },
+    /// The adapter refused a device.
+    #[error("adapter {adapter}: no device: {reason}")]
+    NoDevice {
+        /// The adapter's name.
+        adapter: String,
+        /// wgpu's reason.
+        reason: String,
+    },
+    /// A parameter lies outside its range.
+    #[error("{field} is {value}: it must be {accepted}")]
+    Parameter {
+        /// The parameter's name.
+        field: String,
+        /// The offending value.
+        value: String,
+        /// What would be accepted.
+        accepted: String,
+    },
+    /// The view cannot be used.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// The strategy cannot serve what the frame asks for.
+    #[error("{strategy} cannot serve {asked}: {reason}")]
+    Unsupported {
+        /// The strategy's id.
+        strategy: String,
+        /// What the frame asked for.
+        asked: String,
+        /// Why not.
+        reason: String,
+    },
+    /// The renderer left out something the strategy needs.
+    #[error("{strategy} needs {missing}, which the frame does not hold")]
+    Missing {
+        /// The strategy's id.
+        strategy: String,
+        /// What is missing.
+        missing: &'static str,
+    },
+    /// A buffer would exceed the device's limit.
+    #[error("{what} needs {bytes} bytes: this device binds at most {limit}")]
+    TooLarge {
+        /// What the buffer holds.
+        what: String,
+        /// The size asked for, bytes.
+        bytes: u64,
+        /// The device's limit, bytes.
+        limit: u64,
+    },
+    /// A WESL module does not link or does not validate.
+    #[error("shader {module}: {reason}")]
+    Shader {
+        /// The root module.
+        module: String,
+        /// The linker's message.
+        reason: String,
+    },
+    /// The device was lost or a read-back failed.
+    #[error("device: {0}")]
+    Device(String),
+}

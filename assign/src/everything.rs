@@ -1,0 +1,62 @@
+//! No culling: every sample's list holds all lights. The ground truth of lists, and `None` in
+//! the comparison.
+
+use crate::{
+    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes,
+    cull::{ListsBindings, lookup_layout},
+};
+
+/// Assigns every light to every sample.
+#[derive(Debug)]
+pub struct Everything {
+    lists: LightLists,
+    bindings: ListsBindings,
+}
+
+impl Everything {
+    /// Makes the strategy.
+    pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        Ok(Self {
+            lists: LightLists::new(gpu)?,
+            bindings: ListsBindings::new(lookup_layout(gpu, "None", &[])),
+        })
+    }
+}
+
+impl Assignment for Everything {
+    fn id(&self) -> String {
+        "None".into()
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::default()
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        self.lists.prepare(gpu, frame.lights.count(), 0)?;
+        self.bindings.bind(gpu, &self.lists, &[]);
+        Ok(())
+    }
+
+    fn record(&mut self, _frame: &Frame<'_>, _passes: &mut dyn Passes) {}
+
+    fn lookup(&self) -> Lookup<'_> {
+        Lookup {
+            module: include_str!("shaders/everything.wesl"),
+            layout: self.bindings.layout(),
+        }
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.bindings.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        &self.lists
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        &mut self.lists
+    }
+}

@@ -1,0 +1,200 @@
+//! What the renderer hands to a strategy each frame.
+
+use bytemuck::bytes_of;
+
+use crate::{AssignError, Gpu, LightBuffer, View, ViewUniform};
+
+/// Where shading will look lists up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SampleDomain {
+    /// At the opaque surfaces in the depth buffer only.
+    #[default]
+    OpaqueSurfaces,
+    /// At any depth inside the view: transparent layers, volumes, particles.
+    AnyDepth,
+}
+
+/// What a strategy reads beside the view and the lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// The depth buffer of the opaque surfaces.
+    pub depth: bool,
+    /// Shading normals.
+    pub normals: bool,
+    /// Model indices per pixel, and the models' oriented boxes.
+    pub models: bool,
+    /// The scene's triangles.
+    pub triangles: bool,
+}
+
+/// One frame, as the renderer hands it over. Optional parts are what some strategies
+/// [`need`](crate::Assignment::needs).
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Frame<'a> {
+    /// The camera.
+    pub view: &'a View,
+    /// The lights.
+    pub lights: &'a LightBuffer,
+    /// Where lists will be looked up.
+    pub samples: SampleDomain,
+    /// Depth of the opaque surfaces, `texture_depth_2d`, the size of the target.
+    pub depth: Option<&'a wgpu::TextureView>,
+    /// Shading normals, world space, `texture_2d<f32>`, the size of the target.
+    pub normals: Option<&'a wgpu::TextureView>,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame of opaque surfaces.
+    pub fn new(view: &'a View, lights: &'a LightBuffer) -> Self {
+        Self {
+            view,
+            lights,
+            samples: SampleDomain::default(),
+            depth: None,
+            normals: None,
+        }
+    }
+
+    /// Adds the depth buffer.
+    #[must_use]
+    pub fn with_depth(mut self, depth: &'a wgpu::TextureView) -> Self {
+        self.depth = Some(depth);
+        self
+    }
+
+    /// Adds the shading normals.
+    #[must_use]
+    pub fn with_normals(mut self, normals: &'a wgpu::TextureView) -> Self {
+        self.normals = Some(normals);
+        self
+    }
+
+    /// Says where lists will be looked up.
+    #[must_use]
+    pub fn sampled_at(mut self, samples: SampleDomain) -> Self {
+        self.samples = samples;
+        self
+    }
+}
+
+/// Bind group 0 of every pass: the view and the lights.
+///
+/// | binding | WESL | |
+/// |---|---|---|
+/// | 0 | `view::view` | uniform |
+/// | 1 | `lights::light_spheres` | storage |
+/// | 2 | `lights::light_emissions` | storage |
+/// | 3 | `lights::light_shapes` | storage |
+#[derive(Debug)]
+pub struct FrameBindings {
+    uniform: wgpu::Buffer,
+    layout: wgpu::BindGroupLayout,
+    bind_group: Option<wgpu::BindGroup>,
+}
+
+impl FrameBindings {
+    /// Makes the layout.
+    pub fn new(gpu: &Gpu) -> Self {
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("frame"),
+                entries: &[
+                    uniform_entry(0, stages),
+                    storage_entry(
+                        1,
+                        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+                        true,
+                    ),
+                    storage_entry(
+                        2,
+                        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+                        true,
+                    ),
+                    storage_entry(
+                        3,
+                        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+                        true,
+                    ),
+                ],
+            });
+        Self {
+            uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
+            layout,
+            bind_group: None,
+        }
+    }
+
+    /// Checks and uploads the view and binds the lights.
+    pub fn update(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        gpu.queue
+            .write_buffer(&self.uniform, 0, bytes_of(&frame.view.uniform()));
+        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, &self.uniform),
+                entry(1, frame.lights.spheres()),
+                entry(2, frame.lights.emissions()),
+                entry(3, frame.lights.shapes()),
+            ],
+        }));
+        Ok(())
+    }
+
+    /// The layout.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    /// The bind group; `None` before the first [`update`](Self::update).
+    pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.bind_group.as_ref()
+    }
+}
+
+/// A layout entry of a uniform buffer.
+pub fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    buffer_entry(binding, visibility, wgpu::BufferBindingType::Uniform)
+}
+
+/// A layout entry of a storage buffer.
+pub fn storage_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    read_only: bool,
+) -> wgpu::BindGroupLayoutEntry {
+    buffer_entry(
+        binding,
+        visibility,
+        wgpu::BufferBindingType::Storage { read_only },
+    )
+}
+
+fn buffer_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    ty: wgpu::BufferBindingType,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+/// A bind group entry of a whole buffer.
+pub fn entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry {
+        binding,
+        resource: buffer.as_entire_binding(),
+    }
+}

@@ -1,0 +1,191 @@
+//! The device, opened once and shared by everything that records passes.
+
+use crate::AssignError;
+
+/// A device with its queue and what is known of its adapter. Cloning shares the device.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Its adapter.
+    pub info: wgpu::AdapterInfo,
+}
+
+impl Gpu {
+    /// Wraps a renderer's own device.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
+        Self {
+            device,
+            queue,
+            info,
+        }
+    }
+
+    /// Opens the fastest adapter: discrete before integrated before virtual before software.
+    /// `name` narrows the choice to adapters whose name holds it, in any case.
+    ///
+    /// The device has WebGPU's default limits, buffers as large as the adapter allows, and
+    /// timestamp queries where the adapter has them.
+    pub fn open(name: Option<&str>) -> Result<Self, AssignError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::all() - wgpu::Backends::NOOP;
+        // GPU-based validation and debug layers would be on the bill of every pass.
+        descriptor.flags = wgpu::InstanceFlags::empty();
+        let instance = wgpu::Instance::new(descriptor);
+        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+        let found: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+        let wanted = name.unwrap_or_default().to_lowercase();
+        let adapter = adapters
+            .into_iter()
+            .filter(|a| a.get_info().name.to_lowercase().contains(&wanted))
+            .min_by_key(|a| rank(a.get_info().device_type))
+            .ok_or_else(|| AssignError::NoAdapter {
+                looked_for: match name {
+                    Some(name) if !found.is_empty() => {
+                        format!("none named like {name:?} among {}", found.join(", "))
+                    }
+                    _ => "looked for Vulkan".into(),
+                },
+            })?;
+        Self::from_adapter(&adapter)
+    }
+
+    /// A device of wgpu's noop back end: it checks every call and runs none.
+    pub fn noop() -> Result<Self, AssignError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::NOOP;
+        descriptor.backend_options.noop.enable = true;
+        let instance = wgpu::Instance::new(descriptor);
+        let adapter =
+            pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
+                .map_err(|e| AssignError::NoAdapter {
+                looked_for: format!("noop: {e}"),
+            })?;
+        Self::from_adapter(&adapter)
+    }
+
+    fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, AssignError> {
+        let info = adapter.get_info();
+        let available = adapter.limits();
+        let limits = wgpu::Limits {
+            max_buffer_size: available.max_buffer_size,
+            max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
+            max_texture_dimension_2d: available.max_texture_dimension_2d,
+            ..wgpu::Limits::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("lightbench"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: limits,
+            ..Default::default()
+        }))
+        .map_err(|e| AssignError::NoDevice {
+            adapter: info.name.clone(),
+            reason: e.to_string(),
+        })?;
+        Ok(Self {
+            device,
+            queue,
+            info,
+        })
+    }
+
+    /// Whether passes run on the CPU: its timestamps say nothing.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Blocks until all submitted work is done.
+    pub fn wait(&self) -> Result<(), AssignError> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map(|_| ())
+            .map_err(|e| AssignError::Device(e.to_string()))
+    }
+
+    /// The largest storage buffer a shader may bind, bytes.
+    pub fn max_storage_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+    }
+
+    /// A storage buffer of `bytes`, at least 16, with room for copies in and out.
+    pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, AssignError> {
+        let limit = self.max_storage_bytes();
+        if bytes > limit {
+            return Err(AssignError::TooLarge {
+                what: label.into(),
+                bytes,
+                limit,
+            });
+        }
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes.max(16).next_multiple_of(4),
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// A uniform buffer of `bytes`.
+    pub fn uniform(&self, label: &str, bytes: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Reads `bytes` from the start of a buffer, blocking.
+    pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, AssignError> {
+        let size = bytes.next_multiple_of(4);
+        if size == 0 {
+            return Ok(Vec::new());
+        }
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read-back"),
+            size,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
+        self.queue.submit([encoder.finish()]);
+        self.map(&staging)
+    }
+
+    /// Maps a staging buffer whose copy was submitted, and returns its bytes.
+    pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, AssignError> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver lives until the wait below returns.
+            let _ = sender.send(result);
+        });
+        self.wait()?;
+        receiver
+            .recv()
+            .map_err(|e| AssignError::Device(e.to_string()))?
+            .map_err(|e| AssignError::Device(e.to_string()))?;
+        let view = staging
+            .get_mapped_range(..)
+            .map_err(|e| AssignError::Device(e.to_string()))?;
+        Ok(view.to_vec())
+    }
+}
+
+fn rank(device_type: wgpu::DeviceType) -> u32 {
+    match device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}

@@ -1,0 +1,1 @@
+//! Intersection tests on the CPU.

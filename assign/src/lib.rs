@@ -1,0 +1,59 @@
+//! Light assignment: which lights may reach which view samples.
+//!
+//! A strategy is three things: a set of *groups* of view samples, a function from a view sample
+//! to its group, and for each group the list of lights that may reach it. Each strategy crate
+//! implements [`Assignment`]; this crate holds what they share.
+//!
+//! # A frame
+//!
+//! 1. The renderer fills a [`Frame`]: the [`View`], the [`LightBuffer`] and what the strategy
+//!    [`needs`](Assignment::needs).
+//! 2. [`Assignment::prepare`] sizes buffers (outside the clock), [`Assignment::record`] records
+//!    named passes (inside it).
+//! 3. Shading calls `list_of(group_of(sample))`, spliced in through [`Lookup`], and sums the
+//!    lights of the list in ascending index: the same order whatever the strategy, so images
+//!    compare bit for bit.
+//!
+//! # Promises
+//!
+//! Lists hold every light whose support holds one of the group's samples, in ascending index,
+//! without repeats. A list that does not fit becomes the list of all lights, is counted, and the
+//! pool grows before a later frame. No input makes a strategy drop a light silently;
+//! [`conformance`] checks that of any strategy, and rejects faulty ones.
+
+mod assignment;
+#[cfg(feature = "conformance")]
+pub mod conformance;
+mod cull;
+mod error;
+mod everything;
+mod frame;
+mod gpu;
+pub mod intersect;
+mod light;
+mod light_buffer;
+mod lists;
+mod passes;
+mod readback;
+mod shader;
+mod view;
+
+pub use assignment::{Assignment, Lookup};
+pub use cull::{
+    Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, FrustumTests, GroupCount, GroupShape,
+};
+pub use error::AssignError;
+pub use everything::Everything;
+pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
+pub use gpu::Gpu;
+pub use light::{
+    Light, LightEmission, LightFault, LightKind, LightShape, LightSphere, MAX_RANGE_M,
+};
+pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
+pub use lists::{
+    ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
+    LightLists, ListsSnapshot,
+};
+pub use passes::{EncoderPasses, Passes};
+pub use shader::Shader;
+pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};

@@ -1,0 +1,273 @@
+//! The light lists on the GPU: their layout, fall-back and growth.
+//!
+//! `lists[g + 1] = (first, count)` points into `entries`. Record 0 lists all lights, and the
+//! entries begin with all lights in order; the pool that groups reserve from lies behind them.
+//! A group whose list does not fit gets `(0, light_count)`: slow, correct, counted.
+//!
+//! Worked example: 5 lights, capacity for 8, lists of 2, 0 and 3 entries:
+//! `lists = [(0, 5), (8, 2), (0, 0), (10, 3)]`, `entries = [0 1 2 3 4 - - - | a b c d e]`.
+
+use bytemuck::{Pod, Zeroable, cast_slice, pod_collect_to_vec};
+
+use crate::{AssignError, Gpu, readback::Readback};
+
+/// Flag of an entry: the light's diffuse term may reach the group.
+pub const ENTRY_DIFFUSE: u32 = 1 << 30;
+/// Flag of an entry: the light's specular term may reach the group.
+pub const ENTRY_SPECULAR: u32 = 1 << 31;
+/// The low bits of an entry: the light's index.
+pub const ENTRY_LIGHT: u32 = ENTRY_DIFFUSE - 1;
+/// What `group_of` returns for a sample outside all groups: its list holds all lights.
+pub const ALL_LIGHTS: u32 = u32::MAX;
+
+/// A light list: `count` entries from `first`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct LightList {
+    /// Index of its first entry.
+    pub first: u32,
+    /// Number of its entries.
+    pub count: u32,
+}
+
+/// The counters as the GPU writes them: `cull.wesl`, `struct Counters`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Counters {
+    /// Entries reserved.
+    pub cursor: u32,
+    /// Entries asked for, low 32 bits.
+    pub requested_low: u32,
+    /// Entries asked for, high 32 bits.
+    pub requested_high: u32,
+    /// Groups that fell back to all lights.
+    pub overflowed_groups: u32,
+    /// Groups with at least one light.
+    pub occupied_groups: u32,
+    /// Entries of the longest list asked for.
+    pub longest: u32,
+}
+
+impl Counters {
+    /// Entries asked for by all groups together.
+    pub fn requested(&self) -> u64 {
+        u64::from(self.requested_high) << 32 | u64::from(self.requested_low)
+    }
+}
+
+/// What the culling kernel is told: `cull.wesl`, `struct Cull`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct CullUniform {
+    /// Number of lights.
+    pub light_count: u32,
+    /// Number of groups.
+    pub group_count: u32,
+    /// First entry of the pool.
+    pub pool_first: u32,
+    /// Entries in the pool.
+    pub pool_capacity: u32,
+    /// 1 where the reserved entries could exceed 32 bits.
+    pub guard_cursor: u32,
+    /// Pads to 32 bytes.
+    pub padding: [u32; 3],
+}
+
+/// The lists of one strategy. Buffers grow outside the clock, between frames.
+#[derive(Debug)]
+pub struct LightLists {
+    lists: wgpu::Buffer,
+    entries: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    uniform: wgpu::Buffer,
+    group_capacity: u32,
+    light_capacity: u32,
+    pool_capacity: u32,
+    /// Upper limit set by the user; the device's limit applies as well.
+    pool_limit: u32,
+    counts: (u32, u32),
+    readback: Readback<Counters>,
+}
+
+/// Lists copied to the CPU.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ListsSnapshot {
+    /// Record 0 (all lights), then one record per group.
+    pub lists: Vec<LightList>,
+    /// All entries.
+    pub entries: Vec<u32>,
+    /// The counters of the last frame.
+    pub counters: Counters,
+}
+
+impl ListsSnapshot {
+    /// The record of a group, [`ALL_LIGHTS`] included; `None` where there is no such group.
+    pub fn list(&self, group: u32) -> Option<LightList> {
+        self.lists.get(group.wrapping_add(1) as usize).copied()
+    }
+
+    /// The entries of a group; `None` where the group or its entries lie outside the buffers.
+    pub fn entries_of(&self, group: u32) -> Option<&[u32]> {
+        let list = self.list(group)?;
+        let first = list.first as usize;
+        self.entries
+            .get(first..first.checked_add(list.count as usize)?)
+    }
+}
+
+impl LightLists {
+    /// Empty lists.
+    pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        Ok(Self {
+            lists: gpu.storage("light lists", 8)?,
+            entries: gpu.storage("light entries", 4)?,
+            counters: gpu.storage("list counters", size_of::<Counters>() as u64)?,
+            uniform: gpu.uniform("cull", size_of::<CullUniform>() as u64),
+            group_capacity: 0,
+            light_capacity: 0,
+            pool_capacity: 0,
+            pool_limit: u32::MAX,
+            counts: (0, 0),
+            readback: Readback::new(gpu, "list counters"),
+        })
+    }
+
+    /// Caps the pool at `entries`, for tests of overflow and tight memory budgets.
+    pub fn limit_pool(&mut self, entries: u32) {
+        self.pool_limit = entries;
+        self.pool_capacity = self.pool_capacity.min(entries);
+        // Forces the next `prepare` to lay the buffers out again.
+        self.light_capacity = 0;
+    }
+
+    /// Sizes the buffers for a frame and grows the pool to what earlier frames asked for.
+    /// Returns whether a buffer was made anew, so that bind groups must be.
+    pub fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        light_count: u32,
+        group_count: u32,
+    ) -> Result<bool, AssignError> {
+        self.readback.poll(gpu);
+        let asked = self.readback.latest().map_or(0, |c| c.requested());
+        let mut changed = false;
+        let records = u64::from(group_count) + 1;
+        if group_count > self.group_capacity || self.lists.size() < records * 8 {
+            self.lists = gpu.storage("light lists", records * 8)?;
+            self.group_capacity = group_count;
+            changed = true;
+        }
+        changed |= self.size_entries(gpu, light_count, group_count, asked)?;
+        if changed || self.counts.0 != light_count {
+            let all = LightList {
+                first: 0,
+                count: light_count,
+            };
+            gpu.queue
+                .write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
+        }
+        self.counts = (light_count, group_count);
+        let cull = CullUniform {
+            light_count,
+            group_count,
+            pool_first: self.light_capacity,
+            pool_capacity: self.pool_capacity,
+            guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
+            padding: [0; 3],
+        };
+        gpu.queue
+            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
+        Ok(changed)
+    }
+
+    /// Makes the entry buffer anew where all lights or the pool outgrew it.
+    fn size_entries(
+        &mut self,
+        gpu: &Gpu,
+        light_count: u32,
+        group_count: u32,
+        asked: u64,
+    ) -> Result<bool, AssignError> {
+        let room = gpu.max_storage_bytes() / 4;
+        let light_capacity = light_count.max(self.light_capacity).next_power_of_two();
+        if u64::from(light_capacity) > room {
+            return Err(AssignError::TooLarge {
+                what: format!("the list of all {light_count} lights"),
+                bytes: u64::from(light_capacity) * 4,
+                limit: room * 4,
+            });
+        }
+        // A guess until a frame has counted: 16 entries a group, or every pair if fewer.
+        let guess = u64::from(group_count) * u64::from(light_count.min(16));
+        // A quarter more than asked, so that a moving camera does not grow it each frame.
+        let wanted = (asked + asked / 4)
+            .max(guess)
+            .max(u64::from(self.pool_capacity))
+            .min(room - u64::from(light_capacity))
+            .min(u64::from(self.pool_limit)) as u32;
+        if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
+            return Ok(false);
+        }
+        let all: Vec<u32> = (0..light_capacity)
+            .map(|light| light | ENTRY_DIFFUSE | ENTRY_SPECULAR)
+            .collect();
+        let bytes = (u64::from(light_capacity) + u64::from(wanted)) * 4;
+        self.entries = gpu.storage("light entries", bytes)?;
+        gpu.queue.write_buffer(&self.entries, 0, cast_slice(&all));
+        self.light_capacity = light_capacity;
+        self.pool_capacity = wanted;
+        Ok(true)
+    }
+
+    /// Copies the counters for [`stats`](Self::stats); call between passes, after the last.
+    pub fn record_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        self.readback.record(encoder, &self.counters);
+    }
+
+    /// The newest counters that have come back, which may be a few frames old.
+    pub fn stats(&self) -> Option<Counters> {
+        self.readback.latest()
+    }
+
+    /// Reads everything back, blocking.
+    pub fn snapshot(&self, gpu: &Gpu) -> Result<ListsSnapshot, AssignError> {
+        let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
+        let entries = gpu.read(&self.entries, self.entries.size())?;
+        let counters = gpu.read(&self.counters, size_of::<Counters>() as u64)?;
+        Ok(ListsSnapshot {
+            lists: pod_collect_to_vec(&lists),
+            entries: pod_collect_to_vec(&entries),
+            counters: bytemuck::pod_read_unaligned(&counters),
+        })
+    }
+
+    /// Number of groups of the last prepared frame.
+    pub fn group_count(&self) -> u32 {
+        self.counts.1
+    }
+
+    /// Bytes of all its buffers on the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.lists.size() + self.entries.size() + self.counters.size() + self.uniform.size()
+    }
+
+    /// The records: `array<LightList>`.
+    pub fn lists(&self) -> &wgpu::Buffer {
+        &self.lists
+    }
+
+    /// The entries: `array<u32>`.
+    pub fn entries(&self) -> &wgpu::Buffer {
+        &self.entries
+    }
+
+    /// The counters: `struct Counters`.
+    pub fn counters(&self) -> &wgpu::Buffer {
+        &self.counters
+    }
+
+    /// What the culling kernel is told: `struct Cull`.
+    pub fn uniform(&self) -> &wgpu::Buffer {
+        &self.uniform
+    }
+}

@@ -1,0 +1,101 @@
+//! Linking WESL modules to WGSL.
+
+use std::borrow::Cow;
+
+use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
+
+use crate::AssignError;
+
+/// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
+///
+/// It starts with the contract's own modules: `package::view`, `package::sample`,
+/// `package::lights`, `package::volume` and `package::lists`.
+#[derive(Clone, Debug)]
+pub struct Shader<'a> {
+    modules: Vec<(String, Cow<'a, str>)>,
+    flags: Vec<(String, bool)>,
+}
+
+impl<'a> Shader<'a> {
+    /// The contract's modules; lists are read from bind group `lists_group`.
+    pub fn new(lists_group: u32) -> Self {
+        let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
+        Self {
+            modules: Vec::new(),
+            flags: Vec::new(),
+        }
+        .module("package::slots", slots)
+        .module("package::view", include_str!("shaders/view.wesl"))
+        .module("package::sample", include_str!("shaders/sample.wesl"))
+        .module("package::lights", include_str!("shaders/lights.wesl"))
+        .module("package::volume", include_str!("shaders/volume.wesl"))
+        .module("package::lists", include_str!("shaders/lists.wesl"))
+        .flag("spots", false)
+    }
+
+    /// Adds or replaces a module.
+    pub fn module(mut self, path: &str, source: impl Into<Cow<'a, str>>) -> Self {
+        self.modules.retain(|(known, _)| known != path);
+        self.modules.push((path.to_owned(), source.into()));
+        self
+    }
+
+    /// Sets a flag that `@if` reads. A flag that a module reads and nothing sets is an error.
+    pub fn flag(mut self, name: &str, value: bool) -> Self {
+        self.flags.retain(|(known, _)| known != name);
+        self.flags.push((name.to_owned(), value));
+        self
+    }
+
+    /// Links `root` and what it imports; keeps all its entry points.
+    pub fn link(&self, root: &str) -> Result<String, AssignError> {
+        let fail = |reason: String| AssignError::Shader {
+            module: root.to_owned(),
+            reason,
+        };
+        let mut resolver = VirtualResolver::new();
+        for (path, source) in &self.modules {
+            let path = path
+                .parse()
+                .map_err(|e| fail(format!("module path {path}: {e:?}")))?;
+            resolver.add_module(path, Cow::Borrowed(source.as_ref()));
+        }
+        let mut compiler = Wesl::new_barebones().set_custom_resolver(resolver);
+        let mut options = CompileOptions::default();
+        options.features.default = Feature::Error;
+        compiler.set_options(options);
+        for (name, value) in &self.flags {
+            compiler.set_feature(name, *value);
+        }
+        compiler.keep_all_entrypoints();
+        compiler.use_sourcemap(true);
+        let root = root
+            .parse()
+            .map_err(|e| fail(format!("module path: {e:?}")))?;
+        compiler
+            .compile(&root)
+            .map(|linked| linked.to_string())
+            .map_err(|e| fail(e.to_string()))
+    }
+
+    /// Links `root` and makes a shader module of it.
+    pub fn create(
+        &self,
+        device: &wgpu::Device,
+        root: &str,
+    ) -> Result<wgpu::ShaderModule, AssignError> {
+        let source = self.link(root)?;
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(root),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        match pollster::block_on(scope.pop()) {
+            None => Ok(module),
+            Some(error) => Err(AssignError::Shader {
+                module: root.to_owned(),
+                reason: error.to_string(),
+            }),
+        }
+    }
+}

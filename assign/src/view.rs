@@ -1,0 +1,290 @@
+//! The camera: world → view → clip → pixel, for every projection a renderer uses.
+//!
+//! View space is right-handed with +X right, +Y up and the camera looking down -Z; *view depth*
+//! is `-z`, positive in front. Clip depth runs 0..1, reversed or not.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+use thiserror::Error;
+
+/// The window that the camera looks through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Perspective. The bounds are tangents: the window at view depth 1.
+    Perspective {
+        /// Lower left corner `(left, bottom)` at view depth 1.
+        min: Vec2,
+        /// Upper right corner `(right, top)` at view depth 1.
+        max: Vec2,
+    },
+    /// Orthographic. The bounds are metres.
+    Orthographic {
+        /// Lower left corner `(left, bottom)`, metres.
+        min: Vec2,
+        /// Upper right corner `(right, top)`, metres.
+        max: Vec2,
+    },
+}
+
+/// How clip depth maps to view depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthMapping {
+    /// Near plane at 0, far plane at 1.
+    Standard,
+    /// Near plane at 1, far plane at 0: even precision in floating point.
+    Reversed,
+}
+
+/// The part of the render target that is drawn to, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Viewport {
+    /// Left edge inside the target.
+    pub x: u32,
+    /// Top edge inside the target.
+    pub y: u32,
+    /// Width, `> 0`.
+    pub width: u32,
+    /// Height, `> 0`.
+    pub height: u32,
+}
+
+/// One camera for one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// World to view space: a rotation and a translation.
+    pub world_to_view: Mat4,
+    /// The window looked through.
+    pub projection: Projection,
+    /// View depth of the near plane, metres: `> 0` for perspective, `>= 0` for orthographic.
+    pub near_m: f32,
+    /// View depth of the far plane, metres, `> near`; `None` is infinitely far (perspective only).
+    pub far_m: Option<f32>,
+    /// Direction of clip depth.
+    pub depth: DepthMapping,
+    /// Where in the target the image lies.
+    pub viewport: Viewport,
+    /// Shift of the image in pixels, +X right and +Y down, as temporal anti-aliasing uses it.
+    pub jitter: Vec2,
+}
+
+/// A view that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("view: {field} is {value}: it must be {accepted}")]
+pub struct ViewError {
+    /// The field's name.
+    pub field: &'static str,
+    /// The offending value.
+    pub value: String,
+    /// What would be accepted.
+    pub accepted: &'static str,
+}
+
+/// A [`View`] as shaders read it: `view.wesl`, `struct View`. 256 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ViewUniform {
+    /// World to view.
+    pub world_to_view: [[f32; 4]; 4],
+    /// View to world.
+    pub view_to_world: [[f32; 4]; 4],
+    /// View to clip, jitter included.
+    pub view_to_clip: [[f32; 4]; 4],
+    /// Position in view space on the plane of view depth 1 is `ray_scale * ndc + ray_offset`
+    /// (perspective), or at every depth (orthographic).
+    pub ray_scale: [f32; 2],
+    /// See `ray_scale`.
+    pub ray_offset: [f32; 2],
+    /// Upper left corner of the viewport, pixels.
+    pub viewport_origin: [f32; 2],
+    /// Size of the viewport, pixels.
+    pub viewport_size: [f32; 2],
+    /// View depth of the near plane, metres.
+    pub near_m: f32,
+    /// View depth of the far plane, metres; `f32::MAX` when infinite.
+    pub far_m: f32,
+    /// 1 for perspective, 0 for orthographic: the power of view depth in a ray's footprint.
+    pub perspective: f32,
+    /// How far rounding can move a world-space position seen from this camera, metres per metre
+    /// of distance from the world's origin or from the camera.
+    pub position_error: f32,
+}
+
+impl View {
+    /// A perspective camera at `eye` looking at `target`, reversed infinite depth, no jitter.
+    pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, near_m: f32, size: [u32; 2]) -> Self {
+        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+        let up = if forward.y.abs() > 0.999 {
+            Vec3::Z
+        } else {
+            Vec3::Y
+        };
+        let top = (fov_y * 0.5).tan();
+        let corner = Vec2::new(top * size[0] as f32 / size[1].max(1) as f32, top);
+        Self {
+            world_to_view: glam::camera::rh::view::look_to_mat4(eye, forward, up),
+            projection: Projection::Perspective {
+                min: -corner,
+                max: corner,
+            },
+            near_m,
+            far_m: None,
+            depth: DepthMapping::Reversed,
+            viewport: Viewport {
+                x: 0,
+                y: 0,
+                width: size[0],
+                height: size[1],
+            },
+            jitter: Vec2::ZERO,
+        }
+    }
+
+    /// Checks every field.
+    pub fn check(&self) -> Result<(), ViewError> {
+        let fail = |field, value: String, accepted| {
+            Err(ViewError {
+                field,
+                value,
+                accepted,
+            })
+        };
+        if !self.world_to_view.is_finite() {
+            return fail("world_to_view", self.world_to_view.to_string(), "finite");
+        }
+        let (perspective, min, max) = self.window();
+        if !(min.is_finite() && max.is_finite() && (max - min).min_element() > 0.0) {
+            return fail(
+                "projection",
+                format!("{min} to {max}"),
+                "a window of positive width and height",
+            );
+        }
+        let near_ok =
+            self.near_m.is_finite() && (self.near_m > 0.0 || (!perspective && self.near_m == 0.0));
+        if !near_ok {
+            return fail(
+                "near",
+                self.near_m.to_string(),
+                "above 0 (0 is allowed for orthographic)",
+            );
+        }
+        match self.far_m {
+            Some(far) if !(far.is_finite() && far > self.near_m) => {
+                return fail("far", far.to_string(), "finite and above near");
+            }
+            None if !perspective => {
+                return fail("far", "infinite".into(), "finite for orthographic");
+            }
+            _ => {}
+        }
+        let Viewport { width, height, .. } = self.viewport;
+        if width == 0 || height == 0 {
+            return fail(
+                "viewport",
+                format!("{width}x{height}"),
+                "at least 1x1 pixels",
+            );
+        }
+        if !self.jitter.is_finite() {
+            return fail("jitter", self.jitter.to_string(), "finite");
+        }
+        Ok(())
+    }
+
+    /// Whether perspective, and the window's corners with the jitter applied.
+    fn window(&self) -> (bool, Vec2, Vec2) {
+        let (perspective, min, max) = match self.projection {
+            Projection::Perspective { min, max } => (true, min, max),
+            Projection::Orthographic { min, max } => (false, min, max),
+        };
+        let size = Vec2::new(
+            self.viewport.width.max(1) as f32,
+            self.viewport.height.max(1) as f32,
+        );
+        // Moving the image right moves the window left; image y points down.
+        let shift = Vec2::new(-self.jitter.x, self.jitter.y) * (max - min) / size;
+        (perspective, min + shift, max + shift)
+    }
+
+    /// The eye, world space.
+    pub fn eye(&self) -> Vec3 {
+        self.world_to_view.inverse().w_axis.truncate()
+    }
+
+    /// View to clip space, jitter included; clip depth as [`View::depth`] says.
+    pub fn view_to_clip(&self) -> Mat4 {
+        let (perspective, min, max) = self.window();
+        let near = self.near_m;
+        // Clip depth is (a z + b) / w with w = -z or 1; at_near and at_far are its end values.
+        let (at_near, at_far) = match self.depth {
+            DepthMapping::Standard => (0.0, 1.0),
+            DepthMapping::Reversed => (1.0, 0.0),
+        };
+        let (a, b) = match (perspective, self.far_m) {
+            (true, Some(far)) => (
+                (at_near * near - at_far * far) / (far - near),
+                near * far * (at_near - at_far) / (far - near),
+            ),
+            (true, None) => (-at_far, near * (at_near - at_far)),
+            (false, far) => {
+                let far = far.unwrap_or(near + 1.0);
+                (
+                    (at_near - at_far) / (far - near),
+                    (at_near * far - at_far * near) / (far - near),
+                )
+            }
+        };
+        let scale = 2.0 / (max - min);
+        let offset = (max + min) / (max - min);
+        if perspective {
+            Mat4::from_cols(
+                Vec4::new(scale.x, 0.0, 0.0, 0.0),
+                Vec4::new(0.0, scale.y, 0.0, 0.0),
+                Vec4::new(offset.x, offset.y, a, -1.0),
+                Vec4::new(0.0, 0.0, b, 0.0),
+            )
+        } else {
+            Mat4::from_cols(
+                Vec4::new(scale.x, 0.0, 0.0, 0.0),
+                Vec4::new(0.0, scale.y, 0.0, 0.0),
+                Vec4::new(0.0, 0.0, a, 0.0),
+                Vec4::new(-offset.x, -offset.y, b, 1.0),
+            )
+        }
+    }
+
+    /// World to clip space.
+    pub fn world_to_clip(&self) -> Mat4 {
+        self.view_to_clip() * self.world_to_view
+    }
+
+    /// The clip depth to clear a depth buffer to: the far end.
+    pub fn depth_clear(&self) -> f32 {
+        match self.depth {
+            DepthMapping::Standard => 1.0,
+            DepthMapping::Reversed => 0.0,
+        }
+    }
+
+    /// The record shaders read.
+    pub fn uniform(&self) -> ViewUniform {
+        let (perspective, min, max) = self.window();
+        ViewUniform {
+            world_to_view: self.world_to_view.to_cols_array_2d(),
+            view_to_world: self.world_to_view.inverse().to_cols_array_2d(),
+            view_to_clip: self.view_to_clip().to_cols_array_2d(),
+            ray_scale: (0.5 * (max - min)).to_array(),
+            ray_offset: (0.5 * (max + min)).to_array(),
+            viewport_origin: [self.viewport.x as f32, self.viewport.y as f32],
+            viewport_size: [self.viewport.width as f32, self.viewport.height as f32],
+            near_m: self.near_m,
+            far_m: self.far_m.unwrap_or(f32::MAX),
+            perspective: if perspective { 1.0 } else { 0.0 },
+            position_error: POSITION_ERROR,
+        }
+    }
+}
+
+/// A position reconstructed from depth passes through three roundings of a product of matrices:
+/// 16 units in the last place bound them with room (the conformance suite's far camera checks it).
+const POSITION_ERROR: f32 = 16.0 * f32::EPSILON;

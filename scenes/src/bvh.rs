@@ -1,0 +1,111 @@
+//! Rays and distances against a scene's triangles: the one module that touches obvhs.
+
+use std::time::Duration;
+
+use glam::Vec3;
+use obvhs::{
+    BvhBuildParams,
+    bvh2::{Bvh2, builder::build_bvh2_from_tris},
+    ray::{Ray, RayHit},
+    triangle::Triangle,
+};
+
+use crate::{Aabb, Scene};
+
+/// A bounding volume hierarchy over world-space triangles.
+pub(crate) struct TriangleBvh {
+    bvh: Bvh2,
+    /// In the hierarchy's order, so that its leaves index them directly.
+    triangles: Vec<Triangle>,
+}
+
+impl TriangleBvh {
+    /// Over all triangles that touch `region`.
+    pub(crate) fn new(scene: &Scene, region: Aabb) -> Self {
+        let triangles: Vec<_> = scene
+            .world_triangles()
+            .filter(|t| !Aabb::from_points(*t).intersection(region).is_empty())
+            .map(|[a, b, c]| Triangle {
+                v0: a.into(),
+                v1: b.into(),
+                v2: c.into(),
+            })
+            .collect();
+        let params = BvhBuildParams::very_fast_build();
+        let bvh = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
+        let order = bvh.primitive_indices.iter();
+        let triangles = order.map(|&ix| triangles[ix as usize]).collect();
+        Self { bvh, triangles }
+    }
+
+    /// Distance along the unit `direction` to the first triangle, and its unit normal turned
+    /// towards the origin; `None` when there is none within `max_m`.
+    pub(crate) fn cast(&self, origin: Vec3, direction: Vec3, max_m: f32) -> Option<(f32, Vec3)> {
+        if self.triangles.is_empty() {
+            return None;
+        }
+        let ray = Ray::new(origin.into(), direction.into(), 0.0, max_m);
+        let mut hit = RayHit::none();
+        self.bvh.ray_traverse(ray, &mut hit, |ray, ix| self.triangles[ix].intersect(ray));
+        if !hit.t.is_finite() {
+            return None;
+        }
+        let normal = Vec3::from(self.triangles[hit.primitive_id as usize].compute_normal());
+        let towards = if normal.dot(direction) > 0.0 { -normal } else { normal };
+        Some((hit.t, towards))
+    }
+
+    /// Distance from `point` to the nearest triangle, at most `max_m`.
+    pub(crate) fn clearance(&self, point: Vec3, max_m: f32) -> f32 {
+        let around = Aabb::new(point, point).grown(max_m);
+        let around = obvhs::aabb::Aabb::new(around.min.into(), around.max.into());
+        let mut nearest = max_m;
+        self.bvh.aabb_traverse(around, |bvh, node_ix| {
+            let node = &bvh.nodes[node_ix as usize];
+            let leaf = node.first_index..node.first_index + node.prim_count;
+            for triangle in &self.triangles[leaf.start as usize..leaf.end as usize] {
+                nearest = nearest.min(distance_to_triangle(point, triangle));
+            }
+            true
+        });
+        nearest
+    }
+}
+
+/// Distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+fn distance_to_triangle(p: Vec3, triangle: &Triangle) -> f32 {
+    let [a, b, c] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3::from);
+    let normal = (b - a).cross(c - a);
+    let inside = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|(from, to)| normal.cross(*to - *from).dot(p - *from) >= 0.0);
+    if inside && normal != Vec3::ZERO {
+        return (normal.normalize().dot(p - a)).abs();
+    }
+    [(a, b), (b, c), (c, a)]
+        .iter()
+        .map(|&(from, to)| {
+            let edge = to - from;
+            let t = (p - from).dot(edge) / edge.length_squared().max(f32::MIN_POSITIVE);
+            p.distance(from + edge * t.clamp(0.0, 1.0))
+        })
+        .fold(f32::INFINITY, f32::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distance_to_face_edge_and_corner() {
+        let triangle = Triangle {
+            v0: Vec3::ZERO.into(),
+            v1: Vec3::X.into(),
+            v2: Vec3::Y.into(),
+        };
+        let distance = |x, y, z| distance_to_triangle(Vec3::new(x, y, z), &triangle);
+        assert_eq!(distance(0.2, 0.2, -3.0), 3.0);
+        assert_eq!(distance(0.5, -2.0, 0.0), 2.0);
+        assert_eq!(distance(4.0, -4.0, 0.0), 5.0);
+    }
+}

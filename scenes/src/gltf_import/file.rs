@@ -1,0 +1,248 @@
+//! The container: JSON, binary chunk, buffers and URIs, every range checked.
+
+use std::path::{Path, PathBuf};
+
+use base64::Engine;
+use gltf::json::{
+    Root,
+    mesh::Semantic,
+    validation::{Checked, Error as Fault, Validate},
+};
+
+use crate::SceneError;
+
+/// Extensions that a file may require. Those of materials beyond metallic-roughness are read as
+/// far as the material model goes, with a warning.
+pub(super) const SUPPORTED: &[&str] = &[
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// A parsed and validated file with its buffers.
+pub(super) struct File {
+    pub(super) path: PathBuf,
+    pub(super) root: Root,
+    buffers: Vec<Vec<u8>>,
+}
+
+impl File {
+    /// Reads a `.gltf` or `.glb` (told apart by content) and all its buffers.
+    pub(super) fn open(path: &Path) -> Result<Self, SceneError> {
+        let bytes = read(path)?;
+        let (json, binary) = split(path, &bytes)?;
+        let root = parse(path, json)?;
+        let mut file = Self {
+            path: path.into(),
+            root,
+            buffers: Vec::new(),
+        };
+        for (ix, buffer) in file.root.buffers.iter().enumerate() {
+            let field = format!("buffers[{ix}]");
+            let mut data = match (&buffer.uri, binary) {
+                (Some(uri), _) => file.fetch(uri, &format!("{field}.uri"))?,
+                (None, Some(binary)) if ix == 0 => binary.to_vec(),
+                (None, _) => {
+                    return Err(file.invalid(field, "without uri", "a uri or the GLB's BIN chunk"));
+                }
+            };
+            let wanted = buffer.byte_length.0;
+            if (data.len() as u64) < wanted {
+                let accepted = format!("at most {}, the bytes there are", data.len());
+                return Err(file.invalid(format!("{field}.byteLength"), wanted, accepted));
+            }
+            data.truncate(wanted as usize);
+            file.buffers.push(data);
+        }
+        Ok(file)
+    }
+
+    /// The error for a field that does not hold what it must.
+    pub(super) fn invalid(
+        &self,
+        field: impl Into<String>,
+        value: impl ToString,
+        accepted: impl Into<String>,
+    ) -> SceneError {
+        invalid(&self.path, field, value, accepted)
+    }
+
+    /// The bytes of a buffer view.
+    pub(super) fn view(&self, ix: usize) -> Result<&[u8], SceneError> {
+        let field = || format!("bufferViews[{ix}]");
+        let views = &self.root.buffer_views;
+        let view = views.get(ix).ok_or_else(|| {
+            self.invalid("bufferView", ix, format!("below {}", views.len()))
+        })?;
+        let buffer = self.buffers.get(view.buffer.value()).ok_or_else(|| {
+            let accepted = format!("below {}", self.buffers.len());
+            self.invalid(format!("{}.buffer", field()), view.buffer, accepted)
+        })?;
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        let end = start.checked_add(view.byte_length.0);
+        end.and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
+            .ok_or_else(|| {
+                self.invalid(
+                    field(),
+                    format!("{} bytes from {start}", view.byte_length.0),
+                    format!("inside its buffer of {} bytes", buffer.len()),
+                )
+            })
+    }
+
+    /// The bytes a URI names: a data URI, or a file beside the scene.
+    pub(super) fn fetch(&self, uri: &str, field: &str) -> Result<Vec<u8>, SceneError> {
+        let shown: String = uri.chars().take(60).collect();
+        if let Some(data) = uri.strip_prefix("data:") {
+            let (head, body) = data.split_once(',').ok_or_else(|| {
+                self.invalid(field, &shown, "a data URI with a comma before its data")
+            })?;
+            if head.ends_with(";base64") {
+                let base64 = base64::engine::general_purpose::STANDARD;
+                return base64
+                    .decode(body)
+                    .map_err(|_| self.invalid(field, &shown, "valid base64"));
+            }
+            return Ok(percent_encoding::percent_decode_str(body).collect());
+        }
+        if uri.contains("://") {
+            return Err(self.invalid(field, &shown, "a data URI or a relative path"));
+        }
+        let name = percent_encoding::percent_decode_str(uri)
+            .decode_utf8()
+            .map_err(|_| self.invalid(field, &shown, "UTF-8 when percent-decoded"))?;
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        read(&folder.join(name.as_ref()))
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+    std::fs::read(path).map_err(|source| SceneError::Read {
+        file: path.into(),
+        source,
+    })
+}
+
+fn invalid(
+    path: &Path,
+    field: impl Into<String>,
+    value: impl ToString,
+    accepted: impl Into<String>,
+) -> SceneError {
+    SceneError::Invalid {
+        file: path.into(),
+        field: field.into(),
+        value: value.to_string(),
+        accepted: accepted.into(),
+    }
+}
+
+/// The JSON, and the binary chunk of a GLB.
+fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
+    let Some(rest) = bytes.strip_prefix(b"glTF") else {
+        return Ok((bytes, None));
+    };
+    let number = |bytes: &[u8], at: usize| {
+        let four = bytes.get(at..at + 4)?;
+        Some(u32::from_le_bytes(four.try_into().ok()?))
+    };
+    let truncated = |field: &str| invalid(path, field, "cut short", "whole");
+    let version = number(rest, 0).ok_or_else(|| truncated("GLB header"))?;
+    if version != 2 {
+        return Err(invalid(path, "GLB version", version, "2"));
+    }
+    let length = number(rest, 4).ok_or_else(|| truncated("GLB header"))? as usize;
+    if length > bytes.len() || length < 12 {
+        let accepted = format!("between 12 and {}, the file's bytes", bytes.len());
+        return Err(invalid(path, "GLB length", length, accepted));
+    }
+    let mut rest = &bytes[12..length];
+    let mut chunk = |kind: &[u8; 4], field: &str| -> Result<&'a [u8], SceneError> {
+        let size = number(rest, 0).ok_or_else(|| truncated(field))? as usize;
+        let found = rest.get(4..8).ok_or_else(|| truncated(field))?;
+        if found != kind {
+            let found = String::from_utf8_lossy(found).into_owned();
+            let accepted = String::from_utf8_lossy(kind).into_owned();
+            return Err(invalid(path, format!("{field} type"), format!("{found:?}"), accepted));
+        }
+        let accepted = || format!("at most {}, the bytes left", rest.len() - 8);
+        let data = rest
+            .get(8..8usize.saturating_add(size))
+            .ok_or_else(|| invalid(path, format!("{field} length"), size, accepted()))?;
+        rest = &rest[8 + size..];
+        Ok(data)
+    };
+    let json = chunk(b"JSON", "GLB chunk 0")?;
+    let binary = if length > 20 + json.len() {
+        Some(chunk(b"BIN\0", "GLB chunk 1")?)
+    } else {
+        None
+    };
+    Ok((json, binary))
+}
+
+/// Parses and validates the JSON, so that indices between its parts are in range.
+fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
+    let root: Root = gltf::json::deserialize::from_slice(json)
+        .map_err(|e| invalid(path, "JSON", format!("malformed ({e})"), "glTF 2.0"))?;
+    if let Some(name) = root
+        .extensions_required
+        .iter()
+        .find(|name| !SUPPORTED.contains(&name.as_str()))
+    {
+        return Err(SceneError::Extension {
+            file: path.into(),
+            extension: name.clone(),
+            supported: SUPPORTED.join(", "),
+        });
+    }
+    check_positions(path, &root)?;
+    let mut fault = None;
+    root.validate(&root, gltf::json::Path::new, &mut |at, error| {
+        // Required extensions are checked above, against a longer list.
+        if error != Fault::Unsupported && fault.is_none() {
+            fault = Some((at().to_string(), error));
+        }
+    });
+    match fault {
+        None => Ok(root),
+        Some((field, error)) => {
+            let (value, accepted) = match error {
+                Fault::IndexOutOfBounds => ("an index out of range", "the index of an element"),
+                Fault::Missing => ("missing", "present"),
+                Fault::Oversize => ("too large", "addressable"),
+                _ => ("not valid", "as glTF 2.0 says"),
+            };
+            Err(invalid(path, field, value, accepted))
+        }
+    }
+}
+
+/// gltf-json indexes accessors by POSITION before it has validated that index.
+fn check_positions(path: &Path, root: &Root) -> Result<(), SceneError> {
+    for (mesh_ix, mesh) in root.meshes.iter().enumerate() {
+        for (ix, primitive) in mesh.primitives.iter().enumerate() {
+            let position = primitive
+                .attributes
+                .get(&Checked::Valid(Semantic::Positions));
+            if let Some(position) = position
+                && position.value() >= root.accessors.len()
+            {
+                return Err(invalid(
+                    path,
+                    format!("meshes[{mesh_ix}].primitives[{ix}].attributes.POSITION"),
+                    position,
+                    format!("below {}", root.accessors.len()),
+                ));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,208 @@
+//! Materials and their textures.
+
+use gltf::json::{
+    Index,
+    extensions::texture::TextureTransform,
+    material::{AlphaMode, Material as Json},
+    texture::{Info, MagFilter, MinFilter, Sampler as JsonSampler, Texture, WrappingMode},
+    validation::Checked,
+};
+use glam::{Affine2, Mat2, Vec2, Vec3, Vec4};
+
+use super::{Warnings, file::File, images::ImageTable};
+use crate::{Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
+
+/// The cutoff of masks that name none, and of blended materials.
+const DEFAULT_CUTOFF: f32 = 0.5;
+
+/// The file's materials, the default one after them, and what each needs from its meshes.
+pub(super) struct Materials {
+    pub(super) materials: Vec<Material>,
+    pub(super) images: Vec<Image>,
+    /// The vertex attribute TEXCOORD_n that each material reads.
+    pub(super) uv_sets: Vec<u32>,
+}
+
+/// Converts all materials and decodes their images.
+pub(super) fn load(file: &File, warnings: &mut Warnings) -> Result<Materials, SceneError> {
+    let mut table = ImageTable::default();
+    let mut materials = Vec::new();
+    let mut uv_sets = Vec::new();
+    for (ix, json) in file.root.materials.iter().enumerate() {
+        let mut reader = Reader {
+            file,
+            table: &mut table,
+            warnings,
+            name: json.name.clone().unwrap_or_else(|| format!("material {ix}")),
+            uv_set: None,
+        };
+        materials.push(reader.material(ix, json)?);
+        uv_sets.push(reader.uv_set.unwrap_or(0));
+    }
+    materials.push(Material::default());
+    uv_sets.push(0);
+    let images = table.decode(file)?;
+    Ok(Materials {
+        materials,
+        images,
+        uv_sets,
+    })
+}
+
+struct Reader<'a> {
+    file: &'a File,
+    table: &'a mut ImageTable,
+    warnings: &'a mut Warnings,
+    name: String,
+    uv_set: Option<u32>,
+}
+
+impl Reader<'_> {
+    fn material(&mut self, ix: usize, json: &Json) -> Result<Material, SceneError> {
+        use Encoding::{Linear, Srgb};
+        let pbr = &json.pbr_metallic_roughness;
+        let name = self.name.clone();
+        let strength = json
+            .extensions
+            .as_ref()
+            .and_then(|e| e.emissive_strength.as_ref())
+            .map_or(1.0, |s| s.emissive_strength.0);
+        self.note_extensions(json);
+        let material = Material {
+            base_color: Vec4::from(pbr.base_color_factor.0).clamp(Vec4::ZERO, Vec4::ONE),
+            metallic: pbr.metallic_factor.0.clamp(0.0, 1.0),
+            roughness: pbr.roughness_factor.0.clamp(0.0, 1.0),
+            emissive: Vec3::from(json.emissive_factor.0) * strength,
+            normal_scale: json.normal_texture.as_ref().map_or(1.0, |t| t.scale),
+            alpha_cutoff: self.alpha(json),
+            double_sided: json.double_sided,
+            base_color_texture: self.info(pbr.base_color_texture.as_ref(), Srgb),
+            metallic_roughness_texture: self.info(pbr.metallic_roughness_texture.as_ref(), Linear),
+            normal_texture: json.normal_texture.as_ref().map(|t| {
+                let transform = t.extensions.as_ref().and_then(|e| {
+                    let value = e.others.get("KHR_texture_transform")?;
+                    serde_json::from_value(value.clone()).ok()
+                });
+                self.texture(t.index, t.tex_coord, transform.as_ref(), Linear)
+            }),
+            emissive_texture: self.info(json.emissive_texture.as_ref(), Srgb),
+            name,
+        };
+        let emissive = material.emissive;
+        if !(emissive.is_finite() && emissive.min_element() >= 0.0) {
+            let field = format!("materials[{ix}].emissiveFactor");
+            return Err(self.file.invalid(field, emissive, "finite and at least 0"));
+        }
+        if !material.normal_scale.is_finite() {
+            let field = format!("materials[{ix}].normalTexture.scale");
+            return Err(self.file.invalid(field, material.normal_scale, "finite"));
+        }
+        Ok(material)
+    }
+
+    fn alpha(&mut self, json: &Json) -> Option<f32> {
+        match json.alpha_mode {
+            Checked::Valid(AlphaMode::Mask) => {
+                Some(json.alpha_cutoff.map_or(DEFAULT_CUTOFF, |cutoff| cutoff.0))
+            }
+            Checked::Valid(AlphaMode::Blend) => {
+                self.warnings.add(format!(
+                    "material {:?}: alphaMode BLEND is drawn as MASK with cutoff {DEFAULT_CUTOFF}",
+                    self.name
+                ));
+                Some(DEFAULT_CUTOFF)
+            }
+            _ => None,
+        }
+    }
+
+    /// Extensions that change the look and are not modelled.
+    fn note_extensions(&mut self, json: &Json) {
+        let Some(extensions) = &json.extensions else {
+            return;
+        };
+        let known = [
+            ("KHR_materials_unlit", extensions.unlit.is_some()),
+            ("KHR_materials_transmission", extensions.transmission.is_some()),
+            ("KHR_materials_volume", extensions.volume.is_some()),
+            ("KHR_materials_specular", extensions.specular.is_some()),
+            ("KHR_materials_ior", extensions.ior.is_some()),
+        ];
+        let others = extensions.others.keys().map(String::as_str);
+        let known = known.iter().filter(|(_, used)| *used).map(|(name, _)| *name);
+        for extension in known.chain(others) {
+            self.warnings.add(format!("material {:?}: {extension} is ignored", self.name));
+        }
+    }
+
+    fn info(&mut self, info: Option<&Info>, encoding: Encoding) -> Option<TextureRef> {
+        let info = info?;
+        let extensions = info.extensions.as_ref();
+        let transform = extensions.and_then(|e| e.texture_transform.as_ref());
+        Some(self.texture(info.index, info.tex_coord, transform, encoding))
+    }
+
+    fn texture(
+        &mut self,
+        index: Index<Texture>,
+        tex_coord: u32,
+        transform: Option<&TextureTransform>,
+        encoding: Encoding,
+    ) -> TextureRef {
+        // Indices are validated with the JSON; see `file::parse`.
+        let texture = &self.file.root.textures[index.value()];
+        let set = transform.and_then(|t| t.tex_coord).unwrap_or(tex_coord);
+        if *self.uv_set.get_or_insert(set) != set {
+            self.warnings.add(format!(
+                "material {:?}: its textures use several TEXCOORD sets, the first is used for all",
+                self.name
+            ));
+        }
+        let sampler = texture.sampler.and_then(|ix| self.file.root.get(ix));
+        TextureRef {
+            image: self.table.number(texture.source.value(), encoding),
+            sampler: sampler.map_or_else(Sampler::default, convert_sampler),
+            uv_transform: transform.map_or(Affine2::IDENTITY, uv_transform),
+        }
+    }
+}
+
+/// Translation * rotation * scale, the rotation counter-clockwise in an image whose v points
+/// down (KHR_texture_transform).
+fn uv_transform(transform: &TextureTransform) -> Affine2 {
+    let (sin, cos) = transform.rotation.0.sin_cos();
+    let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
+    let scale = Mat2::from_diagonal(Vec2::from(transform.scale.0));
+    let whole = Affine2::from_mat2_translation(rotation * scale, Vec2::from(transform.offset.0));
+    if whole.is_finite() { whole } else { Affine2::IDENTITY }
+}
+
+fn convert_sampler(json: &JsonSampler) -> Sampler {
+    use Filter::{Linear, Nearest};
+    let wrap = |mode| match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
+        _ => Wrap::Repeat,
+    };
+    let (min, mip) = match json.min_filter {
+        Some(Checked::Valid(filter)) => match filter {
+            MinFilter::Nearest => (Nearest, None),
+            MinFilter::Linear => (Linear, None),
+            MinFilter::NearestMipmapNearest => (Nearest, Some(Nearest)),
+            MinFilter::LinearMipmapNearest => (Linear, Some(Nearest)),
+            MinFilter::NearestMipmapLinear => (Nearest, Some(Linear)),
+            MinFilter::LinearMipmapLinear => (Linear, Some(Linear)),
+        },
+        _ => (Linear, Some(Linear)),
+    };
+    Sampler {
+        wrap_s: wrap(json.wrap_s),
+        wrap_t: wrap(json.wrap_t),
+        mag: match json.mag_filter {
+            Some(Checked::Valid(MagFilter::Nearest)) => Nearest,
+            _ => Linear,
+        },
+        min,
+        mip,
+    }
+}

@@ -1,0 +1,111 @@
+//! Import of glTF 2.0: `.gltf` and `.glb`, buffers and images embedded or beside the file.
+//!
+//! The file is parsed and validated by gltf-json; everything read after that is range-checked
+//! here, so that no file makes the importer panic.
+
+mod accessor;
+mod animation;
+mod file;
+mod images;
+mod materials;
+mod meshes;
+mod nodes;
+mod tangents;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+pub(crate) use animation::AnimatedNode;
+use file::File;
+
+use crate::{CameraPath, Scene, SceneError, fit};
+
+/// One line for each thing left out or changed, without repeats.
+#[derive(Default)]
+struct Warnings(Vec<String>);
+
+impl Warnings {
+    fn add(&mut self, line: String) {
+        if !self.0.contains(&line) {
+            self.0.push(line);
+        }
+    }
+
+    fn append(&mut self, other: Self) {
+        for line in other.0 {
+            self.add(line);
+        }
+    }
+}
+
+/// Loads a glTF 2.0 file.
+///
+/// Meshes used by several nodes are shared, each node becoming a model. Missing normals are
+/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Skins, morph
+/// targets, vertex colours, lines, points and directional lights are left out, and blended
+/// materials become masks; [`Scene::warnings`] says so. Lights without a range get the distance
+/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD); those that
+/// [`Light::check`](assign::Light::check) refuses are left out.
+///
+/// The path is the animation of the first animated camera; else it is fitted to the scene and
+/// starts at the first camera where there is one.
+///
+/// # Errors
+///
+/// [`SceneError`] for a file that cannot be read, that is malformed or cut short, whose images do
+/// not decode, that requires an unknown extension, or that has no triangles.
+pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
+    let file = File::open(path)?;
+    let mut warnings = Warnings::default();
+    let materials = materials::load(&file, &mut warnings)?;
+    let meshes = meshes::load(&file, &materials, &mut warnings)?;
+    let placed = nodes::load(&file, &meshes, &mut warnings)?;
+    if placed.instances.is_empty() {
+        return Err(SceneError::Empty {
+            name: path.display().to_string(),
+        });
+    }
+    let mut animated = None;
+    for chain in &placed.camera_chains {
+        if animated.is_none() {
+            animated = animation::load(&file, chain, &mut warnings)?;
+        }
+    }
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let mut scene = Scene {
+        name: name.into_owned(),
+        meshes: meshes.meshes,
+        materials: materials.materials,
+        images: materials.images,
+        instances: placed.instances,
+        models: placed.models,
+        lights: placed.lights,
+        cameras: placed.cameras,
+        path: CameraPath::still(fit::ORIGIN),
+        bounds: crate::Aabb::EMPTY,
+        core_bounds: crate::Aabb::EMPTY,
+        warnings: warnings.0,
+    };
+    drop_unused_default(&mut scene);
+    scene.bounds = fit::bounds(&scene);
+    if !(scene.bounds.size().is_finite() && scene.bounds.diagonal() < 1e12) {
+        let size = scene.bounds.size();
+        return Err(file.invalid("scene bounds", size, "at most 1e12 across"));
+    }
+    scene.core_bounds = fit::core_bounds(&scene);
+    scene.path = match animated {
+        Some(animated) => CameraPath::animated(animated),
+        None => fit::path(&scene),
+    };
+    Ok(scene)
+}
+
+/// The default material comes last; it stays only where a mesh uses it or there is no other.
+fn drop_unused_default(scene: &mut Scene) {
+    let default = scene.materials.len() - 1;
+    let used = scene.meshes.iter().any(|mesh| mesh.material as usize == default);
+    if default > 0 && !used {
+        scene.materials.pop();
+    }
+}

@@ -1,0 +1,31 @@
+//! Scenes on the CPU: what is drawn, what lights it and where the camera goes.
+//!
+//! [`open`] makes a [`Scene`] from the id of a procedural scene ([`list`]) or from a glTF 2.0
+//! file ([`load_gltf`]). [`scatter_lights`] draws any number of lights from a seed, and
+//! [`CameraPath`] leads a camera through the scene, timed by frame number only.
+//!
+//! World space is right-handed with +Y up, in metres; colours are linear RGB; triangles are
+//! counter-clockwise seen from the front.
+
+mod aabb;
+mod atrium;
+mod bvh;
+mod error;
+mod fit;
+mod gltf_import;
+mod hash;
+mod lights;
+mod material;
+mod path;
+mod registry;
+mod scene;
+
+pub use aabb::Aabb;
+pub use atrium::atrium;
+pub use error::SceneError;
+pub use gltf_import::load_gltf;
+pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, THRESHOLD, scatter_lights};
+pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
+pub use path::{CameraPath, Pose};
+pub use registry::{SceneEntry, list, open};
+pub use scene::{Camera, Instance, Lens, Mesh, Model, Scene, Vertex};

@@ -1,0 +1,168 @@
+//! Materials (glTF's metallic-roughness model), their textures and images.
+
+use glam::{Affine2, Vec3, Vec4};
+
+/// A surface's appearance: the metallic-roughness model of glTF 2.0. Every factor multiplies its
+/// texture where there is one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// For people; need not be unique.
+    pub name: String,
+    /// Base colour and opacity, linear.
+    pub base_color: Vec4,
+    /// 0 dielectric, 1 metal.
+    pub metallic: f32,
+    /// Perceptual roughness, 0..1; GGX's alpha is its square.
+    pub roughness: f32,
+    /// Emitted radiance, linear RGB, KHR_materials_emissive_strength multiplied in.
+    pub emissive: Vec3,
+    /// Scale of the normal texture's x and y.
+    pub normal_scale: f32,
+    /// Opacity below which nothing is drawn; `None` is opaque.
+    pub alpha_cutoff: Option<f32>,
+    /// Whether back faces are drawn, with the normal turned to the viewer.
+    pub double_sided: bool,
+    /// Base colour and opacity, sRGB.
+    pub base_color_texture: Option<TextureRef>,
+    /// Roughness in green, metalness in blue, linear.
+    pub metallic_roughness_texture: Option<TextureRef>,
+    /// Tangent-space normal, `2 rgb - 1`, linear.
+    pub normal_texture: Option<TextureRef>,
+    /// Emission, sRGB.
+    pub emissive_texture: Option<TextureRef>,
+}
+
+impl Default for Material {
+    /// glTF's default material: white, metallic 1, roughness 1.
+    fn default() -> Self {
+        Self {
+            name: "default".into(),
+            base_color: Vec4::ONE,
+            metallic: 1.0,
+            roughness: 1.0,
+            emissive: Vec3::ZERO,
+            normal_scale: 1.0,
+            alpha_cutoff: None,
+            double_sided: false,
+            base_color_texture: None,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            emissive_texture: None,
+        }
+    }
+}
+
+impl Material {
+    /// Its textures: base colour, metallic-roughness, normal, emissive.
+    pub fn textures(&self) -> [Option<&TextureRef>; 4] {
+        [
+            self.base_color_texture.as_ref(),
+            self.metallic_roughness_texture.as_ref(),
+            self.normal_texture.as_ref(),
+            self.emissive_texture.as_ref(),
+        ]
+    }
+}
+
+/// An image as one material reads it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`Scene::images`](crate::Scene::images).
+    pub image: u32,
+    /// How it is sampled.
+    pub sampler: Sampler,
+    /// From the vertex's uv to the texture's (KHR_texture_transform); the identity by default.
+    pub uv_transform: Affine2,
+}
+
+impl TextureRef {
+    /// The image, repeated, filtered trilinearly, uv untransformed.
+    pub fn new(image: u32) -> Self {
+        Self {
+            image,
+            sampler: Sampler::default(),
+            uv_transform: Affine2::IDENTITY,
+        }
+    }
+}
+
+/// How a texture is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sampler {
+    /// Outside 0..1 in u.
+    pub wrap_s: Wrap,
+    /// Outside 0..1 in v.
+    pub wrap_t: Wrap,
+    /// Between texels when magnified.
+    pub mag: Filter,
+    /// Between texels when minified.
+    pub min: Filter,
+    /// Between mip levels; `None` reads the finest level only.
+    pub mip: Option<Filter>,
+}
+
+impl Default for Sampler {
+    fn default() -> Self {
+        Self {
+            wrap_s: Wrap::Repeat,
+            wrap_t: Wrap::Repeat,
+            mag: Filter::Linear,
+            min: Filter::Linear,
+            mip: Some(Filter::Linear),
+        }
+    }
+}
+
+/// What a texture shows outside 0..1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// Itself again.
+    Repeat,
+    /// Itself mirrored.
+    MirroredRepeat,
+    /// Its edge.
+    ClampToEdge,
+}
+
+/// How neighbouring texels are combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Filter {
+    /// The nearest only.
+    Nearest,
+    /// A linear blend.
+    Linear,
+}
+
+/// Pixels of a texture, top row first.
+#[derive(Clone, PartialEq)]
+pub struct Image {
+    /// For people; need not be unique.
+    pub name: String,
+    /// Pixels per row, `> 0`.
+    pub width: u32,
+    /// Rows, `> 0`.
+    pub height: u32,
+    /// `width * height` pixels of red, green, blue, alpha.
+    pub rgba: Vec<u8>,
+    /// What the numbers mean.
+    pub encoding: Encoding,
+}
+
+impl std::fmt::Debug for Image {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "Image({:?}, {}x{}, {:?})",
+            self.name, self.width, self.height, self.encoding
+        )
+    }
+}
+
+/// What the numbers of an [`Image`] mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Encoding {
+    /// Colour in the sRGB transfer function; alpha is linear.
+    Srgb,
+    /// Linear data.
+    Linear,
+}

@@ -1,0 +1,177 @@
+//! Where the camera is, timed by frame number only.
+
+use glam::{Mat4, Vec3};
+
+use crate::gltf_import::AnimatedNode;
+
+/// Where a camera is and where it looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The camera's position, world space, metres.
+    pub eye: Vec3,
+    /// A point that it looks at, not the eye.
+    pub target: Vec3,
+    /// Which way is up in the image; not along the view direction.
+    pub up: Vec3,
+}
+
+impl Pose {
+    /// A pose with +Y up, or +Z up where it looks straight up or down.
+    pub fn new(eye: Vec3, target: Vec3) -> Self {
+        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+        let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
+        Self { eye, target, up }
+    }
+
+    /// The unit view direction.
+    pub fn forward(&self) -> Vec3 {
+        (self.target - self.eye).normalize_or(Vec3::NEG_Z)
+    }
+
+    /// World to view space: +X right, +Y up, looking down -Z.
+    pub fn world_to_view(&self) -> Mat4 {
+        glam::camera::rh::view::look_to_mat4(self.eye, self.forward(), self.up)
+    }
+
+    /// Scaled about the origin.
+    pub fn scaled(self, factor: f32) -> Self {
+        Self {
+            eye: self.eye * factor,
+            target: self.target * factor,
+            up: self.up,
+        }
+    }
+}
+
+/// A smooth way for a camera.
+#[derive(Clone, Debug)]
+pub struct CameraPath(Way);
+
+#[derive(Clone, Debug)]
+enum Way {
+    Still(Pose),
+    /// Closed uniform Catmull-Rom splines through the eyes and the targets.
+    Loop(Vec<(Vec3, Vec3)>),
+    /// A glTF camera's animation, its result scaled by the factor.
+    Animated(Box<AnimatedNode>, f32),
+}
+
+impl CameraPath {
+    /// A camera that does not move.
+    pub fn still(pose: Pose) -> Self {
+        Self(Way::Still(pose))
+    }
+
+    /// A closed loop through `(eye, target)` knots, starting at the first: Catmull-Rom, so that
+    /// position and velocity are continuous. Knots should lie about evenly apart; each takes the
+    /// same time. `fallback` is used when there are fewer than three.
+    pub fn closed_loop(knots: Vec<(Vec3, Vec3)>, fallback: Pose) -> Self {
+        if knots.len() < 3 {
+            Self::still(knots.first().map_or(fallback, |k| Pose::new(k.0, k.1)))
+        } else {
+            Self(Way::Loop(knots))
+        }
+    }
+
+    pub(crate) fn animated(node: AnimatedNode) -> Self {
+        Self(Way::Animated(Box::new(node), 1.0))
+    }
+
+    /// Whether it comes from an animation of the scene's file.
+    pub fn is_animation(&self) -> bool {
+        matches!(self.0, Way::Animated(..))
+    }
+
+    /// The pose of frame `frame` of a run of `frame_count` frames.
+    ///
+    /// A loop closes after `frame_count` frames; an animation reaches its last key in frame
+    /// `frame_count - 1`. Frames beyond the run wrap around.
+    pub fn pose(&self, frame: u32, frame_count: u32) -> Pose {
+        let count = frame_count.max(1);
+        let frame = frame % count;
+        match &self.0 {
+            Way::Still(pose) => *pose,
+            Way::Loop(knots) => loop_pose(knots, f64::from(frame) / f64::from(count)),
+            Way::Animated(node, scale) => {
+                let t = f64::from(frame) / f64::from((count - 1).max(1));
+                node.pose(t as f32).scaled(*scale)
+            }
+        }
+    }
+
+    /// Scaled about the origin.
+    pub fn scaled(self, factor: f32) -> Self {
+        Self(match self.0 {
+            Way::Still(pose) => Way::Still(pose.scaled(factor)),
+            Way::Loop(mut knots) => {
+                for (eye, target) in &mut knots {
+                    *eye *= factor;
+                    *target *= factor;
+                }
+                Way::Loop(knots)
+            }
+            Way::Animated(node, scale) => Way::Animated(node, scale * factor),
+        })
+    }
+}
+
+/// The pose at `turn` (0..1) of the closed spline through `knots`.
+fn loop_pose(knots: &[(Vec3, Vec3)], turn: f64) -> Pose {
+    let n = knots.len();
+    let at = turn.rem_euclid(1.0) * n as f64;
+    let segment = (at as usize).min(n - 1);
+    let t = (at - segment as f64) as f32;
+    let knot = |offset: usize| knots[(segment + n + offset - 1) % n];
+    let (p, q, r, s) = (knot(0), knot(1), knot(2), knot(3));
+    Pose::new(
+        catmull_rom(p.0, q.0, r.0, s.0, t),
+        catmull_rom(p.1, q.1, r.1, s.1, t),
+    )
+}
+
+/// Uniform Catmull-Rom from `q` (t = 0) to `r` (t = 1).
+fn catmull_rom(p: Vec3, q: Vec3, r: Vec3, s: Vec3, t: f32) -> Vec3 {
+    let linear = 0.5 * (r - p);
+    let square = p - 2.5 * q + 2.0 * r - 0.5 * s;
+    let cube = 0.5 * (s - p) + 1.5 * (q - r);
+    q + t * (linear + t * (square + t * cube))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> CameraPath {
+        let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
+        let knots = corners.map(|(x, z)| (Vec3::new(x, 1.0, z), Vec3::new(2.0, 1.0, 2.0)));
+        CameraPath::closed_loop(knots.to_vec(), Pose::new(Vec3::ZERO, Vec3::X))
+    }
+
+    #[test]
+    fn loops_pass_their_knots_and_close() {
+        let path = square();
+        assert_eq!(path.pose(0, 1200).eye, Vec3::new(0.0, 1.0, 0.0));
+        assert_eq!(path.pose(300, 1200).eye, Vec3::new(4.0, 1.0, 0.0));
+        assert_eq!(path.pose(1200, 1200), path.pose(0, 1200));
+        assert_eq!(path.pose(7, 0), path.pose(0, 1));
+    }
+
+    /// Second differences of a C1 cubic are bounded by its curvature, here under 40 m per turn
+    /// squared times the step squared; a kink would be of the order of the step itself.
+    #[test]
+    fn velocity_is_continuous() {
+        let path = square();
+        let n = 1200;
+        for frame in 0..n {
+            let eye = |offset: u32| path.pose(frame + offset, n).eye;
+            let bend = (eye(2) - 2.0 * eye(1) + eye(0)).length();
+            assert!(bend < 1e-3, "frame {frame}: {bend}");
+        }
+    }
+
+    #[test]
+    fn scaling_scales_eyes() {
+        let path = square().scaled(2.0);
+        assert_eq!(path.pose(300, 1200).eye, Vec3::new(8.0, 2.0, 0.0));
+    }
+}

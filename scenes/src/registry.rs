@@ -1,0 +1,86 @@
+//! The scenes that can be opened by name.
+
+use std::path::Path;
+
+use crate::{Scene, SceneError, atrium, load_gltf};
+
+/// A procedural scene.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneEntry {
+    /// What [`open`] takes.
+    pub id: &'static str,
+    /// One line for people.
+    pub summary: &'static str,
+    make: fn() -> Scene,
+}
+
+/// The seed of procedural scenes opened by name.
+const SEED: u64 = 1;
+
+static ENTRIES: &[SceneEntry] = &[SceneEntry {
+    id: "atrium",
+    summary: "two storeys of arcades around a court: marble, stone, cloth, bronze",
+    make: || atrium(SEED),
+}];
+
+/// All procedural scenes.
+pub fn list() -> &'static [SceneEntry] {
+    ENTRIES
+}
+
+/// Opens the procedural scene of that id, or the glTF file at that path.
+///
+/// # Errors
+///
+/// [`SceneError::Unknown`] when it is neither an id nor ends in `.gltf` or `.glb`; what
+/// [`load_gltf`] returns for a file.
+pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
+    if let Some(entry) = ENTRIES.iter().find(|entry| entry.id == name_or_path) {
+        return Ok((entry.make)());
+    }
+    let path = Path::new(name_or_path);
+    let is_gltf = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"));
+    if is_gltf {
+        return load_gltf(path);
+    }
+    Err(unknown(name_or_path))
+}
+
+/// How alike a name must be to be offered, by Jaro-Winkler.
+const NEAR: f64 = 0.7;
+
+fn unknown(name: &str) -> SceneError {
+    let ids: Vec<_> = ENTRIES.iter().map(|entry| entry.id).collect();
+    let mut near: Vec<_> = ids
+        .iter()
+        .map(|id| (strsim::jaro_winkler(id, &name.to_lowercase()), *id))
+        .filter(|(likeness, _)| *likeness >= NEAR)
+        .collect();
+    near.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let near: Vec<_> = near.iter().take(3).map(|(_, id)| *id).collect();
+    SceneError::Unknown {
+        name: name.into(),
+        known: ids.join(", "),
+        nearest: if near.is_empty() {
+            String::new()
+        } else {
+            format!("; nearest: {}", near.join(", "))
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_names_list_the_nearest() {
+        let error = open("Atrum").expect_err("no such scene").to_string();
+        assert!(error.contains("nearest: atrium"), "{error}");
+        let error = open("xyz").expect_err("no such scene").to_string();
+        assert!(error.contains("one of atrium") && !error.contains("nearest"), "{error}");
+        assert!(matches!(open("no/such.gltf"), Err(SceneError::Read { .. })));
+    }
+}

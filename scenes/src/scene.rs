@@ -1,0 +1,224 @@
+//! A scene in main memory: indexed meshes, placed by models, with materials, lights and cameras.
+
+use assign::Light;
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3};
+
+use crate::{Aabb, CameraPath, Image, Material, Pose, SceneError};
+
+/// Everything that is drawn, and where it is looked at from. World space is right-handed, +Y up,
+/// metres.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Its id, or its file's stem.
+    pub name: String,
+    /// Geometry, each with one material.
+    pub meshes: Vec<Mesh>,
+    /// Materials; at least one.
+    pub materials: Vec<Material>,
+    /// Images that the materials' textures refer to.
+    pub images: Vec<Image>,
+    /// What is drawn: meshes placed by models.
+    pub instances: Vec<Instance>,
+    /// Placed objects; the groups of per-model assignment.
+    pub models: Vec<Model>,
+    /// The scene's own lights; may be empty.
+    pub lights: Vec<Light>,
+    /// The scene's own cameras; may be empty.
+    pub cameras: Vec<Camera>,
+    /// A camera's way through the scene; frame 0 shows a lot of it.
+    pub path: CameraPath,
+    /// Box around all triangles, world space.
+    pub bounds: Aabb,
+    /// Box around the part that most triangles belong to, world space: [`Scene::bounds`] without
+    /// a far backdrop. Lights are scattered in it.
+    pub core_bounds: Aabb,
+    /// What the importer left out or changed, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// One vertex, object space. 48 bytes without padding.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Vertex {
+    /// Position, metres.
+    pub position: [f32; 3],
+    /// Unit normal.
+    pub normal: [f32; 3],
+    /// Unit tangent (the direction of increasing u), and the sign of the bitangent
+    /// `cross(normal, tangent) * w`.
+    pub tangent: [f32; 4],
+    /// Texture coordinate; v points down the image.
+    pub uv: [f32; 2],
+}
+
+/// A triangle list with one material: a glTF primitive.
+#[derive(Clone, PartialEq)]
+pub struct Mesh {
+    /// For people; need not be unique.
+    pub name: String,
+    /// Vertices, object space.
+    pub vertices: Vec<Vertex>,
+    /// Three per triangle, counter-clockwise seen from the front; each below `vertices.len()`.
+    pub indices: Vec<u32>,
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+    /// Box around the vertices, object space.
+    pub bounds: Aabb,
+}
+
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "Mesh({:?}, {} vertices, {} triangles, material {})",
+            self.name,
+            self.vertices.len(),
+            self.triangle_count(),
+            self.material
+        )
+    }
+}
+
+impl Mesh {
+    /// How many triangles it has.
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len() / 3
+    }
+
+    /// Its triangles' corners, object space.
+    pub fn triangles(&self) -> impl ExactSizeIterator<Item = [Vec3; 3]> + '_ {
+        self.indices.chunks_exact(3).map(|corner| {
+            std::array::from_fn(|i| Vec3::from(self.vertices[corner[i] as usize].position))
+        })
+    }
+}
+
+/// An object placed in the world: a glTF node with a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// For people; need not be unique.
+    pub name: String,
+    /// Box around all its meshes, object space.
+    pub bounds_object: Aabb,
+    /// Affine, invertible or not; a negative determinant mirrors, and so flips the winding of
+    /// triangles.
+    pub object_to_world: Mat4,
+}
+
+impl Model {
+    /// Whether it turns counter-clockwise triangles clockwise.
+    pub fn is_mirrored(&self) -> bool {
+        self.object_to_world.determinant() < 0.0
+    }
+}
+
+/// A mesh drawn with its model's transform.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instance {
+    /// Index into [`Scene::meshes`].
+    pub mesh: u32,
+    /// Index into [`Scene::models`].
+    pub model: u32,
+}
+
+/// A camera that came with the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// For people; need not be unique.
+    pub name: String,
+    /// Where it is and where it looks.
+    pub pose: Pose,
+    /// How it projects.
+    pub lens: Lens,
+    /// Distance of the near plane, metres.
+    pub near_m: f32,
+    /// Distance of the far plane, metres; `None` is infinitely far.
+    pub far_m: Option<f32>,
+}
+
+/// A camera's projection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// Perspective.
+    Perspective {
+        /// Full vertical field of view, radians.
+        fov_y: f32,
+    },
+    /// Orthographic.
+    Orthographic {
+        /// Half the width of the view, metres.
+        half_width: f32,
+        /// Half the height of the view, metres.
+        half_height: f32,
+    },
+}
+
+impl Scene {
+    /// Triangles drawn: every instance counts its mesh's.
+    pub fn triangle_count(&self) -> u64 {
+        let count = |instance: &Instance| self.meshes[instance.mesh as usize].triangle_count();
+        self.instances.iter().map(|i| count(i) as u64).sum()
+    }
+
+    /// The corners of every triangle drawn, world space, counter-clockwise seen from the front
+    /// even where the model mirrors.
+    pub fn world_triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        self.instances.iter().flat_map(move |instance| {
+            let model = &self.models[instance.model as usize];
+            let mirrored = model.is_mirrored();
+            self.meshes[instance.mesh as usize]
+                .triangles()
+                .map(move |triangle| {
+                    let [a, b, c] = triangle.map(|p| model.object_to_world.transform_point3(p));
+                    if mirrored { [a, c, b] } else { [a, b, c] }
+                })
+        })
+    }
+
+    /// The scene, uniformly scaled about the origin.
+    ///
+    /// Geometry, boxes, cameras, the path and the positions of the scene's own lights scale by
+    /// `factor`; those lights' ranges scale by `factor` and their intensities by its square, so
+    /// that the lit image stays the same.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::OutOfRange`] unless `factor` is finite and within 1e-6..=1e6.
+    pub fn scaled(mut self, factor: f32) -> Result<Self, SceneError> {
+        if !(1e-6..=1e6).contains(&factor) {
+            return Err(SceneError::OutOfRange {
+                field: "scene scale",
+                value: factor.to_string(),
+                accepted: "between 0.000001 and 1000000",
+            });
+        }
+        let scale = Mat4::from_scale(Vec3::splat(factor));
+        for model in &mut self.models {
+            model.object_to_world = scale * model.object_to_world;
+        }
+        for light in &mut self.lights {
+            light.position *= factor;
+            light.range_m *= factor;
+            light.intensity *= factor * factor;
+        }
+        for camera in &mut self.cameras {
+            camera.pose = camera.pose.scaled(factor);
+            camera.near_m *= factor;
+            camera.far_m = camera.far_m.map(|far| far * factor);
+            if let Lens::Orthographic {
+                half_width,
+                half_height,
+            } = &mut camera.lens
+            {
+                *half_width *= factor;
+                *half_height *= factor;
+            }
+        }
+        self.path = self.path.scaled(factor);
+        for bounds in [&mut self.bounds, &mut self.core_bounds] {
+            *bounds = Aabb::new(bounds.min * factor, bounds.max * factor);
+        }
+        Ok(self)
+    }
+}
