@@ -1,16 +1,23 @@
 //! Rays and distances against a scene's triangles: the one module that touches obvhs.
 
-use std::time::Duration;
-
 use glam::Vec3;
 use obvhs::{
-    BvhBuildParams,
-    bvh2::{Bvh2, builder::build_bvh2_from_tris},
+    bvh2::Bvh2,
+    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
     ray::{Ray, RayHit},
     triangle::Triangle,
 };
 
 use crate::{Aabb, Scene};
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hit {
+    /// Distance along the ray, metres.
+    pub(crate) distance_m: f32,
+    /// Whether the ray came from behind the triangle.
+    pub(crate) is_back: bool,
+}
 
 /// A bounding volume hierarchy over world-space triangles.
 pub(crate) struct TriangleBvh {
@@ -31,28 +38,34 @@ impl TriangleBvh {
                 v2: c.into(),
             })
             .collect();
-        let params = BvhBuildParams::very_fast_build();
-        let bvh = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
+        let indices = (0..triangles.len() as u32).collect();
+        let bvh = PlocBuilder::with_capacity(triangles.len()).build(
+            PlocSearchDistance::Minimum,
+            &triangles,
+            indices,
+            SortPrecision::U64,
+            0,
+        );
         let order = bvh.primitive_indices.iter();
         let triangles = order.map(|&ix| triangles[ix as usize]).collect();
         Self { bvh, triangles }
     }
 
-    /// Distance along the unit `direction` to the first triangle, and its unit normal turned
-    /// towards the origin; `None` when there is none within `max_m`.
-    pub(crate) fn cast(&self, origin: Vec3, direction: Vec3, max_m: f32) -> Option<(f32, Vec3)> {
+    /// The first triangle along the unit `direction`; `None` when there is none within `max_m`.
+    pub(crate) fn cast(&self, origin: Vec3, direction: Vec3, max_m: f32) -> Option<Hit> {
         if self.triangles.is_empty() {
             return None;
         }
         let ray = Ray::new(origin.into(), direction.into(), 0.0, max_m);
         let mut hit = RayHit::none();
-        self.bvh.ray_traverse(ray, &mut hit, |ray, ix| self.triangles[ix].intersect(ray));
-        if !hit.t.is_finite() {
-            return None;
-        }
-        let normal = Vec3::from(self.triangles[hit.primitive_id as usize].compute_normal());
-        let towards = if normal.dot(direction) > 0.0 { -normal } else { normal };
-        Some((hit.t, towards))
+        self.bvh
+            .ray_traverse(ray, &mut hit, |ray, ix| self.triangles[ix].intersect(ray));
+        // Where nothing is hit, obvhs leaves the id invalid but not the distance infinite.
+        let normal = self.triangles.get(hit.primitive_id as usize)?.compute_normal();
+        Some(Hit {
+            distance_m: hit.t,
+            is_back: Vec3::from(normal).dot(direction) > 0.0,
+        })
     }
 
     /// Distance from `point` to the nearest triangle, at most `max_m`.

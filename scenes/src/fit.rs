@@ -1,8 +1,17 @@
 //! Bounds and camera paths fitted to any scene.
+//!
+//! A path is found in three steps. Points spread over the core look around by casting rays
+//! against the scene's triangles; points inside solids (which see back faces) or close to walls
+//! drop out. Every direction of every point left is scored by what a picture from there would
+//! show. The best views then get a loop around a point ahead of them, the largest ellipse that
+//! keeps clear of all triangles, and the view with the best product of score and loop wins.
 
-use glam::Vec3;
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::{Aabb, CameraPath, Pose, Scene};
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::{Aabb, CameraPath, Pose, Scene, bvh::TriangleBvh};
 
 /// What a scene looks at before its path is fitted.
 pub(crate) const ORIGIN: Pose = Pose {
@@ -11,20 +20,328 @@ pub(crate) const ORIGIN: Pose = Pose {
     up: Vec3::Y,
 };
 
+/// Shares of the triangles cut off at both ends of an axis that has a backdrop.
+const CORE_SHARE: f64 = 0.02;
+
+/// An axis has a backdrop when the scene is this much longer than its core.
+const BACKDROP_RATIO: f32 = 3.0;
+
+/// With fewer triangles than this, percentiles say nothing.
+const CORE_TRIANGLES: usize = 1000;
+
+/// Points that look around: along x, y and z.
+const GRID: [u32; 3] = [14, 5, 14];
+
+/// Directions that each looks in: azimuths, and elevations in degrees.
+const AZIMUTHS: usize = 24;
+const ELEVATIONS: [f32; 7] = [-36.0, -24.0, -12.0, -2.0, 8.0, 18.0, 28.0];
+
+/// Azimuths to either side of a view's middle that a picture shows: 90 degrees in all.
+const HALF_WINDOW: usize = 3;
+
+/// A point with more empty azimuths than this stands outside.
+const MAX_OPEN: usize = AZIMUTHS / 3;
+
+/// Views whose loops are tried.
+const FINALISTS: usize = 40;
+
+/// Knots of a loop.
+const KNOTS: usize = 24;
+
 /// The box around all triangles drawn.
 pub(crate) fn bounds(scene: &Scene) -> Aabb {
-    scene.models.iter().fold(Aabb::EMPTY, |all, model| {
-        all.union(model.bounds_object.transformed(&model.object_to_world))
-    })
+    let place = |instance: &crate::Instance| {
+        let model = &scene.models[instance.model as usize];
+        let mesh = &scene.meshes[instance.mesh as usize];
+        mesh.bounds.transformed(&model.object_to_world)
+    };
+    scene.instances.iter().map(place).fold(Aabb::EMPTY, Aabb::union)
 }
 
-/// The box around the part that most triangles belong to.
+/// The box around the part that most triangles belong to: along each axis the whole extent, or,
+/// where that is more than three times as long, the range of the middle 96 % of the triangles'
+/// centroids and a margin.
 pub(crate) fn core_bounds(scene: &Scene) -> Aabb {
-    scene.bounds
+    let whole = scene.bounds;
+    let centroids: Vec<Vec3> = scene.world_triangles().map(|[a, b, c]| (a + b + c) / 3.0).collect();
+    if centroids.len() < CORE_TRIANGLES {
+        return whole;
+    }
+    let mut core = whole;
+    let cut = (centroids.len() as f64 * CORE_SHARE) as usize;
+    for axis in 0..3 {
+        let mut along: Vec<f32> = centroids.iter().map(|p| p[axis]).collect();
+        let top = along.len() - 1 - cut;
+        let (_, &mut min, _) = along.select_nth_unstable_by(cut, f32::total_cmp);
+        let (_, &mut max, _) = along.select_nth_unstable_by(top, f32::total_cmp);
+        if whole.size()[axis] > BACKDROP_RATIO * (max - min) && max > min {
+            let margin = 0.05 * (max - min);
+            core.min[axis] = (min - margin).max(whole.min[axis]);
+            core.max[axis] = (max + margin).min(whole.max[axis]);
+        }
+    }
+    core
 }
 
-/// A path through the core that shows a lot of the scene.
+/// A path through the core that shows a lot of the scene. It starts at the scene's first camera
+/// where there is one.
 pub(crate) fn path(scene: &Scene) -> CameraPath {
     let core = scene.core_bounds;
-    CameraPath::still(Pose::new(core.center() + core.size() * 0.7, core.center()))
+    let region = core.grown(0.25 * core.diagonal()).intersection(scene.bounds.grown(1.0));
+    let fit = Fit {
+        bvh: TriangleBvh::new(scene, region),
+        core,
+        reach_m: core.diagonal().max(f32::MIN_POSITIVE),
+        middle_height: middle_height(scene),
+        margin_m: 0.03 * core.size().min_element(),
+    };
+    if let Some(camera) = scene.cameras.first() {
+        return fit.path_from(&camera.pose);
+    }
+    let mut views = fit.views();
+    views.sort_by(|a, b| b.score.total_cmp(&a.score));
+    views.truncate(FINALISTS);
+    let rated = views.iter().map(|view| {
+        let ellipse = fit.ellipse(view.eye, view.heading());
+        let size = (ellipse.x + 2.0 * ellipse.y) / fit.reach_m;
+        (view.score * (0.1 + size).sqrt(), view, ellipse)
+    });
+    match rated.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((_, view, ellipse)) => {
+            // Where there is much sky, look down on what there is.
+            let pitch = -0.05 - 0.25 * view.sky;
+            fit.tour(view.eye, view.heading(), pitch, ellipse)
+        }
+        None => orbit(core),
+    }
+}
+
+/// The median height of the triangles' corners.
+fn middle_height(scene: &Scene) -> f32 {
+    let mut heights: Vec<f32> = scene.world_triangles().map(|[a, ..]| a.y).collect();
+    let middle = heights.len() / 2;
+    if heights.is_empty() {
+        return 0.0;
+    }
+    *heights.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
+/// A place to look from, and how good the picture would be.
+struct View {
+    eye: Vec3,
+    azimuth: f32,
+    score: f32,
+    /// Share of rays that meet nothing.
+    sky: f32,
+}
+
+impl View {
+    fn heading(&self) -> Vec3 {
+        direction(self.azimuth, 0.0)
+    }
+}
+
+fn direction(azimuth: f32, elevation: f32) -> Vec3 {
+    let (sin, cos) = azimuth.sin_cos();
+    Vec3::new(cos, 0.0, sin) * elevation.cos() + Vec3::Y * elevation.sin()
+}
+
+struct Fit {
+    bvh: TriangleBvh,
+    core: Aabb,
+    /// How far rays go, metres.
+    reach_m: f32,
+    /// Half the triangles lie below, metres.
+    middle_height: f32,
+    /// The least distance between the camera and any triangle, metres.
+    margin_m: f32,
+}
+
+impl Fit {
+    /// The best view of every usable point of a jittered grid over the core.
+    fn views(&self) -> Vec<View> {
+        let [nx, ny, nz] = GRID;
+        // Not at the rims, below most of the geometry or among the roofs.
+        let size = self.core.size();
+        let mut region = Aabb::new(self.core.min + 0.1 * size, self.core.max - 0.1 * size);
+        region.min.y = self.middle_height.clamp(self.core.min.y, self.core.max.y);
+        region.min.y -= 0.1 * size.y;
+        region.max.y = self.core.min.y + 0.65 * size.y;
+        region.max.y = region.max.y.max(region.min.y + 0.2 * size.y);
+        (0..nx * ny * nz)
+            .into_par_iter()
+            .filter_map(|ix| {
+                let cell = Vec3::new((ix % nx) as f32, (ix / nx % ny) as f32, (ix / nx / ny) as f32);
+                // Halton points in bases 2, 3 and 5 as jitter.
+                let jitter = Vec3::new(halton(ix, 2), halton(ix, 3), halton(ix, 5));
+                let at = (cell + jitter) / Vec3::new(nx as f32, ny as f32, nz as f32);
+                self.look_around(region.min + region.size() * at)
+            })
+            .collect()
+    }
+
+    /// The best view from `eye`; `None` where it is too close to a wall or inside a solid.
+    fn look_around(&self, eye: Vec3) -> Option<View> {
+        if self.bvh.clearance(eye, 2.0 * self.margin_m) < 2.0 * self.margin_m {
+            return None;
+        }
+        let mut columns = [Column::default(); AZIMUTHS];
+        let (mut hits, mut back_hits) = (0, 0);
+        for (ix, column) in columns.iter_mut().enumerate() {
+            for elevation in ELEVATIONS {
+                let along = direction(azimuth(ix), elevation.to_radians());
+                match self.bvh.cast(eye, along, self.reach_m) {
+                    Some(hit) => {
+                        hits += 1;
+                        back_hits += usize::from(hit.is_back);
+                        column.add(hit.distance_m / self.reach_m);
+                    }
+                    None => column.misses += 1.0,
+                }
+            }
+        }
+        let open = columns.iter().filter(|column| column.hits == 0.0).count();
+        if hits == 0 || back_hits * 4 > hits || open > MAX_OPEN {
+            return None;
+        }
+        let best = (0..AZIMUTHS)
+            .map(|middle| (picture_score(&columns, middle), middle))
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        // Back faces tell of open or inside-out geometry nearby.
+        let front_share = 1.0 - back_hits as f32 / hits as f32;
+        Some(View {
+            eye,
+            azimuth: azimuth(best.1),
+            score: best.0 * front_share,
+            sky: 1.0 - hits as f32 / (AZIMUTHS * ELEVATIONS.len()) as f32,
+        })
+    }
+
+    /// The semi-axes, ahead and sideways, of the largest ellipse that starts at `eye`, has its
+    /// middle ahead and keeps its margin; zero where there is none.
+    fn ellipse(&self, eye: Vec3, heading: Vec3) -> Vec2 {
+        let longest = 0.5 * self.reach_m;
+        let mut best = Vec2::ZERO;
+        for step in (1..=16).rev() {
+            let ahead = longest * step as f32 / 16.0;
+            for ratio in [0.7, 0.4, 0.2, 0.1] {
+                let axes = Vec2::new(ahead, ahead * ratio);
+                if axes.element_sum() > best.element_sum() && self.is_clear(eye, heading, axes) {
+                    best = axes;
+                }
+            }
+        }
+        best
+    }
+
+    fn is_clear(&self, eye: Vec3, heading: Vec3, axes: Vec2) -> bool {
+        // Points no further apart than the margin, so that none between them touches.
+        let points = (TAU * axes.max_element() / self.margin_m.max(1e-12)).clamp(16.0, 600.0);
+        (0..points as u32).all(|ix| {
+            let at = on_ellipse(eye, heading, axes, TAU * ix as f32 / points);
+            self.core.contains(at) && self.bvh.clearance(at, self.margin_m) >= self.margin_m
+        })
+    }
+
+    /// Around the ellipse once, turning once, so that the camera always looks across it.
+    fn tour(&self, eye: Vec3, heading: Vec3, pitch: f32, axes: Vec2) -> CameraPath {
+        let right = heading.cross(Vec3::Y);
+        let knots = (0..KNOTS).map(|ix| {
+            let angle = TAU * ix as f32 / KNOTS as f32;
+            let at = on_ellipse(eye, heading, axes, angle);
+            let (sin, cos) = angle.sin_cos();
+            let across = heading * cos - right * sin + Vec3::Y * pitch;
+            (at, at + across * (0.25 * self.reach_m))
+        });
+        CameraPath::closed_loop(knots.collect(), Pose::new(eye, eye + heading))
+    }
+
+    fn path_from(&self, pose: &Pose) -> CameraPath {
+        let forward = pose.forward();
+        let flat = Vec3::new(forward.x, 0.0, forward.z);
+        let Some(heading) = flat.try_normalize().filter(|_| flat.length() > 0.1) else {
+            return CameraPath::still(*pose);
+        };
+        let pitch = forward.y / flat.length();
+        self.tour(pose.eye, heading, pitch, self.ellipse(pose.eye, heading))
+    }
+}
+
+fn azimuth(ix: usize) -> f32 {
+    TAU * ix as f32 / AZIMUTHS as f32
+}
+
+/// The point at `angle` of the level ellipse that starts at `eye` and has its middle ahead.
+fn on_ellipse(eye: Vec3, heading: Vec3, axes: Vec2, angle: f32) -> Vec3 {
+    let right = heading.cross(Vec3::Y);
+    let (sin, cos) = angle.sin_cos();
+    eye + heading * (axes.x * (1.0 - cos)) + right * (axes.y * sin)
+}
+
+/// What one azimuth sees, over all elevations. Distances are shares of the scene's diagonal.
+#[derive(Clone, Copy, Default)]
+struct Column {
+    hits: f32,
+    misses: f32,
+    near: f32,
+    far_sum: f32,
+    log_sum: f32,
+    log_square_sum: f32,
+}
+
+impl Column {
+    fn add(&mut self, distance: f32) {
+        let log = distance.max(1e-3).ln();
+        self.hits += 1.0;
+        self.near += f32::from(distance < 0.04);
+        self.far_sum += distance / (distance + 0.15);
+        self.log_sum += log;
+        self.log_square_sum += log * log;
+    }
+}
+
+/// How good a picture around azimuth `middle` would be: far and varied depth; little that is
+/// very near; some sky, but no more than a third.
+fn picture_score(columns: &[Column; AZIMUTHS], middle: usize) -> f32 {
+    let mut all = Column::default();
+    for offset in 0..=2 * HALF_WINDOW {
+        let column = &columns[(middle + AZIMUTHS + offset - HALF_WINDOW) % AZIMUTHS];
+        all.hits += column.hits;
+        all.misses += column.misses;
+        all.near += column.near;
+        all.far_sum += column.far_sum;
+        all.log_sum += column.log_sum;
+        all.log_square_sum += column.log_square_sum;
+    }
+    if all.hits == 0.0 {
+        return 0.0;
+    }
+    let rays = all.hits + all.misses;
+    let mean_log = all.log_sum / all.hits;
+    let spread = (all.log_square_sum / all.hits - mean_log * mean_log).max(0.0).sqrt();
+    let sky = (all.misses / rays - 0.33).max(0.0);
+    let near = all.near / rays;
+    (all.far_sum / rays) * (1.0 + 0.6 * spread) * (1.0 - near) * (1.0 - 1.4 * sky).max(0.0)
+}
+
+/// The radical inverse of `ix` in `base`.
+fn halton(ix: u32, base: u32) -> f32 {
+    let (mut rest, mut digit, mut value) = (ix + 1, 1.0, 0.0);
+    while rest > 0 {
+        digit /= base as f32;
+        value += digit * (rest % base) as f32;
+        rest /= base;
+    }
+    value
+}
+
+/// Around an object that cannot be entered: at a distance that fills the picture, slightly above.
+fn orbit(around: Aabb) -> CameraPath {
+    let center = around.center();
+    let radius = 0.85 * around.diagonal();
+    let knots = (0..KNOTS).map(|ix| {
+        let angle = 0.5 * FRAC_PI_2 + TAU * ix as f32 / KNOTS as f32;
+        (center + radius * direction(angle, PI / 9.0), center)
+    });
+    CameraPath::closed_loop(knots.collect(), Pose::new(center + Vec3::Z * radius, center))
 }

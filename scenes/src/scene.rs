@@ -10,7 +10,7 @@ use crate::{Aabb, CameraPath, Image, Material, Pose, SceneError};
 /// metres.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Its id, or its file's stem.
+    /// Its id, or its file's stem (the folder's name where that is "scene").
     pub name: String,
     /// Geometry, each with one material.
     pub meshes: Vec<Mesh>,

@@ -1,1 +1,41 @@
-//! Placeholder.
+//! The one shading pipeline: whatever the strategy, the same triangles, materials, BRDF and sum.
+//!
+//! # A frame
+//!
+//! | pass | mode | reads | writes |
+//! |---|---|---|---|
+//! | `depth` | both | triangles | depth |
+//! | `gbuffer` | deferred | triangles, textures | base colour, normal, roughness, emissive |
+//! | the strategy's own | both | depth, lights | lists |
+//! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
+//! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |
+//!
+//! Both modes call the one lighting function in `lighting.wesl`; a sample is found from pixel and
+//! depth by `sample_at` in both, so a strategy's groups are the same. Only what a scene contains
+//! is compiled and bound: each texture, alpha masks, emission, spots.
+//!
+//! [`truth`](LightBvh) checks a strategy's lists on the CPU in f64; [`HdrImage`] compares images
+//! bit for bit.
+
+mod error;
+mod geometry;
+mod image;
+mod lighting;
+mod materials;
+mod mips;
+mod probe;
+mod raster;
+mod renderer;
+mod shaders;
+mod targets;
+mod truth;
+
+pub use error::ShadingError;
+pub use geometry::{InstanceRecord, SceneGpu};
+pub use image::{HdrImage, ImageDifference, luminance};
+pub use lighting::Lighting;
+pub use materials::MaterialRecord;
+pub use probe::{Samples, probe};
+pub use renderer::{Mode, Renderer, record_before_lighting};
+pub use targets::Targets;
+pub use truth::{EDGE, LightBvh, ListsTruth};

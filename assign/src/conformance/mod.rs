@@ -1,1 +1,164 @@
-//! Conformance suite.
+//! The conformance suite: does a strategy keep the promises of the contract?
+//!
+//! ```no_run
+//! # use assign::{AssignError, Everything, conformance};
+//! conformance::run(&|gpu| Ok(Box::new(Everything::new(gpu)?))).expect("conforms");
+//! conformance::rejects_faults(&|gpu| Ok(Box::new(Everything::new(gpu)?))).expect("rejects");
+//! ```
+//!
+//! # How
+//!
+//! 1. A case of [`CASES`] traces procedural surfaces on the CPU, a depth and a normal a pixel,
+//!    and places lights: a third of them barely reach a sample, where a test that is a little
+//!    too tight shows.
+//! 2. The surfaces are drawn into a real depth buffer and normals. Samples are every pixel with
+//!    a surface and, where the strategy serves them, points at random depths, the near and the
+//!    far plane among them.
+//! 3. The strategy prepares and records a frame. A probe shader then rebuilds every sample as
+//!    shading does, asks the strategy's own `group_of` and `list_of`, and writes down where the
+//!    sample lies and what list it got.
+//! 4. Everything is read back and checked on the CPU. Whether a light reaches the sample is
+//!    [`Light::reach`](crate::Light::reach) in f64 at the position that shading would use; a pair
+//!    closer to the edge than one part in a million does not count.
+//!
+//! Records are filled with a mark before a case's first frame, so that a list which no pass wrote
+//! shows. Frames repeat until no list overflows (at most six), then once more: the same frame
+//! must give the same lists. Every frame is checked, also those that overflow.
+//!
+//! # What is checked
+//!
+//! See [`Breach`]: one value a promise. A case that should have had (light, sample) pairs and had
+//! none fails too, so nothing passes for want of a question.
+//!
+//! # What a strategy may refuse
+//!
+//! Look-ups at any depth, by [`AssignError::Unsupported`] from `prepare`: the case then runs with
+//! those on opaque surfaces. A whole case, likewise: it is [`Outcome::Unserved`], which
+//! [`run_allowing`] accepts of the cases it is given.
+//!
+//! # Negative controls
+//!
+//! [`rejects_faults`] plants each [`Fault`](faulty::Fault) in the strategy and demands that the
+//! suite names it.
+
+mod cases;
+mod check;
+pub mod faulty;
+mod lights;
+mod rig;
+mod session;
+mod stage;
+mod views;
+mod violation;
+
+use std::sync::OnceLock;
+
+pub use cases::{CASES, Case};
+use faulty::{Fault, Faulty};
+use rig::Rig;
+pub use violation::{
+    Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
+};
+
+use crate::{AssignError, Assignment, Gpu};
+
+/// Makes a fresh instance of the strategy under test.
+pub type Make<'a> = dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> + 'a;
+
+/// Runs all cases; an error holds every violation, a line each.
+///
+/// It needs an adapter, a software one will do; without one it is an error, never a pass.
+pub fn run(make: &Make<'_>) -> Result<Report, ConformanceError> {
+    run_allowing(make, &[])
+}
+
+/// Runs all cases; those named in `unserved` may be refused.
+pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, ConformanceError> {
+    if let Some(name) = unserved.iter().find(|name| find(name).is_err()) {
+        return Err(ConformanceError::NoCase((*name).to_owned()));
+    }
+    let gpu = gpu()?;
+    let rig = Rig::new(gpu);
+    let mut report = Report { strategy: make(gpu).map_err(setup)?.id(), cases: Vec::new() };
+    for case in CASES {
+        report.cases.push(one(&rig, case, make)?);
+    }
+    let may = |case: &CaseReport| match case.outcome {
+        Outcome::Passed(_) => true,
+        Outcome::Unserved(_) => unserved.contains(&case.case),
+        Outcome::Failed(_) => false,
+    };
+    if report.cases.iter().all(may) { Ok(report) } else { Err(ConformanceError::Rejected(report)) }
+}
+
+/// Runs one case of [`CASES`]. Violations are an error; a refusal is an outcome.
+pub fn run_case(name: &str, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
+    let case = find(name)?;
+    let gpu = gpu()?;
+    let done = one(&Rig::new(gpu), case, make)?;
+    if let Outcome::Failed(_) = done.outcome {
+        return Err(ConformanceError::Rejected(Report {
+            strategy: make(gpu).map_err(setup)?.id(),
+            cases: vec![done],
+        }));
+    }
+    Ok(done)
+}
+
+/// Plants every fault that applies to the strategy and demands that the suite rejects it as what
+/// it is. Returns the faults that were planted.
+pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
+    let rig = Rig::new(gpu()?);
+    let plain = find("33-lights")?;
+    let has_groups = session::has_groups(&rig, plain, make).map_err(|e| failed(plain, e))?;
+    let mut planted = Vec::new();
+    for fault in Fault::ALL {
+        if fault.needs_groups() && !has_groups {
+            continue;
+        }
+        let (name, breach) = fault.shows_in();
+        let case = find(name)?;
+        let faulty = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+            Ok(Box::new(Faulty::new(gpu, make(gpu)?, fault)?))
+        };
+        let outcome = one(&rig, case, &faulty)?.outcome;
+        let is_named = match &outcome {
+            Outcome::Failed(violations) => violations.iter().any(|v| v.breach == breach),
+            _ => false,
+        };
+        if !is_named {
+            return Err(ConformanceError::FaultPassed {
+                fault: format!("{fault:?}"),
+                case: case.name,
+                outcome: format!("{outcome:?}"),
+            });
+        }
+        planted.push(fault);
+    }
+    Ok(planted)
+}
+
+/// One device for all tests of a process.
+fn gpu() -> Result<&'static Gpu, ConformanceError> {
+    static GPU: OnceLock<Result<Gpu, AssignError>> = OnceLock::new();
+    let opened = GPU.get_or_init(|| Gpu::open(None));
+    opened.as_ref().map_err(|error| setup(error.clone()))
+}
+
+fn find(name: &str) -> Result<&'static Case, ConformanceError> {
+    let found = CASES.iter().find(|case| case.name == name);
+    found.ok_or_else(|| ConformanceError::NoCase(name.to_owned()))
+}
+
+fn one(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
+    let outcome = session::run(rig, case, make).map_err(|error| failed(case, error))?;
+    Ok(CaseReport { case: case.name, outcome })
+}
+
+fn failed(case: &Case, error: AssignError) -> ConformanceError {
+    ConformanceError::Assign { case: case.name, error }
+}
+
+fn setup(error: AssignError) -> ConformanceError {
+    ConformanceError::Assign { case: "setup", error }
+}

@@ -42,7 +42,7 @@ pub(super) fn load(
         warnings.append(noted);
         let Some(mesh) = mesh else { continue };
         let range = &mut ranges[source];
-        if range.is_empty() {
+        if range.start == range.end {
             *range = meshes.len() as u32..meshes.len() as u32;
         }
         range.end += 1;

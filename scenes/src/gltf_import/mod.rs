@@ -72,9 +72,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
             animated = animation::load(&file, chain, &mut warnings)?;
         }
     }
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut scene = Scene {
-        name: name.into_owned(),
+        name: name(path),
         meshes: meshes.meshes,
         materials: materials.materials,
         images: materials.images,
@@ -99,6 +98,14 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         None => fit::path(&scene),
     };
     Ok(scene)
+}
+
+/// The file's stem, or its folder's name where that is just "scene".
+fn name(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    let folder = path.parent().and_then(Path::file_name);
+    let name = folder.filter(|_| stem == "scene").unwrap_or(stem);
+    name.to_string_lossy().into_owned()
 }
 
 /// The default material comes last; it stays only where a mesh uses it or there is no other.

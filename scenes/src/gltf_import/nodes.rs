@@ -136,7 +136,7 @@ impl Placed {
         warnings: &mut Warnings,
     ) {
         let range = meshes.ranges[mesh].clone();
-        if range.is_empty() {
+        if range.start == range.end {
             return;
         }
         if object_to_world.determinant() == 0.0 {

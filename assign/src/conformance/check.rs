@@ -1,0 +1,293 @@
+//! The promises, checked on the CPU: pairs in f64, lists and counters bit by bit.
+
+use std::{collections::HashSet, thread};
+
+use glam::DVec3;
+
+use super::{
+    rig::Probe,
+    violation::{Breach, Findings, Place, SamplePlace},
+};
+use crate::{
+    ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, ListsSnapshot,
+};
+
+/// A pair closer to the edge of the light's support than this share of it does not count.
+const EDGE: f64 = 1e-6;
+
+/// What no pass writes: records are filled with it before the first frame.
+pub(super) const UNWRITTEN: LightList = LightList { first: u32::MAX, count: u32::MAX };
+
+/// One drawn frame, read back.
+pub(super) struct Seen {
+    pub(super) snapshot: ListsSnapshot,
+    pub(super) probes: Vec<Probe>,
+    pub(super) group_count: u32,
+    pub(super) light_count: u32,
+}
+
+impl Seen {
+    pub(super) fn overflowed(&self) -> bool {
+        self.snapshot.counters.overflowed_groups > 0
+    }
+
+    fn list(&self, group: u32) -> Option<LightList> {
+        let exists = group == ALL_LIGHTS || group < self.group_count;
+        self.snapshot.list(group).filter(|_| exists)
+    }
+
+    /// A group's entries; none where the group or its list is not there.
+    fn entries(&self, group: u32) -> &[u32] {
+        self.list(group).and_then(|_| self.snapshot.entries_of(group)).unwrap_or_default()
+    }
+
+    /// Whether a group fell back to all lights: the pool begins behind entry 0.
+    fn fell_back(list: LightList) -> bool {
+        list.first == 0 && list.count > 0
+    }
+}
+
+/// Counts of (light, sample) pairs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pairs {
+    /// Had to be listed.
+    pub(super) reaching: u64,
+    /// Were listed.
+    pub(super) listed: u64,
+}
+
+/// Checks the lists that samples look up; `complete` checks every record and the counters, which
+/// only holds where no earlier frame left records behind.
+pub(super) fn lists(seen: &Seen, complete: bool, findings: &mut Findings) {
+    record_0(seen, findings);
+    let mut looked_up: Vec<u32> = seen.probes.iter().map(|p| p.group).collect();
+    looked_up.sort_unstable();
+    looked_up.dedup();
+    for probe in &seen.probes {
+        look_up(seen, probe, findings);
+    }
+    if complete {
+        // Groups that no sample looks up may be absent from a sparse strategy.
+        let written = |g: &u32| seen.list(*g) != Some(UNWRITTEN);
+        let all: Vec<u32> = (0..seen.group_count).filter(written).collect();
+        all.iter().for_each(|&g| list(seen, g, findings));
+        counters(seen, &all, true, findings);
+    } else {
+        looked_up.iter().for_each(|&g| list(seen, g, findings));
+        looked_up.retain(|&g| g != ALL_LIGHTS);
+        counters(seen, &looked_up, false, findings);
+    }
+    list(seen, ALL_LIGHTS, findings);
+}
+
+fn record_0(seen: &Seen, findings: &mut Findings) {
+    let wanted = LightList { first: 0, count: seen.light_count };
+    let found = seen.list(ALL_LIGHTS);
+    if found != Some(wanted) {
+        let detail = format!("it is {found:?}, not {wanted:?}");
+        findings.add(Breach::Record0, Place::default(), detail);
+        return;
+    }
+    let both = ENTRY_DIFFUSE | ENTRY_SPECULAR;
+    let wrong = |(ix, entry): &(usize, &u32)| **entry != *ix as u32 | both;
+    if let Some((ix, entry)) = seen.entries(ALL_LIGHTS).iter().enumerate().find(wrong) {
+        let detail = format!("entry {ix} is {entry:#010x}");
+        findings.add(Breach::Record0, Place::default(), detail);
+    }
+}
+
+fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
+    let place = Place { group: Some(probe.group), light: None, sample: Some(sample_place(probe)) };
+    match seen.list(probe.group) {
+        None => {
+            let detail = format!("there are {}", seen.group_count);
+            findings.add(Breach::NoSuchGroup, place, detail);
+        }
+        Some(UNWRITTEN) => {
+            let detail = "the sample's group has no list".into();
+            findings.add(Breach::Unwritten, place, detail);
+        }
+        Some(list) if (list.first, list.count) != (probe.first, probe.count) => {
+            let detail = format!(
+                "list_of gave ({}, {}), the record is ({}, {})",
+                probe.first, probe.count, list.first, list.count
+            );
+            findings.add(Breach::Lookup, place, detail);
+        }
+        Some(_) => {}
+    }
+}
+
+/// Checks one list's entries.
+fn list(seen: &Seen, group: u32, findings: &mut Findings) {
+    let Some(list) = seen.list(group).filter(|l| *l != UNWRITTEN) else {
+        return;
+    };
+    let mut place = Place { group: Some(group), ..Place::default() };
+    let Some(entries) = seen.snapshot.entries_of(group) else {
+        let held = seen.snapshot.entries.len();
+        let detail = format!("({}, {}) of {held} entries", list.first, list.count);
+        findings.add(Breach::OutsideBuffer, place, detail);
+        return;
+    };
+    if Seen::fell_back(list) && group != ALL_LIGHTS && list.count == seen.light_count {
+        // It shares the entries of record 0, which are checked once.
+        return;
+    }
+    let mut before: Option<u32> = None;
+    for (ix, entry) in entries.iter().enumerate() {
+        let light = entry & ENTRY_LIGHT;
+        place.light = Some(light);
+        if light >= seen.light_count {
+            let detail = format!("entry {ix}, with {} lights", seen.light_count);
+            findings.add(Breach::ForeignLight, place, detail);
+        }
+        if entry & (ENTRY_DIFFUSE | ENTRY_SPECULAR) == 0 {
+            findings.add(Breach::NoTerm, place, format!("entry {ix}"));
+        }
+        match before {
+            Some(before) if before == light => {
+                findings.add(Breach::Repeated, place, format!("entry {ix}"));
+            }
+            Some(before) if before > light => {
+                let detail = format!("entry {ix}, after light {before}");
+                findings.add(Breach::NotAscending, place, detail);
+            }
+            _ => {}
+        }
+        before = Some(light);
+    }
+}
+
+/// Checks the counters against the lists of `groups`: all groups, or some.
+fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings) {
+    let counters = seen.snapshot.counters;
+    let lists = || groups.iter().filter_map(|&g| seen.list(g));
+    let overflowed = lists().filter(|l| Seen::fell_back(*l)).count() as u64;
+    let fitting = || lists().filter(|l| !Seen::fell_back(*l) && *l != UNWRITTEN);
+    let listed: u64 = fitting().map(|l| u64::from(l.count)).sum();
+    let longest = fitting().map(|l| l.count).max().unwrap_or(0);
+    let occupied = overflowed + fitting().filter(|l| l.count > 0).count() as u64;
+    // Where a group fell back, its own count is known to the counters alone.
+    let whole = complete && overflowed == 0;
+    let mut expect = |name, counted: u64, found: u64, exact| {
+        if counted < found || (exact && counted != found) {
+            let detail = format!("{name} is {counted}, the lists hold {found}");
+            findings.add(Breach::Counters, Place::default(), detail);
+        }
+    };
+    expect("requested", counters.requested(), listed, whole);
+    expect("longest", counters.longest.into(), longest.into(), whole);
+    expect("occupied_groups", counters.occupied_groups.into(), occupied, complete);
+    expect("overflowed_groups", counters.overflowed_groups.into(), overflowed, complete);
+}
+
+/// Checks that every light which reaches a sample is in the list of the sample's group.
+pub(super) fn pairs(seen: &Seen, lights: &[Light], findings: &mut Findings) -> Pairs {
+    let mut order: Vec<&Probe> = seen.probes.iter().collect();
+    // Neighbours share a list.
+    order.sort_by_key(|p| p.group);
+    let workers = thread::available_parallelism().map_or(1, usize::from);
+    let share = order.len().div_ceil(workers).max(1);
+    let found = thread::scope(|scope| {
+        let running: Vec<_> = order
+            .chunks(share)
+            .map(|probes| scope.spawn(|| pairs_of(seen, lights, probes)))
+            .collect();
+        let joined = running.into_iter().map(thread::ScopedJoinHandle::join);
+        joined.collect::<Result<Vec<_>, _>>()
+    });
+    let found = found.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let mut sum = Pairs::default();
+    for (pairs, missed) in found {
+        sum.reaching += pairs.reaching;
+        sum.listed += pairs.listed;
+        for (place, detail) in missed {
+            findings.add(Breach::MissedPair, place, detail);
+        }
+    }
+    sum
+}
+
+fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Place, String)>) {
+    let mut pairs = Pairs::default();
+    let mut missed = Vec::new();
+    let mut is_listed = vec![false; lights.len()];
+    for of_group in probes.chunk_by(|a, b| a.group == b.group) {
+        let group = of_group[0].group;
+        let entries = seen.entries(group);
+        is_listed.fill(false);
+        for entry in entries {
+            if let Some(flag) = is_listed.get_mut((entry & ENTRY_LIGHT) as usize) {
+                *flag = true;
+            }
+        }
+        pairs.listed += (entries.len() * of_group.len()) as u64;
+        for probe in of_group {
+            let point = DVec3::from_array(probe.position_world.map(f64::from));
+            for (light_ix, light) in lights.iter().enumerate() {
+                let range = f64::from(light.range_m);
+                let far = point.distance_squared(light.position.as_dvec3()) >= range * range;
+                // A position that is no number must not pass for one out of reach.
+                if far && point.is_finite() {
+                    continue;
+                }
+                let reach = light.reach(point);
+                if reach <= EDGE {
+                    continue;
+                }
+                pairs.reaching += 1;
+                if is_listed[light_ix] {
+                    continue;
+                }
+                let place = Place {
+                    group: Some(group),
+                    light: Some(light_ix as u32),
+                    sample: Some(sample_place(probe)),
+                };
+                missed.push((place, describe(light, reach, entries.len())));
+            }
+        }
+    }
+    (pairs, missed)
+}
+
+fn describe(light: &Light, reach: f64, listed: usize) -> String {
+    let Light { position, range_m, .. } = light;
+    let kind = light.kind();
+    format!(
+        "{kind:?} light at {position} of range {range_m} m reaches the sample by {reach:.2e} of its support, the list holds {listed}"
+    )
+}
+
+/// Checks that two frames gave every sample the same entries. `breach` is what a difference is.
+pub(super) fn same(a: &Seen, b: &Seen, breach: Breach, findings: &mut Findings) {
+    let mut compared = HashSet::new();
+    for (old, new) in a.probes.iter().zip(&b.probes) {
+        if !compared.insert((old.group, new.group)) {
+            continue;
+        }
+        let (before, now) = (a.entries(old.group), b.entries(new.group));
+        if before == now {
+            continue;
+        }
+        let differs = |(x, y): (&u32, &u32)| x != y;
+        let first = before.iter().zip(now).position(differs);
+        let place = Place { group: Some(new.group), light: None, sample: Some(sample_place(new)) };
+        let detail = format!(
+            "{} entries before, {} now, first difference at {}",
+            before.len(),
+            now.len(),
+            first.unwrap_or(before.len().min(now.len()))
+        );
+        findings.add(breach, place, detail);
+    }
+    if a.probes.len() != b.probes.len() {
+        let detail = format!("{} samples, then {}", a.probes.len(), b.probes.len());
+        findings.add(breach, Place::default(), detail);
+    }
+}
+
+fn sample_place(probe: &Probe) -> SamplePlace {
+    SamplePlace { pixel: probe.pixel, depth_m: probe.depth_view }
+}

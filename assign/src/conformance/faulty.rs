@@ -1,0 +1,260 @@
+//! Negative controls: strategies with a planted fault, which the suite must reject.
+
+use bytemuck::bytes_of;
+
+use super::violation::Breach;
+use crate::{
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, Lookup, Needs, Passes,
+    Shader, entry, storage_entry, uniform_entry,
+};
+
+/// A fault planted in a strategy that otherwise works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The last entry of every list is missing.
+    DroppedLight,
+    /// The first two entries of every list are exchanged.
+    ShuffledList,
+    /// The first entry of every list is a copy of the second.
+    Repeated,
+    /// The last entry of every list names a light that does not exist.
+    ForeignLight,
+    /// The first entry of every list has lost its flags.
+    LostTerms,
+    /// Every list ends beyond the buffer.
+    RunawayList,
+    /// Lists are made from lights of 0.9 times their range.
+    ShrunkenBound,
+    /// Only the first frame is recorded.
+    StaleLists,
+    /// Every other frame lacks entries.
+    Flicker,
+    /// Entries are missing wherever faulty lights were left out.
+    LeakyQuarantine,
+    /// Record 0 lacks a light.
+    Record0,
+    /// Groups that overflow are not counted.
+    SilentOverflow,
+    /// The pool never grows.
+    StarvedPool,
+}
+
+impl Fault {
+    /// All faults.
+    pub const ALL: [Self; 13] = [
+        Self::DroppedLight,
+        Self::ShuffledList,
+        Self::Repeated,
+        Self::ForeignLight,
+        Self::LostTerms,
+        Self::RunawayList,
+        Self::ShrunkenBound,
+        Self::StaleLists,
+        Self::Flicker,
+        Self::LeakyQuarantine,
+        Self::Record0,
+        Self::SilentOverflow,
+        Self::StarvedPool,
+    ];
+
+    /// The case that must reject it, and the promise it breaks there.
+    pub fn shows_in(self) -> (&'static str, Breach) {
+        match self {
+            Self::DroppedLight => ("33-lights", Breach::MissedPair),
+            Self::ShuffledList => ("33-lights", Breach::NotAscending),
+            Self::Repeated => ("33-lights", Breach::Repeated),
+            Self::ForeignLight => ("33-lights", Breach::ForeignLight),
+            Self::LostTerms => ("33-lights", Breach::NoTerm),
+            Self::RunawayList => ("33-lights", Breach::OutsideBuffer),
+            Self::ShrunkenBound => ("light-at-tile-corner", Breach::MissedPair),
+            Self::StaleLists => ("lights-move", Breach::MissedPair),
+            Self::Flicker => ("33-lights", Breach::Unstable),
+            Self::LeakyQuarantine => ("quarantine", Breach::Quarantine),
+            Self::Record0 => ("33-lights", Breach::Record0),
+            Self::SilentOverflow => ("overflow", Breach::Counters),
+            Self::StarvedPool => ("overflow", Breach::OverflowStays),
+        }
+    }
+
+    /// Whether it is a fault only of strategies that cut samples into groups.
+    pub fn needs_groups(self) -> bool {
+        matches!(
+            self,
+            Self::ShrunkenBound
+                | Self::StaleLists
+                | Self::Record0
+                | Self::SilentOverflow
+                | Self::StarvedPool
+        )
+    }
+
+    /// What `fault.wesl` is to do in a frame; 0 is nothing.
+    fn kernel_kind(self, frame: u32, rejected: bool) -> u32 {
+        match self {
+            Self::DroppedLight => 1,
+            Self::ShuffledList => 2,
+            Self::Repeated => 3,
+            Self::ForeignLight => 4,
+            Self::LostTerms => 5,
+            Self::RunawayList => 6,
+            Self::Record0 => 7,
+            Self::SilentOverflow => 8,
+            Self::Flicker => frame % 2,
+            Self::LeakyQuarantine => u32::from(rejected),
+            Self::ShrunkenBound | Self::StaleLists | Self::StarvedPool => 0,
+        }
+    }
+}
+
+/// A strategy with a fault.
+pub struct Faulty {
+    inner: Box<dyn Assignment>,
+    fault: Fault,
+    frame: u32,
+    shrunken: LightBuffer,
+    uniform: wgpu::Buffer,
+    plant: wgpu::ComputePipeline,
+    bind_group: Option<wgpu::BindGroup>,
+    record_count: u32,
+}
+
+impl Faulty {
+    /// Plants `fault` in `inner`.
+    pub fn new(gpu: &Gpu, inner: Box<dyn Assignment>, fault: Fault) -> Result<Self, AssignError> {
+        Ok(Self {
+            inner,
+            fault,
+            frame: 0,
+            shrunken: LightBuffer::new(gpu, &[])?,
+            uniform: gpu.uniform("fault", 16),
+            plant: plant_pipeline(gpu)?,
+            bind_group: None,
+            record_count: 0,
+        })
+    }
+
+    /// The frame with lights of 0.9 times their range.
+    fn shrink<'a>(shrunken: &'a LightBuffer, frame: &Frame<'a>) -> Frame<'a> {
+        Frame { lights: shrunken, ..*frame }
+    }
+
+    /// Binds the finished lists to `fault.wesl`.
+    fn bind(&mut self, gpu: &Gpu, frame: &Frame<'_>) {
+        let lists = self.inner.lists();
+        let groups = lists.group_count();
+        let first_record = u32::from(groups > 0);
+        let rejected = !frame.lights.rejected().is_empty();
+        let parameters = [
+            self.fault.kernel_kind(self.frame, rejected),
+            first_record,
+            groups + 1,
+            frame.lights.count(),
+        ];
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&parameters));
+        self.record_count = groups + 1 - first_record;
+        let layout = self.plant.get_bind_group_layout(0);
+        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("fault"),
+            layout: &layout,
+            entries: &[
+                entry(0, lists.lists()),
+                entry(1, lists.entries()),
+                entry(2, lists.counters()),
+                entry(3, &self.uniform),
+            ],
+        }));
+    }
+}
+
+impl Assignment for Faulty {
+    fn id(&self) -> String {
+        format!("{} with {:?}", self.inner.id(), self.fault)
+    }
+
+    fn needs(&self) -> Needs {
+        self.inner.needs()
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        match self.fault {
+            Fault::ShrunkenBound => {
+                let shrink = |light: &Light| Light { range_m: 0.9 * light.range_m, ..*light };
+                let lights: Vec<Light> = frame.lights.lights().iter().map(shrink).collect();
+                self.shrunken.update(gpu, &lights)?;
+                let frame = Self::shrink(&self.shrunken, frame);
+                self.inner.prepare(gpu, &frame)?;
+            }
+            Fault::StarvedPool => {
+                self.inner.lists_mut().limit_pool(64);
+                self.inner.prepare(gpu, frame)?;
+            }
+            _ => self.inner.prepare(gpu, frame)?,
+        }
+        self.bind(gpu, frame);
+        Ok(())
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        let is_first = self.frame == 0;
+        self.frame += 1;
+        match self.fault {
+            Fault::StaleLists if !is_first => return,
+            Fault::ShrunkenBound => {
+                let frame = Self::shrink(&self.shrunken, frame);
+                self.inner.record(&frame, passes);
+            }
+            _ => self.inner.record(frame, passes),
+        }
+        passes.compute("fault", &mut |pass| {
+            pass.set_pipeline(&self.plant);
+            pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
+            pass.dispatch_workgroups(self.record_count.div_ceil(64), 1, 1);
+        });
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        self.inner.lookup()
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.inner.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.inner.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.inner.lists_mut()
+    }
+}
+
+fn plant_pipeline(gpu: &Gpu) -> Result<wgpu::ComputePipeline, AssignError> {
+    let device = &gpu.device;
+    let module = Shader::new(0)
+        .module("package::fault", include_str!("fault.wesl"))
+        .create(device, "package::fault")?;
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("fault"),
+        entries: &[
+            storage_entry(0, stages, false),
+            storage_entry(1, stages, false),
+            storage_entry(2, stages, false),
+            uniform_entry(3, stages),
+        ],
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("fault"),
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("fault"),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some("plant"),
+        compilation_options: Default::default(),
+        cache: None,
+    }))
+}

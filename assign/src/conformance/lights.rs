@@ -1,0 +1,131 @@
+//! Lights aimed at samples: inside, outside, and where a test that is too tight fails, at the edge.
+
+use glam::{DVec3, Vec3};
+
+use super::stage::{Rng, Stage};
+use crate::{Light, LightShape};
+
+/// Kinds of lights in a mix.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kinds {
+    /// Points.
+    Points,
+    /// Spots of half angles between two, radians, cut off at pi.
+    Spots(f64, f64),
+    /// Both, all half angles.
+    Mixed,
+}
+
+/// Lights of `range_m` low to high around random samples: a third barely reach theirs, a third
+/// hold it, a third lie anywhere near.
+pub(super) fn mix(
+    rng: &mut Rng,
+    stage: &Stage,
+    count: usize,
+    range_m: (f64, f64),
+    kinds: Kinds,
+) -> Vec<Light> {
+    let one = |ix: usize| {
+        let share = match ix % 3 {
+            0 => 1.0 - edge(rng),
+            1 => rng.range(0.0, 1.0),
+            _ => rng.range(0.0, 3.0),
+        };
+        at_sample(rng, stage, range_m, kinds, share)
+    };
+    (0..count).map(one).collect()
+}
+
+/// Lights whose distance to a sample is `share` of their range; at 1 they barely reach it.
+pub(super) fn lights_at(
+    rng: &mut Rng,
+    stage: &Stage,
+    count: usize,
+    range_m: (f64, f64),
+    kinds: Kinds,
+    share: f64,
+) -> Vec<Light> {
+    let one = |_| {
+        let share = (1.0 - edge(rng)).min(share);
+        at_sample(rng, stage, range_m, kinds, share)
+    };
+    (0..count).map(one).collect()
+}
+
+/// A point light anywhere that reaches `point`, of a range up to `range_m`.
+pub(super) fn reaching(rng: &mut Rng, point: DVec3, range_m: f64) -> Light {
+    let range = rng.range(0.3, 1.0) * range_m;
+    let center = point + rng.direction() * range * rng.range(0.0, 0.99);
+    Light::point(center.as_vec3(), range as f32, Vec3::ONE)
+}
+
+/// How far inside its edge a grazing light ends, as a share.
+fn edge(rng: &mut Rng) -> f64 {
+    rng.log_range(1e-5, 1e-1)
+}
+
+fn at_sample(rng: &mut Rng, stage: &Stage, range_m: (f64, f64), kinds: Kinds, share: f64) -> Light {
+    let point = stage.samples[rng.below(stage.samples.len())].point;
+    let range = rng.log_range(range_m.0, range_m.1);
+    let center = point + rng.direction() * range * share;
+    let light = Light::point(center.as_vec3(), range as f32, Vec3::ONE);
+    match kinds {
+        Kinds::Points => light,
+        Kinds::Spots(low, high) => aimed(rng, light, point, low, high),
+        Kinds::Mixed => match rng.below(2) {
+            0 => light,
+            _ => aimed(rng, light, point, 0.02, std::f64::consts::PI),
+        },
+    }
+}
+
+/// Turns a light into a spot whose cone holds `point`: half of them by little.
+fn aimed(rng: &mut Rng, light: Light, point: DVec3, low: f64, high: f64) -> Light {
+    let outer = rng.range(low, high).min(std::f64::consts::PI);
+    let to_point = (point - light.position.as_dvec3()).normalize_or(DVec3::NEG_Y);
+    let across = to_point.cross(rng.direction()).normalize_or(DVec3::X);
+    let off = outer
+        * match rng.below(2) {
+            0 => 1.0 - edge(rng),
+            _ => rng.range(0.0, 1.0),
+        };
+    let direction = to_point * off.cos() + across * off.sin();
+    // Rounded down, so that pi stays within the accepted angles.
+    let outer_angle = (outer as f32).min(std::f32::consts::PI);
+    Light {
+        shape: LightShape::Spot {
+            direction: direction.normalize().as_vec3(),
+            inner_angle: outer_angle * rng.range(0.0, 1.0) as f32,
+            outer_angle,
+        },
+        ..light
+    }
+}
+
+/// One light of each fault, otherwise like the first of `lights`.
+pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
+    let Some(&sound) = lights.first() else {
+        return Vec::new();
+    };
+    let spot = |direction, inner_angle, outer_angle| Light {
+        shape: LightShape::Spot { direction, inner_angle, outer_angle },
+        ..sound
+    };
+    let ranged = |range_m| Light { range_m, ..sound };
+    let lit = |intensity| Light { intensity, ..sound };
+    let moved = |position| Light { position, ..sound };
+    vec![
+        moved(Vec3::new(f32::NAN, 0.0, 0.0)),
+        moved(Vec3::new(0.0, f32::NEG_INFINITY, 0.0)),
+        ranged(0.0),
+        ranged(-3.0),
+        ranged(f32::NAN),
+        ranged(f32::INFINITY),
+        lit(Vec3::ZERO),
+        lit(Vec3::new(1.0, -1.0, 1.0)),
+        lit(Vec3::new(1.0, f32::NAN, 1.0)),
+        spot(Vec3::ZERO, 0.1, 0.5),
+        spot(Vec3::X, 0.1, f32::NAN),
+        spot(Vec3::X, 0.0, 0.0),
+    ]
+}

@@ -1,0 +1,294 @@
+//! The GPU's side of the suite: surfaces into a depth buffer, and the probe that looks lists up.
+
+use std::cell::OnceCell;
+
+use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
+
+use super::stage::Stage;
+use crate::{
+    AssignError, Assignment, FrameBindings, Gpu, Shader, entry, storage_entry, uniform_entry,
+};
+
+/// Bind group of the lists in the probe.
+pub(super) const LISTS_GROUP: u32 = 1;
+const PROBE_GROUP: u32 = 2;
+const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// A looked-up sample: `probe.wesl`, `struct Probe`. 48 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(super) struct Probe {
+    pub(super) pixel: [f32; 2],
+    depth_clip: f32,
+    on_surface: u32,
+    pub(super) position_world: [f32; 3],
+    pub(super) depth_view: f32,
+    pub(super) group: u32,
+    pub(super) first: u32,
+    pub(super) count: u32,
+    depth_used: f32,
+}
+
+/// A stage on the GPU.
+pub(super) struct Surfaces {
+    pub(super) depth: wgpu::TextureView,
+    pub(super) normals: wgpu::TextureView,
+    probes: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+    count: u32,
+}
+
+/// Pipelines of one run, for one strategy.
+pub(super) struct Rig<'a> {
+    pub(super) gpu: &'a Gpu,
+    draw: wgpu::RenderPipeline,
+    probe_layout: wgpu::BindGroupLayout,
+    /// Look-ups are constant over a strategy's life, so one pipeline serves all its instances.
+    probe: OnceCell<wgpu::ComputePipeline>,
+}
+
+impl<'a> Rig<'a> {
+    pub(super) fn new(gpu: &'a Gpu) -> Self {
+        let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Texture {
+                sample_type,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let probe_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("probe"),
+            entries: &[
+                storage_entry(0, wgpu::ShaderStages::COMPUTE, false),
+                texture(1, wgpu::TextureSampleType::Depth),
+                texture(2, wgpu::TextureSampleType::Float { filterable: true }),
+            ],
+        });
+        Self { gpu, draw: draw_pipeline(gpu), probe_layout, probe: OnceCell::new() }
+    }
+
+    /// Uploads the samples, opaque surfaces only or all, and draws the surfaces.
+    pub(super) fn set_up(&self, stage: &Stage, any_depth: bool) -> Result<Surfaces, AssignError> {
+        let device = &self.gpu.device;
+        let samples = match any_depth {
+            true => &stage.samples[..],
+            false => &stage.samples[..stage.on_surfaces],
+        };
+        let probes: Vec<Probe> = samples
+            .iter()
+            .map(|s| Probe {
+                pixel: s.pixel.map(|p| p as f32 + 0.5),
+                depth_clip: s.depth_clip,
+                on_surface: u32::from(s.on_surface),
+                ..Probe::zeroed()
+            })
+            .collect();
+        let buffer = self.gpu.storage("probes", size_of_val(&probes[..]) as u64)?;
+        self.gpu.queue.write_buffer(&buffer, 0, cast_slice(&probes));
+        let depth = target(device, "depth", DEPTH_FORMAT, stage.target);
+        let normals = target(device, "normals", NORMAL_FORMAT, stage.target);
+        self.draw(stage, &depth, &normals)?;
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("probe"),
+            layout: &self.probe_layout,
+            entries: &[
+                entry(0, &buffer),
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(&depth),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::TextureView(&normals),
+                },
+            ],
+        });
+        Ok(Surfaces { depth, normals, probes: buffer, bind_group, count: probes.len() as u32 })
+    }
+
+    fn draw(
+        &self,
+        stage: &Stage,
+        depth: &wgpu::TextureView,
+        normals: &wgpu::TextureView,
+    ) -> Result<(), AssignError> {
+        let gpu = self.gpu;
+        let texels = gpu.storage("texels", size_of_val(&stage.texels[..]) as u64)?;
+        gpu.queue.write_buffer(&texels, 0, cast_slice(&stage.texels));
+        let width = gpu.uniform("width", 16);
+        gpu.queue.write_buffer(&width, 0, bytes_of(&[stage.target[0], 0, 0, 0]));
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("surfaces"),
+            layout: &self.draw.get_bind_group_layout(0),
+            entries: &[entry(0, &texels), entry(1, &width)],
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("surfaces"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: normals,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(stage.view.depth_clear()),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(&self.draw);
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    fn probe_pipeline(
+        &self,
+        strategy: &dyn Assignment,
+        frame: &FrameBindings,
+    ) -> Result<&wgpu::ComputePipeline, AssignError> {
+        if let Some(known) = self.probe.get() {
+            return Ok(known);
+        }
+        let device = &self.gpu.device;
+        let lookup = strategy.lookup();
+        let module = Shader::new(LISTS_GROUP)
+            .module("package::probe", include_str!("probe.wesl"))
+            .module("package::strategy", lookup.module)
+            .create(device, "package::probe")?;
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("probe"),
+            bind_group_layouts: &[
+                Some(frame.layout()),
+                Some(lookup.layout),
+                Some(&self.probe_layout),
+            ],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("probe"),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some("look_up"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Ok(self.probe.get_or_init(|| pipeline))
+    }
+
+    /// Records the look-up of every sample.
+    pub(super) fn record_probe(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        strategy: &dyn Assignment,
+        frame: &FrameBindings,
+        surfaces: &Surfaces,
+    ) -> Result<(), AssignError> {
+        if strategy.bind_group().is_none() {
+            let id = strategy.id();
+            return Err(AssignError::Device(format!("{id} has no bind group after prepare")));
+        }
+        let pipeline = self.probe_pipeline(strategy, frame)?;
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, frame.bind_group(), &[]);
+        pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
+        pass.set_bind_group(PROBE_GROUP, &surfaces.bind_group, &[]);
+        pass.dispatch_workgroups(surfaces.count.div_ceil(64), 1, 1);
+        Ok(())
+    }
+
+    /// Reads the looked-up samples back, after submission.
+    pub(super) fn read_probes(&self, surfaces: &Surfaces) -> Result<Vec<Probe>, AssignError> {
+        let bytes = u64::from(surfaces.count) * size_of::<Probe>() as u64;
+        let probes: Vec<Probe> = pod_collect_to_vec(&self.gpu.read(&surfaces.probes, bytes)?);
+        let wrong = |p: &&Probe| p.depth_used.to_bits() != p.depth_clip.to_bits();
+        if let Some(probe) = probes.iter().find(wrong) {
+            return Err(AssignError::Device(format!(
+                "depth buffer at {:?} holds {} instead of {}",
+                probe.pixel, probe.depth_used, probe.depth_clip
+            )));
+        }
+        Ok(probes)
+    }
+}
+
+fn target(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    size: [u32; 2],
+) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&Default::default())
+}
+
+fn draw_pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("surfaces"),
+        source: wgpu::ShaderSource::Wgsl(include_str!("surfaces.wgsl").into()),
+    });
+    let stages = wgpu::ShaderStages::FRAGMENT;
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("surfaces"),
+        entries: &[storage_entry(0, stages, true), uniform_entry(1, stages)],
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("surfaces"),
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("surfaces"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("cover"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("draw"),
+            compilation_options: Default::default(),
+            targets: &[Some(NORMAL_FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,258 @@
+//! Draws the frames of a case with one instance of a strategy, and has each checked.
+
+use bytemuck::cast_slice;
+
+use super::{
+    Make,
+    cases::{Case, Lit, Plan},
+    check::{self, Seen, UNWRITTEN},
+    rig::{Rig, Surfaces},
+    stage::Rng,
+    violation::{Breach, Figures, Findings, Outcome, Place},
+};
+use crate::{
+    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, LightBuffer, SampleDomain,
+};
+
+/// Frames in which the pool must have grown to what the lists ask for.
+const FRAMES_TO_GROW: u32 = 6;
+/// The pool of the overflow case, entries.
+const TINY_POOL: u32 = 64;
+
+/// Runs one case. Violations are an outcome; an error is a failure outside the promises.
+pub(super) fn run(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<Outcome, AssignError> {
+    let seed =
+        case.name.bytes().fold(7, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
+    let mut findings = Findings::new(case.name);
+    let mut figures = Figures::default();
+    let mut run = Run { rig, make, findings: &mut findings, figures: &mut figures };
+    let plan = (case.build)(&mut Rng::new(seed));
+    let done = match &plan {
+        Plan::Still(lit) => run.sequence(std::slice::from_ref(lit)),
+        Plan::Sequence(stages) => run.sequence(stages),
+        Plan::Overflow(lit) => run.overflow(lit),
+        Plan::Quarantine { clean, dirty, bad } => run.quarantine(clean, dirty, bad),
+    };
+    if let Err(error) = done {
+        return match error {
+            AssignError::Unsupported { .. } if figures.frames == 0 => {
+                Ok(Outcome::Unserved(error.to_string()))
+            }
+            other => Err(other),
+        };
+    }
+    if case.has_pairs && figures.pairs == 0 {
+        let detail = format!("no light reaches any of {} samples", figures.samples);
+        findings.add(Breach::Vacuous, Place::default(), detail);
+    }
+    Ok(if findings.violations.is_empty() {
+        Outcome::Passed(figures)
+    } else {
+        Outcome::Failed(findings.violations)
+    })
+}
+
+/// Whether the strategy cuts the samples of a plain view into groups at all.
+pub(super) fn has_groups(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<bool, AssignError> {
+    let Plan::Still(lit) = (case.build)(&mut Rng::new(1)) else {
+        return Ok(true);
+    };
+    let mut session = Session::new(rig, make)?;
+    session.set_up(rig, &lit)?;
+    Ok(session.draw(rig, &lit, false)?.group_count > 0)
+}
+
+/// A case under way.
+struct Run<'r, 'g> {
+    rig: &'r Rig<'g>,
+    make: &'r Make<'r>,
+    findings: &'r mut Findings,
+    figures: &'r mut Figures,
+}
+
+impl Run<'_, '_> {
+    /// Draws stage after stage with one instance. The last frame is drawn twice.
+    fn sequence(&mut self, stages: &[Lit]) -> Result<(), AssignError> {
+        let mut session = Session::new(self.rig, self.make)?;
+        let mut fresh = true;
+        for lit in stages {
+            session.set_up(self.rig, lit)?;
+            let settled = self.settle(&mut session, lit, fresh)?;
+            let again = self.frame(&mut session, lit, false, fresh)?;
+            check::same(&settled, &again, Breach::Unstable, self.findings);
+            fresh = false;
+        }
+        Ok(())
+    }
+
+    /// Draws until no list overflows. `fresh` is whether no earlier stage left records behind.
+    fn settle(
+        &mut self,
+        session: &mut Session,
+        lit: &Lit,
+        fresh: bool,
+    ) -> Result<Seen, AssignError> {
+        let mut seen = self.frame(session, lit, fresh, fresh)?;
+        for _ in 1..FRAMES_TO_GROW {
+            if !seen.overflowed() {
+                return Ok(seen);
+            }
+            seen = self.frame(session, lit, false, fresh)?;
+        }
+        if seen.overflowed() {
+            let detail = format!(
+                "{} groups after {FRAMES_TO_GROW} frames",
+                seen.snapshot.counters.overflowed_groups
+            );
+            self.findings.add(Breach::OverflowStays, Place::default(), detail);
+        }
+        Ok(seen)
+    }
+
+    /// Draws one frame and checks all that holds of every frame.
+    fn frame(
+        &mut self,
+        session: &mut Session,
+        lit: &Lit,
+        wipe: bool,
+        complete: bool,
+    ) -> Result<Seen, AssignError> {
+        self.findings.frame = self.figures.frames;
+        let seen = session.draw(self.rig, lit, wipe)?;
+        check::lists(&seen, complete, self.findings);
+        let pairs = check::pairs(&seen, session.lights.lights(), self.findings);
+        self.figures.frames += 1;
+        self.figures.samples += seen.probes.len() as u64;
+        self.figures.pairs += pairs.reaching;
+        self.figures.listed += pairs.listed;
+        self.figures.any_depth |= session.domain == SampleDomain::AnyDepth;
+        Ok(seen)
+    }
+
+    /// A pool far too small: nothing missed, overflow counted; without the limit it ends.
+    fn overflow(&mut self, lit: &Lit) -> Result<(), AssignError> {
+        let mut session = Session::new(self.rig, self.make)?;
+        session.strategy.lists_mut().limit_pool(TINY_POOL);
+        session.set_up(self.rig, lit)?;
+        for wipe in [true, false] {
+            let seen = self.frame(&mut session, lit, wipe, true)?;
+            if seen.group_count > 0 && !seen.overflowed() {
+                let detail = format!("{} lights, a pool of {TINY_POOL} entries", seen.light_count);
+                self.findings.add(Breach::NoOverflow, Place::default(), detail);
+            }
+        }
+        session.strategy.lists_mut().limit_pool(u32::MAX);
+        let settled = self.settle(&mut session, lit, true)?;
+        let again = self.frame(&mut session, lit, false, true)?;
+        check::same(&settled, &again, Breach::Unstable, self.findings);
+        Ok(())
+    }
+
+    /// Faulty lights among sound ones: left out, counted, and the sound ones' lists unchanged.
+    fn quarantine(&mut self, clean: &Lit, dirty: &Lit, bad: &[usize]) -> Result<(), AssignError> {
+        let mut settled = Vec::new();
+        for lit in [clean, dirty] {
+            let mut session = Session::new(self.rig, self.make)?;
+            session.set_up(self.rig, lit)?;
+            settled.push(self.settle(&mut session, lit, true)?);
+            let rejected = session.lights.rejected().iter().map(|r| r.index);
+            let expected = if std::ptr::eq(lit, dirty) { bad } else { &[] };
+            if !rejected.eq(expected.iter().copied()) {
+                let detail = format!(
+                    "faulty lights are {expected:?}, left out were {:?}",
+                    session.lights.rejected()
+                );
+                self.findings.add(Breach::Quarantine, Place::default(), detail);
+            }
+        }
+        check::same(&settled[0], &settled[1], Breach::Quarantine, self.findings);
+        Ok(())
+    }
+}
+
+/// One instance of a strategy, and what a renderer keeps beside it.
+struct Session {
+    strategy: Box<dyn Assignment>,
+    frame: FrameBindings,
+    lights: LightBuffer,
+    surfaces: Option<Surfaces>,
+    domain: SampleDomain,
+}
+
+impl Session {
+    fn new(rig: &Rig<'_>, make: &Make<'_>) -> Result<Self, AssignError> {
+        Ok(Self {
+            strategy: make(rig.gpu)?,
+            frame: FrameBindings::new(rig.gpu),
+            lights: LightBuffer::new(rig.gpu, &[])?,
+            surfaces: None,
+            domain: SampleDomain::AnyDepth,
+        })
+    }
+
+    /// Uploads a stage.
+    fn set_up(&mut self, rig: &Rig<'_>, lit: &Lit) -> Result<(), AssignError> {
+        self.lights.update(rig.gpu, &lit.lights)?;
+        if lit.opaque_only {
+            self.domain = SampleDomain::OpaqueSurfaces;
+        }
+        let any_depth = self.domain == SampleDomain::AnyDepth;
+        self.surfaces = Some(rig.set_up(&lit.stage, any_depth)?);
+        Ok(())
+    }
+
+    /// Prepares a frame: with look-ups at any depth where the strategy serves them, else with
+    /// those on opaque surfaces.
+    fn prepare(&mut self, rig: &Rig<'_>, lit: &Lit) -> Result<(), AssignError> {
+        let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
+        self.frame.update(rig.gpu, &frame)?;
+        match self.strategy.prepare(rig.gpu, &frame) {
+            Err(AssignError::Unsupported { .. }) if self.domain == SampleDomain::AnyDepth => {
+                self.domain = SampleDomain::OpaqueSurfaces;
+                self.set_up(rig, lit)?;
+                let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
+                self.strategy.prepare(rig.gpu, &frame)
+            }
+            other => other,
+        }
+    }
+
+    /// Draws one frame; `wipe` first fills all records with what no pass writes.
+    fn draw(&mut self, rig: &Rig<'_>, lit: &Lit, wipe: bool) -> Result<Seen, AssignError> {
+        let gpu = rig.gpu;
+        self.prepare(rig, lit)?;
+        let group_count = self.strategy.lists().group_count();
+        if wipe {
+            let records = vec![UNWRITTEN; group_count as usize];
+            let lists = self.strategy.lists().lists();
+            gpu.queue.write_buffer(lists, 8, cast_slice(&records));
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
+        let mut passes = EncoderPasses { encoder: &mut encoder };
+        self.strategy.record(&frame, &mut passes);
+        let surfaces = self.surfaces.as_ref();
+        let surfaces = surfaces.ok_or_else(|| AssignError::Device("no stage set up".into()))?;
+        rig.record_probe(&mut encoder, &*self.strategy, &self.frame, surfaces)?;
+        gpu.queue.submit([encoder.finish()]);
+        Ok(Seen {
+            snapshot: self.strategy.lists().snapshot(gpu)?,
+            probes: rig.read_probes(surfaces)?,
+            group_count,
+            light_count: self.lights.count(),
+        })
+    }
+}
+
+fn frame_of<'a>(
+    lit: &'a Lit,
+    lights: &'a LightBuffer,
+    surfaces: Option<&'a Surfaces>,
+    samples: SampleDomain,
+) -> Frame<'a> {
+    Frame {
+        depth: surfaces.map(|s| &s.depth),
+        normals: surfaces.map(|s| &s.normals),
+        ..Frame::new(&lit.stage.view, lights).sampled_at(samples)
+    }
+}

@@ -1,0 +1,270 @@
+//! What a case looks at: a view, surfaces traced on the CPU, and view samples.
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use crate::{Projection, View};
+
+/// A stream of numbers from a seed (SplitMix64), the same on every platform.
+#[derive(Debug)]
+pub(super) struct Rng(u64);
+
+impl Rng {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Even between `low` and `high`.
+    pub(super) fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Even in the logarithm.
+    pub(super) fn log_range(&mut self, low: f64, high: f64) -> f64 {
+        self.range(low.ln(), high.ln()).exp()
+    }
+
+    /// An index below `count`.
+    pub(super) fn below(&mut self, count: usize) -> usize {
+        (self.next() % count.max(1) as u64) as usize
+    }
+
+    /// A direction, even on the sphere.
+    pub(super) fn direction(&mut self) -> DVec3 {
+        let z = self.range(-1.0, 1.0);
+        let angle = self.range(0.0, std::f64::consts::TAU);
+        let across = (1.0 - z * z).sqrt();
+        DVec3::new(across * angle.cos(), across * angle.sin(), z)
+    }
+}
+
+/// A surface in view space; distances in metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Solid {
+    /// `dot(normal, p) = offset`.
+    Plane { normal: DVec3, offset: f64 },
+    /// Facing the camera at a depth, up to a height; above it is background.
+    Wall { depth: f64, top: f64 },
+    /// Upright bars at a depth, a third of a period wide.
+    Bars { depth: f64, period: f64 },
+    /// A ball.
+    Ball { center: DVec3, radius: f64 },
+}
+
+/// View-space ray, parametrised by view depth.
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    origin: DVec3,
+    per_metre: DVec3,
+}
+
+impl Ray {
+    fn at(&self, depth: f64) -> DVec3 {
+        self.origin + self.per_metre * depth
+    }
+}
+
+impl Solid {
+    /// View depth and normal of the first hit in front.
+    fn hit(&self, ray: &Ray) -> Option<(f64, DVec3)> {
+        let (depth, normal) = match *self {
+            Self::Plane { normal, offset } => {
+                let along = normal.dot(ray.per_metre);
+                ((offset - normal.dot(ray.origin)) / along, normal)
+            }
+            Self::Wall { depth, top } => {
+                (if ray.at(depth).y < top { depth } else { -1.0 }, DVec3::Z)
+            }
+            Self::Bars { depth, period } => {
+                let across = (ray.at(depth).x / period).rem_euclid(1.0);
+                (if across < 1.0 / 3.0 { depth } else { -1.0 }, DVec3::Z)
+            }
+            Self::Ball { center, radius } => {
+                let (from, along) = (ray.origin - center, ray.per_metre);
+                let (a, b) = (along.dot(along), from.dot(along));
+                let root = (b * b - a * (from.dot(from) - radius * radius)).sqrt();
+                let depth = (-b - root) / a;
+                (depth, (ray.at(depth) - center) / radius)
+            }
+        };
+        (depth.is_finite() && depth > 0.0).then_some((depth, normal))
+    }
+}
+
+/// Floor, far wall under an open sky, and balls, `scale_m` to the metre.
+pub(super) fn room(rng: &mut Rng, scale_m: f64) -> Vec<Solid> {
+    let mut solids = vec![
+        Solid::Plane { normal: DVec3::new(0.0, 1.0, 0.05).normalize(), offset: -1.5 * scale_m },
+        Solid::Wall { depth: 12.0 * scale_m, top: 3.5 * scale_m },
+    ];
+    for _ in 0..5 {
+        let depth = rng.range(2.5, 10.0);
+        let across = DVec2::new(rng.range(-0.5, 0.5), rng.range(-0.3, 0.3)) * depth;
+        solids.push(Solid::Ball {
+            center: across.extend(-depth) * scale_m,
+            radius: rng.range(0.3, 1.2) * scale_m,
+        });
+    }
+    solids
+}
+
+/// A view sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub(super) pixel: [u32; 2],
+    /// Clip depth: on a surface what the depth buffer holds.
+    pub(super) depth_clip: f32,
+    pub(super) on_surface: bool,
+    /// Where it lies, up to the rounding of its depth: lights are aimed at it.
+    pub(super) point: DVec3,
+}
+
+/// A view, what it sees, and the samples to look up.
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    pub(super) view: View,
+    /// Size of the render target, pixels.
+    pub(super) target: [u32; 2],
+    /// World-space normal and clip depth of each texel; the depth of background is -1.
+    pub(super) texels: Vec<[f32; 4]>,
+    /// Samples on surfaces, then samples in the open.
+    pub(super) samples: Vec<Sample>,
+    pub(super) on_surfaces: usize,
+    view_to_world: DMat4,
+    view_to_clip: DMat4,
+}
+
+impl Stage {
+    /// Traces `solids` and samples every pixel with a surface, and `open` points in the open.
+    pub(super) fn new(view: View, target: [u32; 2], solids: &[Solid], open: usize) -> Self {
+        let mut stage = Self {
+            view,
+            target,
+            texels: vec![[0.0, 0.0, 0.0, -1.0]; (target[0] * target[1]) as usize],
+            samples: Vec::new(),
+            on_surfaces: 0,
+            view_to_world: view.world_to_view.as_dmat4().inverse(),
+            view_to_clip: view.view_to_clip().as_dmat4(),
+        };
+        let port = view.viewport;
+        for y in port.y..port.y + port.height {
+            for x in port.x..port.x + port.width {
+                stage.trace([x, y], solids);
+            }
+        }
+        stage.on_surfaces = stage.samples.len();
+        stage.sample_in_the_open(open);
+        stage
+    }
+
+    /// Keeps no more than `count` samples of each kind.
+    pub(super) fn thinned(mut self, count: usize) -> Self {
+        let open = self.samples.split_off(self.on_surfaces);
+        let thin = |samples: Vec<Sample>| {
+            let step = samples.len().div_ceil(count.max(1)).max(1);
+            samples.into_iter().step_by(step).collect::<Vec<_>>()
+        };
+        self.samples = thin(self.samples);
+        self.on_surfaces = self.samples.len();
+        self.samples.extend(thin(open));
+        self
+    }
+
+    /// World-space point of a view-space one.
+    pub(super) fn to_world(&self, point_view: DVec3) -> DVec3 {
+        self.view_to_world.transform_point3(point_view)
+    }
+
+    fn ray(&self, pixel: [u32; 2]) -> Ray {
+        let uniform = self.view.uniform();
+        let pair = |v: [f32; 2]| DVec2::from_array(v.map(f64::from));
+        let uv = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5
+            - pair(uniform.viewport_origin))
+            / pair(uniform.viewport_size);
+        let ndc = DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
+        let window = pair(uniform.ray_scale) * ndc + pair(uniform.ray_offset);
+        match self.view.projection {
+            Projection::Perspective { .. } => {
+                Ray { origin: DVec3::ZERO, per_metre: window.extend(-1.0) }
+            }
+            Projection::Orthographic { .. } => {
+                Ray { origin: window.extend(0.0), per_metre: DVec3::NEG_Z }
+            }
+        }
+    }
+
+    fn depth_clip(&self, depth_view: f64) -> f32 {
+        let clip = self.view_to_clip * DVec4::new(0.0, 0.0, -depth_view, 1.0);
+        ((clip.z / clip.w) as f32).clamp(0.0, 1.0)
+    }
+
+    fn trace(&mut self, pixel: [u32; 2], solids: &[Solid]) {
+        let ray = self.ray(pixel);
+        let (near, far) = self.depth_range();
+        let nearest = solids
+            .iter()
+            .filter_map(|solid| solid.hit(&ray))
+            .filter(|(depth, _)| (near..=far).contains(depth))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((depth, normal)) = nearest else {
+            return;
+        };
+        let depth_clip = self.depth_clip(depth);
+        // A renderer takes the cleared depth for background.
+        if depth_clip == self.view.depth_clear() {
+            return;
+        }
+        let normal = self.view_to_world.transform_vector3(normal).as_vec3();
+        self.texels[(pixel[0] + pixel[1] * self.target[0]) as usize] =
+            normal.extend(depth_clip).to_array();
+        self.samples.push(Sample {
+            pixel,
+            depth_clip,
+            on_surface: true,
+            point: self.to_world(ray.at(depth)),
+        });
+    }
+
+    fn depth_range(&self) -> (f64, f64) {
+        let far = self.view.far_m.map_or(f64::INFINITY, f64::from);
+        (f64::from(self.view.near_m), far)
+    }
+
+    /// Points at random depths, every eighth on the near or, where there is one, the far plane.
+    fn sample_in_the_open(&mut self, count: usize) {
+        let mut rng = Rng::new(u64::from(self.target[0]));
+        let (near, far) = self.depth_range();
+        let scale = self.deepest_surface().max(4.0 * near).max(1.0);
+        let far = far.min(4.0 * scale);
+        for i in 0..count {
+            let port = self.view.viewport;
+            let x = port.x + rng.below(port.width as usize) as u32;
+            let y = port.y + rng.below(port.height as usize) as u32;
+            let depth = match i % 16 {
+                0 => near,
+                8 => self.view.far_m.map_or(near, f64::from),
+                _ => rng.log_range(near.max(1e-3 * far), far),
+            };
+            let depth_clip = self.depth_clip(depth);
+            // Clip depth of an infinitely far point.
+            if self.view.far_m.is_none() && depth_clip == self.view.depth_clear() {
+                continue;
+            }
+            let point = self.to_world(self.ray([x, y]).at(depth));
+            self.samples.push(Sample { pixel: [x, y], depth_clip, on_surface: false, point });
+        }
+    }
+
+    fn deepest_surface(&self) -> f64 {
+        let world_to_view = self.view.world_to_view.as_dmat4();
+        let depth = |s: &Sample| -world_to_view.transform_point3(s.point).z;
+        self.samples.iter().map(depth).fold(0.0, f64::max)
+    }
+}

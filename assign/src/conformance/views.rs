@@ -1,0 +1,69 @@
+//! Cameras of the cases.
+
+use glam::{Vec2, Vec3};
+
+use crate::{DepthMapping, Projection, View, Viewport};
+
+/// Size of most targets, pixels: a few tiles, and few enough samples for software adapters.
+pub(super) const SIZE: [u32; 2] = [72, 48];
+
+const EYE: Vec3 = Vec3::new(1.3, 1.7, 2.1);
+const TARGET: Vec3 = Vec3::new(4.0, 1.2, -6.0);
+
+/// Perspective, reversed infinite depth.
+pub(super) fn sized(size: [u32; 2]) -> View {
+    View::look_at(EYE, TARGET, 1.0, 0.1, size)
+}
+
+/// Perspective, depth not reversed.
+pub(super) fn standard(near_m: f32, far_m: Option<f32>) -> View {
+    View { near_m, far_m, depth: DepthMapping::Standard, ..sized(SIZE) }
+}
+
+/// A near plane at 1 mm.
+pub(super) fn thin_near() -> View {
+    View { near_m: 0.001, ..sized(SIZE) }
+}
+
+/// Orthographic, near plane at the eye.
+pub(super) fn orthographic(depth: DepthMapping) -> View {
+    View {
+        projection: Projection::Orthographic {
+            min: Vec2::new(-4.0, -2.5),
+            max: Vec2::new(4.0, 3.0),
+        },
+        near_m: 0.0,
+        far_m: Some(30.0),
+        depth,
+        ..sized(SIZE)
+    }
+}
+
+/// A window to the upper right of the viewing axis.
+pub(super) fn off_centre() -> View {
+    View {
+        projection: Projection::Perspective { min: Vec2::new(0.1, -0.3), max: Vec2::new(0.9, 0.2) },
+        ..sized(SIZE)
+    }
+}
+
+/// Half a pixel to the left and a third down.
+pub(super) fn jittered() -> View {
+    View { jitter: Vec2::new(-0.5, 0.33), ..sized(SIZE) }
+}
+
+/// A viewport away from the target's corner.
+pub(super) fn offset() -> View {
+    View { viewport: Viewport { x: 21, y: 13, width: 83, height: 57 }, ..sized([83, 57]) }
+}
+
+/// 1,000 km from the origin, where a position is good to 6 cm.
+pub(super) fn far_from_origin() -> View {
+    let away = Vec3::new(800_000.0, 1_000.0, -600_000.0);
+    View::look_at(EYE + away, TARGET + away, 1.0, 0.1, SIZE)
+}
+
+/// Another place and direction.
+pub(super) fn elsewhere() -> View {
+    View::look_at(Vec3::new(-20.0, 9.0, 30.0), Vec3::ZERO, 1.2, 0.1, SIZE)
+}

@@ -1,0 +1,263 @@
+//! What the suite says: violations, figures and errors, each in one line.
+
+use std::fmt;
+
+use crate::AssignError;
+
+/// The promise that was broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breach {
+    /// A light reaches a sample and is not in the list of the sample's group.
+    MissedPair,
+    /// A list's light indices do not ascend.
+    NotAscending,
+    /// A list names a light twice.
+    Repeated,
+    /// An entry names a light that does not exist.
+    ForeignLight,
+    /// An entry has neither of the flags DIFFUSE and SPECULAR.
+    NoTerm,
+    /// A list ends beyond the entry buffer.
+    OutsideBuffer,
+    /// `group_of` returned a group that does not exist.
+    NoSuchGroup,
+    /// A sample's group has a record that no pass wrote.
+    Unwritten,
+    /// Record 0 does not list all lights.
+    Record0,
+    /// The counters contradict the lists.
+    Counters,
+    /// The look-up's record differs from the one read back.
+    Lookup,
+    /// The same frame twice gave two lists.
+    Unstable,
+    /// The pool did not grow to what the lists ask for.
+    OverflowStays,
+    /// An entry pool that is far too small caused no counted overflow.
+    NoOverflow,
+    /// Faulty lights were let in, not counted, or changed their neighbours' lists.
+    Quarantine,
+    /// A case that should have (light, sample) pairs had none: the suite itself is at fault.
+    Vacuous,
+}
+
+impl Breach {
+    fn text(self) -> &'static str {
+        match self {
+            Self::MissedPair => "missed pair",
+            Self::NotAscending => "list not ascending",
+            Self::Repeated => "light repeated",
+            Self::ForeignLight => "no such light",
+            Self::NoTerm => "entry without a term",
+            Self::OutsideBuffer => "list outside the buffer",
+            Self::NoSuchGroup => "no such group",
+            Self::Unwritten => "record never written",
+            Self::Record0 => "record 0 is not all lights",
+            Self::Counters => "counters wrong",
+            Self::Lookup => "look-up wrong",
+            Self::Unstable => "same frame, other list",
+            Self::OverflowStays => "overflow stays",
+            Self::NoOverflow => "no overflow counted",
+            Self::Quarantine => "quarantine broken",
+            Self::Vacuous => "nothing was checked",
+        }
+    }
+}
+
+/// Where a violation was seen; what does not apply is `None`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// The group.
+    pub group: Option<u32>,
+    /// The light's index.
+    pub light: Option<u32>,
+    /// The view sample.
+    pub sample: Option<SamplePlace>,
+}
+
+/// A view sample, as a reader finds it in an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SamplePlace {
+    /// Pixel centre in the target.
+    pub pixel: [f32; 2],
+    /// View depth, metres.
+    pub depth_m: f32,
+}
+
+/// A broken promise. Its `Display` is one line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Violation {
+    /// The case's name.
+    pub case: &'static str,
+    /// The frame of the case, from 0.
+    pub frame: u32,
+    /// The promise.
+    pub breach: Breach,
+    /// Where the first was seen.
+    pub place: Place,
+    /// What was seen there.
+    pub detail: String,
+    /// How many like it the frame held.
+    pub count: u64,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (case, frame) = (self.case, self.frame);
+        write!(f, "case {case}, frame {frame}: {}", self.breach.text())?;
+        let Place { group, light, sample } = self.place;
+        if let Some(group) = group {
+            write!(f, ", group {group}")?;
+        }
+        if let Some(light) = light {
+            write!(f, ", light {light}")?;
+        }
+        if let Some(SamplePlace { pixel, depth_m }) = sample {
+            let [x, y] = pixel;
+            write!(f, ", sample at pixel ({x}, {y}) depth {depth_m} m")?;
+        }
+        write!(f, ": {}", self.detail)?;
+        if self.count > 1 {
+            write!(f, " ({} such)", self.count)?;
+        }
+        Ok(())
+    }
+}
+
+/// What a case checked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Figures {
+    /// Frames drawn.
+    pub frames: u32,
+    /// View samples looked up, all frames together.
+    pub samples: u64,
+    /// (light, sample) pairs that had to be in the lists.
+    pub pairs: u64,
+    /// (light, sample) pairs that the lists held.
+    pub listed: u64,
+    /// Whether look-ups at any depth were served and checked too.
+    pub any_depth: bool,
+}
+
+/// How a case ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// All promises kept.
+    Passed(Figures),
+    /// The strategy said before the first frame that it cannot serve the case.
+    Unserved(String),
+    /// Promises broken.
+    Failed(Vec<Violation>),
+}
+
+/// One case's outcome.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseReport {
+    /// The case's name.
+    pub case: &'static str,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+/// The outcome of every case. Its `Display` is one line a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The strategy's id.
+    pub strategy: String,
+    /// Case by case, in the order of [`CASES`](super::CASES).
+    pub cases: Vec<CaseReport>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for CaseReport { case, outcome } in &self.cases {
+            let strategy = &self.strategy;
+            match outcome {
+                Outcome::Passed(figures) => writeln!(
+                    f,
+                    "{strategy} {case}: {} frames, {} samples, {} pairs, {} listed",
+                    figures.frames, figures.samples, figures.pairs, figures.listed
+                )?,
+                Outcome::Unserved(reason) => writeln!(f, "{strategy} {case}: unserved: {reason}")?,
+                Outcome::Failed(violations) => {
+                    for violation in violations {
+                        writeln!(f, "{strategy} {violation}")?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why a strategy does not conform. `Debug` prints what `Display` does, so that a failing
+/// `expect` reads well.
+#[derive(Clone, thiserror::Error)]
+pub enum ConformanceError {
+    /// No case has that name.
+    #[error("no conformance case is named {0}")]
+    NoCase(String),
+    /// The strategy or the device failed outside a promise.
+    #[error("case {case}: {error}")]
+    Assign {
+        /// The case's name; `setup` before the first.
+        case: &'static str,
+        /// The error.
+        error: AssignError,
+    },
+    /// Promises broken, or cases unserved that were not allowed to be.
+    #[error("does not conform:\n{}", failures(.0))]
+    Rejected(Report),
+    /// A planted fault was not noticed as what it is.
+    #[error("planted fault {fault} passed the case {case}: {outcome}")]
+    FaultPassed {
+        /// The fault's name.
+        fault: String,
+        /// The case that should have rejected it.
+        case: &'static str,
+        /// What the case said instead.
+        outcome: String,
+    },
+}
+
+impl fmt::Debug for ConformanceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+fn failures(report: &Report) -> String {
+    let failed = report.cases.iter().filter(|c| !matches!(c.outcome, Outcome::Passed(_)));
+    Report { strategy: report.strategy.clone(), cases: failed.cloned().collect() }.to_string()
+}
+
+/// Violations of one case as they are found: the first of each kind in each frame is kept, its
+/// like are counted.
+#[derive(Debug)]
+pub(super) struct Findings {
+    pub(super) case: &'static str,
+    pub(super) frame: u32,
+    pub(super) violations: Vec<Violation>,
+}
+
+impl Findings {
+    pub(super) fn new(case: &'static str) -> Self {
+        Self { case, frame: 0, violations: Vec::new() }
+    }
+
+    pub(super) fn add(&mut self, breach: Breach, place: Place, detail: String) {
+        let same = |v: &&mut Violation| v.frame == self.frame && v.breach == breach;
+        if let Some(known) = self.violations.iter_mut().find(same) {
+            known.count += 1;
+            return;
+        }
+        self.violations.push(Violation {
+            case: self.case,
+            frame: self.frame,
+            breach,
+            place,
+            detail,
+            count: 1,
+        });
+    }
+}

@@ -1,0 +1,56 @@
+//! A group that is a box along the world's axes: `bounds_box.wesl`.
+
+use glam::Vec3;
+
+use super::LightVolume;
+use crate::View;
+
+/// A box along the world's axes.
+///
+/// Test (Enhuber 2019, section 3.5.1): NP, the nearest point of the box; exact for a ball. For a
+/// spot the same axis is tried against the cone's own extent, and the cone against the sphere
+/// around the box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Lowest corner, world space, metres.
+    pub min_world: Vec3,
+    /// Highest corner, world space, metres.
+    pub max_world: Vec3,
+    /// Rounding of a sample's position, metres.
+    pub slack_m: f32,
+    /// Further slack per metre of the light's range.
+    pub slack_per_m: f32,
+}
+
+impl Aabb {
+    /// The box from `min_world` to `max_world` as `view` sees it.
+    pub fn new(view: &View, min_world: Vec3, max_world: Vec3) -> Self {
+        let uniform = view.uniform();
+        let extreme = min_world.abs().max(max_world.abs());
+        Self {
+            min_world,
+            max_world,
+            slack_m: uniform.position_error
+                * (super::eye_world(&uniform).length() + 2.0 * extreme.length()),
+            slack_per_m: uniform.position_error,
+        }
+    }
+
+    /// Whether the light's volume may reach the box.
+    pub fn reaches(&self, volume: &LightVolume) -> bool {
+        let slack_m = self.slack_m + self.slack_per_m * volume.range_m;
+        let nearest = volume.center.max(self.min_world).min(self.max_world);
+        let to_light = volume.center - nearest;
+        let reach = volume.range_m + slack_m;
+        if to_light.dot(to_light) > reach * reach {
+            return false;
+        }
+        let distance_m = to_light.length();
+        if distance_m > 0.0 && distance_m > volume.extent_along(-to_light / distance_m) + slack_m {
+            return false;
+        }
+        let center = 0.5 * (self.min_world + self.max_world);
+        let radius_m = center.distance(self.max_world) + slack_m;
+        !volume.cone_misses_sphere(center, radius_m)
+    }
+}

@@ -1,0 +1,59 @@
+//! A group that is a box along axes of its own: `bounds_oriented_box.wesl`.
+
+use glam::Vec3;
+
+use super::LightVolume;
+use crate::View;
+
+/// A box along axes of its own.
+///
+/// Test (Enhuber 2019, section 3.5.1): NPT, the nearest point after turning the light into the
+/// box's frame; exact for a ball. Spots as in [`Aabb`](super::Aabb).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrientedBox {
+    /// Centre, world space, metres.
+    pub center_world: Vec3,
+    /// Orthonormal axes, of either handedness, world space.
+    pub axes: [Vec3; 3],
+    /// Half the size along each axis, metres, `>= 0`.
+    pub half_extents_m: Vec3,
+    /// Rounding of a sample's position, metres.
+    pub slack_m: f32,
+    /// Further slack per metre of the light's range.
+    pub slack_per_m: f32,
+}
+
+impl OrientedBox {
+    /// The box around `center_world` as `view` sees it.
+    pub fn new(view: &View, center_world: Vec3, axes: [Vec3; 3], half_extents_m: Vec3) -> Self {
+        let uniform = view.uniform();
+        let extreme = center_world.length() + half_extents_m.length();
+        Self {
+            center_world,
+            axes,
+            half_extents_m,
+            slack_m: uniform.position_error * (super::eye_world(&uniform).length() + 2.0 * extreme),
+            slack_per_m: uniform.position_error,
+        }
+    }
+
+    /// Whether the light's volume may reach the box.
+    pub fn reaches(&self, volume: &LightVolume) -> bool {
+        let slack_m = self.slack_m + self.slack_per_m * volume.range_m;
+        let offset = volume.center - self.center_world;
+        let local = Vec3::from_array(self.axes.map(|axis| offset.dot(axis)));
+        let to_light = local - local.max(-self.half_extents_m).min(self.half_extents_m);
+        let reach = volume.range_m + slack_m;
+        if to_light.dot(to_light) > reach * reach {
+            return false;
+        }
+        let distance_m = to_light.length();
+        let [axis_x, axis_y, axis_z] = self.axes;
+        let away = axis_x * to_light.x + axis_y * to_light.y + axis_z * to_light.z;
+        if distance_m > 0.0 && distance_m > volume.extent_along(-away / distance_m) + slack_m {
+            return false;
+        }
+        let radius_m = self.half_extents_m.length() + slack_m;
+        !volume.cone_misses_sphere(self.center_world, radius_m)
+    }
+}

@@ -1,0 +1,141 @@
+//! Groups of every shape: as the code under test bounds them, and as exact hulls.
+
+use crate::oracle::Hull;
+use assign::intersect::{Aabb, Frustum, LightVolume, OrientedBox, UNBOUNDED};
+use assign::{FrustumTests, Light, View};
+use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3};
+
+/// A group as a strategy names it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Shape {
+    Frustum { ndc_min: Vec2, ndc_max: Vec2, depth_min: f32, depth_max: f32 },
+    Aabb { min_world: Vec3, max_world: Vec3 },
+    Oriented { center_world: Vec3, axes: [Vec3; 3], half_extents_m: Vec3 },
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group {
+    pub(crate) view: View,
+    pub(crate) shape: Shape,
+}
+
+/// The mirror's bounds of a group.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Bounds {
+    Frustum(Frustum),
+    Aabb(Aabb),
+    Oriented(OrientedBox),
+}
+
+impl Bounds {
+    pub(crate) fn reaches(&self, light: &Light, sat_n: bool) -> bool {
+        let volume = LightVolume::from(light);
+        match self {
+            Self::Frustum(frustum) => frustum.reaches(&volume, FrustumTests { sat_n }),
+            Self::Aabb(aabb) => aabb.reaches(&volume),
+            Self::Oriented(oriented) => oriented.reaches(&volume),
+        }
+    }
+
+    /// The same bounds with `factor` times the slack.
+    pub(crate) fn with_slack(mut self, factor: f32) -> Self {
+        match &mut self {
+            Self::Frustum(f) => {
+                f.slack_m *= factor;
+                f.slack_per_m *= factor;
+            }
+            Self::Aabb(b) => {
+                b.slack_m *= factor;
+                b.slack_per_m *= factor;
+            }
+            Self::Oriented(b) => {
+                b.slack_m *= factor;
+                b.slack_per_m *= factor;
+            }
+        }
+        self
+    }
+}
+
+impl Group {
+    pub(crate) fn bounds(&self) -> Bounds {
+        match self.shape {
+            Shape::Frustum { ndc_min, ndc_max, depth_min, depth_max } => {
+                Bounds::Frustum(Frustum::new(&self.view, ndc_min, ndc_max, depth_min, depth_max))
+            }
+            Shape::Aabb { min_world, max_world } => {
+                Bounds::Aabb(Aabb::new(&self.view, min_world, max_world))
+            }
+            Shape::Oriented { center_world, axes, half_extents_m } => {
+                Bounds::Oriented(OrientedBox::new(&self.view, center_world, axes, half_extents_m))
+            }
+        }
+    }
+
+    /// The exact hull, seen from `center`. A group without far plane ends where nothing within
+    /// `reach_m` of `center`, nor the hull's nearest point, is cut off.
+    pub(crate) fn hull(&self, center: DVec3, reach_m: f64) -> Hull {
+        let corner = |i: usize| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
+        Hull(match self.shape {
+            Shape::Frustum { depth_min, depth_max, .. } => {
+                let near = f64::from(depth_min);
+                let far = if depth_max < UNBOUNDED {
+                    f64::from(depth_max)
+                } else {
+                    near + 2.0 * self.world_at(DVec3::ZERO, near).distance(center) + reach_m + 1.0
+                };
+                std::array::from_fn(|i| {
+                    let at = corner(i);
+                    self.world_at(at, near + (far - near) * at.z) - center
+                })
+            }
+            Shape::Aabb { min_world, max_world } => {
+                let (min, max) = (min_world.as_dvec3(), max_world.as_dvec3());
+                std::array::from_fn(|i| min + (max - min) * corner(i) - center)
+            }
+            Shape::Oriented { center_world, axes, half_extents_m } => std::array::from_fn(|i| {
+                let at = (2.0 * corner(i) - 1.0) * half_extents_m.as_dvec3();
+                let [x, y, z] = axes.map(|a| a.as_dvec3());
+                center_world.as_dvec3() + x * at.x + y * at.y + z * at.z - center
+            }),
+        })
+    }
+
+    /// World-space position at a share `at.xy` of the tile and a view depth, exactly.
+    fn world_at(&self, at: DVec3, depth_view: f64) -> DVec3 {
+        let Shape::Frustum { ndc_min, ndc_max, .. } = self.shape else {
+            unreachable!("only frusta have depths");
+        };
+        let uniform = self.view.uniform();
+        let wide = |v: [f32; 2]| Vec2::from_array(v).as_dvec2();
+        let (low, high) = (ndc_min.as_dvec2(), ndc_max.as_dvec2());
+        let ndc = low + (high - low) * DVec2::new(at.x, at.y);
+        let ray = wide(uniform.ray_scale) * ndc + wide(uniform.ray_offset);
+        let window = if uniform.perspective > 0.5 { ray * depth_view } else { ray };
+        let to_world: DMat4 = Mat4::from_cols_array_2d(&uniform.view_to_world).as_dmat4();
+        to_world.transform_point3(window.extend(-depth_view))
+    }
+
+    /// A sample of the group as a shader reconstructs it, f32 throughout.
+    pub(crate) fn sample(&self, at: Vec3) -> Vec3 {
+        match self.shape {
+            Shape::Frustum { ndc_min, ndc_max, depth_min, depth_max } => {
+                let uniform = self.view.uniform();
+                let far = if depth_max < UNBOUNDED { depth_max } else { depth_min + 1e3 };
+                let depth = (depth_min + (far - depth_min) * at.z).clamp(depth_min, far);
+                let ndc = (ndc_min + (ndc_max - ndc_min) * at.truncate()).clamp(ndc_min, ndc_max);
+                let ray = Vec2::from(uniform.ray_scale) * ndc + Vec2::from(uniform.ray_offset);
+                let window = if uniform.perspective > 0.5 { ray * depth } else { ray };
+                Mat4::from_cols_array_2d(&uniform.view_to_world)
+                    .transform_point3(window.extend(-depth))
+            }
+            Shape::Aabb { min_world, max_world } => {
+                (min_world + (max_world - min_world) * at).clamp(min_world, max_world)
+            }
+            Shape::Oriented { center_world, axes, half_extents_m } => {
+                let local = half_extents_m * (2.0 * at - 1.0);
+                center_world + axes[0] * local.x + axes[1] * local.y + axes[2] * local.z
+            }
+        }
+    }
+}

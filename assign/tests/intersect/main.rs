@@ -1,0 +1,16 @@
+//! `assign::intersect` against exact geometry in f64, and the WESL tests against both.
+//!
+//! Loose is allowed and measured, tight is a failure.
+
+mod balls;
+mod cases;
+mod groups;
+mod oracle;
+mod spots;
+
+use proptest::test_runner::{Config, RngSeed};
+
+/// The same cases on every run.
+fn deterministic(cases: u32) -> Config {
+    Config { cases, rng_seed: RngSeed::Fixed(2019), failure_persistence: None, ..Config::default() }
+}

@@ -1,0 +1,250 @@
+//! The command line: what it accepts, and what it says about what it does not.
+//!
+//! Whatever is wrong gets one line that names the option, the value and what would be accepted
+//! ([`CliError`]), and exit code [`BAD_INPUT`]. Names of scenes and strategies are passed on as
+//! they are; whoever looks them up offers the [`nearest`] ones.
+
+mod error;
+mod names;
+mod values;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+pub use error::{BAD_INPUT, CliError};
+pub use names::{did_you_mean, nearest};
+pub use values::{CameraPose, Size, Strategies};
+
+use crate::results::{Mode, TruthLevel};
+
+/// The most lights that can be scattered.
+pub const MAX_LIGHTS: u32 = 1 << 24;
+
+const ABOUT: &str = "Compare ways of assigning many lights to pixels";
+
+const LONG_ABOUT: &str = "\
+Compare ways of assigning many lights to pixels.
+
+Draws one scene with each strategy through the same pipeline, so that only the light lists \
+differ. Times every pass, checks every list and every image against no culling, and writes a \
+report: DIR/index.html to look at, DIR/results.json to compute with.";
+
+const EXAMPLES: &str = "\
+Examples:
+  lightbench
+      The embedded atrium with 1,000 lights: no culling against clusters.
+  lightbench --scene Sponza.gltf --lights 10000 --size 1920x1080 --mode both
+      Your scene, its own lights and 10,000 more, deferred and forward.
+  lightbench --strategies None,DC-I/128x128x64,DC-I/64x64x24,DC-I/32x32x32 --frames 32
+      One strategy with three settings. `lightbench list strategies` names them all.
+
+How to read the result:
+  both ms        assigning and shading together: compare strategies by it
+  listed         lights in the list that a pixel reads, mean; contributing is what a perfect list holds
+  missed         (light, pixel) pairs that the lists lack: 0, or the image is wrong
+  max diff       largest difference to the image of no culling: 0 means the same in every bit
+  overflow       groups whose list did not fit and that fell back to all lights: slow, still correct
+
+Times on a software adapter are wall-clock times of a CPU, not a GPU's.
+Exit codes: 0 done, 1 failed, 2 bad input.";
+
+/// What `lightbench` is asked to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Invocation {
+    /// Compare strategies.
+    Compare(CompareArgs),
+    /// List what can be named on the command line.
+    List(Listing),
+    /// Print this text (help or version) and end well.
+    Show(String),
+}
+
+#[derive(Parser)]
+#[command(
+    name = "lightbench",
+    version,
+    about = ABOUT,
+    long_about = LONG_ABOUT,
+    after_long_help = EXAMPLES,
+    after_help = "`lightbench --help` says more, with examples.",
+    args_conflicts_with_subcommands = true,
+    disable_help_subcommand = true,
+    max_term_width = 100,
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    compare: CompareArgs,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Compare strategies on one scene (the default: `lightbench --scene X` is enough)
+    #[command(long_about = LONG_ABOUT, after_long_help = EXAMPLES)]
+    Compare(CompareArgs),
+    /// List the strategies or the scenes that can be named
+    List {
+        /// What to list
+        what: Listing,
+    },
+}
+
+/// What `lightbench list` lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Listing {
+    /// Every strategy with its parameters
+    Strategies,
+    /// Every scene that needs no file
+    Scenes,
+}
+
+/// The options of `lightbench compare`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct CompareArgs {
+    /// A scene's name (see `lightbench list scenes`) or a .gltf or .glb file
+    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
+    pub scene: String,
+
+    /// Factor on the scene's size, 1e-6 to 1e6; lights keep theirs
+    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
+    pub scene_scale: f64,
+
+    /// Strategies, separated by commas, with their parameters; None is no culling
+    #[arg(long, value_name = "A,B,C", default_value = "None,DC-I/64x64x24")]
+    pub strategies: Strategies,
+
+    /// Lights to scatter in addition to the scene's own, 0 to 16,777,216
+    #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
+    pub lights: u32,
+
+    /// Leave out the lights that the scene's file holds
+    #[arg(long)]
+    pub no_own_lights: bool,
+
+    /// Where lights are scattered
+    #[arg(long, value_name = "BOX", default_value = "core")]
+    pub light_box: LightBox,
+
+    /// Factor on the radii of scattered lights, 1e-6 to 1e6; at 1 their mean is one metre
+    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
+    pub radius_scale: f64,
+
+    /// Share of spots among the scattered lights, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
+    pub spots: f64,
+
+    /// Image size in pixels, each side 1 to 16,384
+    #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
+    pub size: Size,
+
+    /// Frames to time, 1 to 100,000, every sample kept [default: 64, or 3 on a software adapter]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
+    pub frames: Option<u32>,
+
+    /// Frames to draw before the clock starts, 0 to 100,000 [default: 16, or 1 on a software adapter]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::warmup)]
+    pub warmup: Option<u32>,
+
+    /// Where the camera is and a point that it looks at, in metres; else the scene's own view
+    #[arg(long, value_name = "X,Y,Z:X,Y,Z", allow_hyphen_values = true)]
+    pub camera: Option<CameraPose>,
+
+    /// How pixels are lit
+    #[arg(long, value_name = "MODE", default_value = "deferred")]
+    pub mode: ModeChoice,
+
+    /// Seed of the scattered lights
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
+    pub seed: u64,
+
+    /// Part of the adapter's name, where there are several
+    #[arg(long, value_name = "NAME", value_parser = values::text)]
+    pub adapter: Option<String>,
+
+    /// Folder for results.json, index.html and the pictures
+    #[arg(long, value_name = "DIR", default_value = "out/compare")]
+    pub out: PathBuf,
+
+    /// What to check against the CPU: every (light, pixel) pair, or nothing
+    #[arg(long, value_name = "LEVEL", default_value = "full")]
+    pub truth: TruthChoice,
+}
+
+/// Where lights are scattered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LightBox {
+    /// The box of the scene without far-off parts
+    Core,
+    /// The box of everything in the scene
+    Bounds,
+}
+
+/// How pixels are lit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ModeChoice {
+    /// From a G-buffer, in a compute pass
+    Deferred,
+    /// In the fragment shader that draws the surfaces
+    Forward,
+    /// One after the other
+    Both,
+}
+
+impl ModeChoice {
+    /// The modes to run, in order.
+    pub fn modes(self) -> &'static [Mode] {
+        match self {
+            Self::Deferred => &[Mode::Deferred],
+            Self::Forward => &[Mode::Forward],
+            Self::Both => &[Mode::Deferred, Mode::Forward],
+        }
+    }
+}
+
+/// What is checked on the CPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TruthChoice {
+    /// Every (light, pixel) pair, in f64
+    Full,
+    /// Nothing; images are still compared with no culling
+    None,
+}
+
+impl From<TruthChoice> for TruthLevel {
+    fn from(choice: TruthChoice) -> Self {
+        match choice {
+            TruthChoice::Full => Self::Full,
+            TruthChoice::None => Self::None,
+        }
+    }
+}
+
+/// Understands a command line, program name first.
+///
+/// # Errors
+///
+/// A [`CliError`] of one line for anything unknown, missing or out of range.
+pub fn parse<I, T>(arguments: I) -> Result<Invocation, CliError>
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    match Cli::try_parse_from(arguments) {
+        Ok(Cli { command: Some(Command::List { what }), .. }) => Ok(Invocation::List(what)),
+        Ok(Cli { command: Some(Command::Compare(args)), .. }) => Ok(Invocation::Compare(args)),
+        Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
+        Err(shown)
+            if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>
+        {
+            Ok(Invocation::Show(shown.render().to_string()))
+        }
+        Err(error) => Err(CliError::from_clap(&error)),
+    }
+}
+
+#[cfg(test)]
+mod tests;

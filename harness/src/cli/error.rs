@@ -1,0 +1,121 @@
+//! One line for whatever is wrong with a command line.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use thiserror::Error;
+
+use super::names::did_you_mean;
+
+/// The exit code of bad input.
+pub const BAD_INPUT: u8 = 2;
+
+/// Bad input: one line that names the option, the value and what would be accepted.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct CliError {
+    message: String,
+}
+
+impl CliError {
+    /// An error of one line: line breaks and other control characters are escaped.
+    pub fn new(message: impl AsRef<str>) -> Self {
+        let mut line = String::new();
+        for c in message.as_ref().chars() {
+            if c.is_control() {
+                line.extend(c.escape_default());
+            } else {
+                line.push(c);
+            }
+        }
+        Self { message: line }
+    }
+
+    /// `option is value: it must be accepted`.
+    pub fn out_of_range(option: &str, value: &str, accepted: &str) -> Self {
+        Self::new(format!("{option} is {}: it must be {accepted}", shown(value)))
+    }
+
+    /// `no strategy called name`, with the nearest of the known names or, where none is near,
+    /// all of them.
+    pub fn unknown(what: &str, name: &str, known: &[&str]) -> Self {
+        let hint = did_you_mean(name, known);
+        let hint = if hint.is_empty() { format!(": known are {}", known.join(", ")) } else { hint };
+        Self::new(format!("no {what} called {}{hint}", shown(name)))
+    }
+
+    /// [`BAD_INPUT`].
+    pub fn exit_code(&self) -> u8 {
+        BAD_INPUT
+    }
+
+    pub(super) fn from_clap(error: &clap::Error) -> Self {
+        let text = |kind| match error.get(kind) {
+            Some(ContextValue::String(text)) => Some(text.clone()),
+            Some(ContextValue::Strings(texts)) if !texts.is_empty() => Some(texts.join(", ")),
+            _ => None,
+        };
+        // `--frames <N>` is an option and its placeholder: only the option is of use here.
+        let option = text(ContextKind::InvalidArg).map(|arg| match arg.split_once(' ') {
+            Some((option, _)) => option.to_owned(),
+            None => arg,
+        });
+        let option = option.as_deref().unwrap_or("the command line");
+        let value = text(ContextKind::InvalidValue).unwrap_or_default();
+        let suggested = |kind| text(kind).map(|name| format!(": did you mean {name}?"));
+        match error.kind() {
+            ErrorKind::ValueValidation => {
+                let accepted = std::error::Error::source(error).map(ToString::to_string);
+                Self::out_of_range(option, &value, &accepted.unwrap_or_default())
+            }
+            ErrorKind::InvalidValue if value.is_empty() => {
+                Self::new(format!("{option} needs a value{}", one_of(&text(ContextKind::ValidValue))))
+            }
+            ErrorKind::InvalidValue => {
+                let valid = text(ContextKind::ValidValue).unwrap_or_default();
+                Self::out_of_range(option, &value, &format!("one of {valid}"))
+            }
+            ErrorKind::UnknownArgument => Self::new(format!(
+                "no option called {option}{}",
+                suggested(ContextKind::SuggestedArg)
+                    .unwrap_or_else(|| ": `lightbench --help` lists them".to_owned())
+            )),
+            ErrorKind::InvalidSubcommand => {
+                let name = text(ContextKind::InvalidSubcommand).unwrap_or_default();
+                Self::unknown("command", &name, &["compare", "list"])
+            }
+            ErrorKind::MissingRequiredArgument => {
+                Self::new("list needs what to list: strategies or scenes")
+            }
+            ErrorKind::ArgumentConflict => Self::new(conflict(error, option)),
+            ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues => {
+                Self::new(format!("{option} takes one value"))
+            }
+            _ => {
+                let rendered = error.to_string();
+                let first = rendered.lines().next().unwrap_or_default();
+                Self::new(first.strip_prefix("error: ").unwrap_or(first))
+            }
+        }
+    }
+}
+
+fn one_of(valid: &Option<String>) -> String {
+    valid.as_ref().map(|valid| format!(": one of {valid}")).unwrap_or_default()
+}
+
+fn conflict(error: &clap::Error, option: &str) -> String {
+    let other = match error.get(ContextKind::PriorArg) {
+        Some(ContextValue::String(other)) => other.split(' ').next().unwrap_or_default(),
+        _ => "",
+    };
+    if other == option {
+        format!("{option} is given twice: it must be given once")
+    } else if other.is_empty() {
+        format!("{option} must come after the command, or without one")
+    } else {
+        format!("{option} and {other} do not go together")
+    }
+}
+
+fn shown(value: &str) -> &str {
+    if value.trim().is_empty() { "empty" } else { value }
+}

@@ -1,0 +1,167 @@
+use clap::CommandFactory;
+
+use super::*;
+
+fn parse_line(line: &str) -> Result<Invocation, CliError> {
+    parse(std::iter::once("lightbench").chain(line.split_whitespace()))
+}
+
+fn compare(line: &str) -> CompareArgs {
+    match parse_line(line) {
+        Ok(Invocation::Compare(args)) => args,
+        other => panic!("{line}: {other:?}"),
+    }
+}
+
+fn refusal(line: &str) -> String {
+    message(parse_line(line))
+}
+
+fn message(parsed: Result<Invocation, CliError>) -> String {
+    let error = parsed.expect_err("refused");
+    assert_eq!(error.exit_code(), 2);
+    let message = error.to_string();
+    assert_eq!(message.lines().count(), 1, "{message}");
+    message
+}
+
+#[test]
+fn the_definition_is_sound() {
+    Cli::command().debug_assert();
+}
+
+#[test]
+fn without_arguments_the_main_job_runs() {
+    let args = compare("");
+    assert_eq!(args.scene, "atrium");
+    assert_eq!(args.strategies.0, ["None", "DC-I/64x64x24"]);
+    assert_eq!((args.lights, args.spots, args.seed), (1000, 0.0, 1));
+    assert_eq!((args.scene_scale, args.radius_scale), (1.0, 1.0));
+    assert_eq!(args.size, Size { width: 640, height: 360 });
+    assert_eq!((args.frames, args.warmup), (None, None));
+    assert_eq!(args.mode.modes(), [Mode::Deferred]);
+    assert_eq!(args.light_box, LightBox::Core);
+    assert_eq!(args.out, PathBuf::from("out/compare"));
+    assert_eq!(args.truth, TruthChoice::Full);
+    assert_eq!((args.camera, args.adapter, args.no_own_lights), (None, None, false));
+}
+
+#[test]
+fn compare_is_the_command_where_none_is_named() {
+    let line = "--scene a.gltf --lights 0 --mode both --camera -1,2,3.5:0,-1,0 --spots 0.5 \
+                --size 1x16384 --strategies None,T-I/28x28 --truth none --light-box bounds \
+                --no-own-lights --adapter llvm --out x --seed 18446744073709551615";
+    let args = compare(line);
+    assert_eq!(args, compare(&format!("compare {line}")));
+    let camera = args.camera.expect("a pose");
+    assert_eq!((camera.eye, camera.target), ([-1.0, 2.0, 3.5], [0.0, -1.0, 0.0]));
+    assert_eq!(args.mode.modes(), [Mode::Deferred, Mode::Forward]);
+    assert_eq!(TruthLevel::from(args.truth), TruthLevel::None);
+}
+
+#[test]
+fn list_lists_strategies_or_scenes() {
+    assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
+    assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
+    assert_eq!(refusal("list"), "list needs what to list: strategies or scenes");
+    let unknown = refusal("list lights");
+    assert!(unknown.ends_with("is lights: it must be one of strategies, scenes"), "{unknown}");
+}
+
+#[test]
+fn every_value_out_of_range_is_named_with_its_range() {
+    let counts = "a whole number from";
+    for (option, values, accepted) in [
+        ("--scene-scale", &["0", "-1", "1e7", "NaN", "inf", "-inf", "x"][..], "a number from 1e-6 to 1e6"),
+        ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
+        ("--spots", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
+        ("--lights", &["-1", "16777217", "1.5", "99999999999999999999"], counts),
+        ("--frames", &["0", "100001", "-3", "all"], counts),
+        ("--warmup", &["-1", "100001", "x"], counts),
+        ("--seed", &["-1", "18446744073709551616", "x"], counts),
+        ("--size", &["0x1", "1x0", "16385x1", "640", "640x", "ax1", "-1x5", "1x2x3"], "WIDTHxHEIGHT"),
+        ("--camera", &["1,2,3", "1,2:1,2", "0,0,0:0,0,NaN", "1,1,1:1,1,1", "1,2,3,4:0,0,0"], "eye and target"),
+        ("--strategies", &["None,", ",", "None,None"], "ids separated by commas"),
+        ("--mode", &["clay", "Deferred"], "one of deferred, forward, both"),
+        ("--truth", &["half"], "one of full, none"),
+        ("--light-box", &["scene"], "one of core, bounds"),
+    ] {
+        for value in values {
+            for line in [format!("{option} {value}"), format!("compare {option} {value}")] {
+                let message = refusal(&line);
+                let expected = format!("{option} is {value}: it must be {accepted}");
+                assert!(message.starts_with(&expected), "{line}: {message}");
+            }
+        }
+    }
+}
+
+#[test]
+fn empty_values_are_refused() {
+    assert_eq!(message(parse(["lightbench", "--out", ""])), "--out needs a value");
+    for option in ["--scene", "--adapter", "--strategies", "--size", "--seed"] {
+        let message = message(parse(["lightbench", option, ""]));
+        assert!(message.starts_with(&format!("{option} is empty: it must be ")), "{message}");
+    }
+}
+
+#[test]
+fn a_missing_value_is_said_to_be_missing() {
+    assert!(refusal("--out").starts_with("--out needs a value"));
+    assert!(refusal("--mode").starts_with("--mode needs a value: one of deferred"));
+}
+
+#[test]
+fn unknown_names_come_with_the_nearest() {
+    assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
+    assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
+    assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
+    assert_eq!(refusal("study"), "no command called study: known are compare, list");
+}
+
+#[test]
+fn an_option_given_twice_or_before_a_command_is_refused() {
+    assert_eq!(refusal("--seed 1 --seed 2"), "--seed is given twice: it must be given once");
+    let before = refusal("--seed 1 list scenes");
+    assert!(before.contains("--seed") || before.contains("list"), "{before}");
+}
+
+#[test]
+fn a_value_with_line_breaks_stays_on_one_line() {
+    let message = message(parse(["lightbench", "--size", "1\n2"]));
+    assert!(message.starts_with("--size is 1\\n2: it must be"), "{message}");
+}
+
+#[test]
+fn help_teaches() {
+    for line in ["--help", "compare --help"] {
+        let Ok(Invocation::Show(help)) = parse_line(line) else { panic!("no help: {line}") };
+        assert!(help.contains("Examples:") && help.contains("How to read the result:"));
+        for option in ["--scene", "--strategies", "--lights", "--size", "--frames", "--out"] {
+            assert!(help.contains(option), "{line} leaves out {option}");
+        }
+    }
+    assert!(matches!(parse_line("--version"), Ok(Invocation::Show(text)) if text.contains("lightbench")));
+    assert!(matches!(parse_line("list --help"), Ok(Invocation::Show(_))));
+}
+
+#[test]
+fn every_example_in_the_help_is_accepted() {
+    let examples: Vec<_> = EXAMPLES
+        .lines()
+        .filter_map(|line| line.strip_prefix("  lightbench"))
+        .collect();
+    assert_eq!(examples.len(), 3);
+    for example in examples {
+        compare(example);
+    }
+}
+
+#[test]
+fn unknown_ids_name_the_nearest_or_all() {
+    let known = ["None", "DC-I/64x64x24"];
+    let near = CliError::unknown("strategy", "dc-i", &known).to_string();
+    assert_eq!(near, "no strategy called dc-i: did you mean DC-I/64x64x24?");
+    let far = CliError::unknown("strategy", "quaternion", &known).to_string();
+    assert_eq!(far, "no strategy called quaternion: known are None, DC-I/64x64x24");
+}

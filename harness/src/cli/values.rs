@@ -1,0 +1,121 @@
+//! Values of options. Each parser's error says what would be accepted, to follow
+//! `--option is value: it must be `.
+
+use std::str::FromStr;
+
+use super::MAX_LIGHTS;
+
+const MAX_SIDE: u32 = 16_384;
+const MAX_FRAMES: u32 = 100_000;
+const SCALES: (f64, f64) = (1e-6, 1e6);
+
+/// An image size, pixels: `640x360`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| {
+            let side: u32 = text.parse().ok()?;
+            (1..=MAX_SIDE).contains(&side).then_some(side)
+        };
+        text.split_once(['x', 'X'])
+            .and_then(|(width, height)| {
+                Some(Self { width: side(width)?, height: side(height)? })
+            })
+            .ok_or_else(|| "WIDTHxHEIGHT in pixels, each from 1 to 16,384".to_owned())
+    }
+}
+
+/// Where a camera is and what it looks at: `0,2,10:0,1,0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraPose {
+    /// The camera's position, world space, metres.
+    pub eye: [f32; 3],
+    /// A point that it looks at, not the eye.
+    pub target: [f32; 3],
+}
+
+impl FromStr for CameraPose {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let point = |text: &str| {
+            let mut numbers = text.split(',').map(|number| {
+                number.trim().parse::<f32>().ok().filter(|number| number.is_finite())
+            });
+            let point = [numbers.next()??, numbers.next()??, numbers.next()??];
+            numbers.next().is_none().then_some(point)
+        };
+        text.split_once(':')
+            .and_then(|(eye, target)| Some(Self { eye: point(eye)?, target: point(target)? }))
+            .filter(|pose| pose.eye != pose.target)
+            .ok_or_else(|| {
+                "eye and target as x,y,z:x,y,z, six finite numbers in metres, two different points"
+                    .to_owned()
+            })
+    }
+}
+
+/// Ids of strategies, none empty, none twice, in the order given: `None,DC-I/64x64x24`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Strategies(pub Vec<String>);
+
+impl FromStr for Strategies {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ids: Vec<String> = text.split(',').map(|id| id.trim().to_owned()).collect();
+        let once = |(ix, id): (usize, &String)| !id.is_empty() && !ids[..ix].contains(id);
+        if ids.iter().enumerate().all(once) {
+            Ok(Self(ids))
+        } else {
+            Err("ids separated by commas, none empty and none twice".to_owned())
+        }
+    }
+}
+
+pub(super) fn scale(text: &str) -> Result<f64, String> {
+    number(text, SCALES.0, SCALES.1).ok_or_else(|| "a number from 1e-6 to 1e6".to_owned())
+}
+
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 1.0).ok_or_else(|| "a number from 0 to 1".to_owned())
+}
+
+pub(super) fn lights(text: &str) -> Result<u32, String> {
+    whole(text, 0, MAX_LIGHTS).ok_or_else(|| "a whole number from 0 to 16,777,216".to_owned())
+}
+
+pub(super) fn frames(text: &str) -> Result<u32, String> {
+    whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
+}
+
+pub(super) fn warmup(text: &str) -> Result<u32, String> {
+    whole(text, 0, MAX_FRAMES).ok_or_else(|| "a whole number from 0 to 100,000".to_owned())
+}
+
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| format!("a whole number from 0 to {}", u64::MAX))
+}
+
+pub(super) fn text(text: &str) -> Result<String, String> {
+    if text.trim().is_empty() { Err("a name".to_owned()) } else { Ok(text.to_owned()) }
+}
+
+fn number(text: &str, least: f64, most: f64) -> Option<f64> {
+    // NaN lies in no range.
+    text.parse().ok().filter(|number| (least..=most).contains(number))
+}
+
+fn whole(text: &str, least: u32, most: u32) -> Option<u32> {
+    text.parse().ok().filter(|number| (least..=most).contains(number))
+}

@@ -1,0 +1,343 @@
+//! `lightbench compare`: the main job.
+
+use std::{collections::HashMap, path::Path};
+
+use assign::Gpu;
+use indicatif::{ProgressBar, ProgressStyle};
+use shading::{EDGE, HdrImage, LightBvh, Mode};
+
+use crate::{
+    cli::{CompareArgs, TruthChoice},
+    clock::clock_of,
+    error::HarnessError,
+    machine::machine,
+    measure::{Frames, Measurement, measure},
+    registry::Choice,
+    report,
+    results::{
+        Clock, DeviceType, Images, Record, RejectedLight, Results, ResultsError, Truth, TruthLevel,
+        write_atomically,
+    },
+    stage::Stage,
+};
+
+/// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
+const DEFAULT_FRAMES: [u32; 2] = [64, 3];
+/// Frames before the clock, likewise.
+const DEFAULT_WARMUP: [u32; 2] = [16, 1];
+
+/// Gain of difference images: a difference of 1/64 shows as white.
+const DIFFERENCE_GAIN: f32 = 64.0;
+
+/// Runs a comparison and writes its report. `command` is the command line, for provenance.
+pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<(), HarnessError> {
+    let choices: Vec<Choice> =
+        args.strategies.0.iter().map(|id| Choice::parse(id)).collect::<Result<_, _>>()?;
+    check_writable(&args.out)?;
+    let gpu = Gpu::open(args.adapter.as_deref())?;
+    let machine = machine(&gpu);
+    eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
+    // Parameters are checked before the scene is opened.
+    for choice in &choices {
+        choice.make(&gpu)?;
+    }
+    let stage = Stage::new(&gpu, args)?;
+    describe(&stage);
+    let truth = Truth {
+        level: args.truth.into(),
+        edge_tolerance: EDGE,
+        notes: Vec::new(),
+    };
+    let mut run = Run {
+        results: Results::new(machine, command, truth),
+        args,
+        clock: clock_of(&gpu),
+        frames: frames(&gpu, args),
+        gpu,
+        stage,
+        pictures: Vec::new(),
+    };
+    run.warn();
+    run.measure_all(&choices)?;
+    run.write()
+}
+
+/// The frames asked for, or the defaults of the kind of device.
+fn frames(gpu: &Gpu, args: &CompareArgs) -> Frames {
+    let kind = usize::from(gpu.is_software());
+    Frames {
+        warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
+        timed: args.frames.unwrap_or(DEFAULT_FRAMES[kind]),
+    }
+}
+
+/// Makes the output folder and writes to it once, before anything long begins.
+fn check_writable(out: &Path) -> Result<(), ResultsError> {
+    let probe = out.join(".lightbench");
+    write_atomically(&probe, b"")?;
+    std::fs::remove_file(&probe)
+        .map_err(|source| ResultsError::Write { path: probe.clone(), source })
+}
+
+fn describe(stage: &Stage) {
+    eprintln!(
+        "scene    {}: {} triangles, {} models, {} lights",
+        stage.scene.name,
+        stage.scene.triangle_count(),
+        stage.scene.models.len(),
+        stage.lights.count()
+    );
+    for warning in &stage.scene.warnings {
+        eprintln!("warning  {warning}");
+    }
+    for rejected in stage.lights.rejected() {
+        eprintln!("warning  light {} left out: {}", rejected.index, rejected.fault);
+    }
+}
+
+/// A comparison on its way.
+struct Run<'a> {
+    results: Results,
+    args: &'a CompareArgs,
+    clock: Clock,
+    frames: Frames,
+    gpu: Gpu,
+    stage: Stage,
+    pictures: Vec<(String, Vec<u8>)>,
+}
+
+/// The image of no culling in one mode, and the exposure that all pictures of the mode share.
+struct Reference {
+    image: HdrImage,
+    exposure: f32,
+    picture: String,
+}
+
+impl Run<'_> {
+    /// Notes what a reader of the figures has to know.
+    fn warn(&mut self) {
+        let name = &self.stage.scene.name;
+        self.results.warnings.extend(self.stage.scene.warnings.iter().cloned());
+        self.results.rejected_lights = self
+            .stage
+            .lights
+            .rejected()
+            .iter()
+            .map(|rejected| RejectedLight {
+                scene: name.clone(),
+                index: rejected.index as u64,
+                reason: rejected.fault.to_string(),
+            })
+            .collect();
+    }
+
+    fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
+        let lights = self.stage.lights.lights().to_vec();
+        let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
+        let per_method = u64::from(self.frames.warmup + self.frames.timed) + 1;
+        let modes = self.args.mode.modes();
+        let has_reference = choices.iter().any(Choice::is_reference);
+        let extra = if has_reference { 0 } else { 2 };
+        let total = modes.len() as u64 * (choices.len() as u64 * per_method + extra);
+        let bar = progress_bar(total);
+        for &mode in modes {
+            let mode = match mode {
+                crate::results::Mode::Deferred => Mode::Deferred,
+                crate::results::Mode::Forward => Mode::Forward,
+            };
+            self.measure_mode(choices, mode, bvh.as_ref(), &bar)?;
+        }
+        bar.finish_and_clear();
+        Ok(())
+    }
+
+    /// All methods in one mode, no culling first: the others are compared with its image.
+    fn measure_mode(
+        &mut self,
+        choices: &[Choice],
+        mode: Mode,
+        bvh: Option<&LightBvh<'_>>,
+        bar: &ProgressBar,
+    ) -> Result<(), HarnessError> {
+        let mut measured: HashMap<usize, Measurement> = HashMap::new();
+        let reference = choices.iter().position(Choice::is_reference);
+        let image = match reference {
+            Some(ix) => {
+                let measurement = self.measure_one(&choices[ix], mode, self.frames, bvh, bar)?;
+                let image = measurement.image.clone();
+                measured.insert(ix, measurement);
+                image
+            }
+            None => {
+                let once = Frames { warmup: 0, timed: 1 };
+                let none = Choice::parse(crate::results::BASELINE)?;
+                self.measure_one(&none, mode, once, None, bar)?.image
+            }
+        };
+        let exposure = image.auto_exposure();
+        let picture = format!("{}-None.png", mode.name());
+        let reference = Reference { image, exposure, picture };
+        self.picture(&reference.picture, reference.image.to_png(exposure)?, &reference.image)?;
+        for (ix, choice) in choices.iter().enumerate() {
+            let measurement = match measured.remove(&ix) {
+                Some(measurement) => measurement,
+                None => self.measure_one(choice, mode, self.frames, bvh, bar)?,
+            };
+            let record = self.record(choice, mode, &measurement, &reference)?;
+            self.results.records.push(record);
+        }
+        Ok(())
+    }
+
+    fn measure_one(
+        &mut self,
+        choice: &Choice,
+        mode: Mode,
+        frames: Frames,
+        bvh: Option<&LightBvh<'_>>,
+        bar: &ProgressBar,
+    ) -> Result<Measurement, HarnessError> {
+        bar.set_message(format!("{} {}", choice.id(), mode.name()));
+        let mut method = choice.make(&self.gpu)?;
+        let tick = &mut || bar.inc(1);
+        measure(&self.gpu, &mut self.stage, &mut method, mode, frames, bvh, tick)
+    }
+
+    /// Keeps a picture for the report, and writes it and its EXR.
+    fn picture(&mut self, name: &str, png: Vec<u8>, image: &HdrImage) -> Result<(), HarnessError> {
+        let path = self.args.out.join(name);
+        write_atomically(&path, &png)?;
+        image.write_exr(&path.with_extension("exr"))?;
+        self.pictures.push((name.to_owned(), png));
+        Ok(())
+    }
+
+    fn record(
+        &mut self,
+        choice: &Choice,
+        mode: Mode,
+        measurement: &Measurement,
+        reference: &Reference,
+    ) -> Result<Record, HarnessError> {
+        let is_control = measurement.lists.is_none();
+        let difference = measurement.image.difference(&reference.image)?;
+        let mut images = Images {
+            baseline: Some(reference.picture.clone()),
+            ..Images::default()
+        };
+        if choice.is_reference() {
+            images.image = Some(reference.picture.clone());
+        } else {
+            let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
+            let name = format!("{stem}.png");
+            let png = measurement.image.to_png(if is_control { 1.0 } else { reference.exposure })?;
+            self.picture(&name, png, &measurement.image)?;
+            images.image = Some(name);
+            if !is_control {
+                let name = format!("{stem}-difference.png");
+                let gain = DIFFERENCE_GAIN * reference.exposure;
+                let png = measurement.image.difference_png(&reference.image, gain)?;
+                write_atomically(&self.args.out.join(&name), &png)?;
+                self.pictures.push((name.clone(), png));
+                images.difference = Some(name);
+                images.difference_amplification = Some(f64::from(gain));
+            }
+        }
+        let lists = measurement.lists.unwrap_or_default();
+        let truth = lists.truth;
+        let stage = &self.stage;
+        let compared = |value: f64| (!is_control && value.is_finite()).then_some(value);
+        let mut record = Record {
+            scene: stage.scene.name.clone(),
+            scene_hash: stage.scene_hash.clone(),
+            scene_scale: self.args.scene_scale,
+            triangles: stage.scene.triangle_count(),
+            strategy: choice.id(),
+            strategy_parameters: choice
+                .parameters()
+                .map(|(name, value)| {
+                    let value = value.parse::<u64>().map_or_else(|_| value.into(), Into::into);
+                    (name.to_owned(), value)
+                })
+                .collect(),
+            mode: match mode {
+                Mode::Deferred => crate::results::Mode::Deferred,
+                Mode::Forward => crate::results::Mode::Forward,
+            },
+            lights: u64::from(stage.lights.count()),
+            light_kinds: stage
+                .light_kinds()
+                .into_iter()
+                .filter(|(_, count)| *count > 0)
+                .map(|(kind, count)| (kind.to_owned(), count))
+                .collect(),
+            radius_scale: self.args.radius_scale,
+            width: stage.view.viewport.width,
+            height: stage.view.viewport.height,
+            frames: self.frames.timed,
+            warmup_frames: self.frames.warmup,
+            seed: self.args.seed,
+            clock: self.clock,
+            passes: measurement.passes.clone(),
+            assign_ms: 0.0,
+            shade_ms: 0.0,
+            frame_ms: 0.0,
+            groups: lists.groups,
+            occupied_groups: u64::from(lists.counters.occupied_groups),
+            list_entries: lists.counters.requested(),
+            longest_list: u64::from(lists.counters.longest),
+            listed_per_sample: truth.map(|t| t.listed_per_sample()),
+            contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
+            missed_pairs: truth.map(|t| t.missed),
+            checked_pairs: truth.map(|t| t.contributing),
+            samples: truth.map_or(0, |t| t.samples),
+            max_abs_diff: compared(difference.max_abs),
+            max_rel_diff: compared(difference.max_rel),
+            differing_channels: (!is_control).then_some(difference.differing_channels),
+            lists_bytes: lists.bytes,
+            overflowed_groups: u64::from(lists.counters.overflowed_groups),
+            images,
+            note: self.note(mode, lists.overflowed_frames),
+        };
+        record.set_times();
+        Ok(record)
+    }
+
+    fn note(&self, mode: Mode, overflowed_frames: u32) -> Option<String> {
+        let mut notes = Vec::new();
+        let adapter = &self.results.machine.adapter;
+        if mode == Mode::Forward && ["H100", "H200", "A100", "B200"].iter().any(|n| adapter.contains(n)) {
+            notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
+        }
+        if overflowed_frames > 0 {
+            notes.push(format!("lists overflowed in {overflowed_frames} frames, before the pool had grown"));
+        }
+        (!notes.is_empty()).then(|| notes.join("; "))
+    }
+
+    /// Writes the results and the report, and prints the table.
+    fn write(&mut self) -> Result<(), HarnessError> {
+        if self.results.machine.device_type == DeviceType::Cpu {
+            self.results.warnings.push(
+                "Software adapter: times are wall-clock times of a CPU and say nothing of a GPU."
+                    .to_owned(),
+            );
+        }
+        if self.results.truth.level == TruthLevel::None {
+            self.results.truth.notes.push("Lists were not checked on the CPU.".to_owned());
+        }
+        let out = &self.args.out;
+        self.results.write(&out.join("results.json"))?;
+        report::write_html(&self.results, &self.pictures, out)?;
+        println!("{}", report::render_table(&self.results));
+        println!("report   {}", out.join("index.html").display());
+        println!("data     {}", out.join("results.json").display());
+        Ok(())
+    }
+}
+
+fn progress_bar(total: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(total).with_style(style)
+}

@@ -1,0 +1,89 @@
+//! Records that may be compared with one another.
+
+use crate::results::{Record, Results};
+
+/// The records of one scene, camera size, set of lights and mode: only strategies differ.
+pub(super) struct Comparison<'a> {
+    /// The records with their indices in [`Results::records`], in the order of the run.
+    pub(super) records: Vec<(usize, &'a Record)>,
+}
+
+/// All comparisons of a run, in the order in which they first appear.
+pub(super) fn comparisons(results: &Results) -> Vec<Comparison<'_>> {
+    let mut all: Vec<Comparison<'_>> = Vec::new();
+    for entry in results.records.iter().enumerate() {
+        match all.iter_mut().find(|known| comparable(known.first(), entry.1)) {
+            Some(known) => known.records.push(entry),
+            None => all.push(Comparison { records: vec![entry] }),
+        }
+    }
+    all
+}
+
+fn comparable(a: &Record, b: &Record) -> bool {
+    let key = |r: &Record| {
+        (
+            (r.scene_scale.to_bits(), r.radius_scale.to_bits(), r.seed, r.lights),
+            (r.mode, r.width, r.height),
+        )
+    };
+    a.scene == b.scene && a.scene_hash == b.scene_hash && key(a) == key(b)
+}
+
+impl<'a> Comparison<'a> {
+    /// The first record: it speaks for the scene, the lights and the mode.
+    pub(super) fn first(&self) -> &'a Record {
+        // A comparison is made around a record and never loses one.
+        self.records[0].1
+    }
+
+    /// The record of no culling.
+    pub(super) fn baseline(&self) -> Option<&'a Record> {
+        self.baseline_index().map(|ix| self.records[ix].1)
+    }
+
+    /// Where in [`records`](Self::records) the record of no culling is.
+    pub(super) fn baseline_index(&self) -> Option<usize> {
+        self.records.iter().position(|(_, record)| record.is_baseline())
+    }
+
+    /// How many times as fast as no culling, assigning and shading together.
+    pub(super) fn speedup(&self, record: &Record) -> Option<f64> {
+        if record.is_control() {
+            return None;
+        }
+        let ratio = self.baseline()?.assign_and_shade_ms() / record.assign_and_shade_ms();
+        ratio.is_finite().then_some(ratio)
+    }
+
+    /// The time in which no culling, at its own rate, would evaluate only the lights that reach
+    /// the samples, ms.
+    pub(super) fn floor_ms(&self, record: &Record) -> Option<f64> {
+        let baseline = self.baseline()?;
+        let floor = baseline.shade_ms * record.contributing_per_sample? / baseline.lights as f64;
+        floor.is_finite().then_some(floor)
+    }
+
+    /// The floor over assigning and shading: 1 cannot be beaten by culling alone.
+    pub(super) fn efficiency(&self, record: &Record) -> Option<f64> {
+        if record.is_control() {
+            return None;
+        }
+        let share = self.floor_ms(record)? / record.assign_and_shade_ms();
+        share.is_finite().then_some(share)
+    }
+
+    /// The fastest strategy that culls: among those without a loss where there is one.
+    pub(super) fn fastest(&self) -> Option<&'a Record> {
+        let candidates = |lossless: bool| {
+            self.records
+                .iter()
+                .map(|(_, record)| *record)
+                .filter(move |record| !record.is_baseline())
+                .filter(move |record| record.is_lossless() || !lossless)
+                .filter(|record| record.assign_and_shade_ms().is_finite())
+                .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))
+        };
+        candidates(true).or_else(|| candidates(false))
+    }
+}

@@ -1,0 +1,174 @@
+//! The columns of both views. A metric is a row: what it is called, its unit, which way is
+//! better, how it is computed and how it is shown.
+
+use super::comparison::Comparison;
+use super::format;
+use crate::results::Record;
+
+/// Which way a metric is better.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Better {
+    Less,
+    More,
+    /// Anything but 0 is a fault.
+    Zero,
+    Neither,
+}
+
+/// One column.
+pub(super) struct Metric {
+    /// Names the column in the page's markup.
+    pub(super) id: &'static str,
+    /// Its heading, without the unit.
+    pub(super) head: &'static str,
+    /// Its unit; in the terminal the second line of the heading.
+    pub(super) unit: &'static str,
+    /// Its heading in the terminal; empty where it is left out there.
+    pub(super) terminal: &'static str,
+    /// What it means, one sentence.
+    pub(super) about: &'static str,
+    pub(super) better: Better,
+    /// `None` where it was not measured.
+    pub(super) value: fn(&Comparison<'_>, &Record) -> Option<f64>,
+    pub(super) show: fn(f64) -> String,
+}
+
+/// All columns, in order.
+pub(super) static METRICS: &[Metric] = &[
+    Metric {
+        id: "both_ms",
+        head: "assign + shade",
+        unit: "ms",
+        terminal: "both",
+        about: "Assigning and shading together, median: compare strategies by it.",
+        better: Better::Less,
+        value: |_, r| finite(r.assign_and_shade_ms()),
+        show: format::significant,
+    },
+    Metric {
+        id: "speedup",
+        head: "against None",
+        unit: "\u{d7}",
+        terminal: "faster",
+        about: "How many times as fast as no culling.",
+        better: Better::More,
+        value: |c, r| c.speedup(r),
+        show: format::factor,
+    },
+    Metric {
+        id: "assign_ms",
+        head: "assign",
+        unit: "ms",
+        terminal: "assign",
+        about: "Every pass that makes the lists, median of their sum.",
+        better: Better::Less,
+        value: |_, r| finite(r.assign_ms),
+        show: format::significant,
+    },
+    Metric {
+        id: "shade_ms",
+        head: "shade",
+        unit: "ms",
+        terminal: "shade",
+        about: "Evaluating the listed lights at every sample, median.",
+        better: Better::Less,
+        value: |_, r| finite(r.shade_ms),
+        show: format::significant,
+    },
+    Metric {
+        id: "frame_ms",
+        head: "frame",
+        unit: "ms",
+        terminal: "",
+        about: "All passes, those that draw the surfaces included, median of their sum.",
+        better: Better::Less,
+        value: |_, r| finite(r.frame_ms),
+        show: format::significant,
+    },
+    Metric {
+        id: "efficiency",
+        head: "floor reached",
+        unit: "%",
+        terminal: "",
+        about: "The floor over assign + shade. The floor is the time in which no culling, at its \
+                own rate, would evaluate only the lights that reach the samples.",
+        better: Better::More,
+        value: |c, r| c.efficiency(r),
+        show: format::percent,
+    },
+    Metric {
+        id: "listed",
+        head: "listed",
+        unit: "/sample",
+        terminal: "listed",
+        about: "Lights in the list that a sample reads, mean.",
+        better: Better::Less,
+        value: |_, r| r.listed_per_sample,
+        show: format::number,
+    },
+    Metric {
+        id: "contributing",
+        head: "contributing",
+        unit: "/sample",
+        terminal: "contrib.",
+        about: "Lights whose range reaches a sample, mean: what a perfect list would hold.",
+        better: Better::Neither,
+        value: |_, r| r.contributing_per_sample,
+        show: format::number,
+    },
+    Metric {
+        id: "missed",
+        head: "missed",
+        unit: "pairs",
+        terminal: "missed",
+        about: "(light, sample) pairs that the lists lack: 0, or the image is wrong.",
+        better: Better::Zero,
+        value: |_, r| r.missed_pairs.map(|pairs| pairs as f64),
+        show: format::number,
+    },
+    Metric {
+        id: "max_diff",
+        head: "largest difference",
+        unit: "linear",
+        terminal: "max diff",
+        about: "Largest difference of a channel to the image of no culling, linear HDR: 0 means \
+                the same in every bit.",
+        better: Better::Zero,
+        value: |_, r| match (r.max_abs_diff, r.differing_channels) {
+            (None, Some(1..)) => Some(f64::INFINITY),
+            (difference, _) => difference,
+        },
+        show: format::difference,
+    },
+    Metric {
+        id: "lists_bytes",
+        head: "lists",
+        unit: "MiB",
+        terminal: "lists",
+        about: "GPU memory of groups and lists.",
+        better: Better::Less,
+        value: |_, r| Some(r.lists_bytes as f64),
+        show: format::mebibytes,
+    },
+    Metric {
+        id: "overflow",
+        head: "overflow",
+        unit: "groups",
+        terminal: "overflow",
+        about: "Groups whose list did not fit and that fell back to all lights: slow, still correct.",
+        better: Better::Less,
+        value: |_, r| Some(r.overflowed_groups as f64),
+        show: format::number,
+    },
+];
+
+impl Metric {
+    /// The value as text; a dash where there is none.
+    pub(super) fn text(&self, comparison: &Comparison<'_>, record: &Record) -> String {
+        (self.value)(comparison, record).map_or_else(|| format::ABSENT.to_owned(), self.show)
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,16 @@
+//! Views of the results: a table for the terminal and a page for the browser.
+//!
+//! Both show the same [columns](metrics), computed from the same [comparisons](comparison): the
+//! records that differ in nothing but the strategy.
+
+mod comparison;
+mod finding;
+mod format;
+mod html;
+mod metrics;
+mod page;
+mod table;
+
+pub use finding::{finding, notices};
+pub use html::{render_html, write_html};
+pub use table::{TABLE_WIDTH, render_table};

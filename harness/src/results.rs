@@ -1,0 +1,329 @@
+//! `results.json`: the product of a comparison, of which every table and chart is a view.
+//!
+//! One file holds one run: the machine, the command, and one [`Record`] per scene, mode and
+//! strategy. Every sample of every pass is kept, so that a statistic can be computed later.
+//! Times are milliseconds, sizes bytes, differences linear HDR radiance. A metric that was not
+//! measured is `null`; so is a number that JSON cannot hold (NaN, infinite).
+//!
+//! A reader accepts any file whose [`schema_version`](Results::schema_version) it knows
+//! ([`SCHEMA_VERSION`]). Fields are only ever added within a version; a field that is removed,
+//! renamed or given another meaning raises it.
+//!
+//! ```json
+#![doc = include_str!("results/example.json")]
+//! ```
+
+mod file;
+mod passes;
+mod stats;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use file::{ResultsError, write_atomically};
+pub use passes::{PassKind, PassTimes, Passes};
+pub use stats::{median, percentile};
+
+use passes::nan_from_null;
+
+/// The version of `results.json` that this program writes and reads.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// The id of the strategy without culling, which the others are compared with.
+pub const BASELINE: &str = "None";
+
+/// The id of the control, which draws the surfaces without lights: a cost, not a competitor.
+pub const CONTROL: &str = "Clay";
+
+/// One run of `lightbench compare`: the root of `results.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// Where it ran.
+    pub machine: Machine,
+    /// The command line, program name first.
+    pub command: Vec<String>,
+    /// What the errors are measured against.
+    pub truth: Truth,
+    /// One entry per scene, mode and strategy, in the order of the command.
+    pub records: Vec<Record>,
+    /// Lights left out because a field was NaN, infinite or out of range.
+    #[serde(default)]
+    pub rejected_lights: Vec<RejectedLight>,
+    /// Whatever a reader of the figures has to know, one sentence each.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+}
+
+/// Where a run took place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// The adapter's name, as the driver gives it.
+    pub adapter: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// The wgpu back end: `vulkan`, `metal`, `dx12` or `gl`.
+    pub backend: String,
+    /// What kind of processor the adapter is.
+    pub device_type: DeviceType,
+    /// The host processor's model name.
+    pub cpu: String,
+    /// The operating system and its version.
+    pub os: String,
+    /// The commit of this workspace, with `-dirty` where files had been changed; empty if unknown.
+    pub commit: String,
+    /// When the run began, UTC, RFC 3339: `2026-11-22T04:00:00Z`.
+    pub date: String,
+    /// The compiler that built the program.
+    #[serde(default)]
+    pub rustc: Option<String>,
+}
+
+/// What kind of processor an adapter is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeviceType {
+    /// A GPU with its own memory.
+    DiscreteGpu,
+    /// A GPU that shares the host's memory.
+    IntegratedGpu,
+    /// A GPU handed to a virtual machine.
+    VirtualGpu,
+    /// A software adapter: its figures are not a GPU's.
+    Cpu,
+    /// Anything else.
+    Other,
+}
+
+/// What the errors of all records are measured against.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// How much was checked.
+    pub level: TruthLevel,
+    /// A (light, sample) pair closer to the edge of the light's range than this share of the
+    /// range is not counted as missed.
+    pub edge_tolerance: f64,
+    /// Further remarks, one sentence each.
+    #[serde(default)]
+    pub notes: Vec<String>,
+}
+
+/// How much of a run was checked against the truth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TruthLevel {
+    /// Every (light, sample) pair, on the CPU in f64.
+    Full,
+    /// Images only.
+    None,
+}
+
+/// A light that took no part in the run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RejectedLight {
+    /// The scene that it belongs to.
+    pub scene: String,
+    /// Its index among the lights that were handed over.
+    pub index: u64,
+    /// The field at fault, and its value.
+    pub reason: String,
+}
+
+/// How pixels are lit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    /// From a G-buffer, in a compute pass.
+    Deferred,
+    /// In the fragment shader that draws the surfaces.
+    Forward,
+}
+
+impl Mode {
+    /// As in `results.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Deferred => "deferred",
+            Self::Forward => "forward",
+        }
+    }
+}
+
+/// What took the times of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Clock {
+    /// Timestamp queries around each pass.
+    #[serde(rename = "gpu-timestamps")]
+    GpuTimestamps,
+    /// Each pass submitted alone and waited for, timed by the host.
+    #[serde(rename = "wall-clock per pass")]
+    WallClock,
+}
+
+impl Clock {
+    /// As in `results.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::GpuTimestamps => "gpu-timestamps",
+            Self::WallClock => "wall-clock per pass",
+        }
+    }
+}
+
+/// One strategy on one scene in one mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// The scene's id, or its file's name.
+    pub scene: String,
+    /// Hash of everything in the scene that reaches the GPU, hexadecimal.
+    pub scene_hash: String,
+    /// Factor on the scene's size; lights keep theirs.
+    pub scene_scale: f64,
+    /// Triangles drawn, instances counted each.
+    pub triangles: u64,
+    /// The strategy's id with its parameters: `DC-I/64x64x24`.
+    pub strategy: String,
+    /// The strategy's parameters, by name.
+    #[serde(default)]
+    pub strategy_parameters: BTreeMap<String, serde_json::Value>,
+    /// How pixels were lit.
+    pub mode: Mode,
+    /// Lights that took part.
+    pub lights: u64,
+    /// Lights of each kind, by name: `point`, `spot`.
+    #[serde(default)]
+    pub light_kinds: BTreeMap<String, u64>,
+    /// Factor on the radii of scattered lights; at 1 their mean is one metre.
+    pub radius_scale: f64,
+    /// Image width, pixels.
+    pub width: u32,
+    /// Image height, pixels.
+    pub height: u32,
+    /// Frames timed: the number of samples of each pass.
+    pub frames: u32,
+    /// Frames drawn before the clock started.
+    pub warmup_frames: u32,
+    /// The seed of the scattered lights.
+    pub seed: u64,
+    /// What took the times.
+    pub clock: Clock,
+    /// The passes of a frame, in the order in which they ran.
+    pub passes: Passes,
+    /// Median over frames of the passes that assign lights, summed per frame, ms.
+    #[serde(deserialize_with = "nan_from_null")]
+    pub assign_ms: f64,
+    /// Median over frames of the passes that light pixels, summed per frame, ms.
+    #[serde(deserialize_with = "nan_from_null")]
+    pub shade_ms: f64,
+    /// Median over frames of all passes, summed per frame, ms.
+    #[serde(deserialize_with = "nan_from_null")]
+    pub frame_ms: f64,
+    /// Groups that the strategy divides the view into.
+    pub groups: u64,
+    /// Groups with at least one light in their list.
+    pub occupied_groups: u64,
+    /// Entries of all lists together.
+    pub list_entries: u64,
+    /// Entries of the longest list.
+    pub longest_list: u64,
+    /// Mean number of lights in the list that a sample reads.
+    #[serde(default)]
+    pub listed_per_sample: Option<f64>,
+    /// Mean number of lights whose range reaches a sample: what a perfect list would hold.
+    #[serde(default)]
+    pub contributing_per_sample: Option<f64>,
+    /// (light, sample) pairs within range that the sample's list does not hold: 0, or the image
+    /// is wrong.
+    #[serde(default)]
+    pub missed_pairs: Option<u64>,
+    /// (light, sample) pairs within range that were looked up in the lists.
+    #[serde(default)]
+    pub checked_pairs: Option<u64>,
+    /// View samples: pixels that show a surface.
+    pub samples: u64,
+    /// Largest difference of a channel to the image of no culling, linear HDR; `null` where
+    /// there was no such image, or the difference is not finite.
+    #[serde(default)]
+    pub max_abs_diff: Option<f64>,
+    /// Largest difference of a channel over that channel's value without culling.
+    #[serde(default)]
+    pub max_rel_diff: Option<f64>,
+    /// Channels (three per pixel) of which any bit differs from the image of no culling.
+    #[serde(default)]
+    pub differing_channels: Option<u64>,
+    /// GPU memory of groups and lists, bytes.
+    pub lists_bytes: u64,
+    /// Groups that fell back to all lights because a list did not fit.
+    pub overflowed_groups: u64,
+    /// Pictures, beside `results.json`.
+    #[serde(default)]
+    pub images: Images,
+    /// What a reader of this record has to know.
+    #[serde(default)]
+    pub note: Option<String>,
+}
+
+/// The pictures of a record: names of files beside `results.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Images {
+    /// The tone-mapped image.
+    #[serde(default)]
+    pub image: Option<String>,
+    /// The tone-mapped image of no culling; needed where the run has no record of it.
+    #[serde(default)]
+    pub baseline: Option<String>,
+    /// The absolute difference to no culling, linear, times the amplification.
+    #[serde(default)]
+    pub difference: Option<String>,
+    /// The factor on the difference; 1 where absent.
+    #[serde(default)]
+    pub difference_amplification: Option<f64>,
+}
+
+impl Results {
+    /// Results without records, of this program's version.
+    pub fn new(machine: Machine, command: Vec<String>, truth: Truth) -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            machine,
+            command,
+            truth,
+            records: Vec::new(),
+            rejected_lights: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+}
+
+impl Record {
+    /// Assigning and lighting together, ms: what strategies are compared by.
+    pub fn assign_and_shade_ms(&self) -> f64 {
+        self.assign_ms + self.shade_ms
+    }
+
+    /// Sets the three times from the passes.
+    pub fn set_times(&mut self) {
+        self.assign_ms = self.passes.median_ms(Some(PassKind::Assign));
+        self.shade_ms = self.passes.median_ms(Some(PassKind::Shade));
+        self.frame_ms = self.passes.median_ms(None);
+    }
+
+    /// Whether this is the strategy without culling.
+    pub fn is_baseline(&self) -> bool {
+        self.strategy == BASELINE
+    }
+
+    /// Whether this is the control without lights.
+    pub fn is_control(&self) -> bool {
+        self.strategy == CONTROL
+    }
+
+    /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs.
+    pub fn is_lossless(&self) -> bool {
+        self.missed_pairs.unwrap_or(0) == 0
+            && self.differing_channels.unwrap_or(0) == 0
+            && self.max_abs_diff.unwrap_or(0.0) == 0.0
+    }
+}

@@ -1,0 +1,176 @@
+//! Reading and writing `results.json`.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::{Results, SCHEMA_VERSION};
+
+/// Why results cannot be written or read; one line each.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// A file or folder cannot be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file is not `results.json` as documented here.
+    #[error("{}: not a results.json: {reason}", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and where.
+        reason: String,
+    },
+    /// A file of a version that this program does not know.
+    #[error("{}: schema_version is {found}: it must be {SCHEMA_VERSION}", path.display())]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: u64,
+    },
+}
+
+impl Results {
+    /// The text of `results.json`.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("keys are strings and values are plain data")
+    }
+
+    /// Writes `results.json` whole or not at all; the folder is made where it is missing.
+    ///
+    /// # Errors
+    ///
+    /// [`ResultsError::Write`] names the path that refused.
+    pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
+        write_atomically(path, (self.to_json() + "\n").as_bytes())
+    }
+
+    /// Reads a `results.json` of [`SCHEMA_VERSION`].
+    ///
+    /// # Errors
+    ///
+    /// [`ResultsError::Read`], [`ResultsError::Parse`] or [`ResultsError::Version`].
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        let parse_error = |error: serde_json::Error| ResultsError::Parse {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        };
+        let text = fs::read_to_string(path).map_err(|source| ResultsError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let value: serde_json::Value = serde_json::from_str(&text).map_err(parse_error)?;
+        match value.get("schema_version").and_then(serde_json::Value::as_u64) {
+            Some(found) if found != u64::from(SCHEMA_VERSION) => Err(ResultsError::Version {
+                path: path.to_owned(),
+                found,
+            }),
+            _ => serde_json::from_str(&text).map_err(parse_error),
+        }
+    }
+}
+
+/// Writes a file whole or not at all: into a temporary file beside it, then renamed. Folders
+/// above it are made where they are missing.
+///
+/// # Errors
+///
+/// [`ResultsError::Write`] names the path that refused; the temporary file is removed.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
+    let fail = |path: &Path, source| ResultsError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(|source| fail(folder, source))?;
+    }
+    let mut temporary = path.as_os_str().to_owned();
+    temporary.push(format!(".{}.tmp", std::process::id()));
+    let temporary = PathBuf::from(temporary);
+    let written = fs::File::create(&temporary)
+        .and_then(|mut file| {
+            file.write_all(bytes)?;
+            file.sync_all()
+        })
+        .and_then(|()| fs::rename(&temporary, path));
+    written.map_err(|source| {
+        // Nothing to do where the temporary file was never made.
+        let _ = fs::remove_file(&temporary);
+        fail(path, source)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EXAMPLE: &str = include_str!("example.json");
+
+    fn example() -> Results {
+        serde_json::from_str(EXAMPLE).expect("the documented example parses")
+    }
+
+    #[test]
+    fn the_documented_example_is_complete_and_in_order() {
+        let ours: serde_json::Value = serde_json::from_str(&example().to_json()).expect("JSON");
+        let documented: serde_json::Value = serde_json::from_str(EXAMPLE).expect("JSON");
+        assert_eq!(ours, documented);
+    }
+
+    #[test]
+    fn a_written_file_reads_back_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a/b/results.json");
+        example().write(&path).expect("writes");
+        example().write(&path).expect("replaces");
+        assert_eq!(Results::read(&path).expect("reads"), example());
+        let beside = fs::read_dir(folder.path().join("a/b")).expect("a folder");
+        assert_eq!(beside.count(), 1);
+    }
+
+    #[test]
+    fn a_path_that_cannot_be_written_is_named() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("file");
+        fs::write(&file, "").expect("writes");
+        let error = example().write(&file.join("results.json")).expect_err("no folder");
+        let message = error.to_string();
+        assert!(message.starts_with(&format!("{}: cannot be written: ", file.display())));
+        assert_eq!(message.lines().count(), 1);
+
+        fs::create_dir(folder.path().join("results.json")).expect("a folder");
+        let taken = folder.path().join("results.json");
+        assert!(example().write(&taken).is_err());
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 2);
+    }
+
+    #[test]
+    fn other_versions_and_other_files_are_refused() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("results.json");
+        let read = |text: &str| {
+            fs::write(&path, text).expect("writes");
+            Results::read(&path).expect_err("refused").to_string()
+        };
+        assert!(read(r#"{"schema_version": 2}"#).contains("schema_version is 2: it must be 1"));
+        assert!(read(r#"{"schema_version": 1}"#).contains("missing field"));
+        assert!(read("{").contains("not a results.json"));
+        fs::remove_file(&path).expect("removes");
+        assert!(Results::read(&path).expect_err("gone").to_string().contains("cannot be read"));
+    }
+}

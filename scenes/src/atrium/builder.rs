@@ -1,0 +1,219 @@
+//! Meshes from profiles swept along paths, surfaces and boxes, with normals, tangents and uv in
+//! metres.
+
+use std::f32::consts::TAU;
+
+use glam::{Vec2, Vec3};
+
+use crate::{Aabb, Mesh, Vertex};
+
+/// Where a profile point `(a, b)` lies along a sweep: `origin + a * x + b * y`. Its normal is
+/// taken in the plane of `normal_x` and `y`, which is that of `x` except at mitred ends.
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) origin: Vec3,
+    pub(super) x: Vec3,
+    pub(super) y: Vec3,
+    pub(super) normal_x: Vec3,
+}
+
+/// A mesh in the making.
+#[derive(Clone, Default)]
+pub(super) struct Builder {
+    vertices: Vec<Vertex>,
+    indices: Vec<u32>,
+}
+
+impl Builder {
+    /// The finished mesh.
+    pub(super) fn mesh(self, name: &str, material: u32) -> Mesh {
+        let bounds = Aabb::from_points(self.vertices.iter().map(|v| Vec3::from(v.position)));
+        Mesh {
+            name: name.into(),
+            vertices: self.vertices,
+            indices: self.indices,
+            material,
+            bounds,
+        }
+    }
+
+    fn vertex(&mut self, position: Vec3, normal: Vec3, along_u: Vec3, uv: Vec2) {
+        let normal = normal.normalize_or(Vec3::Y);
+        let tangent = (along_u - normal * normal.dot(along_u))
+            .try_normalize()
+            .unwrap_or_else(|| normal.any_orthonormal_vector());
+        self.vertices.push(Vertex {
+            position: position.to_array(),
+            normal: normal.to_array(),
+            tangent: tangent.extend(1.0).to_array(),
+            uv: uv.to_array(),
+        });
+    }
+
+    /// A triangle, wound to agree with its vertices' normals; none where it has no area.
+    fn triangle(&mut self, corners: [u32; 3]) {
+        let [a, b, c] = corners.map(|ix| self.vertices[ix as usize]);
+        let position = |v: Vertex| Vec3::from(v.position);
+        let face = (position(b) - position(a)).cross(position(c) - position(a));
+        if face.length_squared() < 1e-16 {
+            return;
+        }
+        let normal = Vec3::from(a.normal) + Vec3::from(b.normal) + Vec3::from(c.normal);
+        let [a, b, c] = corners;
+        self.indices.extend(if face.dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] });
+    }
+
+    /// Joins two rows of `count` vertices that start at `first` and `second`.
+    fn strip(&mut self, first: u32, second: u32, count: u32) {
+        for i in 0..count - 1 {
+            self.triangle([first + i, first + i + 1, second + i + 1]);
+            self.triangle([first + i, second + i + 1, second + i]);
+        }
+    }
+
+    /// A surface over the unit square, `columns` by `rows` quads, facing `du x dv`. uv is in
+    /// metres, measured along the middle lines.
+    pub(super) fn surface(&mut self, columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) {
+        const H: f32 = 1e-3;
+        let length = |along_u: bool| {
+            let point = |i: u32| {
+                let t = i as f32 / 16.0;
+                if along_u { at(t, 0.5) } else { at(0.5, t) }
+            };
+            (0..16).map(|i| point(i).distance(point(i + 1))).sum::<f32>()
+        };
+        let size = Vec2::new(length(true), length(false));
+        let first = self.vertices.len() as u32;
+        for row in 0..=rows {
+            for column in 0..=columns {
+                let (u, v) = (column as f32 / columns as f32, row as f32 / rows as f32);
+                let du = at(u + H, v) - at(u - H, v);
+                let dv = at(u, v + H) - at(u, v - H);
+                self.vertex(at(u, v), du.cross(dv), du, Vec2::new(u, 1.0 - v) * size);
+            }
+        }
+        let width = columns + 1;
+        for row in 0..rows {
+            self.strip(first + row * width, first + (row + 1) * width, width);
+        }
+    }
+
+    /// Sweeps a profile along frames. The profile's outside is on its right: going up, the
+    /// outside is `+a`. A repeated point makes a sharp edge; other corners are smooth.
+    pub(super) fn sweep(&mut self, frames: &[Frame], profile: &[Vec2]) {
+        let mut length_v = 0.0;
+        for run in profile.chunk_by(|a, b| a != b) {
+            if run.len() < 2 {
+                continue;
+            }
+            self.sweep_run(frames, run, &mut length_v);
+        }
+    }
+
+    fn sweep_run(&mut self, frames: &[Frame], run: &[Vec2], length_v: &mut f32) {
+        let side = |i: usize| (run[i + 1] - run[i]).normalize_or_zero();
+        let place = |f: &Frame, p: Vec2| f.origin + f.x * p.x + f.y * p.y;
+        let middle = run[run.len() / 2];
+        let mut rows = Vec::new();
+        for (i, point) in run.iter().enumerate() {
+            let before = if i > 0 { side(i - 1) } else { Vec2::ZERO };
+            let after = if i + 1 < run.len() { side(i) } else { Vec2::ZERO };
+            let along = (before + after).normalize_or_zero();
+            if i > 0 {
+                *length_v += point.distance(run[i - 1]);
+            }
+            rows.push(self.vertices.len() as u32);
+            let mut length_u = 0.0;
+            for (k, frame) in frames.iter().enumerate() {
+                let last = place(&frames[k.saturating_sub(1)], middle);
+                let next = place(&frames[(k + 1).min(frames.len() - 1)], middle);
+                length_u += last.distance(place(frame, middle));
+                let normal = frame.normal_x * along.y - frame.y * along.x;
+                let uv = Vec2::new(length_u, -*length_v);
+                self.vertex(place(frame, *point), normal, next - last, uv);
+            }
+        }
+        for pair in rows.windows(2) {
+            self.strip(pair[0], pair[1], frames.len() as u32);
+        }
+    }
+
+    /// A solid of revolution about +Y: the profile is (radius, height), going up.
+    pub(super) fn lathe(&mut self, center: Vec3, segments: u32, profile: &[Vec2]) {
+        let frames: Vec<_> = (0..=segments)
+            .map(|i| {
+                let (sin, cos) = (TAU * (i % segments) as f32 / segments as f32).sin_cos();
+                let x = Vec3::new(cos, 0.0, -sin);
+                Frame {
+                    origin: center,
+                    x,
+                    y: Vec3::Y,
+                    normal_x: x,
+                }
+            })
+            .collect();
+        self.sweep(&frames, profile);
+    }
+
+    /// A straight moulding from `from` to `to`, its profile's `a` towards `out`; `mitre` shifts
+    /// the ends along the run by that much per metre of `a`.
+    pub(super) fn moulding(&mut self, from: Vec3, to: Vec3, out: Vec3, mitre: f32, profile: &[Vec2]) {
+        let along = (to - from).normalize_or(Vec3::X);
+        let frame = |origin: Vec3, shift: f32| Frame {
+            origin,
+            x: out + along * shift,
+            y: Vec3::Y,
+            normal_x: out,
+        };
+        self.sweep(&[frame(from, -mitre), frame(to, mitre)], profile);
+    }
+
+    /// A flat quad: `corner`, and two edges with the face on the side of `u x v`.
+    pub(super) fn quad(&mut self, corner: Vec3, u: Vec3, v: Vec3) {
+        let first = self.vertices.len() as u32;
+        let normal = u.cross(v);
+        // uv from world positions, so that neighbours continue each other's pattern.
+        let (unit_u, unit_v) = (u.normalize_or_zero(), v.normalize_or_zero());
+        for p in [corner, corner + u, corner + v, corner + u + v] {
+            self.vertex(p, normal, u, Vec2::new(p.dot(unit_u), -p.dot(unit_v)));
+        }
+        self.strip(first, first + 2, 2);
+    }
+
+    /// A box between two corners.
+    pub(super) fn block(&mut self, min: Vec3, max: Vec3) {
+        let d = max - min;
+        let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);
+        self.quad(min + z, x, y);
+        self.quad(min + x, -x, y);
+        self.quad(min + x + z, -z, y);
+        self.quad(min, z, y);
+        self.quad(min + y + z, x, -z);
+        self.quad(min, x, z);
+    }
+
+    /// A box given by the middle of its lower face and its size.
+    pub(super) fn block_on(&mut self, foot: Vec3, size: Vec3) {
+        let half = Vec3::new(0.5 * size.x, 0.0, 0.5 * size.z);
+        self.block(foot - half, foot + half + Vec3::Y * size.y);
+    }
+}
+
+/// Points of a circular arc in a profile, from angle to angle in degrees.
+pub(super) fn arc(center: [f32; 2], radius: [f32; 2], from: f32, to: f32, steps: u32) -> Vec<Vec2> {
+    let point = |i: u32| {
+        let angle = (from + (to - from) * i as f32 / steps as f32).to_radians();
+        Vec2::from(center) + Vec2::from(radius) * Vec2::new(angle.cos(), angle.sin())
+    };
+    (0..=steps).map(point).collect()
+}
+
+/// A polygon as a profile with sharp corners: inner points are doubled.
+pub(super) fn sharp(points: &[[f32; 2]]) -> Vec<Vec2> {
+    let last = points.len() - 1;
+    let twice = |(i, p): (usize, &[f32; 2])| {
+        let count = if i == 0 || i == last { 1 } else { 2 };
+        std::iter::repeat_n(Vec2::from(*p), count)
+    };
+    points.iter().enumerate().flat_map(twice).collect()
+}

@@ -1,0 +1,52 @@
+//! What can go wrong in shading.
+
+use std::path::PathBuf;
+
+use assign::AssignError;
+use thiserror::Error;
+
+/// Why a scene cannot be drawn, or an image not written.
+#[derive(Debug, Error)]
+pub enum ShadingError {
+    /// The contract's own errors.
+    #[error(transparent)]
+    Assign(#[from] AssignError),
+    /// The image size lies outside what the device draws.
+    #[error("size is {width}x{height}: it must be 1 to {limit} pixels each way on this device")]
+    Size {
+        /// Width asked for, pixels.
+        width: u32,
+        /// Height asked for, pixels.
+        height: u32,
+        /// The device's limit, pixels.
+        limit: u32,
+    },
+    /// A texture exceeds what the device holds.
+    #[error("image {name} is {width}x{height}: this device holds at most {limit} pixels each way")]
+    Texture {
+        /// The image's name.
+        name: String,
+        /// Its width, pixels.
+        width: u32,
+        /// Its height, pixels.
+        height: u32,
+        /// The device's limit, pixels.
+        limit: u32,
+    },
+    /// Two images differ in size and cannot be compared.
+    #[error("images of {left} and {right} pixels cannot be compared")]
+    Mismatch {
+        /// Pixels of the first.
+        left: usize,
+        /// Pixels of the second.
+        right: usize,
+    },
+    /// A file could not be written.
+    #[error("{path}: cannot be written: {reason}")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+}

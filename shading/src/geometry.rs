@@ -1,0 +1,258 @@
+//! A scene's triangles on the GPU, and the order in which they are drawn.
+
+use assign::{Gpu, entry, storage_entry};
+use bytemuck::{Pod, Zeroable, cast_slice};
+use glam::Mat3;
+use scenes::{Instance, Model, Scene, Vertex};
+use wgpu::util::DeviceExt;
+
+use crate::{ShadingError, materials::{MaterialKey, Materials}};
+
+/// `scene.wesl`, `struct Instance`. 112 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct InstanceRecord {
+    /// Object to world.
+    pub object_to_world: [[f32; 4]; 4],
+    /// First column of the inverse transpose.
+    pub normal_x: [f32; 3],
+    /// Index of the model.
+    pub model_ix: u32,
+    /// Second column.
+    pub normal_y: [f32; 3],
+    /// Index of the material.
+    pub material_ix: u32,
+    /// Third column.
+    pub normal_z: [f32; 3],
+    /// -1 where the transform mirrors.
+    pub handedness: f32,
+}
+
+/// One indexed draw of consecutive instances of one mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Draw {
+    pub(crate) key: DrawKey,
+    pub(crate) material: u32,
+    pub(crate) first_index: u32,
+    pub(crate) index_count: u32,
+    pub(crate) base_vertex: i32,
+    pub(crate) first_instance: u32,
+    pub(crate) instance_count: u32,
+}
+
+/// What a draw's pipeline depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct DrawKey {
+    pub(crate) material: MaterialKey,
+    pub(crate) mirrored: bool,
+}
+
+/// A scene's geometry and materials on the GPU, bind group 2.
+#[derive(Debug)]
+pub struct SceneGpu {
+    pub(crate) vertices: wgpu::Buffer,
+    pub(crate) indices: wgpu::Buffer,
+    pub(crate) draws: Vec<Draw>,
+    pub(crate) materials: Materials,
+    pub(crate) layout: wgpu::BindGroupLayout,
+    pub(crate) bind_group: wgpu::BindGroup,
+}
+
+impl SceneGpu {
+    /// Uploads a scene.
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, ShadingError> {
+        let materials = Materials::new(gpu, scene)?;
+        let (ranges, vertex_bytes, index_bytes) = concatenate(scene);
+        let (records, draws) = plan(scene, &materials, &ranges);
+        let buffer = |label: &str, bytes: &[u8], usage| {
+            check_size(gpu, label, bytes.len() as u64)?;
+            Ok::<_, ShadingError>(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents: bytes,
+                usage,
+            }))
+        };
+        let vertices = buffer("vertices", &vertex_bytes, wgpu::BufferUsages::VERTEX)?;
+        let indices = buffer("indices", &index_bytes, wgpu::BufferUsages::INDEX)?;
+        let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("scene"),
+                entries: &[
+                    storage_entry(0, wgpu::ShaderStages::VERTEX, true),
+                    storage_entry(1, wgpu::ShaderStages::FRAGMENT, true),
+                ],
+            });
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("scene"),
+            layout: &layout,
+            entries: &[entry(0, &instances), entry(1, &materials.factors)],
+        });
+        Ok(Self {
+            vertices,
+            indices,
+            draws,
+            materials,
+            layout,
+            bind_group,
+        })
+    }
+
+    /// Whether any material emits.
+    pub fn has_emissive(&self) -> bool {
+        self.materials.has_emissive
+    }
+
+    /// Whether any material has an alpha mask.
+    pub fn has_mask(&self) -> bool {
+        self.draws.iter().any(|draw| draw.key.material.mask)
+    }
+
+    /// Every pipeline its draws need.
+    pub(crate) fn keys(&self) -> Vec<DrawKey> {
+        let mut keys: Vec<DrawKey> = self.draws.iter().map(|draw| draw.key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        keys
+    }
+
+    /// Issues all draws, in the order of their pipelines; `pipeline` looks one up.
+    pub(crate) fn draw<'a>(
+        &'a self,
+        pass: &mut wgpu::RenderPass<'_>,
+        textures: bool,
+        pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
+    ) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.set_bind_group(2, &self.bind_group, &[]);
+        let mut bound = (None, None);
+        for draw in &self.draws {
+            let Some(pipeline) = pipeline(draw.key) else {
+                continue;
+            };
+            if bound.0 != Some(draw.key) {
+                pass.set_pipeline(pipeline);
+            }
+            if textures && bound != (Some(draw.key), Some(draw.material)) {
+                if let Some(group) = self.materials.bind_group(draw.material) {
+                    pass.set_bind_group(3, group, &[]);
+                }
+            }
+            bound = (Some(draw.key), Some(draw.material));
+            let end = draw.first_index + draw.index_count;
+            pass.draw_indexed(
+                draw.first_index..end,
+                draw.base_vertex,
+                draw.first_instance..draw.first_instance + draw.instance_count,
+            );
+        }
+    }
+}
+
+fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), ShadingError> {
+    let limit = gpu.device.limits().max_buffer_size;
+    if bytes > limit {
+        return Err(assign::AssignError::TooLarge {
+            what: what.into(),
+            bytes,
+            limit,
+        }
+        .into());
+    }
+    Ok(())
+}
+
+/// Where a mesh lies in the shared buffers.
+#[derive(Clone, Copy)]
+struct MeshRange {
+    first_index: u32,
+    index_count: u32,
+    base_vertex: i32,
+}
+
+/// All meshes behind each other: their ranges, vertex bytes and index bytes.
+fn concatenate(scene: &Scene) -> (Vec<MeshRange>, Vec<u8>, Vec<u8>) {
+    let mut vertices: Vec<u8> = Vec::new();
+    let mut indices: Vec<u8> = Vec::new();
+    let ranges = scene
+        .meshes
+        .iter()
+        .map(|mesh| {
+            let range = MeshRange {
+                first_index: (indices.len() / 4) as u32,
+                index_count: mesh.indices.len() as u32,
+                base_vertex: (vertices.len() / size_of::<Vertex>()) as i32,
+            };
+            vertices.extend_from_slice(cast_slice(&mesh.vertices));
+            indices.extend_from_slice(cast_slice(&mesh.indices));
+            range
+        })
+        .collect();
+    (ranges, vertices, indices)
+}
+
+/// Instances sorted by pipeline, material and mesh, and one draw for each run of one mesh.
+fn plan(
+    scene: &Scene,
+    materials: &Materials,
+    ranges: &[MeshRange],
+) -> (Vec<InstanceRecord>, Vec<Draw>) {
+    let mut order: Vec<(DrawKey, u32, &Instance)> = scene
+        .instances
+        .iter()
+        .map(|instance| {
+            let material = scene.meshes[instance.mesh as usize].material;
+            let key = DrawKey {
+                material: materials.key(material),
+                mirrored: scene.models[instance.model as usize].is_mirrored(),
+            };
+            (key, material, instance)
+        })
+        .collect();
+    order.sort_by_key(|(key, material, instance)| (*key, *material, instance.mesh));
+    let records = order
+        .iter()
+        .map(|(_, material, instance)| {
+            record(&scene.models[instance.model as usize], instance.model, *material)
+        })
+        .collect();
+    let mut draws = Vec::new();
+    let mut first = 0;
+    for run in order.chunk_by(|a, b| a.0 == b.0 && a.1 == b.1 && a.2.mesh == b.2.mesh) {
+        let (key, material, instance) = run[0];
+        let range = ranges[instance.mesh as usize];
+        draws.push(Draw {
+            key,
+            material,
+            first_index: range.first_index,
+            index_count: range.index_count,
+            base_vertex: range.base_vertex,
+            first_instance: first,
+            instance_count: run.len() as u32,
+        });
+        first += run.len() as u32;
+    }
+    (records, draws)
+}
+
+fn record(model: &Model, model_ix: u32, material_ix: u32) -> InstanceRecord {
+    let linear = Mat3::from_mat4(model.object_to_world);
+    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
+    // The cofactor matrix is the inverse transpose times the determinant, and exists for a
+    // transform that flattens as well. Scaled to its longest column: tiny models stay inside f32.
+    let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
+    let longest = cofactors.iter().map(|c| c.length()).fold(f32::MIN_POSITIVE, f32::max);
+    let handedness = if model.is_mirrored() { -1.0 } else { 1.0 };
+    let [normal_x, normal_y, normal_z] = cofactors.map(|c| (c * (handedness / longest)).to_array());
+    InstanceRecord {
+        object_to_world: model.object_to_world.to_cols_array_2d(),
+        normal_x,
+        model_ix,
+        normal_y,
+        material_ix,
+        normal_z,
+        handedness,
+    }
+}

@@ -1,0 +1,236 @@
+//! Images on the CPU: read back, compared, tone mapped, written.
+
+use std::path::Path;
+
+use assign::Gpu;
+use image::{ImageFormat, RgbImage};
+
+use crate::{ShadingError, Targets, mips::linear_to_srgb};
+
+/// A linear HDR image, single precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HdrImage {
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear RGB, rows from the top.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// How far one image lies from another, over all channels of all pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImageDifference {
+    /// Greatest `|a - b|`, linear radiance. Infinite where either is not a number.
+    pub max_abs: f64,
+    /// Greatest `|a - b| / max(|b|, 1e-6)`.
+    pub max_rel: f64,
+    /// Channels whose bits differ.
+    pub differing_channels: u64,
+}
+
+impl HdrImage {
+    /// Copies the radiance image from the GPU, blocking; crops it to the viewport.
+    pub fn read(
+        gpu: &Gpu,
+        targets: &Targets,
+        viewport: assign::Viewport,
+    ) -> Result<Self, ShadingError> {
+        let row_bytes = (targets.size[0] * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("radiance read-back"),
+            size: u64::from(row_bytes) * u64::from(targets.size[1]),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            targets.radiance_texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &staging,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row_bytes),
+                    rows_per_image: None,
+                },
+            },
+            targets.radiance_texture.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+        let bytes = gpu.map(&staging)?;
+        let mut pixels = Vec::new();
+        for y in viewport.y..viewport.y + viewport.height {
+            let start = y as usize * row_bytes as usize + viewport.x as usize * 16;
+            let row = &bytes[start..start + viewport.width as usize * 16];
+            let texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(row);
+            pixels.extend(texels.into_iter().map(|[r, g, b, _]| [r, g, b]));
+        }
+        Ok(Self {
+            width: viewport.width,
+            height: viewport.height,
+            pixels,
+        })
+    }
+
+    /// Compares with `reference`, which must be of the same size.
+    pub fn difference(&self, reference: &Self) -> Result<ImageDifference, ShadingError> {
+        if (self.width, self.height) != (reference.width, reference.height) {
+            return Err(ShadingError::Mismatch {
+                left: self.pixels.len(),
+                right: reference.pixels.len(),
+            });
+        }
+        let mut difference = ImageDifference::default();
+        let channels = self.pixels.iter().flatten().zip(reference.pixels.iter().flatten());
+        for (&a, &b) in channels {
+            if a.to_bits() != b.to_bits() {
+                difference.differing_channels += 1;
+            }
+            let off = (f64::from(a) - f64::from(b)).abs();
+            let off = if a.is_finite() && b.is_finite() { off } else { f64::INFINITY };
+            difference.max_abs = difference.max_abs.max(off);
+            difference.max_rel = difference.max_rel.max(off / f64::from(b).abs().max(1e-6));
+        }
+        Ok(difference)
+    }
+
+    /// The exposure that brings the mean of log luminance, over lit pixels, to middle grey.
+    pub fn auto_exposure(&self) -> f32 {
+        let lit: Vec<f64> = self
+            .pixels
+            .iter()
+            .map(luminance)
+            .filter(|l| l.is_finite() && *l > 1e-6)
+            .map(f64::ln)
+            .collect();
+        if lit.is_empty() {
+            return 1.0;
+        }
+        let mean = lit.iter().sum::<f64>() / lit.len() as f64;
+        (0.18 / mean.exp()).clamp(1e-6, 1e6) as f32
+    }
+
+    /// Exposed, tone mapped and encoded as sRGB: 3 bytes a pixel.
+    pub fn tone_mapped(&self, exposure: f32) -> Vec<u8> {
+        self.pixels
+            .iter()
+            .flat_map(|pixel| tone_map(pixel.map(|v| v * exposure)))
+            .collect()
+    }
+
+    /// A PNG of the tone-mapped image.
+    pub fn to_png(&self, exposure: f32) -> Result<Vec<u8>, ShadingError> {
+        encode_png(self.width, self.height, self.tone_mapped(exposure))
+    }
+
+    /// A PNG of `|self - reference|` times `gain`, no tone map.
+    pub fn difference_png(&self, reference: &Self, gain: f32) -> Result<Vec<u8>, ShadingError> {
+        let bytes = self
+            .pixels
+            .iter()
+            .flatten()
+            .zip(reference.pixels.iter().flatten())
+            .map(|(a, b)| encode((a - b).abs() * gain))
+            .collect();
+        encode_png(self.width, self.height, bytes)
+    }
+
+    /// Writes linear radiance as OpenEXR, single precision.
+    pub fn write_exr(&self, path: &Path) -> Result<(), ShadingError> {
+        let width = self.width as usize;
+        exr::prelude::write_rgb_file(path, width, self.height as usize, |x, y| {
+            let [r, g, b] = self.pixels[y * width + x];
+            (r, g, b)
+        })
+        .map_err(|e| ShadingError::Write {
+            path: path.to_owned(),
+            reason: e.to_string(),
+        })
+    }
+}
+
+/// Rec. 709 luminance of linear RGB.
+pub fn luminance(pixel: &[f32; 3]) -> f64 {
+    let [r, g, b] = pixel.map(f64::from);
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// The Hable-free, hue-keeping part is left to the eye: Narkowicz's fit of the ACES curve (2015),
+/// each channel alone, then sRGB.
+fn tone_map(pixel: [f32; 3]) -> [u8; 3] {
+    pixel.map(|x| {
+        let x = if x.is_nan() { 0.0 } else { x.clamp(0.0, 1e4) };
+        encode((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14))
+    })
+}
+
+fn encode(linear: f32) -> u8 {
+    (linear_to_srgb(linear.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8
+}
+
+fn encode_png(width: u32, height: u32, bytes: Vec<u8>) -> Result<Vec<u8>, ShadingError> {
+    let fail = |reason: String| ShadingError::Write {
+        path: "image.png".into(),
+        reason,
+    };
+    let image = RgbImage::from_raw(width, height, bytes)
+        .ok_or_else(|| fail("the image has the wrong size".into()))?;
+    let mut png = std::io::Cursor::new(Vec::new());
+    image
+        .write_to(&mut png, ImageFormat::Png)
+        .map_err(|e| fail(e.to_string()))?;
+    Ok(png.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(value: f32) -> HdrImage {
+        HdrImage {
+            width: 2,
+            height: 2,
+            pixels: vec![[value; 3]; 4],
+        }
+    }
+
+    #[test]
+    fn difference_sees_one_bit() {
+        let mut image = grey(0.5);
+        assert_eq!(image.difference(&grey(0.5)).unwrap(), ImageDifference::default());
+        image.pixels[3][1] = f32::from_bits(0.5_f32.to_bits() + 1);
+        let difference = image.difference(&grey(0.5)).unwrap();
+        assert_eq!(difference.differing_channels, 1);
+        assert!(difference.max_abs > 0.0 && difference.max_abs < 1e-6);
+    }
+
+    #[test]
+    fn not_a_number_differs() {
+        let difference = grey(f32::NAN).difference(&grey(f32::NAN)).unwrap();
+        assert_eq!(difference.max_abs, f64::INFINITY);
+    }
+
+    #[test]
+    fn exposure_brings_grey_to_the_middle() {
+        let exposure = grey(4.0).auto_exposure();
+        assert!((exposure * 4.0 - 0.18).abs() < 1e-4);
+        assert_eq!(grey(0.0).auto_exposure(), 1.0);
+    }
+
+    #[test]
+    fn exr_keeps_every_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        grey(0.123_456_79).write_exr(&path).unwrap();
+        let read = exr::prelude::read_first_rgba_layer_from_file(
+            &path,
+            |size, _| (size.width(), vec![[0.0_f32; 3]; size.width() * size.height()]),
+            |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
+                pixels[at.y() * *width + at.x()] = [r, g, b];
+            },
+        )
+        .unwrap();
+        assert_eq!(read.layer_data.channel_data.pixels.1, grey(0.123_456_79).pixels);
+        assert!(grey(1.0).write_exr(Path::new("/nowhere/a.exr")).is_err());
+    }
+}

@@ -1,0 +1,208 @@
+//! Lighting with one strategy's lists, in one mode.
+
+use assign::{Assignment, Gpu, Passes, View};
+
+use crate::{
+    Mode, Renderer, ShadingError,
+    raster::{LISTS_GROUP, Lists, RasterPass, RasterPipelines},
+    shaders,
+};
+
+/// The lighting pass of one strategy and mode; recorded as the pass `shade`.
+#[derive(Debug)]
+pub struct Lighting(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    Deferred(Deferred),
+    Forward(RasterPipelines),
+}
+
+impl Lighting {
+    /// Splices the strategy's look-up into the pipeline's shader. `spots` says whether any light
+    /// is a spot.
+    pub fn new(
+        renderer: &Renderer,
+        strategy: &dyn Assignment,
+        mode: Mode,
+        spots: bool,
+    ) -> Result<Self, ShadingError> {
+        let lists = Lists {
+            lookup: strategy.lookup(),
+            spots,
+        };
+        Ok(Self(match mode {
+            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists)?),
+            Mode::Forward => Kind::Forward(RasterPipelines::new(
+                &renderer.gpu,
+                &renderer.frame,
+                &renderer.scene,
+                renderer.depth_mapping,
+                RasterPass::Forward(lists),
+            )?),
+        }))
+    }
+
+    /// Records the pass `shade`, after the strategy's own.
+    pub fn record(
+        &self,
+        renderer: &Renderer,
+        view: &View,
+        strategy: &dyn Assignment,
+        passes: &mut dyn Passes,
+    ) {
+        match &self.0 {
+            Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
+            Kind::Forward(pipelines) => renderer.record_radiance(
+                "shade",
+                view,
+                pipelines,
+                strategy.bind_group(),
+                passes,
+            ),
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Deferred {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Deferred {
+    fn new(renderer: &Renderer, lists: Lists<'_>) -> Result<Self, ShadingError> {
+        let gpu = &renderer.gpu;
+        let emissive = renderer.scene.has_emissive();
+        let layout = deferred_layout(gpu, emissive);
+        let module = shaders::lighting(LISTS_GROUP)
+            .module("package::strategy", lists.lookup.module)
+            .flag("spots", lists.spots)
+            .flag("emissive", emissive)
+            .create(&gpu.device, "package::deferred")?;
+        let pipeline = compute_pipeline(
+            gpu,
+            &[renderer.frame.layout(), lists.lookup.layout, &layout],
+            &module,
+            "shade",
+        );
+        Ok(Self { pipeline, layout })
+    }
+
+    fn record(
+        &self,
+        renderer: &Renderer,
+        view: &View,
+        strategy: &dyn Assignment,
+        passes: &mut dyn Passes,
+    ) {
+        let targets = &renderer.targets;
+        let mut entries = vec![
+            texture(0, &targets.depth),
+            texture(1, &targets.base_color),
+            texture(2, &targets.normal),
+            texture(4, &targets.radiance),
+        ];
+        entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
+        let images = renderer
+            .gpu
+            .device
+            .create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("shade"),
+                layout: &self.layout,
+                entries: &entries,
+            });
+        passes.compute("shade", &mut |pass| {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
+            pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
+            pass.set_bind_group(2, &images, &[]);
+            pass.dispatch_workgroups(
+                view.viewport.width.div_ceil(8),
+                view.viewport.height.div_ceil(8),
+                1,
+            );
+        });
+    }
+}
+
+/// A compute pipeline over bind groups 0, 1, ….
+pub(crate) fn compute_pipeline(
+    gpu: &Gpu,
+    layouts: &[&wgpu::BindGroupLayout],
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+) -> wgpu::ComputePipeline {
+    let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(|l| Some(*l)).collect();
+    let layout = gpu
+        .device
+        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(entry_point),
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        });
+    gpu.device
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry_point),
+            layout: Some(&layout),
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: Default::default(),
+            cache: None,
+        })
+}
+
+/// A bind group entry of an image.
+pub(crate) fn texture(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::TextureView(view),
+    }
+}
+
+/// A layout entry of an image that compute reads.
+pub(crate) fn texture_entry(
+    binding: u32,
+    sample_type: wgpu::TextureSampleType,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+/// What a compute pass reads of a colour image: texels, unfiltered.
+pub(crate) const TEXELS: wgpu::TextureSampleType =
+    wgpu::TextureSampleType::Float { filterable: false };
+
+fn deferred_layout(gpu: &Gpu, emissive: bool) -> wgpu::BindGroupLayout {
+    let mut entries = vec![
+        texture_entry(0, wgpu::TextureSampleType::Depth),
+        texture_entry(1, TEXELS),
+        texture_entry(2, TEXELS),
+        wgpu::BindGroupLayoutEntry {
+            binding: 4,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: crate::targets::RADIANCE_FORMAT,
+                view_dimension: wgpu::TextureViewDimension::D2,
+            },
+            count: None,
+        },
+    ];
+    if emissive {
+        entries.push(texture_entry(3, TEXELS));
+    }
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("shade"),
+            entries: &entries,
+        })
+}

@@ -1,0 +1,199 @@
+//! The passes over the triangles, each a set of pipelines, one for what a material needs.
+
+use std::collections::HashMap;
+
+use assign::{DepthMapping, FrameBindings, Gpu, Shader};
+
+use crate::{
+    ShadingError,
+    geometry::{DrawKey, SceneGpu},
+    materials::TEXTURE_FLAGS,
+    shaders,
+    targets::{BASE_COLOR_FORMAT, DEPTH_FORMAT, EMISSIVE_FORMAT, NORMAL_FORMAT, RADIANCE_FORMAT},
+};
+
+/// What a pass over the triangles draws.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum RasterPass<'a> {
+    /// Depth only.
+    Depth,
+    /// The G-buffer, where the depth equals.
+    GBuffer,
+    /// Lit radiance, where the depth equals.
+    Forward(Lists<'a>),
+    /// The control, where the depth equals.
+    Clay,
+}
+
+/// The strategy's part of a lighting shader.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lists<'a> {
+    pub(crate) lookup: assign::Lookup<'a>,
+    pub(crate) spots: bool,
+}
+
+/// Bind group of the lists in lighting shaders.
+pub(crate) const LISTS_GROUP: u32 = 1;
+
+/// The pipelines of one pass.
+#[derive(Debug)]
+pub(crate) struct RasterPipelines {
+    pipelines: HashMap<DrawKey, wgpu::RenderPipeline>,
+}
+
+impl RasterPipelines {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        frame: &FrameBindings,
+        scene: &SceneGpu,
+        depth: DepthMapping,
+        pass: RasterPass<'_>,
+    ) -> Result<Self, ShadingError> {
+        let mut pipelines = HashMap::new();
+        for key in scene.keys() {
+            pipelines.insert(key, pipeline(gpu, frame, scene, depth, pass, key)?);
+        }
+        Ok(Self { pipelines })
+    }
+
+    pub(crate) fn get(&self, key: DrawKey) -> Option<&wgpu::RenderPipeline> {
+        self.pipelines.get(&key)
+    }
+}
+
+/// The WESL of one pass for one material, and the module that is its root.
+pub(crate) fn shader<'a>(
+    pass: RasterPass<'a>,
+    key: DrawKey,
+    emissive: bool,
+) -> Shader<'a> {
+    let material = key.material;
+    let is = |wanted: &str| match pass {
+        RasterPass::Depth => wanted == "depth",
+        RasterPass::GBuffer => wanted == "gbuffer",
+        RasterPass::Forward(_) => wanted == "forward",
+        RasterPass::Clay => wanted == "clay",
+    };
+    let shades = is("gbuffer") || is("forward");
+    let mut shader = shaders::lighting(LISTS_GROUP)
+        .flag("gbuffer", is("gbuffer"))
+        .flag("forward", is("forward"))
+        .flag("clay", is("clay"))
+        .flag("mask", is("depth") && material.mask)
+        .flag("emissive", emissive && shades)
+        .flag("uv_transforms", material.uv_transforms);
+    for (slot, flag) in TEXTURE_FLAGS.into_iter().enumerate() {
+        shader = shader.flag(flag, material.textures[slot]);
+    }
+    if let RasterPass::Forward(lists) = pass {
+        shader = shader
+            .module("package::strategy", lists.lookup.module)
+            .flag("spots", lists.spots);
+    }
+    shader
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    frame: &FrameBindings,
+    scene: &SceneGpu,
+    depth: DepthMapping,
+    pass: RasterPass<'_>,
+    key: DrawKey,
+) -> Result<wgpu::RenderPipeline, ShadingError> {
+    let module =
+        shader(pass, key, scene.has_emissive()).create(&gpu.device, "package::geometry")?;
+    let (vertex, fragment, formats) = entry_points(pass, key, scene.has_emissive());
+    let lists = match pass {
+        RasterPass::Forward(lists) => Some(lists.lookup.layout),
+        _ => None,
+    };
+    let textures = fragment.and_then(|_| scene.materials.layout(key.material));
+    let layout = gpu
+        .device
+        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(vertex),
+            bind_group_layouts: &[Some(frame.layout()), lists, Some(&scene.layout), textures],
+            immediate_size: 0,
+        });
+    let is_depth = matches!(pass, RasterPass::Depth);
+    let nearer = match depth {
+        DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
+        DepthMapping::Reversed => wgpu::CompareFunction::GreaterEqual,
+    };
+    let targets: Vec<Option<wgpu::ColorTargetState>> =
+        formats.into_iter().map(|format| Some(format.into())).collect();
+    Ok(gpu
+        .device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(vertex),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex),
+                compilation_options: Default::default(),
+                buffers: &[Some(vertex_layout())],
+            },
+            primitive: wgpu::PrimitiveState {
+                front_face: if key.mirrored {
+                    wgpu::FrontFace::Cw
+                } else {
+                    wgpu::FrontFace::Ccw
+                },
+                cull_mode: (!key.material.double_sided).then_some(wgpu::Face::Back),
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(is_depth),
+                depth_compare: Some(if is_depth {
+                    nearer
+                } else {
+                    wgpu::CompareFunction::Equal
+                }),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: fragment.map(|entry_point| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry_point),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        }))
+}
+
+/// Vertex and fragment entry point of a pass, and the formats it writes.
+fn entry_points(
+    pass: RasterPass<'_>,
+    key: DrawKey,
+    emissive: bool,
+) -> (&'static str, Option<&'static str>, Vec<wgpu::TextureFormat>) {
+    match pass {
+        RasterPass::Depth if key.material.mask => ("vertex_surface", Some("fragment_mask"), vec![]),
+        RasterPass::Depth => ("vertex_depth", None, vec![]),
+        RasterPass::GBuffer => {
+            let mut formats = vec![BASE_COLOR_FORMAT, NORMAL_FORMAT];
+            formats.extend(emissive.then_some(EMISSIVE_FORMAT));
+            ("vertex_surface", Some("fragment_gbuffer"), formats)
+        }
+        RasterPass::Forward(_) => {
+            ("vertex_surface", Some("fragment_forward"), vec![RADIANCE_FORMAT])
+        }
+        RasterPass::Clay => ("vertex_surface", Some("fragment_clay"), vec![RADIANCE_FORMAT]),
+    }
+}
+
+fn vertex_layout() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 4] = wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2
+    ];
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<scenes::Vertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &ATTRIBUTES,
+    }
+}

@@ -1,0 +1,224 @@
+//! One scene drawn into one set of targets: the passes that all strategies share.
+
+use assign::{Assignment, DepthMapping, Frame, FrameBindings, Gpu, Passes, View};
+use scenes::Scene;
+
+use crate::{
+    ShadingError,
+    geometry::SceneGpu,
+    raster::{RasterPass, RasterPipelines},
+    targets::Targets,
+};
+
+/// How pixels are lit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Mode {
+    /// A G-buffer, then one compute thread a pixel.
+    Deferred,
+    /// A depth pre-pass, then lit fragments.
+    Forward,
+}
+
+impl Mode {
+    /// Its name in results: `deferred` or `forward`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Deferred => "deferred",
+            Self::Forward => "forward",
+        }
+    }
+}
+
+/// A scene on the GPU with the pipelines of depth, G-buffer and clay.
+#[derive(Debug)]
+pub struct Renderer {
+    pub(crate) gpu: Gpu,
+    pub(crate) frame: FrameBindings,
+    pub(crate) scene: SceneGpu,
+    pub(crate) targets: Targets,
+    pub(crate) depth_mapping: DepthMapping,
+    depth: RasterPipelines,
+    gbuffer: RasterPipelines,
+    clay: RasterPipelines,
+}
+
+impl Renderer {
+    /// Uploads `scene` and makes targets for views like `view`: its viewport and depth mapping.
+    pub fn new(gpu: &Gpu, scene: &Scene, view: &View) -> Result<Self, ShadingError> {
+        view.check().map_err(assign::AssignError::from)?;
+        let frame = FrameBindings::new(gpu);
+        let scene = SceneGpu::new(gpu, scene)?;
+        let targets = Targets::new(gpu, view, scene.has_emissive())?;
+        let pipelines = |pass| RasterPipelines::new(gpu, &frame, &scene, view.depth, pass);
+        Ok(Self {
+            depth: pipelines(RasterPass::Depth)?,
+            gbuffer: pipelines(RasterPass::GBuffer)?,
+            clay: pipelines(RasterPass::Clay)?,
+            gpu: gpu.clone(),
+            depth_mapping: view.depth,
+            frame,
+            scene,
+            targets,
+        })
+    }
+
+    /// The device it draws on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Its images.
+    pub fn targets(&self) -> &Targets {
+        &self.targets
+    }
+
+    /// The frame a strategy gets: this view and these lights, with this renderer's depth and
+    /// normals.
+    pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
+        Frame::new(view, lights)
+            .with_depth(&self.targets.depth)
+            .with_normals(&self.targets.normal)
+    }
+
+    /// Uploads the view and the lights: outside the clock. The view must fit the targets.
+    pub fn prepare(
+        &mut self,
+        view: &View,
+        lights: &assign::LightBuffer,
+    ) -> Result<(), ShadingError> {
+        let viewport = view.viewport;
+        let [width, height] = self.targets.size;
+        let fits = viewport.x.saturating_add(viewport.width) <= width
+            && viewport.y.saturating_add(viewport.height) <= height;
+        if !fits || view.depth != self.depth_mapping {
+            self.targets = Targets::new(&self.gpu, view, self.scene.has_emissive())?;
+            let remade = view.depth != self.depth_mapping;
+            self.depth_mapping = view.depth;
+            if remade {
+                let (gpu, frame, scene) = (&self.gpu, &self.frame, &self.scene);
+                let make = |pass| RasterPipelines::new(gpu, frame, scene, view.depth, pass);
+                self.depth = make(RasterPass::Depth)?;
+            }
+        }
+        self.frame.update(&self.gpu, &Frame::new(view, lights))?;
+        Ok(())
+    }
+
+    /// Records the pass `depth`: the depth pre-pass.
+    pub fn record_depth(&self, view: &View, passes: &mut dyn Passes) {
+        let descriptor = wgpu::RenderPassDescriptor {
+            depth_stencil_attachment: Some(self.depth_attachment(Some(view.depth_clear()))),
+            ..Default::default()
+        };
+        self.record_raster("depth", view, &descriptor, &self.depth, None, passes);
+    }
+
+    /// Records the pass `gbuffer`, after `depth`.
+    pub fn record_gbuffer(&self, view: &View, passes: &mut dyn Passes) {
+        let targets = &self.targets;
+        let mut colors = vec![
+            Some(cleared(&targets.base_color)),
+            Some(cleared(&targets.normal)),
+        ];
+        colors.extend(targets.emissive.as_ref().map(|view| Some(cleared(view))));
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &colors,
+            depth_stencil_attachment: Some(self.depth_attachment(None)),
+            ..Default::default()
+        };
+        self.record_raster("gbuffer", view, &descriptor, &self.gbuffer, None, passes);
+    }
+
+    /// Records the pass `clay`, after `depth`: the scene at the cost of no lights at all.
+    pub fn record_clay(&self, view: &View, passes: &mut dyn Passes) {
+        self.record_radiance("clay", view, &self.clay, None, passes);
+    }
+
+    /// A pass over the triangles into the radiance image.
+    pub(crate) fn record_radiance(
+        &self,
+        name: &str,
+        view: &View,
+        pipelines: &RasterPipelines,
+        lists: Option<&wgpu::BindGroup>,
+        passes: &mut dyn Passes,
+    ) {
+        let mut color = cleared(&self.targets.radiance);
+        color.ops.load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment: Some(self.depth_attachment(None)),
+            ..Default::default()
+        };
+        self.record_raster(name, view, &descriptor, pipelines, lists, passes);
+    }
+
+    fn record_raster(
+        &self,
+        name: &str,
+        view: &View,
+        descriptor: &wgpu::RenderPassDescriptor<'_>,
+        pipelines: &RasterPipelines,
+        lists: Option<&wgpu::BindGroup>,
+        passes: &mut dyn Passes,
+    ) {
+        let viewport = view.viewport;
+        let textures = name != "depth" || self.scene.has_mask();
+        passes.render(name, descriptor, &mut |pass| {
+            pass.set_viewport(
+                viewport.x as f32,
+                viewport.y as f32,
+                viewport.width as f32,
+                viewport.height as f32,
+                0.0,
+                1.0,
+            );
+            pass.set_bind_group(0, self.frame.bind_group(), &[]);
+            if let Some(lists) = lists {
+                pass.set_bind_group(1, lists, &[]);
+            }
+            self.scene.draw(pass, textures, |key| pipelines.get(key));
+        });
+    }
+
+    fn depth_attachment(
+        &self,
+        clear: Option<f32>,
+    ) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+        wgpu::RenderPassDepthStencilAttachment {
+            view: &self.targets.depth,
+            depth_ops: Some(wgpu::Operations {
+                load: clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }
+    }
+}
+
+/// Records what a mode draws before lighting, then the strategy's own passes.
+pub fn record_before_lighting(
+    renderer: &Renderer,
+    mode: Mode,
+    strategy: &mut dyn Assignment,
+    frame: &Frame<'_>,
+    passes: &mut dyn Passes,
+) {
+    renderer.record_depth(frame.view, passes);
+    if mode == Mode::Deferred || strategy.needs().normals {
+        renderer.record_gbuffer(frame.view, passes);
+    }
+    strategy.record(frame, passes);
+}
+
+fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+            store: wgpu::StoreOp::Store,
+        },
+    }
+}

@@ -1,0 +1,30 @@
+//! The pipeline's WESL modules.
+
+use assign::Shader;
+
+/// The contract's modules and the pipeline's; all flags off.
+pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
+    let flags = [
+        "gbuffer",
+        "forward",
+        "clay",
+        "mask",
+        "emissive",
+        "uv_transforms",
+        "base_color_texture",
+        "metallic_roughness_texture",
+        "normal_texture",
+        "emissive_texture",
+    ];
+    let shader = Shader::new(lists_group)
+        .module("package::brdf", include_str!("shaders/brdf.wesl"))
+        .module("package::lighting", include_str!("shaders/lighting.wesl"))
+        .module("package::scene", include_str!("shaders/scene.wesl"))
+        .module("package::material", include_str!("shaders/material.wesl"))
+        .module("package::geometry", include_str!("shaders/geometry.wesl"))
+        .module("package::deferred", include_str!("shaders/deferred.wesl"))
+        .module("package::probe", include_str!("shaders/probe.wesl"));
+    flags
+        .into_iter()
+        .fold(shader, |shader, flag| shader.flag(flag, false))
+}

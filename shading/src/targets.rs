@@ -1,0 +1,84 @@
+//! The images of a frame: depth, G-buffer, radiance.
+
+use assign::{Gpu, View};
+
+use crate::ShadingError;
+
+/// Depth format of all passes.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Base colour and metallic.
+pub(crate) const BASE_COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Shading normal and roughness.
+pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Emitted radiance.
+pub(crate) const EMISSIVE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Lit radiance: single precision, so that images compare bit for bit.
+pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// The render targets of one size.
+#[derive(Debug)]
+pub struct Targets {
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Depth of the opaque surfaces.
+    pub depth: wgpu::TextureView,
+    /// Base colour, sRGB; metallic in alpha.
+    pub base_color: wgpu::TextureView,
+    /// World-space shading normal; perceptual roughness in alpha. 0 where nothing was drawn.
+    pub normal: wgpu::TextureView,
+    /// Emitted radiance, where the scene emits.
+    pub emissive: Option<wgpu::TextureView>,
+    /// The lit image, linear RGB.
+    pub radiance: wgpu::TextureView,
+    /// The texture behind `radiance`.
+    pub radiance_texture: wgpu::Texture,
+}
+
+impl Targets {
+    /// Makes targets that hold the view's viewport.
+    pub fn new(gpu: &Gpu, view: &View, emissive: bool) -> Result<Self, ShadingError> {
+        let viewport = view.viewport;
+        let width = viewport.x.saturating_add(viewport.width);
+        let height = viewport.y.saturating_add(viewport.height);
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if width == 0 || height == 0 || width.max(height) > limit {
+            return Err(ShadingError::Size {
+                width,
+                height,
+                limit,
+            });
+        }
+        let texture = |label, format, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        };
+        let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
+        let view_of = |t: &wgpu::Texture| t.create_view(&wgpu::TextureViewDescriptor::default());
+        let radiance_texture = texture(
+            "radiance",
+            RADIANCE_FORMAT,
+            wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
+        );
+        Ok(Self {
+            size: [width, height],
+            depth: view_of(&texture("depth", DEPTH_FORMAT, sampled)),
+            base_color: view_of(&texture("base colour", BASE_COLOR_FORMAT, sampled)),
+            normal: view_of(&texture("normal", NORMAL_FORMAT, sampled)),
+            emissive: emissive.then(|| view_of(&texture("emissive", EMISSIVE_FORMAT, sampled))),
+            radiance: view_of(&radiance_texture),
+            radiance_texture,
+        })
+    }
+}

@@ -1,0 +1,215 @@
+//! The truth about lists, on the CPU in f64: which lights reach which sample.
+
+use std::time::Duration;
+
+use assign::{ENTRY_LIGHT, Light, ListsSnapshot};
+use glam::{DVec3, Vec3A};
+use obvhs::{
+    BvhBuildParams,
+    aabb::Aabb,
+    bvh2::{Bvh2, builder::build_bvh2},
+};
+use rayon::prelude::*;
+
+use crate::Samples;
+
+/// A pair that lies closer to the edge of the light's support than this share of it does not
+/// count as missed: its contribution is below 1e-11 of the light's.
+pub const EDGE: f64 = 1e-6;
+
+/// A hierarchy over the lights' bounding boxes: an oracle apart from every strategy's code.
+pub struct LightBvh<'a> {
+    lights: &'a [Light],
+    bvh: Bvh2,
+}
+
+/// What the truth says of one strategy's lists in one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ListsTruth {
+    /// Samples checked.
+    pub samples: u64,
+    /// (Light, sample) pairs in which the light reaches the sample.
+    pub contributing: u64,
+    /// (Light, sample) pairs that shading evaluates.
+    pub listed: u64,
+    /// Contributing pairs, off the edge, that are not listed.
+    pub missed: u64,
+}
+
+impl ListsTruth {
+    /// Mean contributing lights of a sample.
+    pub fn contributing_per_sample(&self) -> f64 {
+        self.contributing as f64 / self.samples.max(1) as f64
+    }
+
+    /// Mean listed lights of a sample.
+    pub fn listed_per_sample(&self) -> f64 {
+        self.listed as f64 / self.samples.max(1) as f64
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            samples: self.samples + other.samples,
+            contributing: self.contributing + other.contributing,
+            listed: self.listed + other.listed,
+            missed: self.missed + other.missed,
+        }
+    }
+}
+
+impl<'a> LightBvh<'a> {
+    /// Builds the hierarchy.
+    pub fn new(lights: &'a [Light]) -> Self {
+        let boxes: Vec<Aabb> = lights
+            .iter()
+            .map(|light| {
+                // A little more than the range: traversal decides in f32.
+                let reach = light.range_m * 1.000_01 + light.position.abs().max_element() * 1e-6;
+                Aabb::new(
+                    (light.position - reach).into(),
+                    (light.position + reach).into(),
+                )
+            })
+            .collect();
+        let params = BvhBuildParams::medium_build();
+        Self {
+            lights,
+            bvh: build_bvh2(&boxes, params, &mut Duration::default()),
+        }
+    }
+
+    /// Calls `found` with the index and the [`Light::reach`] of every light that reaches `point`.
+    pub fn lights_at(&self, point: [f32; 3], mut found: impl FnMut(u32, f64)) {
+        let exact = DVec3::from(point.map(f64::from));
+        self.bvh
+            .point_traverse(Vec3A::from(point), |bvh, node| {
+                let node = &bvh.nodes[node as usize];
+                let leaves = node.first_index..node.first_index + node.prim_count;
+                for leaf in leaves {
+                    let light = bvh.primitive_indices[leaf as usize];
+                    let reach = self.lights[light as usize].reach(exact);
+                    if reach > 0.0 {
+                        found(light, reach);
+                    }
+                }
+                true
+            });
+    }
+
+    /// Checks a frame's lists against every sample.
+    pub fn check(&self, samples: &Samples, lists: &ListsSnapshot) -> ListsTruth {
+        let mut order: Vec<u32> = (0..samples.groups.len() as u32).collect();
+        order.sort_unstable_by_key(|&sample| samples.groups[sample as usize]);
+        order
+            .par_chunks(8192)
+            .map(|chunk| self.check_chunk(samples, lists, chunk))
+            .reduce(ListsTruth::default, ListsTruth::plus)
+    }
+
+    /// Checks samples whose groups ascend.
+    fn check_chunk(&self, samples: &Samples, lists: &ListsSnapshot, chunk: &[u32]) -> ListsTruth {
+        // The run of samples in which a light was last seen listed.
+        let mut listed_in = vec![u32::MAX; self.lights.len()];
+        let mut truth = ListsTruth::default();
+        let runs = chunk.chunk_by(|&a, &b| samples.groups[a as usize] == samples.groups[b as usize]);
+        for (run_ix, run) in runs.enumerate() {
+            let group = samples.groups[run[0] as usize];
+            let entries = lists.entries_of(group).unwrap_or_default();
+            for &entry in entries {
+                if let Some(seen) = listed_in.get_mut((entry & ENTRY_LIGHT) as usize) {
+                    *seen = run_ix as u32;
+                }
+            }
+            truth.samples += run.len() as u64;
+            truth.listed += run.len() as u64 * entries.len() as u64;
+            for &sample in run {
+                self.lights_at(samples.positions[sample as usize], |light, reach| {
+                    truth.contributing += 1;
+                    let is_listed = listed_in[light as usize] == run_ix as u32;
+                    truth.missed += u64::from(!is_listed && reach > EDGE);
+                });
+            }
+        }
+        truth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use assign::{Counters, LightList};
+    use glam::Vec3;
+
+    use super::*;
+
+    fn lights(count: u32) -> Vec<Light> {
+        (0..count)
+            .map(|i| Light::point(Vec3::new(i as f32, 0.0, 0.0), 1.5, Vec3::ONE))
+            .collect()
+    }
+
+    fn samples() -> Samples {
+        Samples {
+            positions: vec![[0.0, 0.0, 0.0], [5.2, 0.0, 0.0], [50.0, 0.0, 0.0]],
+            groups: vec![1, 0, 0],
+            pixels: vec![0, 1, 2],
+        }
+    }
+
+    fn snapshot(lists: &[&[u32]]) -> ListsSnapshot {
+        let mut snapshot = ListsSnapshot {
+            lists: vec![LightList::default()],
+            entries: Vec::new(),
+            counters: Counters::default(),
+        };
+        for list in lists {
+            snapshot.lists.push(LightList {
+                first: snapshot.entries.len() as u32,
+                count: list.len() as u32,
+            });
+            snapshot.entries.extend_from_slice(list);
+        }
+        snapshot
+    }
+
+    #[test]
+    fn counts_agree_with_a_hand_count() {
+        let lights = lights(10);
+        let bvh = LightBvh::new(&lights);
+        // Sample 0 is reached by lights 0 and 1; sample 1 by 4, 5 and 6; sample 2 by none.
+        let truth = bvh.check(&samples(), &snapshot(&[&[3, 4, 5, 6], &[0, 1]]));
+        assert_eq!(
+            truth,
+            ListsTruth {
+                samples: 3,
+                contributing: 5,
+                listed: 4 + 4 + 2,
+                missed: 0
+            }
+        );
+    }
+
+    #[test]
+    fn a_light_left_out_is_missed() {
+        let lights = lights(10);
+        let bvh = LightBvh::new(&lights);
+        let truth = bvh.check(&samples(), &snapshot(&[&[4, 6], &[0, 1]]));
+        assert_eq!(truth.missed, 1);
+    }
+
+    #[test]
+    fn the_hierarchy_finds_what_a_loop_finds() {
+        let lights = lights(200);
+        let bvh = LightBvh::new(&lights);
+        for step in 0..400 {
+            let point = [step as f32 * 0.5 + 0.01, 0.3, -0.2];
+            let mut found = Vec::new();
+            bvh.lights_at(point, |light, _| found.push(light));
+            found.sort_unstable();
+            let exact = DVec3::from(point.map(f64::from));
+            let looped: Vec<u32> = (0..200)
+                .filter(|&i| lights[i as usize].reach(exact) > 0.0)
+                .collect();
+            assert_eq!(found, looped, "at {point:?}");
+        }
+    }
+}
