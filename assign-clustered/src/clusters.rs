@@ -61,10 +61,7 @@ impl FromStr for ClusterSize {
         let [width, height, slices] = numbers[..] else {
             return Err(fail());
         };
-        let size = Self {
-            tile_px: [width, height],
-            slices,
-        };
+        let size = Self { tile_px: [width, height], slices };
         size.check()?;
         Ok(size)
     }
@@ -86,7 +83,8 @@ pub struct ClustersUniform {
     pub first_m: f32,
     /// View depth of the near plane, metres.
     pub near_m: f32,
-    /// View depth of the far plane, metres, or [`UNBOUNDED`].
+    /// Greatest view depth of a sample, metres, or [`UNBOUNDED`]: the far plane, as shading
+    /// rebuilds it.
     pub far_m: f32,
     /// 1 where slices grow exponentially.
     pub exponential: u32,
@@ -116,10 +114,7 @@ impl ClustersUniform {
         if total > MAX_CLUSTERS {
             return Err(AssignError::Parameter {
                 field: "cluster size".into(),
-                value: format!(
-                    "{size} at {}x{}: {total} clusters",
-                    viewport[0], viewport[1]
-                ),
+                value: format!("{size} at {}x{}: {total} clusters", viewport[0], viewport[1]),
                 accepted: format!("at most {MAX_CLUSTERS} clusters: larger tiles, fewer slices"),
             });
         }
@@ -128,11 +123,7 @@ impl ClustersUniform {
             .far_m
             .unwrap_or_else(|| deepest(view, light_bounds).clamp(2.0 * near, 1e30 * near));
         let exponential = matches!(view.projection, Projection::Perspective { .. });
-        let span = if exponential {
-            (last / near).log2()
-        } else {
-            last - near
-        };
+        let span = if exponential { (last / near).log2() } else { last - near };
         Ok(Self {
             counts,
             slices_per_unit: size.slices as f32 / span,
@@ -140,7 +131,7 @@ impl ClustersUniform {
             origin_px: [view.viewport.x, view.viewport.y],
             first_m: near,
             near_m: near,
-            far_m: view.far_m.unwrap_or(UNBOUNDED),
+            far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
             exponential: u32::from(exponential),
         })
     }
@@ -173,15 +164,7 @@ mod tests {
     fn sizes_parse_and_print_alike() {
         let size: ClusterSize = "64x32x24".parse().unwrap();
         assert_eq!(size.to_string(), "64x32x24");
-        for bad in [
-            "",
-            "64",
-            "64x64",
-            "0x64x24",
-            "64x64x0",
-            "axbxc",
-            "64x64x24x2",
-        ] {
+        for bad in ["", "64", "64x64", "0x64x24", "64x64x0", "axbxc", "64x64x24x2"] {
             let error = bad.parse::<ClusterSize>().unwrap_err().to_string();
             assert!(error.contains("must be"), "{bad}: {error}");
         }
@@ -210,6 +193,20 @@ mod tests {
         let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
         let clusters = ClustersUniform::new(size, &view, behind).unwrap();
         assert_eq!(clusters.slices_per_unit, 8.0);
+    }
+
+    #[test]
+    fn the_last_slice_ends_where_shading_rebuilds_the_far_plane() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.001, [64, 64]);
+        view.far_m = Some(1_000.0);
+        view.depth = assign::DepthMapping::Standard;
+        let size = "64x64x8".parse().unwrap();
+        let clusters = ClustersUniform::new(size, &view, None).unwrap();
+        assert!((1_048.5..1_049.0).contains(&clusters.far_m), "{clusters:?}");
+        // Too far for f32 to tell from infinity.
+        view.far_m = Some(1e6);
+        let clusters = ClustersUniform::new(size, &view, None).unwrap();
+        assert_eq!(clusters.far_m, UNBOUNDED);
     }
 
     #[test]

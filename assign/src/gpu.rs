@@ -29,27 +29,21 @@ impl Gpu {
     /// The device has WebGPU's default limits, buffers as large as the adapter allows, and
     /// timestamp queries where the adapter has them.
     pub fn open(name: Option<&str>) -> Result<Self, AssignError> {
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        descriptor.backends = wgpu::Backends::all() - wgpu::Backends::NOOP;
-        // GPU-based validation and debug layers would be on the bill of every pass.
-        descriptor.flags = wgpu::InstanceFlags::empty();
-        let instance = wgpu::Instance::new(descriptor);
-        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-        let found: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+        let adapters = enumerate()?;
         let wanted = name.unwrap_or_default().to_lowercase();
+        let found = adapters.iter().map(|a| a.get_info().name).collect::<Vec<_>>().join(", ");
         let adapter = adapters
-            .into_iter()
-            .filter(|a| a.get_info().name.to_lowercase().contains(&wanted))
-            .min_by_key(|a| rank(a.get_info().device_type))
+            .iter()
+            .find(|a| a.get_info().name.to_lowercase().contains(&wanted))
             .ok_or_else(|| AssignError::NoAdapter {
-                looked_for: match name {
-                    Some(name) if !found.is_empty() => {
-                        format!("none named like {name:?} among {}", found.join(", "))
-                    }
-                    _ => "looked for Vulkan".into(),
-                },
+                looked_for: format!("no name like {wanted:?} among {found}"),
             })?;
-        Self::from_adapter(&adapter)
+        Self::from_adapter(adapter)
+    }
+
+    /// Every adapter that can be opened, the one that [`open`](Self::open) prefers first.
+    pub fn adapters() -> Result<Vec<wgpu::AdapterInfo>, AssignError> {
+        Ok(enumerate()?.iter().map(wgpu::Adapter::get_info).collect())
     }
 
     /// A device of wgpu's noop back end: it checks every call and runs none.
@@ -178,6 +172,22 @@ impl Gpu {
             .map_err(|e| AssignError::Device(e.to_string()))?;
         Ok(view.to_vec())
     }
+}
+
+/// All adapters, fastest kind first; at least one.
+fn enumerate() -> Result<Vec<wgpu::Adapter>, AssignError> {
+    let backends = wgpu::Backends::all() - wgpu::Backends::NOOP;
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    // GPU-based validation and debug layers would be on the bill of every pass.
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    if adapters.is_empty() {
+        return Err(AssignError::NoAdapter { looked_for: "looked for Vulkan".into() });
+    }
+    Ok(adapters)
 }
 
 fn rank(device_type: wgpu::DeviceType) -> u32 {

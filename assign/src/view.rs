@@ -113,41 +113,23 @@ impl View {
     /// A perspective camera at `eye` looking at `target`, reversed infinite depth, no jitter.
     pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, near_m: f32, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize_or(Vec3::NEG_Z);
-        let up = if forward.y.abs() > 0.999 {
-            Vec3::Z
-        } else {
-            Vec3::Y
-        };
+        let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
         let top = (fov_y * 0.5).tan();
         let corner = Vec2::new(top * size[0] as f32 / size[1].max(1) as f32, top);
         Self {
             world_to_view: glam::camera::rh::view::look_to_mat4(eye, forward, up),
-            projection: Projection::Perspective {
-                min: -corner,
-                max: corner,
-            },
+            projection: Projection::Perspective { min: -corner, max: corner },
             near_m,
             far_m: None,
             depth: DepthMapping::Reversed,
-            viewport: Viewport {
-                x: 0,
-                y: 0,
-                width: size[0],
-                height: size[1],
-            },
+            viewport: Viewport { x: 0, y: 0, width: size[0], height: size[1] },
             jitter: Vec2::ZERO,
         }
     }
 
     /// Checks every field.
     pub fn check(&self) -> Result<(), ViewError> {
-        let fail = |field, value: String, accepted| {
-            Err(ViewError {
-                field,
-                value,
-                accepted,
-            })
-        };
+        let fail = |field, value: String, accepted| Err(ViewError { field, value, accepted });
         if !self.world_to_view.is_finite() {
             return fail("world_to_view", self.world_to_view.to_string(), "finite");
         }
@@ -179,11 +161,7 @@ impl View {
         }
         let Viewport { width, height, .. } = self.viewport;
         if width == 0 || height == 0 {
-            return fail(
-                "viewport",
-                format!("{width}x{height}"),
-                "at least 1x1 pixels",
-            );
+            return fail("viewport", format!("{width}x{height}"), "at least 1x1 pixels");
         }
         if !self.jitter.is_finite() {
             return fail("jitter", self.jitter.to_string(), "finite");
@@ -197,10 +175,7 @@ impl View {
             Projection::Perspective { min, max } => (true, min, max),
             Projection::Orthographic { min, max } => (false, min, max),
         };
-        let size = Vec2::new(
-            self.viewport.width.max(1) as f32,
-            self.viewport.height.max(1) as f32,
-        );
+        let size = Vec2::new(self.viewport.width.max(1) as f32, self.viewport.height.max(1) as f32);
         // Moving the image right moves the window left; image y points down.
         let shift = Vec2::new(-self.jitter.x, self.jitter.y) * (max - min) / size;
         (perspective, min + shift, max + shift)
@@ -228,10 +203,7 @@ impl View {
             (true, None) => (-at_far, near * (at_near - at_far)),
             (false, far) => {
                 let far = far.unwrap_or(near + 1.0);
-                (
-                    (at_near - at_far) / (far - near),
-                    (at_near * far - at_far * near) / (far - near),
-                )
+                ((at_near - at_far) / (far - near), (at_near * far - at_far * near) / (far - near))
             }
         };
         let scale = 2.0 / (max - min);
@@ -264,6 +236,20 @@ impl View {
             DepthMapping::Standard => 1.0,
             DepthMapping::Reversed => 0.0,
         }
+    }
+
+    /// The greatest view depth that shading can rebuild from a clip depth, metres; `None` where
+    /// nothing bounds it. Where depth is not reversed and the near plane close, rounding puts the
+    /// far plane well beyond itself: 1,049 m instead of 1,000 m with a near plane at 1 mm.
+    pub fn farthest_rebuilt_m(&self) -> Option<f32> {
+        let far_m = self.far_m?;
+        let clip = self.view_to_clip();
+        let at_far = self.depth_clear();
+        let rebuilt =
+            (clip.w_axis.z - at_far * clip.w_axis.w) / (clip.z_axis.z - at_far * clip.z_axis.w);
+        // WGSL divides to 2.5 units in the last place.
+        let rebuilt = rebuilt * (1.0 + 4.0 * f32::EPSILON);
+        (rebuilt.is_finite() && rebuilt > 0.0).then_some(far_m.max(rebuilt))
     }
 
     /// The record shaders read.

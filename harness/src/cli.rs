@@ -86,7 +86,7 @@ enum Command {
     /// Compare strategies on one scene (the default: `lightbench --scene X` is enough)
     #[command(long_about = LONG_ABOUT, after_long_help = EXAMPLES)]
     Compare(CompareArgs),
-    /// List the strategies or the scenes that can be named
+    /// List the strategies, scenes or adapters that can be named
     List {
         /// What to list
         what: Listing,
@@ -100,6 +100,8 @@ pub enum Listing {
     Strategies,
     /// Every scene that needs no file
     Scenes,
+    /// Every adapter that wgpu can drive, the one taken by default first
+    Adapters,
 }
 
 /// The options of `lightbench compare`.

@@ -26,6 +26,7 @@ fn run() -> Result<(), HarnessError> {
         Invocation::Show(text) => print!("{text}"),
         Invocation::List(Listing::Strategies) => list_strategies(),
         Invocation::List(Listing::Scenes) => list_scenes(),
+        Invocation::List(Listing::Adapters) => list_adapters()?,
         Invocation::Compare(args) => compare(&args, command)?,
     }
     Ok(())
@@ -43,6 +44,13 @@ fn list_strategies() {
             println!("{:<16} parameters: {}", "", entry.parameters.join(" x "));
         }
     }
+}
+
+fn list_adapters() -> Result<(), HarnessError> {
+    for info in assign::Gpu::adapters()? {
+        println!("{} ({}, {:?})", info.name, info.backend, info.device_type);
+    }
+    Ok(())
 }
 
 fn list_scenes() {

@@ -1,1 +1,168 @@
+//! The report's words and tables, from made-up results.
 
+mod report_data;
+
+use harness::report::{TABLE_WIDTH, finding, notices, render_html, render_table, write_html};
+use harness::results::{Clock, DeviceType, Mode, Results, TruthLevel};
+use report_data::{empty, pictures, record, spoil, typical};
+
+fn of(records: impl IntoIterator<Item = harness::results::Record>) -> Results {
+    let mut results = empty();
+    results.records.extend(records);
+    results
+}
+
+fn pair() -> Results {
+    of([
+        record("None", Mode::Deferred, 0.0, 1_000.0),
+        record("DC-I/64x64x24", Mode::Deferred, 12.0, 50.0),
+    ])
+}
+
+#[test]
+fn the_finding_is_computed_from_the_records() {
+    let mut results = pair();
+    let both = results.records[1].assign_and_shade_ms();
+    let speedup = results.records[0].assign_and_shade_ms() / both;
+    let expected = format!(
+        "On llvmpipe, DC-I/64x64x24 shades 1,000 lights {speedup:.1}\u{d7} faster than no culling \
+         and shows the same image, bit for bit."
+    );
+    assert!((15.0..17.0).contains(&speedup));
+    assert_eq!(finding(&results), [expected]);
+
+    spoil(&mut results.records[1]);
+    let lossy = &finding(&results)[0];
+    assert!(lossy.contains("but misses 1,234 of 3,275,827"), "{lossy}");
+    assert!(
+        lossy.contains("differs from no culling in 5,678 channels, by at most 0.0313"),
+        "{lossy}"
+    );
+}
+
+#[test]
+fn slower_and_equal_strategies_are_not_called_faster() {
+    let slower = of([
+        record("None", Mode::Deferred, 0.0, 100.0),
+        record("DC-I", Mode::Deferred, 100.0, 100.0),
+    ]);
+    let text = &finding(&slower)[0];
+    assert!(text.contains("as long as no culling") && !text.contains("faster"), "{text}");
+
+    let mut equal = slower.clone();
+    equal.records[1].assign_ms = 0.0;
+    equal.records[1].shade_ms = equal.records[0].shade_ms * 1.02;
+    let text = &finding(&equal)[0];
+    assert!(text.contains("takes as long as no culling to shade 1,000 lights"), "{text}");
+}
+
+#[test]
+fn a_lossless_strategy_wins_over_a_faster_lossy_one_and_over_the_control() {
+    let mut results = pair();
+    results.records.push(record("Clay", Mode::Deferred, 0.0, 0.1));
+    results.records.push(record("Broken", Mode::Deferred, 1.0, 1.0));
+    spoil(&mut results.records[3]);
+    assert!(finding(&results)[0].contains("DC-I/64x64x24 shades"));
+}
+
+#[test]
+fn odd_runs_still_read_well() {
+    assert_eq!(finding(&empty()), ["On llvmpipe, nothing was measured."]);
+
+    let alone = finding(&of([record("None", Mode::Deferred, 0.0, 50.0)]));
+    assert!(alone[0].starts_with("On llvmpipe, no culling takes "), "{}", alone[0]);
+
+    let orphan = finding(&of([record("DC-I", Mode::Forward, 10.0, 40.0)]));
+    assert!(orphan[0].contains("DC-I assigns and shades 1,000 lights in "), "{}", orphan[0]);
+
+    let mut dark = pair();
+    for record in &mut dark.records {
+        record.lights = 0;
+    }
+    assert!(finding(&dark)[0].contains("there is no light to assign"));
+
+    let several = finding(&typical());
+    assert_eq!(several.len(), 2);
+    assert!(
+        several[0].starts_with("On llvmpipe, deferred, ") && several[1].contains(", forward, ")
+    );
+}
+
+#[test]
+fn what_was_not_measured_is_not_claimed() {
+    let mut results = pair();
+    results.records[1].differing_channels = None;
+    results.records[1].max_abs_diff = None;
+    assert!(finding(&results)[0].ends_with("faster than no culling."));
+    results.records[1].shade_ms = f64::NAN;
+    assert!(!finding(&results)[0].contains("NaN"));
+}
+
+#[test]
+fn notices_say_what_the_figures_are_not() {
+    let mut results = pair();
+    assert!(notices(&results)[0].starts_with("These are not GPU figures. llvmpipe is a software"));
+    results.machine.device_type = DeviceType::DiscreteGpu;
+    assert!(notices(&results)[0].starts_with("Times are wall-clock times of the host"));
+    for record in &mut results.records {
+        record.clock = Clock::GpuTimestamps;
+    }
+    assert!(notices(&results).is_empty());
+
+    results.truth.level = TruthLevel::None;
+    results.warnings.push("a warning".to_owned());
+    spoil(&mut results.records[1]);
+    let all = notices(&results).join("\n");
+    for part in ["1,234 of 3,275,827", "3 of 1,440 groups", "not checked", "a warning", "4 frames"]
+    {
+        assert!(all.contains(part), "{part}: {all}");
+    }
+}
+
+#[test]
+fn the_terminal_table_is_aligned_and_narrow() {
+    let mut results = typical();
+    spoil(&mut results.records[4]);
+    results.records[1].strategy =
+        "a strategy with a name that is far too long for its column".into();
+    results.records[2].listed_per_sample = None;
+    let text = render_table(&results);
+    for line in text.lines() {
+        assert!(line.chars().count() <= TABLE_WIDTH, "{line}");
+        assert_eq!(line, line.trim_end());
+    }
+    let rows: Vec<_> = text.lines().take(7).collect();
+    assert!(
+        rows[0].starts_with("atrium, deferred, 1,000 lights, 640x360, on llvmpipe (wall-clock")
+    );
+    let width = rows[1].chars().count();
+    assert!(rows[2..].iter().filter(|row| row.len() > 60).all(|row| row.chars().count() == width));
+    assert!(rows[4].starts_with("a strategy with"), "the long name has its own line: {text}");
+    assert!(rows[6].contains('\u{2013}'), "a dash for what was not measured: {text}");
+    assert!(text.contains("1,234") && text.contains("0.0313"));
+    assert!(render_table(&empty()).lines().count() <= 4);
+}
+
+#[test]
+fn the_page_holds_everything() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let results = typical();
+    let path = write_html(&results, &pictures(&results), folder.path()).expect("writes");
+    assert_eq!(path, folder.path().join("index.html"));
+    let page = std::fs::read_to_string(path).expect("reads");
+    let uris = page.matches("data:image/png;base64,").count();
+    assert_eq!(uris, 2, "equal pictures are stored once");
+    for text in ["AMD EPYC 7B13", "9833da8c41f6", "5f0c1b7e9ad24410", "--mode both", "2026-11-22"] {
+        assert!(page.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn names_cannot_inject_markup() {
+    let mut results = pair();
+    results.records[1].strategy = "</script><script>alert(1)</script><b>".to_owned();
+    results.records[1].scene = "{{data}} & \"x\"".to_owned();
+    let page = render_html(&results, &[]);
+    assert!(!page.contains("<script>alert") && !page.contains("{{data}} & \""));
+    assert_eq!(page.matches("id=\"data\"").count(), 1);
+}

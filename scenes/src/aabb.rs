@@ -13,10 +13,7 @@ pub struct Aabb {
 
 impl Aabb {
     /// The box of no points: the neutral element of [`Aabb::union`].
-    pub const EMPTY: Self = Self {
-        min: Vec3::INFINITY,
-        max: Vec3::NEG_INFINITY,
-    };
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The box between two corners.
     pub const fn new(min: Vec3, max: Vec3) -> Self {
@@ -77,11 +74,7 @@ impl Aabb {
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|ix| {
             let pick = |axis: usize| {
-                if ix >> axis & 1 == 0 {
-                    self.min[axis]
-                } else {
-                    self.max[axis]
-                }
+                if ix >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] }
             };
             Vec3::new(pick(0), pick(1), pick(2))
         })

@@ -32,11 +32,7 @@ impl TriangleBvh {
         let triangles: Vec<_> = scene
             .world_triangles()
             .filter(|t| !Aabb::from_points(*t).intersection(region).is_empty())
-            .map(|[a, b, c]| Triangle {
-                v0: a.into(),
-                v1: b.into(),
-                v2: c.into(),
-            })
+            .map(|[a, b, c]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() })
             .collect();
         let indices = (0..triangles.len() as u32).collect();
         let bvh = PlocBuilder::with_capacity(triangles.len()).build(
@@ -58,14 +54,10 @@ impl TriangleBvh {
         }
         let ray = Ray::new(origin.into(), direction.into(), 0.0, max_m);
         let mut hit = RayHit::none();
-        self.bvh
-            .ray_traverse(ray, &mut hit, |ray, ix| self.triangles[ix].intersect(ray));
+        self.bvh.ray_traverse(ray, &mut hit, |ray, ix| self.triangles[ix].intersect(ray));
         // Where nothing is hit, obvhs leaves the id invalid but not the distance infinite.
         let normal = self.triangles.get(hit.primitive_id as usize)?.compute_normal();
-        Some(Hit {
-            distance_m: hit.t,
-            is_back: Vec3::from(normal).dot(direction) > 0.0,
-        })
+        Some(Hit { distance_m: hit.t, is_back: Vec3::from(normal).dot(direction) > 0.0 })
     }
 
     /// Distance from `point` to the nearest triangle, at most `max_m`.
@@ -111,11 +103,7 @@ mod tests {
 
     #[test]
     fn distance_to_face_edge_and_corner() {
-        let triangle = Triangle {
-            v0: Vec3::ZERO.into(),
-            v1: Vec3::X.into(),
-            v2: Vec3::Y.into(),
-        };
+        let triangle = Triangle { v0: Vec3::ZERO.into(), v1: Vec3::X.into(), v2: Vec3::Y.into() };
         let distance = |x, y, z| distance_to_triangle(Vec3::new(x, y, z), &triangle);
         assert_eq!(distance(0.2, 0.2, -3.0), 3.0);
         assert_eq!(distance(0.5, -2.0, 0.0), 2.0);

@@ -14,11 +14,7 @@ use rayon::prelude::*;
 use crate::{Aabb, CameraPath, Pose, Scene, bvh::TriangleBvh};
 
 /// What a scene looks at before its path is fitted.
-pub(crate) const ORIGIN: Pose = Pose {
-    eye: Vec3::ZERO,
-    target: Vec3::NEG_Z,
-    up: Vec3::Y,
-};
+pub(crate) const ORIGIN: Pose = Pose { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y };
 
 /// Shares of the triangles cut off at both ends of an axis that has a backdrop.
 const CORE_SHARE: f64 = 0.02;
@@ -171,7 +167,8 @@ impl Fit {
         (0..nx * ny * nz)
             .into_par_iter()
             .filter_map(|ix| {
-                let cell = Vec3::new((ix % nx) as f32, (ix / nx % ny) as f32, (ix / nx / ny) as f32);
+                let cell =
+                    Vec3::new((ix % nx) as f32, (ix / nx % ny) as f32, (ix / nx / ny) as f32);
                 // Halton points in bases 2, 3 and 5 as jitter.
                 let jitter = Vec3::new(halton(ix, 2), halton(ix, 3), halton(ix, 5));
                 let at = (cell + jitter) / Vec3::new(nx as f32, ny as f32, nz as f32);

@@ -109,12 +109,10 @@ impl Scene {
         feed.int(self.lights.len() as u64);
         for light in &self.lights {
             let (kind, direction, angles) = match light.shape {
-                LightShape::Spot {
-                    direction,
-                    inner_angle,
-                    outer_angle,
-                } => (1, direction, [inner_angle, outer_angle]),
-                _ => (0, Vec3::ZERO, [0.0; 2]),
+                LightShape::Spot { direction, inner_angle, outer_angle } => {
+                    (1, direction, [inner_angle, outer_angle])
+                }
+                LightShape::Point => (0, Vec3::ZERO, [0.0; 2]),
             };
             feed.int(kind);
             feed.floats(&light.position.to_array());
@@ -130,10 +128,7 @@ impl Scene {
             feed.pose(&camera.pose);
             feed.floats(&match camera.lens {
                 Lens::Perspective { fov_y } => [0.0, fov_y, 0.0],
-                Lens::Orthographic {
-                    half_width,
-                    half_height,
-                } => [1.0, half_width, half_height],
+                Lens::Orthographic { half_width, half_height } => [1.0, half_width, half_height],
             });
             feed.floats(&[camera.near_m, camera.far_m.unwrap_or(f32::INFINITY)]);
         }

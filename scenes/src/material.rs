@@ -78,11 +78,7 @@ pub struct TextureRef {
 impl TextureRef {
     /// The image, repeated, filtered trilinearly, uv untransformed.
     pub fn new(image: u32) -> Self {
-        Self {
-            image,
-            sampler: Sampler::default(),
-            uv_transform: Affine2::IDENTITY,
-        }
+        Self { image, sampler: Sampler::default(), uv_transform: Affine2::IDENTITY }
     }
 }
 
@@ -150,11 +146,7 @@ pub struct Image {
 
 impl std::fmt::Debug for Image {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "Image({:?}, {}x{}, {:?})",
-            self.name, self.width, self.height, self.encoding
-        )
+        write!(f, "Image({:?}, {}x{}, {:?})", self.name, self.width, self.height, self.encoding)
     }
 }
 

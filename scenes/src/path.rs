@@ -35,11 +35,7 @@ impl Pose {
 
     /// Scaled about the origin.
     pub fn scaled(self, factor: f32) -> Self {
-        Self {
-            eye: self.eye * factor,
-            target: self.target * factor,
-            up: self.up,
-        }
+        Self { eye: self.eye * factor, target: self.target * factor, up: self.up }
     }
 }
 
@@ -123,10 +119,7 @@ fn loop_pose(knots: &[(Vec3, Vec3)], turn: f64) -> Pose {
     let t = (at - segment as f64) as f32;
     let knot = |offset: usize| knots[(segment + n + offset - 1) % n];
     let (p, q, r, s) = (knot(0), knot(1), knot(2), knot(3));
-    Pose::new(
-        catmull_rom(p.0, q.0, r.0, s.0, t),
-        catmull_rom(p.1, q.1, r.1, s.1, t),
-    )
+    Pose::new(catmull_rom(p.0, q.0, r.0, s.0, t), catmull_rom(p.1, q.1, r.1, s.1, t))
 }
 
 /// Uniform Catmull-Rom from `q` (t = 0) to `r` (t = 1).

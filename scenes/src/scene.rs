@@ -167,12 +167,10 @@ impl Scene {
         self.instances.iter().flat_map(move |instance| {
             let model = &self.models[instance.model as usize];
             let mirrored = model.is_mirrored();
-            self.meshes[instance.mesh as usize]
-                .triangles()
-                .map(move |triangle| {
-                    let [a, b, c] = triangle.map(|p| model.object_to_world.transform_point3(p));
-                    if mirrored { [a, c, b] } else { [a, b, c] }
-                })
+            self.meshes[instance.mesh as usize].triangles().map(move |triangle| {
+                let [a, b, c] = triangle.map(|p| model.object_to_world.transform_point3(p));
+                if mirrored { [a, c, b] } else { [a, b, c] }
+            })
         })
     }
 
@@ -206,11 +204,7 @@ impl Scene {
             camera.pose = camera.pose.scaled(factor);
             camera.near_m *= factor;
             camera.far_m = camera.far_m.map(|far| far * factor);
-            if let Lens::Orthographic {
-                half_width,
-                half_height,
-            } = &mut camera.lens
-            {
+            if let Lens::Orthographic { half_width, half_height } = &mut camera.lens {
                 *half_width *= factor;
                 *half_height *= factor;
             }

@@ -94,20 +94,17 @@ impl HdrImage {
         Ok(difference)
     }
 
-    /// The exposure that brings the mean of log luminance, over lit pixels, to middle grey.
+    /// The exposure that brings the 90th percentile of luminance, over lit pixels, to 0.6: a
+    /// bright surface keeps its colour, and most of the image lies below it.
     pub fn auto_exposure(&self) -> f32 {
-        let lit: Vec<f64> = self
-            .pixels
-            .iter()
-            .map(luminance)
-            .filter(|l| l.is_finite() && *l > 1e-6)
-            .map(f64::ln)
-            .collect();
+        let mut lit: Vec<f64> =
+            self.pixels.iter().map(luminance).filter(|l| l.is_finite() && *l > 1e-6).collect();
         if lit.is_empty() {
             return 1.0;
         }
-        let mean = lit.iter().sum::<f64>() / lit.len() as f64;
-        (0.18 / mean.exp()).clamp(1e-6, 1e6) as f32
+        let bright = lit.len() * 9 / 10;
+        let (_, bright, _) = lit.select_nth_unstable_by(bright, f64::total_cmp);
+        (0.6 / *bright).clamp(1e-6, 1e6) as f32
     }
 
     /// Exposed, tone mapped and encoded as sRGB: 3 bytes a pixel.
@@ -155,8 +152,7 @@ pub fn luminance(pixel: &[f32; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// The Hable-free, hue-keeping part is left to the eye: Narkowicz's fit of the ACES curve (2015),
-/// each channel alone, then sRGB.
+/// Narkowicz's fit of the ACES curve (2015), each channel alone, then sRGB.
 fn tone_map(pixel: [f32; 3]) -> [u8; 3] {
     pixel.map(|x| {
         let x = if x.is_nan() { 0.0 } else { x.clamp(0.0, 1e4) };
@@ -211,9 +207,9 @@ mod tests {
     }
 
     #[test]
-    fn exposure_brings_grey_to_the_middle() {
+    fn exposure_brings_bright_surfaces_below_white() {
         let exposure = grey(4.0).auto_exposure();
-        assert!((exposure * 4.0 - 0.18).abs() < 1e-4);
+        assert!((exposure * 4.0 - 0.6).abs() < 1e-4);
         assert_eq!(grey(0.0).auto_exposure(), 1.0);
     }
 

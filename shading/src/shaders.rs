@@ -2,6 +2,12 @@
 
 use assign::Shader;
 
+/// The contract's modules and the pipeline's, for a shader of one's own: `package::lighting`
+/// and `package::brdf` among them. All flags off; mount a look-up as `package::strategy`.
+pub fn lighting_shader<'a>() -> Shader<'a> {
+    lighting(crate::raster::LISTS_GROUP)
+}
+
 /// The contract's modules and the pipeline's; all flags off.
 pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
     let flags = [

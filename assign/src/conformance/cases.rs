@@ -93,6 +93,7 @@ pub const CASES: &[Case] = &[
         still(r, &views::standard(0.1, None), 300, default_mix)
     }),
     case("lights-beyond-far", "lights beyond the far plane that reach in", beyond_far),
+    case("far-plane-standard-depth", "samples that rounding of depth puts beyond the far plane", far_plane),
     case("orthographic-near-0", "orthographic, near plane at the eye", |r| {
         still(r, &views::orthographic(DepthMapping::Standard), 300, default_mix)
     }),
@@ -111,7 +112,7 @@ pub const CASES: &[Case] = &[
         still(r, &views::sized([5, 3]), 300, default_mix)
     }),
     case("far-from-origin", "a camera 1,000 km from the origin", |r| {
-        still(r, &views::far_from_origin(), 300, |r, s, n| mix(r, s, n, (1.0, 20.0), Kinds::Mixed))
+        still(r, &views::far_from_origin(), 800, |r, s, n| mix(r, s, n, (0.2, 4.0), Kinds::Mixed))
     }),
     case("depth-discontinuity", "a fence before a far wall, lights in the void between", fence),
     case("opaque-surfaces-only", "look-ups on opaque surfaces alone", |r| {
@@ -272,6 +273,14 @@ fn beyond_far(rng: &mut Rng) -> Plan {
         }
         lights
     })
+}
+
+/// With near at 1 mm and far at 1 km, clip depth 1 is rebuilt as 1,049 m.
+fn far_plane(rng: &mut Rng) -> Plan {
+    let mut stage = in_room(rng, &views::standard(0.001, Some(1_000.0)));
+    stage.samples.retain(|s| s.on_surface || s.depth_clip == 1.0);
+    stage = stage.thinned(60);
+    Plan::Still(on(rng, stage, 300, |r, s, n| mix(r, s, n, (1.0, 60.0), Kinds::Mixed)))
 }
 
 fn offset(rng: &mut Rng) -> Plan {

@@ -37,11 +37,17 @@ pub enum Fault {
     SilentOverflow,
     /// The pool never grows.
     StarvedPool,
+    /// No frame is recorded at all.
+    Unrecorded,
+    /// `group_of` names a group that does not exist.
+    LostGroup,
+    /// Shading is handed the bind group of the first frame for ever.
+    StaleBinding,
 }
 
 impl Fault {
     /// All faults.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 16] = [
         Self::DroppedLight,
         Self::ShuffledList,
         Self::Repeated,
@@ -55,6 +61,9 @@ impl Fault {
         Self::Record0,
         Self::SilentOverflow,
         Self::StarvedPool,
+        Self::Unrecorded,
+        Self::LostGroup,
+        Self::StaleBinding,
     ];
 
     /// The case that must reject it, and the promise it breaks there.
@@ -73,6 +82,9 @@ impl Fault {
             Self::Record0 => ("33-lights", Breach::Record0),
             Self::SilentOverflow => ("overflow", Breach::Counters),
             Self::StarvedPool => ("overflow", Breach::OverflowStays),
+            Self::Unrecorded => ("33-lights", Breach::Unwritten),
+            Self::LostGroup => ("33-lights", Breach::NoSuchGroup),
+            Self::StaleBinding => ("resize", Breach::Lookup),
         }
     }
 
@@ -85,6 +97,8 @@ impl Fault {
                 | Self::Record0
                 | Self::SilentOverflow
                 | Self::StarvedPool
+                | Self::Unrecorded
+                | Self::StaleBinding
         )
     }
 
@@ -101,10 +115,24 @@ impl Fault {
             Self::SilentOverflow => 8,
             Self::Flicker => frame % 2,
             Self::LeakyQuarantine => u32::from(rejected),
-            Self::ShrunkenBound | Self::StaleLists | Self::StarvedPool => 0,
+            Self::ShrunkenBound
+            | Self::StaleLists
+            | Self::StarvedPool
+            | Self::Unrecorded
+            | Self::LostGroup
+            | Self::StaleBinding => 0,
         }
     }
 }
+
+/// A look-up that leads nowhere.
+const LOST_GROUP_WESL: &str = "
+import package::sample::ViewSample;
+
+fn group_of(sample: ViewSample) -> u32 {
+  return 0x7ffffff0u;
+}
+";
 
 /// A strategy with a fault.
 pub struct Faulty {
@@ -116,6 +144,8 @@ pub struct Faulty {
     plant: wgpu::ComputePipeline,
     bind_group: Option<wgpu::BindGroup>,
     record_count: u32,
+    /// What the look-up was bound to in the first frame.
+    first_binding: Option<wgpu::BindGroup>,
 }
 
 impl Faulty {
@@ -130,6 +160,7 @@ impl Faulty {
             plant: plant_pipeline(gpu)?,
             bind_group: None,
             record_count: 0,
+            first_binding: None,
         })
     }
 
@@ -190,6 +221,9 @@ impl Assignment for Faulty {
             }
             _ => self.inner.prepare(gpu, frame)?,
         }
+        if self.first_binding.is_none() {
+            self.first_binding = self.inner.bind_group().cloned();
+        }
         self.bind(gpu, frame);
         Ok(())
     }
@@ -199,6 +233,7 @@ impl Assignment for Faulty {
         self.frame += 1;
         match self.fault {
             Fault::StaleLists if !is_first => return,
+            Fault::Unrecorded => return,
             Fault::ShrunkenBound => {
                 let frame = Self::shrink(&self.shrunken, frame);
                 self.inner.record(&frame, passes);
@@ -213,11 +248,18 @@ impl Assignment for Faulty {
     }
 
     fn lookup(&self) -> Lookup<'_> {
-        self.inner.lookup()
+        let inner = self.inner.lookup();
+        match self.fault {
+            Fault::LostGroup => Lookup { module: LOST_GROUP_WESL, ..inner },
+            _ => inner,
+        }
     }
 
     fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
+        match self.fault {
+            Fault::StaleBinding => self.first_binding.as_ref(),
+            _ => self.inner.bind_group(),
+        }
     }
 
     fn lists(&self) -> &LightLists {

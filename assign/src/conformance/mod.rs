@@ -38,7 +38,7 @@
 //!
 //! # Negative controls
 //!
-//! [`rejects_faults`] plants each [`Fault`](faulty::Fault) in the strategy and demands that the
+//! [`rejects_faults`] plants each [`Fault`] in the strategy and demands that the
 //! suite names it.
 
 mod cases;
@@ -108,9 +108,10 @@ pub fn run_case(name: &str, make: &Make<'_>) -> Result<CaseReport, ConformanceEr
 /// Plants every fault that applies to the strategy and demands that the suite rejects it as what
 /// it is. Returns the faults that were planted.
 pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
-    let rig = Rig::new(gpu()?);
+    let gpu = gpu()?;
     let plain = find("33-lights")?;
-    let has_groups = session::has_groups(&rig, plain, make).map_err(|e| failed(plain, e))?;
+    let has_groups =
+        session::has_groups(&Rig::new(gpu), plain, make).map_err(|e| failed(plain, e))?;
     let mut planted = Vec::new();
     for fault in Fault::ALL {
         if fault.needs_groups() && !has_groups {
@@ -121,7 +122,8 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
         let faulty = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
             Ok(Box::new(Faulty::new(gpu, make(gpu)?, fault)?))
         };
-        let outcome = one(&rig, case, &faulty)?.outcome;
+        // A fault may change the look-up, which a rig compiles once.
+        let outcome = one(&Rig::new(gpu), case, &faulty)?.outcome;
         let is_named = match &outcome {
             Outcome::Failed(violations) => violations.iter().any(|v| v.breach == breach),
             _ => false,
@@ -161,4 +163,41 @@ fn failed(case: &Case, error: AssignError) -> ConformanceError {
 
 fn setup(error: AssignError) -> ConformanceError {
     ConformanceError::Assign { case: "setup", error }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Everything;
+
+    #[test]
+    fn a_case_that_asks_nothing_fails() {
+        let case = Case { has_pairs: true, ..*find("no-lights").unwrap() };
+        let rig = Rig::new(gpu().unwrap());
+        let outcome = session::run(&rig, &case, &|gpu| Ok(Box::new(Everything::new(gpu)?)));
+        let Ok(Outcome::Failed(violations)) = outcome else {
+            panic!("{outcome:?}");
+        };
+        assert_eq!(violations.len(), 1);
+        assert_eq!(violations[0].breach, Breach::Vacuous);
+    }
+
+    #[test]
+    fn a_violation_is_one_line_that_names_its_place() {
+        let violation = Violation {
+            case: "jitter",
+            frame: 1,
+            breach: Breach::MissedPair,
+            place: Place {
+                group: Some(3),
+                light: Some(7),
+                sample: Some(SamplePlace { pixel: [1.5, 2.5], depth_m: 4.25 }),
+            },
+            detail: "the list holds 2".into(),
+            count: 9,
+        };
+        let line = "case jitter, frame 1: missed pair, group 3, light 7, sample at pixel (1.5, 2.5) \
+                    depth 4.25 m: the list holds 2 (9 such)";
+        assert_eq!(violation.to_string(), line);
+    }
 }

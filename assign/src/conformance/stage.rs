@@ -122,7 +122,7 @@ pub(super) struct Sample {
     /// Clip depth: on a surface what the depth buffer holds.
     pub(super) depth_clip: f32,
     pub(super) on_surface: bool,
-    /// Where it lies, up to the rounding of its depth: lights are aimed at it.
+    /// Where it lies: lights are aimed at it.
     pub(super) point: DVec3,
 }
 
@@ -228,8 +228,16 @@ impl Stage {
             pixel,
             depth_clip,
             on_surface: true,
-            point: self.to_world(ray.at(depth)),
+            point: self.rebuilt(&ray, depth_clip),
         });
+    }
+
+    /// World-space point that shading rebuilds from a clip depth, in the f32 that it uses: with a
+    /// near plane of millimetres and depth not reversed, that is far from what was drawn.
+    fn rebuilt(&self, ray: &Ray, depth_clip: f32) -> DVec3 {
+        let [.., [_, _, m22, m23], [_, _, m32, m33]] = self.view.view_to_clip().to_cols_array_2d();
+        let depth_view = (m32 - depth_clip * m33) / (m22 - depth_clip * m23);
+        self.to_world(ray.at(f64::from(depth_view)))
     }
 
     fn depth_range(&self) -> (f64, f64) {
@@ -237,7 +245,7 @@ impl Stage {
         (f64::from(self.view.near_m), far)
     }
 
-    /// Points at random depths, every eighth on the near or, where there is one, the far plane.
+    /// Points at random depths, every eighth on the near or the far plane.
     fn sample_in_the_open(&mut self, count: usize) {
         let mut rng = Rng::new(u64::from(self.target[0]));
         let (near, far) = self.depth_range();
@@ -247,17 +255,17 @@ impl Stage {
             let port = self.view.viewport;
             let x = port.x + rng.below(port.width as usize) as u32;
             let y = port.y + rng.below(port.height as usize) as u32;
-            let depth = match i % 16 {
-                0 => near,
-                8 => self.view.far_m.map_or(near, f64::from),
-                _ => rng.log_range(near.max(1e-3 * far), far),
+            let at_far = self.view.depth_clear();
+            let depth_clip = match i % 16 {
+                0 => 1.0 - at_far,
+                8 => at_far,
+                _ => self.depth_clip(rng.log_range(near.max(1e-3 * far), far)),
             };
-            let depth_clip = self.depth_clip(depth);
-            // Clip depth of an infinitely far point.
-            if self.view.far_m.is_none() && depth_clip == self.view.depth_clear() {
+            let point = self.rebuilt(&self.ray([x, y]), depth_clip);
+            // No depth buffer tells a point so far away from infinity.
+            if !point.is_finite() {
                 continue;
             }
-            let point = self.to_world(self.ray([x, y]).at(depth));
             self.samples.push(Sample { pixel: [x, y], depth_clip, on_surface: false, point });
         }
     }

@@ -52,12 +52,9 @@ impl Frustum {
             lens.world_plane(Vec3::Z, depth_min),
             lens.world_plane(Vec3::NEG_Z, -depth_max),
         ];
-        let center = corners
-            .iter()
-            .fold(Vec3::ZERO, |sum, corner| sum + 0.125 * corner);
-        let radius = corners.iter().fold(0.0, |radius: f32, corner| {
-            radius.max(center.distance(*corner))
-        });
+        let center = corners.iter().fold(Vec3::ZERO, |sum, corner| sum + 0.125 * corner);
+        let radius =
+            corners.iter().fold(0.0, |radius: f32, corner| radius.max(center.distance(*corner)));
         let slack_m = lens.position_error * (2.0 * lens.eye.length() + center.length() + radius);
         Self {
             corners,
@@ -111,9 +108,10 @@ impl Frustum {
             return false;
         }
         let axis = to_light / distance_m;
-        let gap = self.corners.iter().fold(distance_m, |gap, corner| {
-            gap.min(axis.dot(volume.center - corner))
-        });
+        let gap = self
+            .corners
+            .iter()
+            .fold(distance_m, |gap, corner| gap.min(axis.dot(volume.center - corner)));
         gap > volume.extent_along(-axis) + slack_m
     }
 }
@@ -142,11 +140,7 @@ impl Lens {
 
     /// World-space position seen at `ndc` at a view depth: `position_view_at`, `world_of_view`.
     fn world_at(&self, ndc: Vec2, depth_view: f32) -> Vec3 {
-        let footprint = if self.perspective > 0.5 {
-            depth_view
-        } else {
-            1.0
-        };
+        let footprint = if self.perspective > 0.5 { depth_view } else { 1.0 };
         let window = (self.ray_scale * ndc + self.ray_offset) * footprint;
         (self.view_to_world * window.extend(-depth_view).extend(1.0)).truncate()
     }

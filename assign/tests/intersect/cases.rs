@@ -79,7 +79,7 @@ pub(crate) fn view() -> impl Strategy<Value = View> {
 }
 
 /// A tile of pixels anywhere in the viewport, or all of it, between two depths.
-fn frustum() -> impl Strategy<Value = Group> {
+pub(crate) fn frustum() -> impl Strategy<Value = Group> {
     let tile = (0.0_f32..1.0, 0.0_f32..1.0, prop_oneof![4 => 1_u32..100, 1 => Just(4000)]);
     let first = prop_oneof![1 => Just(0.0_f32), 3 => power_of_ten(-3.0..3.3)];
     let thickness = prop_oneof![
@@ -117,14 +117,14 @@ fn extents() -> impl Strategy<Value = Vec3> {
     ]
 }
 
-fn aabb() -> impl Strategy<Value = Group> {
+pub(crate) fn aabb() -> impl Strategy<Value = Group> {
     (view(), place(), extents()).prop_map(|(view, min_world, size)| Group {
         view,
         shape: Shape::Aabb { min_world, max_world: min_world + size },
     })
 }
 
-fn oriented() -> impl Strategy<Value = Group> {
+pub(crate) fn oriented() -> impl Strategy<Value = Group> {
     let turn = (unit(), 0.0_f32..6.3, any::<bool>());
     (view(), place(), extents(), turn).prop_map(
         |(view, center_world, half_extents_m, (about, angle, mirrored))| {

@@ -95,7 +95,7 @@ impl Group {
             }
             Shape::Oriented { center_world, axes, half_extents_m } => std::array::from_fn(|i| {
                 let at = (2.0 * corner(i) - 1.0) * half_extents_m.as_dvec3();
-                let [x, y, z] = axes.map(|a| a.as_dvec3());
+                let [x, y, z] = axes.map(Vec3::as_dvec3);
                 center_world.as_dvec3() + x * at.x + y * at.y + z * at.z - center
             }),
         })

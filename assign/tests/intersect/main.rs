@@ -2,11 +2,15 @@
 //!
 //! Loose is allowed and measured, tight is a failure.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod balls;
 mod cases;
 mod groups;
 mod oracle;
+mod rates;
 mod spots;
+mod wesl;
 
 use proptest::test_runner::{Config, RngSeed};
 

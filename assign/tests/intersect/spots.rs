@@ -47,7 +47,7 @@ proptest! {
             let seen = samples.iter().map(|at| group.sample(Vec3::from_array(*at)));
             let must = found.is_some()
                 || points.clone().any(|p| light.reach(p) > 0.0)
-                || points.map(|p| p.as_vec3()).chain(seen).any(|p| is_lit(&light, p));
+                || points.map(DVec3::as_vec3).chain(seen).any(|p| is_lit(&light, p));
             if must {
                 for sat_n in [false, true] {
                     prop_assert!(bounds.reaches(&light, sat_n), "sat_n {sat_n}: {light:?}");
@@ -79,9 +79,9 @@ proptest! {
         beyond in -7.0_f32..0.0,
     ) {
         let (sample, away, outer) = (Vec3::from(sample), Vec3::from(away), 10_f32.powf(outer));
-        let direction = away.any_orthogonal_vector().normalize().lerp(-away.normalize(), 0.0);
+        let across = away.any_orthogonal_vector().normalize();
         let angle = outer * (1.0 + 10_f32.powf(beyond));
-        let axis = -away.normalize() * angle.cos() + direction * angle.sin();
+        let axis = -away.normalize() * angle.cos() + across * angle.sin();
         let light = spot(sample + away, 1.01 * away.length(), axis, outer);
         let view = View::look_at(Vec3::ZERO, Vec3::X, 1.0, 0.1, [8, 8]);
         for shape in [

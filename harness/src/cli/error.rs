@@ -66,9 +66,10 @@ impl CliError {
                 let accepted = std::error::Error::source(error).map(ToString::to_string);
                 Self::out_of_range(option, &value, &accepted.unwrap_or_default())
             }
-            ErrorKind::InvalidValue if value.is_empty() => {
-                Self::new(format!("{option} needs a value{}", one_of(&text(ContextKind::ValidValue))))
-            }
+            ErrorKind::InvalidValue if value.is_empty() => Self::new(format!(
+                "{option} needs a value{}",
+                one_of(&text(ContextKind::ValidValue))
+            )),
             ErrorKind::InvalidValue => {
                 let valid = text(ContextKind::ValidValue).unwrap_or_default();
                 Self::out_of_range(option, &value, &format!("one of {valid}"))
@@ -83,7 +84,7 @@ impl CliError {
                 Self::unknown("command", &name, &["compare", "list"])
             }
             ErrorKind::MissingRequiredArgument => {
-                Self::new("list needs what to list: strategies or scenes")
+                Self::new("list needs what to list: strategies, scenes or adapters")
             }
             ErrorKind::ArgumentConflict => Self::new(conflict(error, option)),
             ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues => {

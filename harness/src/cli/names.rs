@@ -24,10 +24,7 @@ pub fn nearest(name: &str, known: &[&str]) -> Vec<String> {
         .collect();
     // Stable: names that are as near as each other stay in the order of the registry.
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
-    near.into_iter()
-        .take(OFFERED)
-        .map(|(_, known)| known.to_owned())
-        .collect()
+    near.into_iter().take(OFFERED).map(|(_, known)| known.to_owned()).collect()
 }
 
 /// `: did you mean A, B or C?`, to append to a message; empty where no name is near.
@@ -43,7 +40,8 @@ pub fn did_you_mean(name: &str, known: &[&str]) -> String {
 mod tests {
     use super::*;
 
-    const KNOWN: [&str; 6] = ["None", "T-I/28x28", "DC-I/64x64x24", "DC-E/64x64x40", "SC-I/48x48x40", "M"];
+    const KNOWN: [&str; 6] =
+        ["None", "T-I/28x28", "DC-I/64x64x24", "DC-E/64x64x40", "SC-I/48x48x40", "M"];
 
     #[test]
     fn near_names_are_offered_nearest_first() {

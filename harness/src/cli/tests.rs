@@ -60,27 +60,43 @@ fn compare_is_the_command_where_none_is_named() {
 }
 
 #[test]
-fn list_lists_strategies_or_scenes() {
+fn list_lists_what_can_be_named() {
     assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
-    assert_eq!(refusal("list"), "list needs what to list: strategies or scenes");
+    assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
+    assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
     let unknown = refusal("list lights");
-    assert!(unknown.ends_with("is lights: it must be one of strategies, scenes"), "{unknown}");
+    assert!(
+        unknown.ends_with("is lights: it must be one of strategies, scenes, adapters"),
+        "{unknown}"
+    );
 }
 
 #[test]
 fn every_value_out_of_range_is_named_with_its_range() {
     let counts = "a whole number from";
     for (option, values, accepted) in [
-        ("--scene-scale", &["0", "-1", "1e7", "NaN", "inf", "-inf", "x"][..], "a number from 1e-6 to 1e6"),
+        (
+            "--scene-scale",
+            &["0", "-1", "1e7", "NaN", "inf", "-inf", "x"][..],
+            "a number from 1e-6 to 1e6",
+        ),
         ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
         ("--spots", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
         ("--lights", &["-1", "16777217", "1.5", "99999999999999999999"], counts),
         ("--frames", &["0", "100001", "-3", "all"], counts),
         ("--warmup", &["-1", "100001", "x"], counts),
         ("--seed", &["-1", "18446744073709551616", "x"], counts),
-        ("--size", &["0x1", "1x0", "16385x1", "640", "640x", "ax1", "-1x5", "1x2x3"], "WIDTHxHEIGHT"),
-        ("--camera", &["1,2,3", "1,2:1,2", "0,0,0:0,0,NaN", "1,1,1:1,1,1", "1,2,3,4:0,0,0"], "eye and target"),
+        (
+            "--size",
+            &["0x1", "1x0", "16385x1", "640", "640x", "ax1", "-1x5", "1x2x3"],
+            "WIDTHxHEIGHT",
+        ),
+        (
+            "--camera",
+            &["1,2,3", "1,2:1,2", "0,0,0:0,0,NaN", "1,1,1:1,1,1", "1,2,3,4:0,0,0"],
+            "eye and target",
+        ),
         ("--strategies", &["None,", ",", "None,None"], "ids separated by commas"),
         ("--mode", &["clay", "Deferred"], "one of deferred, forward, both"),
         ("--truth", &["half"], "one of full, none"),
@@ -141,16 +157,16 @@ fn help_teaches() {
             assert!(help.contains(option), "{line} leaves out {option}");
         }
     }
-    assert!(matches!(parse_line("--version"), Ok(Invocation::Show(text)) if text.contains("lightbench")));
+    assert!(
+        matches!(parse_line("--version"), Ok(Invocation::Show(text)) if text.contains("lightbench"))
+    );
     assert!(matches!(parse_line("list --help"), Ok(Invocation::Show(_))));
 }
 
 #[test]
 fn every_example_in_the_help_is_accepted() {
-    let examples: Vec<_> = EXAMPLES
-        .lines()
-        .filter_map(|line| line.strip_prefix("  lightbench"))
-        .collect();
+    let examples: Vec<_> =
+        EXAMPLES.lines().filter_map(|line| line.strip_prefix("  lightbench")).collect();
     assert_eq!(examples.len(), 3);
     for example in examples {
         compare(example);

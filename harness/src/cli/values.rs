@@ -27,9 +27,7 @@ impl FromStr for Size {
             (1..=MAX_SIDE).contains(&side).then_some(side)
         };
         text.split_once(['x', 'X'])
-            .and_then(|(width, height)| {
-                Some(Self { width: side(width)?, height: side(height)? })
-            })
+            .and_then(|(width, height)| Some(Self { width: side(width)?, height: side(height)? }))
             .ok_or_else(|| "WIDTHxHEIGHT in pixels, each from 1 to 16,384".to_owned())
     }
 }
@@ -103,8 +101,7 @@ pub(super) fn warmup(text: &str) -> Result<u32, String> {
 }
 
 pub(super) fn seed(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| format!("a whole number from 0 to {}", u64::MAX))
+    text.parse().map_err(|_| format!("a whole number from 0 to {}", u64::MAX))
 }
 
 pub(super) fn text(text: &str) -> Result<String, String> {

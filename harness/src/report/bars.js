@@ -3,6 +3,13 @@ const LOG_ABOVE = 60;
 
 const measured = (passes) => Object.entries(passes).filter(([, pass]) => isNumber(pass.median_ms));
 
+/** The names of all passes, in the order in which a frame runs them. */
+function passNames(records) {
+  const kinds = ["scene", "assign", "shade", "other"];
+  const kindOf = new Map(records.flatMap((record) => Object.entries(record.passes).map(([name, pass]) => [name, pass.kind])));
+  return [...kindOf.keys()].sort((a, b) => kinds.indexOf(kindOf.get(a)) - kinds.indexOf(kindOf.get(b)));
+}
+
 /** At most about five round steps from 0 to `most`. */
 function linearTicks(most) {
   const raw = most / 5;
@@ -99,7 +106,7 @@ function fitLabels(plot) {
 }
 
 function drawBars(figure, records) {
-  const names = [...new Set(records.flatMap((record) => Object.keys(record.passes)))];
+  const names = passNames(records);
   const frames = records.map((record) => record.frame_ms).filter((time) => isNumber(time) && time > 0);
   let logarithmic = Math.max(...frames) / Math.min(...frames) > LOG_ABOVE;
   const plot = h("div", { class: "plot" });

@@ -79,7 +79,7 @@ impl<'a> Comparison<'a> {
             self.records
                 .iter()
                 .map(|(_, record)| *record)
-                .filter(move |record| !record.is_baseline())
+                .filter(|record| !record.is_baseline() && !record.is_control())
                 .filter(move |record| record.is_lossless() || !lossless)
                 .filter(|record| record.assign_and_shade_ms().is_finite())
                 .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))

@@ -61,7 +61,9 @@ fn sentence(comparison: &Comparison<'_>) -> String {
     };
     if first.lights == 0 {
         let none = significant(baseline.assign_and_shade_ms());
-        return format!("there is no light to assign: {name} takes {took} ms, no culling {none} ms");
+        return format!(
+            "there is no light to assign: {name} takes {took} ms, no culling {none} ms"
+        );
     }
     match comparison.speedup(fastest) {
         Some(speedup) if (speedup - 1.0).abs() <= EQUAL => {

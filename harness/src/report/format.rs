@@ -33,11 +33,7 @@ pub(super) fn number(value: f64) -> String {
 
 /// A difference of radiance: `0`, `1.2e-7`, `0.0312`.
 pub(super) fn difference(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 {
-        format!("{value:.1e}")
-    } else {
-        significant(value)
-    }
+    if value != 0.0 && value.abs() < 1e-3 { format!("{value:.1e}") } else { significant(value) }
 }
 
 /// Bytes in MiB.

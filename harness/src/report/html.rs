@@ -43,10 +43,9 @@ pub fn write_html(
 /// The page as text: see [`write_html`].
 pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
     let findings = finding(results);
-    let (headline, others) = findings
-        .split_first()
-        .map_or((String::new(), String::new()), |(first, others)| {
-            (escape(first), page::paragraphs("finding", others))
+    let (headline, others) =
+        findings.split_first().map_or((String::new(), String::new()), |(first, others)| {
+            (page::with_names_whole(first), page::paragraphs("finding", others))
         });
     fill(
         PAGE,
@@ -70,7 +69,11 @@ fn title(results: &Results) -> String {
     let adapter = short_adapter(&results.machine.adapter);
     match results.records.first() {
         Some(first) => {
-            format!("{}, {} lights, {adapter} \u{b7} lightbench", first.scene, number(first.lights as f64))
+            format!(
+                "{}, {} lights, {adapter} \u{b7} lightbench",
+                first.scene,
+                number(first.lights as f64)
+            )
         }
         None => format!("{adapter} \u{b7} lightbench"),
     }
@@ -95,10 +98,8 @@ fn view(results: &Results, images: &[(String, Vec<u8>)]) -> serde_json::Value {
         });
         pictures.insert(name.clone(), ix.into());
     }
-    let uris: Vec<_> = kept
-        .iter()
-        .map(|png| format!("data:image/png;base64,{}", STANDARD.encode(png)))
-        .collect();
+    let uris: Vec<_> =
+        kept.iter().map(|png| format!("data:image/png;base64,{}", STANDARD.encode(png))).collect();
     json!({
         "comparisons": comparisons,
         "strategies": page::strategy_classes(results),

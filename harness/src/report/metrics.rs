@@ -156,7 +156,7 @@ pub(super) static METRICS: &[Metric] = &[
         unit: "groups",
         terminal: "overflow",
         about: "Groups whose list did not fit and that fell back to all lights: slow, still correct.",
-        better: Better::Less,
+        better: Better::Neither,
         value: |_, r| Some(r.overflowed_groups as f64),
         show: format::number,
     },

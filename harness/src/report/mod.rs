@@ -1,6 +1,6 @@
 //! Views of the results: a table for the terminal and a page for the browser.
 //!
-//! Both show the same [columns](metrics), computed from the same [comparisons](comparison): the
+//! Both show the same columns (`metrics`), computed from the same comparisons: the
 //! records that differ in nothing but the strategy.
 
 mod comparison;

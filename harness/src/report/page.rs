@@ -49,8 +49,30 @@ pub(super) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
     classes
 }
 
+/// Names up to this long, in characters, are not broken over lines.
+const UNBROKEN: usize = 24;
+
+/// Text as HTML in which no name such as `DC-I/64x64x24` is broken at its hyphen.
+pub(super) fn with_names_whole(text: &str) -> String {
+    let word = |word: &str| {
+        let html = escape(word);
+        let is_name = word.contains('-') && word.chars().count() <= UNBROKEN;
+        if is_name { format!("<span class=\"whole\">{html}</span>") } else { html }
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 pub(super) fn paragraphs(class: &str, texts: &[String]) -> String {
-    texts.iter().map(|text| format!("<p class=\"{class}\">{}</p>\n", escape(text))).collect()
+    texts
+        .iter()
+        .map(|text| {
+            format!(
+                "<p class=\"{class}\">{}</p>
+",
+                with_names_whole(text)
+            )
+        })
+        .collect()
 }
 
 pub(super) fn notices(texts: &[String]) -> String {
@@ -124,7 +146,7 @@ fn table(caption: &str, comparison: &Comparison<'_>, classes: &BTreeMap<&str, St
             rows,
             "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{cells}</tr>",
             classes.get(record.strategy.as_str()).map_or("", String::as_str),
-            escape(&record.strategy),
+            with_names_whole(&record.strategy),
         );
     }
     format!(
@@ -142,7 +164,7 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String
         (Better::Zero, Some(value)) if value != 0.0 => " class=\"fault\"",
         (Better::Zero, Some(_)) => " class=\"good\"",
         (Better::Less | Better::More, Some(value))
-            if !record.is_control() && is_best(metric, comparison, value) =>
+            if competes(record) && is_best(metric, comparison, value) =>
         {
             " class=\"best\""
         }
@@ -153,10 +175,15 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String
     format!("<td data-metric=\"{}\" data-value=\"{sort}\"{class}>{text}</td>", metric.id)
 }
 
-/// Whether no other record has a better value, and at least one a worse.
+/// Whether a record may be called the best: it culls, and nothing is known to be lost.
+fn competes(record: &Record) -> bool {
+    !record.is_baseline() && !record.is_control() && record.is_lossless()
+}
+
+/// Whether no competitor has a better value, and at least one a worse.
 fn is_best(metric: &Metric, comparison: &Comparison<'_>, value: f64) -> bool {
     let better = |a: f64, b: f64| if metric.better == Better::More { a > b } else { a < b };
-    let competitors = || comparison.records.iter().filter(|(_, record)| !record.is_control());
+    let competitors = || comparison.records.iter().filter(|(_, record)| competes(record));
     let others = || competitors().filter_map(|(_, record)| (metric.value)(comparison, record));
     others().all(|other| !better(other, value)) && others().any(|other| better(value, other))
 }
@@ -166,7 +193,8 @@ pub(super) fn columns() -> String {
     METRICS
         .iter()
         .map(|metric| {
-            let (head, unit, about) = (escape(metric.head), escape(metric.unit), escape(metric.about));
+            let (head, unit, about) =
+                (escape(metric.head), escape(metric.unit), escape(metric.about));
             format!("<dt>{head} <span class=\"unit\">{unit}</span></dt><dd>{about}</dd>\n")
         })
         .collect()
@@ -187,7 +215,10 @@ pub(super) fn provenance(results: &Results) -> String {
         ("Clock", distinct(results, |r| clock(r.clock).to_owned())),
         ("Scene", distinct(results, |r| format!("{} ({})", r.scene, r.scene_hash))),
         ("Seed", distinct(results, |r| r.seed.to_string())),
-        ("Frames", distinct(results, |r| format!("{} after {} to warm up", r.frames, r.warmup_frames))),
+        (
+            "Frames",
+            distinct(results, |r| format!("{} after {} to warm up", r.frames, r.warmup_frames)),
+        ),
         ("Truth", truth(results)),
         ("Schema", format!("results.json version {}", results.schema_version)),
     ];
@@ -197,7 +228,9 @@ pub(super) fn provenance(results: &Results) -> String {
         .map(|(name, value)| format!("<div><dt>{name}</dt><dd>{}</dd></div>\n", escape(value)))
         .collect();
     let command = escape(&shell_words(&results.command));
-    format!("<dl class=\"provenance\">\n{rows}</dl>\n<pre class=\"command\"><code>{command}</code></pre>")
+    format!(
+        "<dl class=\"provenance\">\n{rows}</dl>\n<pre class=\"command\"><code>{command}</code></pre>"
+    )
 }
 
 /// The distinct values over all records, in order of appearance.
@@ -231,7 +264,7 @@ fn clock(clock: Clock) -> &'static str {
 fn truth(results: &Results) -> String {
     match results.truth.level {
         TruthLevel::Full => format!(
-            "every (light, sample) pair on the CPU in f64, but those within {} of the range's edge",
+            "every (light, sample) pair on the CPU in f64, but those within {:e} of the range's edge",
             results.truth.edge_tolerance
         ),
         TruthLevel::None => "images only; the lists were not checked".to_owned(),

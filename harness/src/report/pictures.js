@@ -42,7 +42,7 @@ function still(record) {
 
 function differenceFigure(record) {
   const factor = record.images.difference_amplification;
-  const times = isNumber(factor) && factor !== 1 ? ` \u00d7\u00a0${significant(factor)}` : "";
+  const times = isNumber(factor) && factor !== 1 ? ` \u00d7\u00a0${tickText(Number(factor.toPrecision(3)))}` : "";
   const source = uri(record.images.difference);
   return h("figure", { class: "difference" },
     h("div", { style: `aspect-ratio:${record.width}/${record.height}` },

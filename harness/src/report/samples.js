@@ -41,16 +41,14 @@ function strip(record, name, pass, half) {
 }
 
 function sampleRows(record, half) {
-  const passes = Object.entries(record.passes);
-  return passes.map(([name, pass], ix) =>
-    h("tr", { class: ix === 0 ? "first" : null },
-      ix === 0
-        ? h("th", { scope: "rowgroup", rowspan: String(passes.length) }, dot(strategyClass(record)), record.strategy)
-        : null,
+  const rows = Object.entries(record.passes).map(([name, pass]) =>
+    h("tr", {},
       h("th", { scope: "row" }, dot(passClass(name)), name),
       h("td", {}, significant(pass.median_ms)),
       h("td", {}, significant(pass.p95_ms)),
       h("td", { class: "wide" }, strip(record, name, pass, half))));
+  const name = h("th", { scope: "rowgroup", class: "strategy", colspan: "4" }, dot(strategyClass(record)), record.strategy);
+  return [h("tr", {}, name), ...rows];
 }
 
 function drawSamples(figure, records) {
@@ -62,7 +60,7 @@ function drawSamples(figure, records) {
   const half = halfWidth(passes);
   const side = percent(half);
   const head = h("tr", {},
-    ...["strategy", "pass"].map((text) => h("th", { scope: "col" }, text)),
+    h("th", { scope: "col" }, "pass"),
     ...["median", "p95"].map((text) => h("th", { scope: "col", class: "number" }, text, " ", h("span", { class: "unit" }, "ms"))),
     h("th", { scope: "col", class: "wide" },
       h("span", { class: "ends" }, h("span", {}, `\u2212${side}`), h("span", {}, "median"), h("span", {}, `+${side}`))));

@@ -50,7 +50,8 @@ fn push_table(text: &mut String, comparison: &Comparison<'_>) {
         .collect();
     let widths: Vec<usize> = columns.iter().map(|cells| widest(cells)).collect();
     let names = comparison.records.iter().map(|(_, record)| record.strategy.clone());
-    let names: Vec<String> = ["strategy".to_owned(), String::new()].into_iter().chain(names).collect();
+    let names: Vec<String> =
+        ["strategy".to_owned(), String::new()].into_iter().chain(names).collect();
 
     let numbers: usize = widths.iter().sum();
     let gap = if widest(&names) + numbers + 2 * widths.len() <= TABLE_WIDTH { 2 } else { 1 };

@@ -70,16 +70,13 @@ impl Results {
             path: path.to_owned(),
             reason: error.to_string(),
         };
-        let text = fs::read_to_string(path).map_err(|source| ResultsError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = fs::read_to_string(path)
+            .map_err(|source| ResultsError::Read { path: path.to_owned(), source })?;
         let value: serde_json::Value = serde_json::from_str(&text).map_err(parse_error)?;
         match value.get("schema_version").and_then(serde_json::Value::as_u64) {
-            Some(found) if found != u64::from(SCHEMA_VERSION) => Err(ResultsError::Version {
-                path: path.to_owned(),
-                found,
-            }),
+            Some(found) if found != u64::from(SCHEMA_VERSION) => {
+                Err(ResultsError::Version { path: path.to_owned(), found })
+            }
             _ => serde_json::from_str(&text).map_err(parse_error),
         }
     }
@@ -92,10 +89,7 @@ impl Results {
 ///
 /// [`ResultsError::Write`] names the path that refused; the temporary file is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
-    let fail = |path: &Path, source| ResultsError::Write {
-        path: path.to_owned(),
-        source,
-    };
+    let fail = |path: &Path, source| ResultsError::Write { path: path.to_owned(), source };
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|source| fail(folder, source))?;
     }

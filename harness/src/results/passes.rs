@@ -43,12 +43,7 @@ pub struct PassTimes {
 impl PassTimes {
     /// The times of a pass with their median and 95th percentile.
     pub fn new(kind: PassKind, samples: Vec<f64>) -> Self {
-        Self {
-            kind,
-            median_ms: median(&samples),
-            p95_ms: percentile(&samples, 0.95),
-            samples,
-        }
+        Self { kind, median_ms: median(&samples), p95_ms: percentile(&samples, 0.95), samples }
     }
 }
 
@@ -68,8 +63,7 @@ impl Passes {
 
     /// The pass of that name.
     pub fn get(&self, name: &str) -> Option<&PassTimes> {
-        self.iter()
-            .find_map(|(known, times)| (known == name).then_some(times))
+        self.iter().find_map(|(known, times)| (known == name).then_some(times))
     }
 
     /// Names and times, in the order in which the passes run.
@@ -153,10 +147,7 @@ pub(super) fn nan_from_null<'de, D: Deserializer<'de>>(deserializer: D) -> Resul
 
 fn nans_from_nulls<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
     let samples: Vec<Option<f64>> = Vec::deserialize(deserializer)?;
-    Ok(samples
-        .into_iter()
-        .map(|sample| sample.unwrap_or(f64::NAN))
-        .collect())
+    Ok(samples.into_iter().map(|sample| sample.unwrap_or(f64::NAN)).collect())
 }
 
 #[cfg(test)]

@@ -25,10 +25,7 @@ pub fn median(samples: &[f64]) -> f64 {
 pub fn percentile(samples: &[f64], share: f64) -> f64 {
     let sorted = sorted(samples);
     let rank = (share.clamp(0.0, 1.0) * sorted.len() as f64).ceil() as usize;
-    sorted
-        .get(rank.saturating_sub(1))
-        .copied()
-        .unwrap_or(f64::NAN)
+    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
 fn sorted(samples: &[f64]) -> Vec<f64> {

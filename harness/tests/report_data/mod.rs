@@ -10,7 +10,7 @@ use harness::results::{
 };
 use image::{ImageFormat, Rgb, RgbImage};
 
-pub fn machine() -> Machine {
+pub(crate) fn machine() -> Machine {
     Machine {
         adapter: "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned(),
         driver: "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".to_owned(),
@@ -24,7 +24,7 @@ pub fn machine() -> Machine {
     }
 }
 
-pub fn empty() -> Results {
+pub(crate) fn empty() -> Results {
     let command = "lightbench compare --scene atrium --lights 1000 --mode both";
     let truth = Truth { level: TruthLevel::Full, edge_tolerance: 1e-6, notes: vec![] };
     Results::new(machine(), command.split(' ').map(str::to_owned).collect(), truth)
@@ -40,7 +40,7 @@ fn times(kind: PassKind, median_ms: f64, spread: f64, salt: u32, frames: u32) ->
     PassTimes::new(kind, (0..frames).map(sample).collect())
 }
 
-pub fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) -> Record {
+pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) -> Record {
     let frames = 8;
     let salt = strategy.len() as u32;
     let mut passes = Passes::default();
@@ -105,7 +105,7 @@ pub fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) -> Reco
 }
 
 /// Three strategies, deferred and forward, one of them with a fault.
-pub fn typical() -> Results {
+pub(crate) fn typical() -> Results {
     let mut results = empty();
     for (mode, factor) in [(Mode::Deferred, 1.0), (Mode::Forward, 1.12)] {
         results.records.push(record("None", mode, 0.0, 5_732.0 * factor));
@@ -116,7 +116,7 @@ pub fn typical() -> Results {
 }
 
 /// A lossy record: pairs missed, channels that differ, groups that overflowed.
-pub fn spoil(record: &mut Record) {
+pub(crate) fn spoil(record: &mut Record) {
     record.missed_pairs = Some(1_234);
     record.max_abs_diff = Some(0.031_26);
     record.max_rel_diff = Some(0.4);
@@ -126,11 +126,12 @@ pub fn spoil(record: &mut Record) {
 }
 
 /// A picture for every name in the results.
-pub fn pictures(results: &Results) -> Vec<(String, Vec<u8>)> {
+pub(crate) fn pictures(results: &Results) -> Vec<(String, Vec<u8>)> {
     let mut all: Vec<(String, Vec<u8>)> = vec![];
     for record in &results.records {
         let lossy = record.max_abs_diff != Some(0.0);
-        let (width, height) = (record.width, record.height);
+        // Smaller than the record says, to be quick: the page scales them.
+        let (width, height) = (record.width / 2, record.height / 2);
         for (name, png) in [
             (&record.images.image, scene(width, height, lossy)),
             (&record.images.baseline, scene(width, height, false)),
@@ -149,7 +150,11 @@ fn scene(width: u32, height: u32, lossy: bool) -> Vec<u8> {
     let lights = (0..40_u32).map(|ix| {
         let angle = ix as f32 * 2.399;
         let radius = 0.12 + 0.016 * ix as f32;
-        let hue = [(ix * 37 % 97) as f32 / 97.0, (ix * 53 % 89) as f32 / 89.0, (ix * 71 % 83) as f32 / 83.0];
+        let hue = [
+            (ix * 37 % 97) as f32 / 97.0,
+            (ix * 53 % 89) as f32 / 89.0,
+            (ix * 71 % 83) as f32 / 83.0,
+        ];
         ((angle.cos() * radius * 1.6, 0.25 + angle.sin() * radius * 0.8), hue)
     });
     let lights: Vec<_> = lights.skip(usize::from(lossy) * 3).collect();
@@ -157,7 +162,11 @@ fn scene(width: u32, height: u32, lossy: bool) -> Vec<u8> {
         let (u, v) = (x as f32 / height as f32 - 0.89, y as f32 / height as f32 - 0.35);
         let depth = if v > 0.0 { 0.12 / (v + 0.05) } else { 0.12 / (0.05 - v * 1.4) };
         let check = ((u * depth * 30.0).floor() + (depth * 24.0).floor()) as i32 & 1;
-        let base = if v > 0.0 { 0.35 + 0.3 * check as f32 } else { 0.4 + 0.15 * ((u * depth * 20.0).sin().abs()) };
+        let base = if v > 0.0 {
+            0.35 + 0.3 * check as f32
+        } else {
+            0.4 + 0.15 * ((u * depth * 20.0).sin().abs())
+        };
         let mut sum = [0.015_f32; 3];
         for ((lx, ly), hue) in &lights {
             let distance2 = (u - lx).powi(2) + (v - ly).powi(2) * 2.0;
@@ -172,8 +181,8 @@ fn scene(width: u32, height: u32, lossy: bool) -> Vec<u8> {
 
 fn difference(width: u32, height: u32, lossy: bool) -> Vec<u8> {
     png(width, height, |x, y| {
-        let distance = (x as f32 - 300.0).hypot(y as f32 - 200.0);
-        [if lossy { (1.0 - distance / 60.0).max(0.0) } else { 0.0 }; 3]
+        let distance = (x as f32 - 150.0).hypot(y as f32 - 100.0);
+        [if lossy { (1.0 - distance / 30.0).max(0.0) } else { 0.0 }; 3]
     })
 }
 

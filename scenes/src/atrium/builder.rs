@@ -28,13 +28,7 @@ impl Builder {
     /// The finished mesh.
     pub(super) fn mesh(self, name: &str, material: u32) -> Mesh {
         let bounds = Aabb::from_points(self.vertices.iter().map(|v| Vec3::from(v.position)));
-        Mesh {
-            name: name.into(),
-            vertices: self.vertices,
-            indices: self.indices,
-            material,
-            bounds,
-        }
+        Mesh { name: name.into(), vertices: self.vertices, indices: self.indices, material, bounds }
     }
 
     fn vertex(&mut self, position: Vec3, normal: Vec3, along_u: Vec3, uv: Vec2) {
@@ -144,12 +138,7 @@ impl Builder {
             .map(|i| {
                 let (sin, cos) = (TAU * (i % segments) as f32 / segments as f32).sin_cos();
                 let x = Vec3::new(cos, 0.0, -sin);
-                Frame {
-                    origin: center,
-                    x,
-                    y: Vec3::Y,
-                    normal_x: x,
-                }
+                Frame { origin: center, x, y: Vec3::Y, normal_x: x }
             })
             .collect();
         self.sweep(&frames, profile);
@@ -157,7 +146,14 @@ impl Builder {
 
     /// A straight moulding from `from` to `to`, its profile's `a` towards `out`; `mitre` shifts
     /// the ends along the run by that much per metre of `a`.
-    pub(super) fn moulding(&mut self, from: Vec3, to: Vec3, out: Vec3, mitre: f32, profile: &[Vec2]) {
+    pub(super) fn moulding(
+        &mut self,
+        from: Vec3,
+        to: Vec3,
+        out: Vec3,
+        mitre: f32,
+        profile: &[Vec2],
+    ) {
         let along = (to - from).normalize_or(Vec3::X);
         let frame = |origin: Vec3, shift: f32| Frame {
             origin,

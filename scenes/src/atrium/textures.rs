@@ -16,15 +16,15 @@ pub(super) fn make(seed: u32) -> Vec<Image> {
         ("marble white", Srgb, Box::new(move |uv| marble(uv, seed, WHITE))),
         ("marble dark", Srgb, Box::new(move |uv| marble(uv, seed + 1, DARK))),
         ("stone colour", Srgb, Box::new(move |uv| stone_color(uv, seed))),
-        ("stone roughness", Linear, Box::new(move |uv| {
-            Vec3::new(1.0, 0.95 - 0.35 * stone(uv), 0.0)
-        })),
+        (
+            "stone roughness",
+            Linear,
+            Box::new(move |uv| Vec3::new(1.0, 0.95 - 0.35 * stone(uv), 0.0)),
+        ),
         ("stone normal", Linear, Box::new(move |uv| normal(uv, 0.6, stone))),
         ("cloth normal", Linear, Box::new(move |uv| normal(uv, 0.12, weave))),
     ];
-    jobs.into_par_iter()
-        .map(|(name, encoding, paint)| render(name, encoding, &paint))
-        .collect()
+    jobs.into_par_iter().map(|(name, encoding, paint)| render(name, encoding, &paint)).collect()
 }
 
 /// Indices into [`make`]'s images.
@@ -52,13 +52,7 @@ fn render(name: &str, encoding: Encoding, paint: &Paint) -> Image {
             }
         }
     });
-    Image {
-        name: name.into(),
-        width: SIZE,
-        height: SIZE,
-        rgba,
-        encoding,
-    }
+    Image { name: name.into(), width: SIZE, height: SIZE, rgba, encoding }
 }
 
 /// A well-mixed 32-bit value (the finaliser of MurmurHash3).

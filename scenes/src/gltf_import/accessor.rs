@@ -66,10 +66,8 @@ impl File {
         components: usize,
     ) -> Result<(&Accessor, ComponentType), SceneError> {
         let field = format!("accessors[{index}]");
-        let accessor = self
-            .root
-            .get(index)
-            .ok_or_else(|| self.invalid(&field, "missing", "present"))?;
+        let accessor =
+            self.root.get(index).ok_or_else(|| self.invalid(&field, "missing", "present"))?;
         let (Checked::Valid(component), Checked::Valid(kind)) =
             (accessor.component_type, accessor.type_)
         else {
@@ -168,11 +166,9 @@ impl File {
         let last = (stride as u64).checked_mul(count.saturating_sub(1));
         let end = last.and_then(|last| last.checked_add(offset)?.checked_add(size as u64));
         match end {
-            Some(end) if end <= bytes.len() as u64 => Ok(Run {
-                bytes: &bytes[offset as usize..],
-                stride,
-                count: count as usize,
-            }),
+            Some(end) if end <= bytes.len() as u64 => {
+                Ok(Run { bytes: &bytes[offset as usize..], stride, count: count as usize })
+            }
             _ => Err(self.invalid(
                 field,
                 format!("{count} elements of {stride} bytes from {offset}"),

@@ -1,10 +1,10 @@
 //! Animated cameras: the tracks of the nodes from the root to the camera, evaluated exactly.
 
+use glam::{Mat4, Quat, Vec4, Vec4Swizzles};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
     validation::Checked,
 };
-use glam::{Mat4, Quat, Vec4, Vec4Swizzles};
 
 use super::{
     Warnings,
@@ -93,11 +93,7 @@ pub(super) fn load(
     let ends = |t: &Track| (t.times[0], t.times[t.times.len() - 1]);
     let start_s = tracks().map(|t| ends(t).0).fold(f32::INFINITY, f32::min);
     let end_s = tracks().map(|t| ends(t).1).fold(f32::NEG_INFINITY, f32::max);
-    Ok(Some(AnimatedNode {
-        chain: parts,
-        start_s,
-        end_s,
-    }))
+    Ok(Some(AnimatedNode { chain: parts, start_s, end_s }))
 }
 
 fn track(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, SceneError> {
@@ -127,22 +123,14 @@ fn track(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, Sce
         let field = format!("accessors[{}] (keys)", sampler.output);
         return Err(file.invalid(field, "not finite", "finite"));
     }
-    Ok(Track {
-        times,
-        values,
-        interpolation,
-        is_rotation,
-    })
+    Ok(Track { times, values, interpolation, is_rotation })
 }
 
 impl AnimatedNode {
     /// The pose at `t` (0..1) of the animation.
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
-        let world = self
-            .chain
-            .iter()
-            .fold(Mat4::IDENTITY, |world, part| world * part.matrix(time));
+        let world = self.chain.iter().fold(Mat4::IDENTITY, |world, part| world * part.matrix(time));
         pose(&world)
     }
 }
@@ -152,11 +140,7 @@ impl Part {
         let sample = |track: &Option<Track>| track.as_ref().map(|t| t.sample(time));
         match self.local {
             Local::Matrix(matrix) => matrix,
-            Local::Parts {
-                translation,
-                rotation,
-                scale,
-            } => Local::Parts {
+            Local::Parts { translation, rotation, scale } => Local::Parts {
                 translation: sample(&self.translation).map_or(translation, Vec4::xyz),
                 rotation: sample(&self.rotation).map_or(rotation, quaternion),
                 scale: sample(&self.scale).map_or(scale, Vec4::xyz),

@@ -39,11 +39,7 @@ impl File {
         let bytes = read(path)?;
         let (json, binary) = split(path, &bytes)?;
         let root = parse(path, json)?;
-        let mut file = Self {
-            path: path.into(),
-            root,
-            buffers: Vec::new(),
-        };
+        let mut file = Self { path: path.into(), root, buffers: Vec::new() };
         for (ix, buffer) in file.root.buffers.iter().enumerate() {
             let field = format!("buffers[{ix}]");
             let mut data = match (&buffer.uri, binary) {
@@ -78,9 +74,9 @@ impl File {
     pub(super) fn view(&self, ix: usize) -> Result<&[u8], SceneError> {
         let field = || format!("bufferViews[{ix}]");
         let views = &self.root.buffer_views;
-        let view = views.get(ix).ok_or_else(|| {
-            self.invalid("bufferView", ix, format!("below {}", views.len()))
-        })?;
+        let view = views
+            .get(ix)
+            .ok_or_else(|| self.invalid("bufferView", ix, format!("below {}", views.len())))?;
         let buffer = self.buffers.get(view.buffer.value()).ok_or_else(|| {
             let accepted = format!("below {}", self.buffers.len());
             self.invalid(format!("{}.buffer", field()), view.buffer, accepted)
@@ -124,10 +120,7 @@ impl File {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
-    std::fs::read(path).map_err(|source| SceneError::Read {
-        file: path.into(),
-        source,
-    })
+    std::fs::read(path).map_err(|source| SceneError::Read { file: path.into(), source })
 }
 
 fn invalid(
@@ -180,11 +173,8 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
         Ok(data)
     };
     let json = chunk(b"JSON", "GLB chunk 0")?;
-    let binary = if length > 20 + json.len() {
-        Some(chunk(b"BIN\0", "GLB chunk 1")?)
-    } else {
-        None
-    };
+    let binary =
+        if length > 20 + json.len() { Some(chunk(b"BIN\0", "GLB chunk 1")?) } else { None };
     Ok((json, binary))
 }
 
@@ -192,10 +182,8 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
 fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
     let root: Root = gltf::json::deserialize::from_slice(json)
         .map_err(|e| invalid(path, "JSON", format!("malformed ({e})"), "glTF 2.0"))?;
-    if let Some(name) = root
-        .extensions_required
-        .iter()
-        .find(|name| !SUPPORTED.contains(&name.as_str()))
+    if let Some(name) =
+        root.extensions_required.iter().find(|name| !SUPPORTED.contains(&name.as_str()))
     {
         return Err(SceneError::Extension {
             file: path.into(),
@@ -229,9 +217,7 @@ fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
 fn check_positions(path: &Path, root: &Root) -> Result<(), SceneError> {
     for (mesh_ix, mesh) in root.meshes.iter().enumerate() {
         for (ix, primitive) in mesh.primitives.iter().enumerate() {
-            let position = primitive
-                .attributes
-                .get(&Checked::Valid(Semantic::Positions));
+            let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
             if let Some(position) = position
                 && position.value() >= root.accessors.len()
             {

@@ -29,10 +29,7 @@ impl ImageTable {
 
     /// Decodes all of them.
     pub(super) fn decode(self, file: &File) -> Result<Vec<Image>, SceneError> {
-        self.uses
-            .into_par_iter()
-            .map(|(ix, encoding)| decode(file, ix, encoding))
-            .collect()
+        self.uses.into_par_iter().map(|(ix, encoding)| decode(file, ix, encoding)).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Materials and their textures.
 
+use glam::{Affine2, Mat2, Vec2, Vec3, Vec4};
 use gltf::json::{
     Index,
     extensions::texture::TextureTransform,
@@ -7,7 +8,6 @@ use gltf::json::{
     texture::{Info, MagFilter, MinFilter, Sampler as JsonSampler, Texture, WrappingMode},
     validation::Checked,
 };
-use glam::{Affine2, Mat2, Vec2, Vec3, Vec4};
 
 use super::{Warnings, file::File, images::ImageTable};
 use crate::{Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
@@ -42,11 +42,7 @@ pub(super) fn load(file: &File, warnings: &mut Warnings) -> Result<Materials, Sc
     materials.push(Material::default());
     uv_sets.push(0);
     let images = table.decode(file)?;
-    Ok(Materials {
-        materials,
-        images,
-        uv_sets,
-    })
+    Ok(Materials { materials, images, uv_sets })
 }
 
 struct Reader<'a> {

@@ -1,12 +1,12 @@
 //! Primitives: attributes read, checked and completed.
 
+use glam::Vec3;
 use gltf::json::{
     Index,
     accessor::Accessor,
     mesh::{Mode, Primitive, Semantic},
     validation::Checked,
 };
-use glam::Vec3;
 use rayon::prelude::*;
 
 use super::{Warnings, file::File, materials::Materials, tangents};
@@ -25,9 +25,8 @@ pub(super) fn load(
     warnings: &mut Warnings,
 ) -> Result<Meshes, SceneError> {
     let all = file.root.meshes.iter().enumerate();
-    let jobs: Vec<_> = all
-        .flat_map(|(mesh, json)| (0..json.primitives.len()).map(move |ix| (mesh, ix)))
-        .collect();
+    let jobs: Vec<_> =
+        all.flat_map(|(mesh, json)| (0..json.primitives.len()).map(move |ix| (mesh, ix))).collect();
     let done: Result<Vec<_>, _> = jobs
         .par_iter()
         .map(|&(mesh, ix)| {
@@ -85,7 +84,7 @@ impl<'a> Job<'a> {
         let Checked::Valid(mode) = self.primitive.mode else {
             return Ok(None);
         };
-        use Mode::{Lines, LineLoop, LineStrip, Points};
+        use Mode::{LineLoop, LineStrip, Lines, Points};
         if matches!(mode, Points | Lines | LineLoop | LineStrip) {
             warnings.add(format!("mesh {:?}: {mode:?} are not drawn", self.name));
             return Ok(None);
@@ -153,11 +152,9 @@ impl<'a> Job<'a> {
                     [w[0], w[1 + odd], w[2 - odd]]
                 })
                 .collect(),
-            Mode::TriangleFan => indices
-                .windows(2)
-                .skip(1)
-                .flat_map(|w| [w[0], w[1], indices[0]])
-                .collect(),
+            Mode::TriangleFan => {
+                indices.windows(2).skip(1).flat_map(|w| [w[0], w[1], indices[0]]).collect()
+            }
             _ => {
                 let mut indices = indices;
                 indices.truncate(indices.len() / 3 * 3);

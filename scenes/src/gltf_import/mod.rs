@@ -62,9 +62,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let meshes = meshes::load(&file, &materials, &mut warnings)?;
     let placed = nodes::load(&file, &meshes, &mut warnings)?;
     if placed.instances.is_empty() {
-        return Err(SceneError::Empty {
-            name: path.display().to_string(),
-        });
+        return Err(SceneError::Empty { name: path.display().to_string() });
     }
     let mut animated = None;
     for chain in &placed.camera_chains {

@@ -3,6 +3,7 @@
 use std::f32::consts::PI;
 
 use assign::{Light, LightShape};
+use glam::{Mat4, Quat, Vec3};
 use gltf::json::{
     Index,
     camera::{Camera as JsonCamera, Type as CameraType},
@@ -10,7 +11,6 @@ use gltf::json::{
     scene::Node,
     validation::Checked,
 };
-use glam::{Mat4, Quat, Vec3};
 
 use super::{Warnings, file::File, meshes::Meshes};
 use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
@@ -30,11 +30,7 @@ pub(super) struct Placed {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Local {
     Matrix(Mat4),
-    Parts {
-        translation: Vec3,
-        rotation: Quat,
-        scale: Vec3,
-    },
+    Parts { translation: Vec3, rotation: Quat, scale: Vec3 },
 }
 
 impl Local {
@@ -57,11 +53,9 @@ impl Local {
     pub(super) fn matrix(&self) -> Mat4 {
         match *self {
             Self::Matrix(matrix) => matrix,
-            Self::Parts {
-                translation,
-                rotation,
-                scale,
-            } => Mat4::from_scale_rotation_translation(scale, rotation, translation),
+            Self::Parts { translation, rotation, scale } => {
+                Mat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
         }
     }
 }
@@ -146,11 +140,7 @@ impl Placed {
         let parts = &meshes.meshes[range.start as usize..range.end as usize];
         let bounds = parts.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
         let model = self.models.len() as u32;
-        self.models.push(Model {
-            name: name.into(),
-            bounds_object: bounds,
-            object_to_world,
-        });
+        self.models.push(Model { name: name.into(), bounds_object: bounds, object_to_world });
         self.instances.extend(range.map(|mesh| Instance { mesh, model }));
     }
 
@@ -197,10 +187,8 @@ impl Placed {
                 (Lens::Perspective { fov_y: p.yfov }, p.znear, p.zfar)
             }
             (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
-                let lens = Lens::Orthographic {
-                    half_width: o.xmag.abs(),
-                    half_height: o.ymag.abs(),
-                };
+                let lens =
+                    Lens::Orthographic { half_width: o.xmag.abs(), half_height: o.ymag.abs() };
                 (lens, o.znear, Some(o.zfar))
             }
             _ => {
@@ -210,10 +198,9 @@ impl Placed {
         };
         let (lens_ok, least_near) = match lens {
             Lens::Perspective { fov_y } => (fov_y > 0.0 && fov_y < PI, f32::MIN_POSITIVE),
-            Lens::Orthographic {
-                half_width,
-                half_height,
-            } => (half_width > 0.0 && half_height > 0.0, 0.0),
+            Lens::Orthographic { half_width, half_height } => {
+                (half_width > 0.0 && half_height > 0.0, 0.0)
+            }
         };
         let far_ok = far_m.is_none_or(|far| far > near_m && far.is_finite());
         if !(lens_ok && near_m >= least_near && near_m.is_finite() && far_ok) {
@@ -223,13 +210,7 @@ impl Placed {
             return;
         }
         self.camera_chains.push(chain);
-        self.cameras.push(Camera {
-            name,
-            pose: pose(&to_world),
-            lens,
-            near_m,
-            far_m,
-        });
+        self.cameras.push(Camera { name, pose: pose(&to_world), lens, near_m, far_m });
     }
 }
 
@@ -239,11 +220,7 @@ pub(super) fn pose(to_world: &Mat4) -> Pose {
     let forward = (-to_world.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
     let up = to_world.y_axis.truncate();
     let up = (up - forward * forward.dot(up)).normalize_or(forward.any_orthonormal_vector());
-    Pose {
-        eye,
-        target: eye + forward,
-        up,
-    }
+    Pose { eye, target: eye + forward, up }
 }
 
 /// Intensity is candela times colour. A light without a range gets the one at which its

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 use crate::{Mesh, Vertex};
 
@@ -37,7 +37,7 @@ pub(super) fn repair_normals(mesh: &mut Mesh) -> usize {
         let unit = Vec3::from(vertex.normal).as_dvec3().try_normalize();
         *broken = unit.is_none();
         count += usize::from(*broken);
-        vertex.normal = unit.map_or(Vec3::Y, |n| n.as_vec3()).to_array();
+        vertex.normal = unit.map_or(Vec3::Y, DVec3::as_vec3).to_array();
     }
     if count > 0 {
         for triangle in mesh.indices.chunks_exact(3) {
@@ -74,10 +74,7 @@ pub(super) fn repair_tangents(mesh: &mut Mesh) {
 
 /// Computes tangents by MikkTSpace, splitting vertices whose corners disagree.
 pub(super) fn generate(mesh: &mut Mesh) {
-    let mut corners = Corners {
-        tangents: vec![[0.0, 0.0, 0.0, 1.0]; mesh.indices.len()],
-        mesh,
-    };
+    let mut corners = Corners { tangents: vec![[0.0, 0.0, 0.0, 1.0]; mesh.indices.len()], mesh };
     // Fails only for meshes without a usable triangle, whose tangents are then repaired.
     let _ = generate_tangents(&mut corners);
     let tangents = corners.tangents;

@@ -1,0 +1,247 @@
+//! The WESL tests on the adapter against the Rust mirror and the exact oracle.
+
+use assign::{Frame, FrameBindings, Gpu, Light, LightBuffer, Shader, entry, storage_entry};
+use bytemuck::cast_slice;
+use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+
+use crate::cases::{aabb, aim, frustum, oriented, witness};
+use crate::deterministic;
+use crate::groups::{Bounds, Group, Shape};
+
+/// Groups of a permutation, each with a view of its own.
+const GROUPS: usize = 80;
+/// Lights aimed at each group.
+const LIGHTS: usize = 32;
+/// Vectors that describe a group to the shader.
+const RECORD: usize = 5;
+
+/// Tests every light against one group in one workgroup.
+const DRIVER: &str = "
+import package::lights::{volume_of_light, light_spheres};
+import package::bounds::{load_bounds, reaches};
+import package::strategy::group_bounds;
+
+@group(1) @binding(1) var<storage, read_write> hits: array<u32>;
+
+@compute @workgroup_size(32)
+fn test_group(@builtin(local_invocation_index) lane: u32) {
+  load_bounds(group_bounds(0u), lane);
+  let count = arrayLength(&light_spheres);
+  for (var light = lane; light < count; light += 32u) {
+    hits[light] = select(0u, 1u, reaches(volume_of_light(light)));
+  }
+}
+";
+
+const FRUSTA: &str = "
+import package::bounds::GroupBounds;
+@group(1) @binding(0) var<storage, read> record: array<vec4f>;
+fn group_bounds(group: u32) -> GroupBounds {
+  return GroupBounds(record[0].xy, record[0].zw, record[1].x, record[1].y);
+}
+";
+
+const BOXES: &str = "
+import package::bounds::GroupBounds;
+@group(1) @binding(0) var<storage, read> record: array<vec4f>;
+fn group_bounds(group: u32) -> GroupBounds {
+  return GroupBounds(record[0].xyz, record[1].xyz);
+}
+";
+
+const ORIENTED: &str = "
+import package::bounds::GroupBounds;
+@group(1) @binding(0) var<storage, read> record: array<vec4f>;
+fn group_bounds(group: u32) -> GroupBounds {
+  return GroupBounds(record[0].xyz, record[1].xyz, record[2].xyz, record[3].xyz, record[4].xyz);
+}
+";
+
+fn record(shape: &Shape) -> [[f32; 4]; RECORD] {
+    let mut record = [[0.0; 4]; RECORD];
+    match shape {
+        Shape::Frustum { ndc_min, ndc_max, depth_min, depth_max } => {
+            record[0] = [ndc_min.x, ndc_min.y, ndc_max.x, ndc_max.y];
+            record[1] = [*depth_min, *depth_max, 0.0, 0.0];
+        }
+        Shape::Aabb { min_world, max_world } => {
+            record[0] = min_world.extend(0.0).to_array();
+            record[1] = max_world.extend(0.0).to_array();
+        }
+        Shape::Oriented { center_world, axes, half_extents_m } => {
+            let vectors = [*center_world, axes[0], axes[1], axes[2], *half_extents_m];
+            record = vectors.map(|v| v.extend(0.0).to_array());
+        }
+    }
+    record
+}
+
+/// One compiled permutation.
+struct Tester {
+    gpu: Gpu,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Tester {
+    fn new(gpu: &Gpu, bounds: &str, strategy: &str, sat_n: bool, spots: bool) -> Self {
+        let module = Shader::new(2)
+            .module("package::driver", DRIVER)
+            .module("package::bounds", bounds)
+            .module("package::strategy", strategy)
+            .flag("sat_n", sat_n)
+            .flag("spots", spots)
+            .create(&gpu.device, "package::driver")
+            .unwrap();
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[storage_entry(0, stages, true), storage_entry(1, stages, false)],
+        });
+        let frame = FrameBindings::new(gpu);
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(frame.layout()), Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some("test_group"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Self { gpu: gpu.clone(), pipeline, layout }
+    }
+
+    /// Whether each light reaches the group.
+    fn run(&self, frame: &mut FrameBindings, group: &Group, lights: &[Light]) -> Vec<bool> {
+        let gpu = &self.gpu;
+        let light_buffer = LightBuffer::new(gpu, lights).unwrap();
+        assert!(light_buffer.rejected().is_empty());
+        frame.update(gpu, &Frame::new(&group.view, &light_buffer)).unwrap();
+        let record = record(&group.shape);
+        let bytes: &[u8] = cast_slice(&record);
+        let record = gpu.storage("record", bytes.len() as u64).unwrap();
+        gpu.queue.write_buffer(&record, 0, bytes);
+        let hit_bytes = 4 * lights.len() as u64;
+        let hits = gpu.storage("hits", hit_bytes).unwrap();
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layout,
+            entries: &[entry(0, &record), entry(1, &hits)],
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, frame.bind_group(), &[]);
+            pass.set_bind_group(1, &bind_group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let bytes = gpu.read(&hits, hit_bytes).unwrap();
+        cast_slice::<u8, u32>(&bytes).iter().map(|hit| *hit == 1).collect()
+    }
+}
+
+/// What came of comparing one permutation.
+#[derive(Debug, Default)]
+struct Tally {
+    pairs: usize,
+    hits: usize,
+    disagreements: usize,
+}
+
+/// Both sides round, so they may differ where the gap lies within rounding of the slack: there
+/// the mirror itself changes its mind between half the slack and one and a half.
+fn compare(tester: &Tester, groups: &BoxedStrategy<Group>, sat_n: bool, spots: bool) -> Tally {
+    let mut tally = Tally::default();
+    let mut frame = FrameBindings::new(&tester.gpu);
+    let mut runner = TestRunner::new(deterministic(1));
+    for _ in 0..GROUPS {
+        let group = groups.new_tree(&mut runner).unwrap().current();
+        let mut light = |i| {
+            // A scene with spots has point lights too.
+            let aim = aim(spots && i % 4 != 0).new_tree(&mut runner).unwrap();
+            aim.current().light(&group)
+        };
+        let bounds = group.bounds();
+        let mut lights: Vec<Light> = (0..LIGHTS).map(&mut light).collect();
+        for i in 0..LIGHTS {
+            lights.extend(on_the_edge(&bounds, &lights[i], sat_n));
+        }
+        for (light, wesl) in lights.iter().zip(tester.run(&mut frame, &group, &lights)) {
+            tally.pairs += 1;
+            tally.hits += usize::from(wesl);
+            if bounds.reaches(light, sat_n) != wesl {
+                tally.disagreements += 1;
+                let with_slack = |factor| bounds.with_slack(factor).reaches(light, sat_n);
+                assert_ne!(
+                    with_slack(0.5),
+                    with_slack(1.5),
+                    "beyond rounding, WESL says {wesl}: {group:?} {light:?}"
+                );
+            }
+            assert!(wesl || witness(&group, light).is_none(), "WESL is tight: {group:?} {light:?}");
+        }
+    }
+    tally
+}
+
+/// Lights at the range where the mirror changes its mind, to one unit in the last place, and just
+/// either side of it.
+fn on_the_edge(bounds: &Bounds, light: &Light, sat_n: bool) -> Vec<Light> {
+    let at = |range_m: f32| Light { range_m, ..*light };
+    let reaches = |range_m: f32| bounds.reaches(&at(range_m), sat_n);
+    let (mut low, mut high) = (1e-4_f32, light.range_m);
+    if reaches(low) || !reaches(high) {
+        return vec![];
+    }
+    while low.next_up() < high {
+        let middle = 0.5 * (low + high);
+        if reaches(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let beside = [1.0 - 1e-5, 1.0 + 1e-5].map(|factor| at(high * factor));
+    [vec![at(low), at(high)], beside.to_vec()].concat()
+}
+
+/// Compares every permutation of one shape. `flags` are the values of `sat_n` that it reads.
+fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, flags: &[bool]) {
+    let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
+    for spots in [false, true] {
+        for &sat_n in flags {
+            let tester = Tester::new(&gpu, bounds, strategy, sat_n, spots);
+            let tally = compare(&tester, groups, sat_n, spots);
+            println!("{}, sat_n {sat_n}, spots {spots}: {tally:?}", gpu.info.name);
+            // Both answers are common, and disagreements rare off the edge.
+            let share = |count: usize| count as f64 / tally.pairs as f64;
+            assert!((0.3..0.95).contains(&share(tally.hits)), "{tally:?}");
+            assert!(share(tally.disagreements) < 0.05, "{tally:?}");
+        }
+    }
+}
+
+#[test]
+fn wesl_frustum_agrees_with_rust_and_is_never_tight() {
+    let bounds = include_str!("../../src/shaders/bounds_frustum.wesl");
+    check(bounds, FRUSTA, &frustum().boxed(), &[false, true]);
+}
+
+#[test]
+fn wesl_box_agrees_with_rust_and_is_never_tight() {
+    let bounds = include_str!("../../src/shaders/bounds_box.wesl");
+    check(bounds, BOXES, &aabb().boxed(), &[false]);
+}
+
+#[test]
+fn wesl_oriented_box_agrees_with_rust_and_is_never_tight() {
+    let bounds = include_str!("../../src/shaders/bounds_oriented_box.wesl");
+    check(bounds, ORIENTED, &oriented().boxed(), &[false]);
+}

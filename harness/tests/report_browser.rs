@@ -1,0 +1,217 @@
+//! The page in a real browser: headless Chromium, where one is installed.
+
+mod report_data;
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use harness::report::render_html;
+use harness::results::{Mode, Results};
+use report_data::{empty, pictures, record, spoil, typical};
+
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// Does what a reader can do: every button twice, every slider, pointer and focus everywhere.
+const USE_EVERYTHING: &str = "<script>
+for (let round = 0; round < 2; round += 1) {
+  document.querySelectorAll('button').forEach((button) => button.click());
+  document.querySelectorAll('input').forEach((input) => { input.value = '20'; input.dispatchEvent(new Event('input')); });
+  document.querySelectorAll('[tabindex], .segment, .point').forEach((element) => {
+    element.dispatchEvent(new PointerEvent('pointerover', { bubbles: true }));
+    element.dispatchEvent(new PointerEvent('pointermove', { bubbles: true }));
+    element.focus?.();
+    element.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }));
+  });
+}
+document.documentElement.dataset.used = '1';
+</script></body>";
+
+fn browser() -> Option<&'static str> {
+    let runs = |name: &&str| {
+        let mut version = Command::new(name);
+        version.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
+        version.status().is_ok_and(|status| status.success())
+    };
+    BROWSERS.iter().copied().find(runs)
+}
+
+/// The document after all scripts have run; `None` where no browser is installed.
+fn dump(page: &str, width_px: u32) -> Option<String> {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: none of {} is installed", BROWSERS.join(", "));
+        return None;
+    };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("index.html");
+    std::fs::write(&path, page).expect("writes");
+    let out = folder.path().join("dom");
+    let mut child = Command::new(browser)
+        .args("--headless --no-sandbox --disable-gpu --disable-quic --no-first-run".split(' '))
+        .args(
+            "--disable-background-networking --disable-component-update --disable-sync".split(' '),
+        )
+        .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
+        .arg(format!("--window-size={width_px},900"))
+        .args(["--virtual-time-budget=5000", "--dump-dom"])
+        .arg(format!("file://{}", path.display()))
+        .stdout(std::fs::File::create(&out).expect("a file"))
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the browser starts");
+    let start = Instant::now();
+    while child.try_wait().expect("a status").is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill().expect("kills");
+            child.wait().expect("waits");
+            panic!("{browser} did not end within {PATIENCE:?}");
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    Some(std::fs::read_to_string(Path::new(&out)).expect("reads"))
+}
+
+fn html_tag(dom: &str) -> &str {
+    let start = dom.find("<html").expect("a document");
+    &dom[start..start + dom[start..].find('>').expect("a tag")]
+}
+
+/// Renders, opens, and asserts that no script failed, before use and after.
+fn check(what: &str, results: &Results, images: &[(String, Vec<u8>)]) -> Option<String> {
+    let page = render_html(results, images);
+    let dom = dump(&page, 1200)?;
+    let tag = html_tag(&dom);
+    assert!(tag.contains("data-ready=\"1\"") && !tag.contains("data-error"), "{what}: {tag}");
+
+    let used = dump(&page.replace("</body>", USE_EVERYTHING), 390)?;
+    let tag = html_tag(&used);
+    assert!(tag.contains("data-used=\"1\"") && !tag.contains("data-error"), "{what}, used: {tag}");
+    Some(dom)
+}
+
+/// The `data-value` and the text of all cells of a column, from top to bottom.
+fn cells(dom: &str, metric: &str) -> Vec<(String, String)> {
+    let start = format!("<td data-metric=\"{metric}\" data-value=\"");
+    dom.split(&start)
+        .skip(1)
+        .map(|rest| {
+            let (value, rest) = rest.split_once('"').expect("a value");
+            let text = rest.split_once('>').expect("a cell").1;
+            (value.to_owned(), text.split_once('<').expect("a cell").0.to_owned())
+        })
+        .collect()
+}
+
+#[test]
+fn the_table_shows_the_data() {
+    let mut results = typical();
+    spoil(&mut results.records[5]);
+    let Some(dom) = check("typical", &results, &pictures(&results)) else { return };
+    let column = |metric| cells(&dom, metric);
+    for (ix, record) in results.records.iter().enumerate() {
+        let values = [
+            ("both_ms", record.assign_and_shade_ms()),
+            ("assign_ms", record.assign_ms),
+            ("shade_ms", record.shade_ms),
+            ("frame_ms", record.frame_ms),
+            ("listed", record.listed_per_sample.expect("measured")),
+            ("contributing", record.contributing_per_sample.expect("measured")),
+            ("missed", record.missed_pairs.expect("measured") as f64),
+            ("max_diff", record.max_abs_diff.expect("measured")),
+            ("lists_bytes", record.lists_bytes as f64),
+            ("overflow", record.overflowed_groups as f64),
+        ];
+        for (metric, expected) in values {
+            let shown: f64 = column(metric)[ix].0.parse().expect("a number");
+            assert_eq!(shown, expected, "{metric} of record {ix}");
+        }
+    }
+    let texts = |metric| column(metric).into_iter().map(|(_, text)| text).collect::<Vec<_>>();
+    assert_eq!(texts("missed"), ["0", "0", "0", "0", "0", "1,234"]);
+    assert_eq!(texts("max_diff"), ["0", "0", "0", "0", "0", "0.0313"]);
+    assert_eq!(texts("lists_bytes")[1], "1.25");
+    let fault = dom.matches("class=\"fault\"").count();
+    assert_eq!(fault, 2, "the missed pairs and the difference stand out");
+    assert_eq!(dom.matches("class=\"track\"").count(), results.records.len());
+    assert_eq!(dom.matches("type=\"range\"").count(), 2, "one slider per comparison");
+}
+
+/// The document without its style sheet.
+fn body(dom: &str) -> &str {
+    dom.split_once("<body").expect("a body").1
+}
+
+/// The names in the first table, from top to bottom.
+fn order(dom: &str) -> Vec<String> {
+    let table = dom.split("<tbody>").nth(1).expect("a table");
+    let table = table.split("</tbody>").next().expect("a table");
+    let name = |row: &str| {
+        let cell = row.split("</i>").nth(1)?.split("</th>").next()?;
+        Some(
+            cell.trim_start_matches("<span class=\"whole\">")
+                .trim_end_matches("</span>")
+                .to_owned(),
+        )
+    };
+    table.split("<tr>").skip(1).filter_map(name).collect()
+}
+
+#[test]
+fn a_heading_sorts() {
+    let page = render_html(&typical(), &[]);
+    let click = |times: usize| {
+        let clicks =
+            "document.querySelectorAll('table.results thead button')[4].click();".repeat(times);
+        dump(&page.replace("</body>", &format!("<script>{clicks}</script></body>")), 1200)
+    };
+    let Some(ascending) = click(1) else { return };
+    // By the time to shade.
+    assert_eq!(order(&ascending), ["DC-I/32x32x32", "DC-I/64x64x24", "None"]);
+    assert!(body(&ascending).contains("aria-sort=\"ascending\""));
+    let descending = click(2).expect("the browser is there");
+    assert_eq!(order(&descending), ["None", "DC-I/64x64x24", "DC-I/32x32x32"]);
+    let original = click(3).expect("the browser is there");
+    assert_eq!(order(&original), ["None", "DC-I/64x64x24", "DC-I/32x32x32"]);
+    assert!(!body(&original).contains("aria-sort=\""));
+}
+
+#[test]
+fn a_script_that_fails_is_noticed() {
+    let page = render_html(&typical(), &[]);
+    let planted = "<script>throw new Error('planted')</script></body>";
+    let Some(dom) = dump(&page.replace("</body>", planted), 1200) else { return };
+    assert!(html_tag(&dom).contains("planted"), "{}", html_tag(&dom));
+}
+
+#[test]
+fn odd_results_render() {
+    let of = |records: Vec<harness::results::Record>| {
+        let mut results = empty();
+        results.records = records;
+        results
+    };
+    let mut odd = record("DC-I/64x64x24", Mode::Deferred, 5.0, 20.0);
+    odd.strategy = "</script><script>throw 1</script> \u{1f4a1} ".repeat(6);
+    odd.scene = "a \"scene\" with <b>markup</b> & a long, long name.gltf".to_owned();
+    (odd.assign_ms, odd.frame_ms) = (f64::NAN, f64::NAN);
+    odd.listed_per_sample = None;
+    odd.contributing_per_sample = Some(f64::NAN);
+    (odd.missed_pairs, odd.max_abs_diff) = (None, None);
+    let mut silent = record("None", Mode::Forward, 0.0, 0.0);
+    silent.passes = Default::default();
+    silent.lights = 0;
+    silent.set_times();
+    let mut other_scene = record("None", Mode::Deferred, 0.0, 3.0);
+    other_scene.scene = "Sponza.gltf".to_owned();
+
+    let several = of(vec![odd, silent, other_scene, record("Clay", Mode::Deferred, 0.0, 1.0)]);
+    let Some(dom) = check("several", &several, &[]) else { return };
+    assert!(cells(&dom, "assign_ms")[0] == (String::new(), "\u{2013}".to_owned()));
+    assert!(dom.contains("No pictures were kept"));
+    check("no records", &empty(), &[]);
+
+    let one = of(vec![record("DC-I/64x64x24", Mode::Deferred, 5.0, 20.0)]);
+    let dom = check("one record", &one, &pictures(&one)).expect("the browser is there");
+    assert!(!dom.contains("type=\"range\""), "there is nothing to slide against");
+}

@@ -1,0 +1,125 @@
+//! The lighting function in f64 on the CPU: what the shaders are tested against.
+
+use assign::{Light, LightShape};
+use glam::DVec3;
+
+/// A point of a surface, as `brdf.wesl` has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Linear RGB.
+    pub base_color: DVec3,
+    /// 0 dielectric to 1 metal.
+    pub metallic: f64,
+    /// Unit shading normal, world space.
+    pub normal: DVec3,
+    /// Perceptual roughness.
+    pub roughness: f64,
+}
+
+/// Below this perceptual roughness GGX's peak overflows single precision: `brdf.wesl`.
+const MIN_ROUGHNESS: f64 = 0.045;
+/// Reflectance of a dielectric at normal incidence.
+const DIELECTRIC_F0: f64 = 0.04;
+/// Least squared distance of inverse-square fall-off, square metres.
+const MIN_DISTANCE_2: f64 = 1e-4;
+
+/// Radiance reflected to `to_eye` for unit irradiance from `to_light`, times cos of incidence:
+/// Lambert and Cook-Torrance with GGX, height-correlated Smith and Schlick.
+pub fn reflect_light(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> DVec3 {
+    let cos_l = surface.normal.dot(to_light).max(0.0);
+    let cos_v = surface.normal.dot(to_eye).abs().max(1e-4);
+    let half_way = (to_eye + to_light).normalize_or_zero();
+    let cos_h = surface.normal.dot(half_way).clamp(0.0, 1.0);
+    let cos_vh = to_eye.dot(half_way).clamp(0.0, 1.0);
+    let alpha_2 = surface.roughness.max(MIN_ROUGHNESS).powi(4);
+    let peak = cos_h * cos_h * (alpha_2 - 1.0) + 1.0;
+    let distribution = alpha_2 / (std::f64::consts::PI * peak * peak);
+    let smith = |a: f64, b: f64| a * (b * b * (1.0 - alpha_2) + alpha_2).sqrt();
+    let visibility = 0.5 / (smith(cos_l, cos_v) + smith(cos_v, cos_l)).max(1e-6);
+    let f0 = DVec3::splat(DIELECTRIC_F0).lerp(surface.base_color, surface.metallic);
+    let fresnel = f0 + (DVec3::ONE - f0) * (1.0 - cos_vh).powi(5);
+    let diffuse = (DVec3::ONE - fresnel) * (1.0 - surface.metallic) * surface.base_color
+        / std::f64::consts::PI;
+    (diffuse + distribution * visibility * fresnel) * cos_l
+}
+
+/// Inverse-square fall-off times the window `(1 - (d / range)^4)^2`, clamped at 0.
+pub fn fall_off(distance_2: f64, range_m: f64) -> f64 {
+    let window = (1.0 - (distance_2 / (range_m * range_m)).powi(2)).max(0.0);
+    window * window / distance_2.max(MIN_DISTANCE_2)
+}
+
+/// Radiance that one light adds at `position`.
+pub fn light_contribution(
+    light: &Light,
+    position: DVec3,
+    surface: &Surface,
+    to_eye: DVec3,
+) -> DVec3 {
+    let offset = light.position.as_dvec3() - position;
+    let to_light = offset.normalize_or_zero();
+    let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));
+    if let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape {
+        let cos_outer = f64::from(outer_angle).cos();
+        let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-3);
+        let cos = direction.as_dvec3().normalize().dot(-to_light);
+        weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);
+    }
+    light.intensity.as_dvec3() * weight * reflect_light(surface, to_eye, to_light)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// White metal, or a black dielectric: the specular term alone.
+    fn surface(roughness: f64, metallic: f64) -> Surface {
+        let base_color = DVec3::splat(metallic);
+        Surface { base_color, metallic, normal: DVec3::Z, roughness }
+    }
+
+    /// Light reflected over the hemisphere for unit irradiance, by the midpoint rule.
+    fn albedo(surface: &Surface, to_eye: DVec3) -> f64 {
+        let (rings, sectors) = (400, 400);
+        let mut sum = 0.0;
+        for ring in 0..rings {
+            let cos = (f64::from(ring) + 0.5) / f64::from(rings);
+            let sin = (1.0 - cos * cos).sqrt();
+            for sector in 0..sectors {
+                let angle = (f64::from(sector) + 0.5) / f64::from(sectors) * std::f64::consts::TAU;
+                let to_light = DVec3::new(sin * angle.cos(), sin * angle.sin(), cos);
+                sum += reflect_light(surface, to_eye, to_light).x;
+            }
+        }
+        sum * std::f64::consts::TAU / f64::from(rings * sectors)
+    }
+
+    #[test]
+    fn no_specular_term_reflects_more_than_it_receives() {
+        for roughness in [0.2, 0.5, 1.0] {
+            for metallic in [0.0, 1.0] {
+                for cos in [0.2_f64, 0.7, 1.0] {
+                    let to_eye = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+                    let albedo = albedo(&surface(roughness, metallic), to_eye);
+                    assert!(
+                        albedo > 0.01 && albedo < 1.01,
+                        "roughness {roughness}, metallic {metallic}, cos {cos}: {albedo}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_smooth_mirror_keeps_almost_all_light() {
+        let albedo = albedo(&surface(0.2, 1.0), DVec3::new(0.6, 0.0, 0.8));
+        assert!((albedo - 1.0).abs() < 0.02, "{albedo}");
+    }
+
+    #[test]
+    fn fall_off_ends_at_the_range() {
+        assert_eq!(fall_off(4.0, 2.0), 0.0);
+        assert!(fall_off(3.999, 2.0) > 0.0);
+        assert_eq!(fall_off(0.0, 2.0), 1e4);
+    }
+}

@@ -1,0 +1,176 @@
+//! The shaders' lighting function against the f64 reference, on the adapter of this machine.
+
+#![allow(dead_code, reason = "the common module serves several tests")]
+mod common;
+
+use assign::{
+    EncoderPasses, Frame, FrameBindings, Gpu, Light, LightBuffer, Passes, entry, storage_entry,
+};
+use glam::{DVec3, Vec3};
+use shading::reference::{Surface, light_contribution};
+
+/// One evaluation: position and light, eye direction and roughness, normal and metallic, colour.
+type Query = [[f32; 4]; 4];
+
+const EVALUATE: &str = "
+import package::brdf::Surface;
+import package::lighting::light_contribution;
+
+@group(2) @binding(0) var<storage, read> queries: array<array<vec4f, 4>>;
+@group(2) @binding(1) var<storage, read_write> answers: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn evaluate(@builtin(global_invocation_id) thread: vec3u) {
+  if thread.x >= arrayLength(&queries) {
+    return;
+  }
+  let query = queries[thread.x];
+  let surface = Surface(query[3].xyz, query[2].w, query[2].xyz, query[1].w);
+  let light = bitcast<u32>(query[0].w);
+  answers[thread.x] = vec4f(light_contribution(light, query[0].xyz, surface, query[1].xyz), 1.0);
+}
+";
+
+/// Evaluates the queries on the GPU.
+fn evaluate(gpu: &Gpu, lights: &LightBuffer, queries: &[Query]) -> Vec<[f32; 4]> {
+    let view = common::view([8, 8]);
+    let mut bindings = FrameBindings::new(gpu);
+    bindings.update(gpu, &Frame::new(&view, lights)).unwrap();
+    let asked = gpu.storage("queries", size_of_val(queries) as u64).unwrap();
+    gpu.queue.write_buffer(&asked, 0, bytemuck::cast_slice(queries));
+    let answered = gpu.storage("answers", queries.len() as u64 * 16).unwrap();
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[storage_entry(0, stages, true), storage_entry(1, stages, false)],
+    });
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &[entry(0, &asked), entry(1, &answered)],
+    });
+    let module = shading::lighting_shader()
+        .module("package::evaluate", EVALUATE)
+        .module("package::strategy", include_str!("../../assign/src/shaders/everything.wesl"))
+        .flag("spots", lights.has_spots())
+        .create(&gpu.device, "package::evaluate")
+        .unwrap();
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(bindings.layout()), None, Some(&layout)],
+        immediate_size: 0,
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: Some(&pipeline_layout),
+        module: &module,
+        entry_point: Some("evaluate"),
+        compilation_options: Default::default(),
+        cache: None,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    EncoderPasses { encoder: &mut encoder }.compute("evaluate", &mut |pass| {
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, bindings.bind_group(), &[]);
+        pass.set_bind_group(2, &group, &[]);
+        pass.dispatch_workgroups((queries.len() as u32).div_ceil(64), 1, 1);
+    });
+    gpu.queue.submit([encoder.finish()]);
+    bytemuck::pod_collect_to_vec(&gpu.read(&answered, queries.len() as u64 * 16).unwrap())
+}
+
+/// Directions that cover the sphere evenly (a Fibonacci spiral).
+fn direction(i: usize, count: usize) -> Vec3 {
+    let z = 1.0 - 2.0 * (i as f32 + 0.5) / count as f32;
+    let angle = i as f32 * 2.399_963;
+    let r = (1.0 - z * z).sqrt();
+    Vec3::new(r * angle.cos(), r * angle.sin(), z)
+}
+
+fn queries(lights: &[Light], count: usize) -> Vec<Query> {
+    (0..count)
+        .map(|i| {
+            let light = i % lights.len();
+            let share = (i as f32 * 0.618_034).fract() * 1.1;
+            let position =
+                lights[light].position + direction(i, count) * lights[light].range_m * share;
+            let normal = direction((i * 7) % count, count);
+            // Half of the eyes look from the front.
+            let to_eye = direction((i * 13) % count, count);
+            let to_eye = if i % 2 == 0 && to_eye.dot(normal) < 0.0 { -to_eye } else { to_eye };
+            let roughness = (i as f32 * 0.137).fract();
+            let metallic = (i as f32 * 0.731).fract();
+            [
+                position.extend(f32::from_bits(light as u32)).to_array(),
+                to_eye.extend(roughness).to_array(),
+                normal.extend(metallic).to_array(),
+                [0.9, 0.5, 0.1, 0.0],
+            ]
+        })
+        .collect()
+}
+
+fn expected(lights: &[Light], query: &Query) -> DVec3 {
+    let xyz = |v: [f32; 4]| DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
+    let surface = Surface {
+        base_color: xyz(query[3]),
+        metallic: f64::from(query[2][3]),
+        normal: xyz(query[2]),
+        roughness: f64::from(query[1][3]),
+    };
+    let light = &lights[query[0][3].to_bits() as usize];
+    light_contribution(light, xyz(query[0]), &surface, xyz(query[1]))
+}
+
+#[test]
+fn shaders_agree_with_the_reference() {
+    let gpu = common::gpu();
+    for kinds in ["points", "points and spots"] {
+        let mut lights = common::lights(48);
+        if kinds == "points" {
+            lights.retain(|light| light.kind() == assign::LightKind::Point);
+        }
+        let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+        let queries = queries(&lights, 20_000);
+        let answers = evaluate(&gpu, &buffer, &queries);
+        let mut lit = 0;
+        for (query, answer) in queries.iter().zip(&answers) {
+            let expected = expected(&lights, query);
+            for (a, e) in answer.iter().zip(expected.to_array()) {
+                // GGX's peak amplifies the rounding of cos by 1 / alpha^2: up to 2.5e5 units.
+                let tolerance = 2e-2 * e.abs() + 2e-6;
+                assert!((f64::from(*a) - e).abs() <= tolerance, "{kinds}: {a} for {e}, {query:?}");
+            }
+            lit += usize::from(expected.x > 1e-4);
+        }
+        assert!(lit > 2_000, "{kinds}: only {lit} of 20000 samples are lit");
+    }
+}
+
+#[test]
+fn lights_on_a_surface_and_out_of_range_give_numbers() {
+    let gpu = common::gpu();
+    let lights = [
+        Light::point(Vec3::ZERO, 1.0, Vec3::ONE),
+        Light::point(Vec3::ZERO, 1e-4, Vec3::splat(1e9)),
+        Light::point(Vec3::ZERO, 1e8, Vec3::splat(1e9)),
+    ];
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let mut queries = Vec::new();
+    for light in 0..3_u32 {
+        for position in [[0.0; 3], [1e-20, 0.0, 0.0], [0.0, 1.0, 0.0], [1e6, 0.0, 0.0], [-1e-3; 3]] {
+            for roughness in [0.0, 1.0] {
+                let [x, y, z] = position;
+                queries.push([
+                    [x, y, z, f32::from_bits(light)],
+                    [0.0, 1.0, 0.0, roughness],
+                    [0.0, 1.0, 0.0, 1.0],
+                    [1.0, 1.0, 1.0, 0.0],
+                ]);
+            }
+        }
+    }
+    for (query, answer) in queries.iter().zip(evaluate(&gpu, &buffer, &queries)) {
+        assert!(answer.iter().all(|v| v.is_finite() && *v >= 0.0), "{query:?}: {answer:?}");
+    }
+}

@@ -1,0 +1,177 @@
+//! Whole frames of a small scene, on the adapter of this machine.
+
+#![allow(dead_code, reason = "the common module serves several tests")]
+mod common;
+
+use assign::{Assignment, EncoderPasses, Everything, Gpu, LightBuffer, View};
+use glam::{DVec3, Vec3};
+use shading::{
+    HdrImage, LightBvh, Lighting, Mode, Renderer, Samples, probe, record_before_lighting,
+};
+
+/// A frame lit by every light, its image and its samples.
+fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, Samples) {
+    let mut renderer = Renderer::new(gpu, &common::showcase(), view).unwrap();
+    renderer.prepare(view, lights).unwrap();
+    let mut strategy = Everything::new(gpu).unwrap();
+    let lighting = Lighting::new(&renderer, &strategy, mode, lights.has_spots()).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut passes = EncoderPasses { encoder: &mut encoder };
+    let frame = renderer.frame(view, lights);
+    strategy.prepare(gpu, &frame).unwrap();
+    record_before_lighting(&renderer, mode, &mut strategy, &frame, &mut passes);
+    lighting.record(&renderer, view, &strategy, &mut passes);
+    if mode == Mode::Forward {
+        renderer.record_gbuffer(view, &mut passes);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let image = HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap();
+    let samples = probe(&renderer, &strategy, &frame).unwrap();
+    (image, samples)
+}
+
+#[test]
+fn deferred_and_forward_agree_up_to_the_g_buffers_precision() {
+    let gpu = common::gpu();
+    let view = common::view([96, 64]);
+    let lights = LightBuffer::new(&gpu, &common::lights(40)).unwrap();
+    let (deferred, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
+    let (forward, _) = draw(&gpu, &view, &lights, Mode::Forward);
+    assert!(samples.positions.len() > 3_000, "{} samples", samples.positions.len());
+    let mean = |image: &HdrImage| {
+        image.pixels.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / image.pixels.len() as f64
+    };
+    let off = deferred
+        .pixels
+        .iter()
+        .flatten()
+        .zip(forward.pixels.iter().flatten())
+        .map(|(a, b)| f64::from((a - b).abs()))
+        .sum::<f64>()
+        / forward.pixels.len() as f64;
+    assert!(mean(&forward) > 0.01, "the image is dark: {}", mean(&forward));
+    // Eight-bit colour and half-float normals: within 2 % of the mean.
+    assert!(off < 0.02 * mean(&forward), "{off} off a mean of {}", mean(&forward));
+}
+
+#[test]
+fn positions_lie_on_the_surfaces() {
+    let gpu = common::gpu();
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    let mut orthographic = common::view([96, 64]);
+    orthographic.projection = assign::Projection::Orthographic {
+        min: glam::Vec2::new(-3.0, -2.0),
+        max: glam::Vec2::new(3.0, 2.0),
+    };
+    orthographic.near_m = 0.0;
+    orthographic.far_m = Some(30.0);
+    let mut standard = common::view([96, 64]);
+    standard.depth = assign::DepthMapping::Standard;
+    standard.far_m = Some(100.0);
+    standard.jitter = glam::Vec2::new(0.3, -0.2);
+    let mut offset = common::view([64, 48]);
+    offset.viewport.x = 13;
+    offset.viewport.y = 7;
+    for (name, view) in [
+        ("reversed infinite", common::view([96, 64])),
+        ("orthographic", orthographic),
+        ("standard, jittered", standard),
+        ("viewport with an offset", offset),
+    ] {
+        let (_, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
+        assert!(samples.positions.len() > 1_000, "{name}: {}", samples.positions.len());
+        let triangles: Vec<[Vec3; 3]> = common::showcase().world_triangles().collect();
+        for position in &samples.positions {
+            let point = DVec3::from(position.map(f64::from));
+            let nearest = triangles
+                .iter()
+                .map(|t| plane_distance(point, t))
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < 2e-4, "{name}: {position:?} is {nearest} m off every triangle's plane");
+        }
+    }
+}
+
+fn plane_distance(point: DVec3, triangle: &[Vec3; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| v.as_dvec3());
+    (point - a).dot((b - a).cross(c - a).normalize()).abs()
+}
+
+#[test]
+fn the_truth_finds_no_fault_in_all_lights_and_one_in_too_few() {
+    let gpu = common::gpu();
+    let view = common::view([64, 48]);
+    let lights = LightBuffer::new(&gpu, &common::lights(30)).unwrap();
+    let (_, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
+    let mut strategy = Everything::new(&gpu).unwrap();
+    strategy.prepare(&gpu, &assign::Frame::new(&view, &lights)).unwrap();
+    let mut lists = strategy.lists().snapshot(&gpu).unwrap();
+    let bvh = LightBvh::new(lights.lights());
+    let truth = bvh.check(&samples, &lists);
+    assert!(truth.contributing > 1_000, "{truth:?}");
+    assert_eq!(truth.missed, 0);
+    assert_eq!(truth.listed, truth.samples * 30);
+    lists.lists[0].count -= 1;
+    assert!(bvh.check(&samples, &lists).missed > 0, "a dropped light must be missed");
+}
+
+#[test]
+fn no_lights_give_the_emission_alone() {
+    let gpu = common::gpu();
+    let view = common::view([48, 32]);
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    for mode in [Mode::Deferred, Mode::Forward] {
+        let (image, _) = draw(&gpu, &view, &lights, mode);
+        let brightest = image.pixels.iter().flatten().fold(0.0_f32, |a, b| a.max(*b));
+        assert!(brightest > 0.001 && brightest <= 0.021, "{mode:?}: {brightest}");
+    }
+}
+
+#[test]
+fn clay_is_drawn_without_lists() {
+    let gpu = common::gpu();
+    let view = common::view([48, 32]);
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+    renderer.prepare(&view, &lights).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut passes = EncoderPasses { encoder: &mut encoder };
+    renderer.record_depth(&view, &mut passes);
+    renderer.record_clay(&view, &mut passes);
+    gpu.queue.submit([encoder.finish()]);
+    let image = HdrImage::read(&gpu, renderer.targets(), view.viewport).unwrap();
+    let drawn = image.pixels.iter().filter(|p| p[0] > 0.05).count();
+    assert!(drawn > 500, "{drawn} pixels");
+}
+
+#[test]
+fn the_alpha_mask_has_holes() {
+    let gpu = common::gpu();
+    let view = View::look_at(Vec3::new(-1.5, 1.0, 0.2), Vec3::new(-1.5, 1.0, -1.0), 1.0, 0.05, [64, 64]);
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    let (_, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
+    let on_mask = samples.positions.iter().filter(|p| (p[2] + 1.0).abs() < 1e-3).count();
+    let through = samples.positions.iter().filter(|p| p[2] < -1.5).count();
+    assert!(on_mask > 1_000 && through > 1_000, "{on_mask} on the mask, {through} through it");
+}
+
+#[test]
+fn every_pipeline_passes_validation_without_a_gpu() {
+    let gpu = Gpu::noop().unwrap();
+    let view = common::view([32, 32]);
+    let renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+    let strategy = Everything::new(&gpu).unwrap();
+    for mode in [Mode::Deferred, Mode::Forward] {
+        for spots in [false, true] {
+            Lighting::new(&renderer, &strategy, mode, spots).unwrap();
+        }
+    }
+}
+
+#[test]
+fn sizes_out_of_range_are_errors() {
+    let gpu = common::gpu();
+    let view = common::view([100_000, 8]);
+    let error = Renderer::new(&gpu, &common::showcase(), &view).err().unwrap().to_string();
+    assert!(error.contains("100000x8"), "{error}");
+}
