@@ -15,8 +15,7 @@ use crate::{
     registry::Choice,
     report,
     results::{
-        Clock, DeviceType, Images, Record, RejectedLight, Results, ResultsError, Truth, TruthLevel,
-        write_atomically,
+        Clock, Images, Record, RejectedLight, Results, ResultsError, Truth, write_atomically,
     },
     stage::Stage,
 };
@@ -317,15 +316,6 @@ impl Run<'_> {
 
     /// Writes the results and the report, and prints the table.
     fn write(&mut self) -> Result<(), HarnessError> {
-        if self.results.machine.device_type == DeviceType::Cpu {
-            self.results.warnings.push(
-                "Software adapter: times are wall-clock times of a CPU and say nothing of a GPU."
-                    .to_owned(),
-            );
-        }
-        if self.results.truth.level == TruthLevel::None {
-            self.results.truth.notes.push("Lists were not checked on the CPU.".to_owned());
-        }
         let out = &self.args.out;
         self.results.write(&out.join("results.json"))?;
         report::write_html(&self.results, &self.pictures, out)?;
