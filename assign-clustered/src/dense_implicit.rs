@@ -52,8 +52,7 @@ impl Assignment for DenseImplicit {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let clusters = ClustersUniform::new(self.size, frame.view, frame.lights.bounds())?;
-        gpu.queue
-            .write_buffer(&self.clusters, 0, bytes_of(&clusters));
+        gpu.queue.write_buffer(&self.clusters, 0, bytes_of(&clusters));
         self.culler.prepare(
             gpu,
             frame,

@@ -135,11 +135,7 @@ impl Culler {
         self.cull.bind(gpu, &self.lists, &kernel_entries);
         self.look_up.bind(gpu, &self.lists, resources);
         let spots = frame.lights.has_spots();
-        if self
-            .kernel
-            .as_ref()
-            .is_none_or(|(_, made_for)| *made_for != spots)
-        {
+        if self.kernel.as_ref().is_none_or(|(_, made_for)| *made_for != spots) {
             self.compile(gpu, spots)?;
         }
         Ok(())
@@ -157,27 +153,24 @@ impl Culler {
     fn compile(&mut self, gpu: &Gpu, spots: bool) -> Result<(), AssignError> {
         let module =
             kernel_shader(self.shape, self.module, spots).create(&gpu.device, "package::cull")?;
-        let layout = gpu
-            .device
-            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(&self.label),
-                bind_group_layouts: &[Some(self.frame.layout()), Some(self.cull.layout())],
-                immediate_size: 0,
-            });
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(&self.label),
+            bind_group_layouts: &[Some(self.frame.layout()), Some(self.cull.layout())],
+            immediate_size: 0,
+        });
         let pipeline = |entry_point| {
-            gpu.device
-                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(&self.label),
-                    layout: Some(&layout),
-                    module: &module,
-                    entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        // The kernel writes what it reads.
-                        zero_initialize_workgroup_memory: false,
-                        ..Default::default()
-                    },
-                    cache: None,
-                })
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(&self.label),
+                layout: Some(&layout),
+                module: &module,
+                entry_point: Some(entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    // The kernel writes what it reads.
+                    zero_initialize_workgroup_memory: false,
+                    ..Default::default()
+                },
+                cache: None,
+            })
         };
         self.kernel = Some((pipeline("cull_groups"), spots));
         self.reset = Some(pipeline("reset"));
@@ -205,10 +198,7 @@ impl Culler {
 
     /// How shading finds a sample's group.
     pub fn lookup(&self) -> Lookup<'_> {
-        Lookup {
-            module: self.module,
-            layout: self.look_up.layout(),
-        }
+        Lookup { module: self.module, layout: self.look_up.layout() }
     }
 
     /// The look-up's bind group; `None` before the first [`prepare`](Self::prepare).
@@ -250,10 +240,7 @@ pub(crate) struct ListsBindings {
 
 impl ListsBindings {
     pub(crate) fn new(layout: wgpu::BindGroupLayout) -> Self {
-        Self {
-            layout,
-            bind_group: None,
-        }
+        Self { layout, bind_group: None }
     }
 
     pub(crate) fn bind(
@@ -286,15 +273,11 @@ pub(crate) fn lookup_layout(
     bindings: &[wgpu::BindGroupLayoutEntry],
 ) -> wgpu::BindGroupLayout {
     let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-    let both = [
-        storage_entry(0, stages, true),
-        storage_entry(1, stages, true),
-    ];
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(label),
-            entries: &[&both, bindings].concat(),
-        })
+    let both = [storage_entry(0, stages, true), storage_entry(1, stages, true)];
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &[&both, bindings].concat(),
+    })
 }
 
 /// Layout of the kernel: lists, entries, counters, parameters, then the strategy's resources.
@@ -310,9 +293,8 @@ fn cull_layout(
         storage_entry(2, stages, false),
         uniform_entry(3, stages),
     ];
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(label),
-            entries: &[&own, bindings].concat(),
-        })
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &[&own, bindings].concat(),
+    })
 }

@@ -42,10 +42,7 @@ impl Assignment for Everything {
     fn record(&mut self, _frame: &Frame<'_>, _passes: &mut dyn Passes) {}
 
     fn lookup(&self) -> Lookup<'_> {
-        Lookup {
-            module: include_str!("shaders/everything.wesl"),
-            layout: self.bindings.layout(),
-        }
+        Lookup { module: include_str!("shaders/everything.wesl"), layout: self.bindings.layout() }
     }
 
     fn bind_group(&self) -> Option<&wgpu::BindGroup> {

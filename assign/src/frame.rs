@@ -47,13 +47,7 @@ pub struct Frame<'a> {
 impl<'a> Frame<'a> {
     /// A frame of opaque surfaces.
     pub fn new(view: &'a View, lights: &'a LightBuffer) -> Self {
-        Self {
-            view,
-            lights,
-            samples: SampleDomain::default(),
-            depth: None,
-            normals: None,
-        }
+        Self { view, lights, samples: SampleDomain::default(), depth: None, normals: None }
     }
 
     /// Adds the depth buffer.
@@ -97,29 +91,15 @@ impl FrameBindings {
     /// Makes the layout.
     pub fn new(gpu: &Gpu) -> Self {
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let layout = gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("frame"),
-                entries: &[
-                    uniform_entry(0, stages),
-                    storage_entry(
-                        1,
-                        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
-                        true,
-                    ),
-                    storage_entry(
-                        2,
-                        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
-                        true,
-                    ),
-                    storage_entry(
-                        3,
-                        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
-                        true,
-                    ),
-                ],
-            });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("frame"),
+            entries: &[
+                uniform_entry(0, stages),
+                storage_entry(1, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
+                storage_entry(2, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
+                storage_entry(3, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
+            ],
+        });
         Self {
             uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
             layout,
@@ -130,8 +110,7 @@ impl FrameBindings {
     /// Checks and uploads the view and binds the lights.
     pub fn update(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        gpu.queue
-            .write_buffer(&self.uniform, 0, bytes_of(&frame.view.uniform()));
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&frame.view.uniform()));
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
             layout: &self.layout,
@@ -167,11 +146,7 @@ pub fn storage_entry(
     visibility: wgpu::ShaderStages,
     read_only: bool,
 ) -> wgpu::BindGroupLayoutEntry {
-    buffer_entry(
-        binding,
-        visibility,
-        wgpu::BufferBindingType::Storage { read_only },
-    )
+    buffer_entry(binding, visibility, wgpu::BufferBindingType::Storage { read_only })
 }
 
 fn buffer_entry(
@@ -182,19 +157,12 @@ fn buffer_entry(
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
         count: None,
     }
 }
 
 /// A bind group entry of a whole buffer.
 pub fn entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry {
-        binding,
-        resource: buffer.as_entire_binding(),
-    }
+    wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
 }

@@ -16,11 +16,7 @@ pub struct Gpu {
 impl Gpu {
     /// Wraps a renderer's own device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
-        Self {
-            device,
-            queue,
-            info,
-        }
+        Self { device, queue, info }
     }
 
     /// Opens the fastest adapter: discrete before integrated before virtual before software.
@@ -54,9 +50,7 @@ impl Gpu {
         let instance = wgpu::Instance::new(descriptor);
         let adapter =
             pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
-                .map_err(|e| AssignError::NoAdapter {
-                looked_for: format!("noop: {e}"),
-            })?;
+                .map_err(|e| AssignError::NoAdapter { looked_for: format!("noop: {e}") })?;
         Self::from_adapter(&adapter)
     }
 
@@ -75,15 +69,8 @@ impl Gpu {
             required_limits: limits,
             ..Default::default()
         }))
-        .map_err(|e| AssignError::NoDevice {
-            adapter: info.name.clone(),
-            reason: e.to_string(),
-        })?;
-        Ok(Self {
-            device,
-            queue,
-            info,
-        })
+        .map_err(|e| AssignError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+        Ok(Self { device, queue, info })
     }
 
     /// Whether passes run on the CPU: its timestamps say nothing.
@@ -102,20 +89,14 @@ impl Gpu {
     /// The largest storage buffer a shader may bind, bytes.
     pub fn max_storage_bytes(&self) -> u64 {
         let limits = self.device.limits();
-        limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size)
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
     /// A storage buffer of `bytes`, at least 16, with room for copies in and out.
     pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, AssignError> {
         let limit = self.max_storage_bytes();
         if bytes > limit {
-            return Err(AssignError::TooLarge {
-                what: label.into(),
-                bytes,
-                limit,
-            });
+            return Err(AssignError::TooLarge { what: label.into(), bytes, limit });
         }
         Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -167,9 +148,7 @@ impl Gpu {
             .recv()
             .map_err(|e| AssignError::Device(e.to_string()))?
             .map_err(|e| AssignError::Device(e.to_string()))?;
-        let view = staging
-            .get_mapped_range(..)
-            .map_err(|e| AssignError::Device(e.to_string()))?;
+        let view = staging.get_mapped_range(..).map_err(|e| AssignError::Device(e.to_string()))?;
         Ok(view.to_vec())
     }
 }

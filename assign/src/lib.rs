@@ -19,7 +19,8 @@
 //! Lists hold every light whose support holds one of the group's samples, in ascending index,
 //! without repeats. A list that does not fit becomes the list of all lights, is counted, and the
 //! pool grows before a later frame. No input makes a strategy drop a light silently;
-//! [`conformance`] checks that of any strategy, and rejects faulty ones.
+//! the module `conformance` (feature `conformance`) checks that of any strategy, and rejects
+//! faulty ones.
 
 mod assignment;
 #[cfg(feature = "conformance")]
@@ -47,7 +48,8 @@ pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
 pub use gpu::Gpu;
 pub use light::{
-    Light, LightEmission, LightFault, LightKind, LightShape, LightSphere, MAX_RANGE_M,
+    Light, LightEmission, LightFault, LightKind, LightShape, LightSphere, MAX_INTENSITY,
+    MAX_RANGE_M, MIN_RANGE_M,
 };
 pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
 pub use lists::{

@@ -30,9 +30,9 @@ pub enum LightShape {
 pub struct Light {
     /// Where it is, metres.
     pub position: Vec3,
-    /// Distance at which its window reaches 0, metres, `> 0`.
+    /// Distance at which its window reaches 0, metres, [`MIN_RANGE_M`] to [`MAX_RANGE_M`].
     pub range_m: f32,
-    /// Radiant intensity, linear RGB, each `>= 0` and not all 0.
+    /// Radiant intensity, linear RGB, each 0 to [`MAX_INTENSITY`] and not all 0.
     pub intensity: Vec3,
     /// What kind of light it is.
     pub shape: LightShape,
@@ -96,12 +96,7 @@ pub struct LightEmission {
 impl Light {
     /// A point light.
     pub fn point(position: Vec3, range_m: f32, intensity: Vec3) -> Self {
-        Self {
-            position,
-            range_m,
-            intensity,
-            shape: LightShape::Point,
-        }
+        Self { position, range_m, intensity, shape: LightShape::Point }
     }
 
     /// The range at which an unbounded light's unoccluded intensity over squared distance falls
@@ -126,34 +121,23 @@ impl Light {
                 .find(|x| !x.is_finite())
                 .map_or(Ok(()), |value| Err(LightFault::NotFinite { field, value }))
         };
-        let out = |field, value, accepted| {
-            Err(LightFault::OutOfRange {
-                field,
-                value,
-                accepted,
-            })
-        };
+        let out = |field, value, accepted| Err(LightFault::OutOfRange { field, value, accepted });
         finite("position", self.position)?;
         finite("range", Vec3::splat(self.range_m))?;
         finite("intensity", self.intensity)?;
-        if self.range_m <= 0.0 {
-            return out("range", self.range_m, "above 0");
-        }
-        if self.range_m > MAX_RANGE_M {
-            return out("range", self.range_m, "at most 1e9");
+        if !(MIN_RANGE_M..=MAX_RANGE_M).contains(&self.range_m) {
+            return out("range", self.range_m, "between 1e-6 and 1e9 metres");
         }
         if self.intensity.min_element() < 0.0 {
             return out("intensity", self.intensity.min_element(), "0 or more");
         }
+        if self.intensity.max_element() > MAX_INTENSITY {
+            return out("intensity", self.intensity.max_element(), "at most 1e18");
+        }
         if self.intensity.max_element() == 0.0 {
             return out("intensity", 0.0, "above 0 in some channel");
         }
-        if let LightShape::Spot {
-            direction,
-            inner_angle,
-            outer_angle,
-        } = self.shape
-        {
+        if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
             finite("spot direction", direction)?;
             finite("spot angle", Vec3::new(inner_angle, outer_angle, 0.0))?;
             let length = direction.length();
@@ -161,18 +145,10 @@ impl Light {
                 return out("spot direction", length, "of length 1");
             }
             if !(outer_angle > 0.0 && outer_angle <= std::f32::consts::PI) {
-                return out(
-                    "spot outer angle",
-                    outer_angle,
-                    "above 0 and at most pi radians",
-                );
+                return out("spot outer angle", outer_angle, "above 0 and at most pi radians");
             }
             if !(0.0..=outer_angle).contains(&inner_angle) {
-                return out(
-                    "spot inner angle",
-                    inner_angle,
-                    "between 0 and the outer angle",
-                );
+                return out("spot inner angle", inner_angle, "between 0 and the outer angle");
             }
         }
         Ok(())
@@ -187,11 +163,7 @@ impl Light {
         let ball = 1.0 - distance / f64::from(self.range_m);
         match self.shape {
             LightShape::Point => ball,
-            LightShape::Spot {
-                direction,
-                outer_angle,
-                ..
-            } => {
+            LightShape::Spot { direction, outer_angle, .. } => {
                 if distance == 0.0 {
                     return ball;
                 }
@@ -203,10 +175,7 @@ impl Light {
 
     /// The part of the light's record that culling reads.
     pub fn sphere(&self) -> LightSphere {
-        LightSphere {
-            position_world: self.position.to_array(),
-            range_m: self.range_m,
-        }
+        LightSphere { position_world: self.position.to_array(), range_m: self.range_m }
     }
 
     /// The light's record for shading; appends what its kind needs to `shapes`.
@@ -215,12 +184,7 @@ impl Light {
     /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`.
     pub(crate) fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
         let first_shape = shapes.len() as u32;
-        if let LightShape::Spot {
-            direction,
-            inner_angle,
-            outer_angle,
-        } = self.shape
-        {
+        if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
             let direction = direction.normalize();
             let cos_outer = outer_angle.cos();
             let scale = 1.0 / (inner_angle.cos() - cos_outer).max(1e-3);
@@ -234,8 +198,15 @@ impl Light {
     }
 }
 
-/// The longest range accepted: squares of it stay far inside f32.
+/// The shortest range accepted, metres: its square stays far above f32's smallest number.
+pub const MIN_RANGE_M: f32 = 1e-6;
+
+/// The longest range accepted, metres: its square stays far inside f32.
 pub const MAX_RANGE_M: f32 = 1e9;
+
+/// The greatest radiant intensity accepted in a channel. The fall-off multiplies it by up to 1e4,
+/// GGX's peak by up to 8e4, and 2^20 such lights still sum to a finite f32.
+pub const MAX_INTENSITY: f32 = 1e18;
 
 #[cfg(test)]
 mod tests {
@@ -249,14 +220,11 @@ mod tests {
     fn faults_name_field_and_value() {
         let mut light = lamp();
         light.range_m = f32::NAN;
-        assert!(matches!(
-            light.check(),
-            Err(LightFault::NotFinite { field: "range", .. })
-        ));
+        assert!(matches!(light.check(), Err(LightFault::NotFinite { field: "range", .. })));
         light.range_m = -1.0;
         assert_eq!(
             light.check().unwrap_err().to_string(),
-            "range is -1: it must be above 0"
+            "range is -1: it must be between 1e-6 and 1e9 metres"
         );
         let mut light = lamp();
         light.intensity = Vec3::ZERO;
@@ -272,11 +240,7 @@ mod tests {
         assert_eq!(light.reach(DVec3::new(3.0, 2.0, 3.0)), 0.0);
         assert!(light.reach(DVec3::new(3.1, 2.0, 3.0)) < 0.0);
         let spot = Light {
-            shape: LightShape::Spot {
-                direction: Vec3::X,
-                inner_angle: 0.1,
-                outer_angle: 0.5,
-            },
+            shape: LightShape::Spot { direction: Vec3::X, inner_angle: 0.1, outer_angle: 0.5 },
             ..light
         };
         assert!(spot.reach(DVec3::new(2.0, 2.0, 3.0)) > 0.0);

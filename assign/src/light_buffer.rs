@@ -68,29 +68,16 @@ impl LightBuffer {
         }
         let spheres: Vec<LightSphere> = self.lights.iter().map(Light::sphere).collect();
         let mut shapes = Vec::new();
-        let emissions: Vec<LightEmission> = self
-            .lights
-            .iter()
-            .map(|l| l.emission(&mut shapes))
-            .collect();
+        let emissions: Vec<LightEmission> =
+            self.lights.iter().map(|l| l.emission(&mut shapes)).collect();
         self.has_spots = self.lights.iter().any(|l| l.kind() == LightKind::Spot);
         self.bounds = self
             .lights
             .iter()
             .map(|l| (l.position - l.range_m, l.position + l.range_m))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        upload(
-            gpu,
-            &mut self.spheres,
-            "light spheres",
-            cast_slice(&spheres),
-        )?;
-        upload(
-            gpu,
-            &mut self.emissions,
-            "light emissions",
-            cast_slice(&emissions),
-        )?;
+        upload(gpu, &mut self.spheres, "light spheres", cast_slice(&spheres))?;
+        upload(gpu, &mut self.emissions, "light emissions", cast_slice(&emissions))?;
         upload(gpu, &mut self.shapes, "light shapes", cast_slice(&shapes))
     }
 

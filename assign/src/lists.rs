@@ -110,8 +110,7 @@ impl ListsSnapshot {
     pub fn entries_of(&self, group: u32) -> Option<&[u32]> {
         let list = self.list(group)?;
         let first = list.first as usize;
-        self.entries
-            .get(first..first.checked_add(list.count as usize)?)
+        self.entries.get(first..first.checked_add(list.count as usize)?)
     }
 }
 
@@ -159,12 +158,8 @@ impl LightLists {
         }
         changed |= self.size_entries(gpu, light_count, group_count, asked)?;
         if changed || self.counts.0 != light_count {
-            let all = LightList {
-                first: 0,
-                count: light_count,
-            };
-            gpu.queue
-                .write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
+            let all = LightList { first: 0, count: light_count };
+            gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
         }
         self.counts = (light_count, group_count);
         let cull = CullUniform {
@@ -175,8 +170,7 @@ impl LightLists {
             guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
             padding: [0; 3],
         };
-        gpu.queue
-            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
         Ok(changed)
     }
 
@@ -208,9 +202,8 @@ impl LightLists {
         if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
             return Ok(false);
         }
-        let all: Vec<u32> = (0..light_capacity)
-            .map(|light| light | ENTRY_DIFFUSE | ENTRY_SPECULAR)
-            .collect();
+        let all: Vec<u32> =
+            (0..light_capacity).map(|light| light | ENTRY_DIFFUSE | ENTRY_SPECULAR).collect();
         let bytes = (u64::from(light_capacity) + u64::from(wanted)) * 4;
         self.entries = gpu.storage("light entries", bytes)?;
         gpu.queue.write_buffer(&self.entries, 0, cast_slice(&all));

@@ -26,14 +26,10 @@ pub struct EncoderPasses<'a> {
 
 impl Passes for EncoderPasses<'_> {
     fn compute(&mut self, name: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)) {
-        record(
-            &mut self
-                .encoder
-                .begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some(name),
-                    timestamp_writes: None,
-                }),
-        );
+        record(&mut self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(name),
+            timestamp_writes: None,
+        }));
     }
 
     fn render(

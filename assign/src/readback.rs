@@ -39,19 +39,12 @@ impl<T: Pod> Readback<T> {
             });
             (buffer, State::Free)
         };
-        Self {
-            slots: (0..DEPTH).map(|_| slot()).collect(),
-            latest: None,
-            value: PhantomData,
-        }
+        Self { slots: (0..DEPTH).map(|_| slot()).collect(), latest: None, value: PhantomData }
     }
 
     /// Copies the value; skipped while all slots are in flight.
     pub(crate) fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer) {
-        let free = self
-            .slots
-            .iter_mut()
-            .find(|(_, state)| matches!(state, State::Free));
+        let free = self.slots.iter_mut().find(|(_, state)| matches!(state, State::Free));
         if let Some((buffer, state)) = free {
             encoder.copy_buffer_to_buffer(source, 0, buffer, 0, size_of::<T>() as u64);
             *state = State::Recorded;

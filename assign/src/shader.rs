@@ -20,17 +20,14 @@ impl<'a> Shader<'a> {
     /// The contract's modules; lists are read from bind group `lists_group`.
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
-        Self {
-            modules: Vec::new(),
-            flags: Vec::new(),
-        }
-        .module("package::slots", slots)
-        .module("package::view", include_str!("shaders/view.wesl"))
-        .module("package::sample", include_str!("shaders/sample.wesl"))
-        .module("package::lights", include_str!("shaders/lights.wesl"))
-        .module("package::volume", include_str!("shaders/volume.wesl"))
-        .module("package::lists", include_str!("shaders/lists.wesl"))
-        .flag("spots", false)
+        Self { modules: Vec::new(), flags: Vec::new() }
+            .module("package::slots", slots)
+            .module("package::view", include_str!("shaders/view.wesl"))
+            .module("package::sample", include_str!("shaders/sample.wesl"))
+            .module("package::lights", include_str!("shaders/lights.wesl"))
+            .module("package::volume", include_str!("shaders/volume.wesl"))
+            .module("package::lists", include_str!("shaders/lists.wesl"))
+            .flag("spots", false)
     }
 
     /// Adds or replaces a module.
@@ -49,15 +46,10 @@ impl<'a> Shader<'a> {
 
     /// Links `root` and what it imports; keeps all its entry points.
     pub fn link(&self, root: &str) -> Result<String, AssignError> {
-        let fail = |reason: String| AssignError::Shader {
-            module: root.to_owned(),
-            reason,
-        };
+        let fail = |reason: String| AssignError::Shader { module: root.to_owned(), reason };
         let mut resolver = VirtualResolver::new();
         for (path, source) in &self.modules {
-            let path = path
-                .parse()
-                .map_err(|e| fail(format!("module path {path}: {e:?}")))?;
+            let path = path.parse().map_err(|e| fail(format!("module path {path}: {e:?}")))?;
             resolver.add_module(path, Cow::Borrowed(source.as_ref()));
         }
         let mut compiler = Wesl::new_barebones().set_custom_resolver(resolver);
@@ -69,13 +61,8 @@ impl<'a> Shader<'a> {
         }
         compiler.keep_all_entrypoints();
         compiler.use_sourcemap(true);
-        let root = root
-            .parse()
-            .map_err(|e| fail(format!("module path: {e:?}")))?;
-        compiler
-            .compile(&root)
-            .map(|linked| linked.to_string())
-            .map_err(|e| fail(e.to_string()))
+        let root = root.parse().map_err(|e| fail(format!("module path: {e:?}")))?;
+        compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
     /// Links `root` and makes a shader module of it.
@@ -92,10 +79,9 @@ impl<'a> Shader<'a> {
         });
         match pollster::block_on(scope.pop()) {
             None => Ok(module),
-            Some(error) => Err(AssignError::Shader {
-                module: root.to_owned(),
-                reason: error.to_string(),
-            }),
+            Some(error) => {
+                Err(AssignError::Shader { module: root.to_owned(), reason: error.to_string() })
+            }
         }
     }
 }

@@ -25,15 +25,8 @@ pub struct PassClock {
 }
 
 enum Kind {
-    Timestamps {
-        queries: wgpu::QuerySet,
-        resolved: wgpu::Buffer,
-        staging: wgpu::Buffer,
-    },
-    WallClock {
-        times_ms: Vec<f64>,
-        failed: Option<AssignError>,
-    },
+    Timestamps { queries: wgpu::QuerySet, resolved: wgpu::Buffer, staging: wgpu::Buffer },
+    WallClock { times_ms: Vec<f64>, failed: Option<AssignError> },
 }
 
 impl PassClock {
@@ -110,10 +103,12 @@ impl Passes for PassClock {
         self.timed(name, &mut |encoder, query| {
             record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some(name),
-                timestamp_writes: query.map(|(query_set, first)| wgpu::ComputePassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: Some(first),
-                    end_of_pass_write_index: Some(first + 1),
+                timestamp_writes: query.map(|(query_set, first)| {
+                    wgpu::ComputePassTimestampWrites {
+                        query_set,
+                        beginning_of_pass_write_index: Some(first),
+                        end_of_pass_write_index: Some(first + 1),
+                    }
                 }),
             }));
         });
@@ -220,9 +215,8 @@ fn read_timestamps(
         .iter()
         .zip(bytes.chunks_exact(16))
         .map(|(name, pair)| {
-            let [start, end] = [0, 8].map(|at| {
-                u64::from_le_bytes(std::array::from_fn(|i| pair[at + i]))
-            });
+            let [start, end] =
+                [0, 8].map(|at| u64::from_le_bytes(std::array::from_fn(|i| pair[at + i])));
             if start == 0 || end < start {
                 return Err(AssignError::Device(format!(
                     "pass {name}: timestamps {start} and {end} are no span of time"

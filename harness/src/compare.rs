@@ -42,11 +42,7 @@ pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<(), HarnessEr
     }
     let stage = Stage::new(&gpu, args)?;
     describe(&stage);
-    let truth = Truth {
-        level: args.truth.into(),
-        edge_tolerance: EDGE,
-        notes: Vec::new(),
-    };
+    let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
     let mut run = Run {
         results: Results::new(machine, command, truth),
         args,
@@ -220,16 +216,14 @@ impl Run<'_> {
     ) -> Result<Record, HarnessError> {
         let is_control = measurement.lists.is_none();
         let difference = measurement.image.difference(&reference.image)?;
-        let mut images = Images {
-            baseline: Some(reference.picture.clone()),
-            ..Images::default()
-        };
+        let mut images = Images { baseline: Some(reference.picture.clone()), ..Images::default() };
         if choice.is_reference() {
             images.image = Some(reference.picture.clone());
         } else {
             let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
             let name = format!("{stem}.png");
-            let png = measurement.image.to_png(if is_control { 1.0 } else { reference.exposure })?;
+            let png =
+                measurement.image.to_png(if is_control { 1.0 } else { reference.exposure })?;
             self.picture(&name, png, &measurement.image)?;
             images.image = Some(name);
             if !is_control {
@@ -305,11 +299,15 @@ impl Run<'_> {
     fn note(&self, mode: Mode, overflowed_frames: u32) -> Option<String> {
         let mut notes = Vec::new();
         let adapter = &self.results.machine.adapter;
-        if mode == Mode::Forward && ["H100", "H200", "A100", "B200"].iter().any(|n| adapter.contains(n)) {
+        if mode == Mode::Forward
+            && ["H100", "H200", "A100", "B200"].iter().any(|n| adapter.contains(n))
+        {
             notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
         }
         if overflowed_frames > 0 {
-            notes.push(format!("lists overflowed in {overflowed_frames} frames, before the pool had grown"));
+            notes.push(format!(
+                "lists overflowed in {overflowed_frames} frames, before the pool had grown"
+            ));
         }
         (!notes.is_empty()).then(|| notes.join("; "))
     }

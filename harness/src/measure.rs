@@ -59,12 +59,9 @@ pub fn measure(
     let mut clock = PassClock::new(gpu);
     let mut samples: Vec<(String, PassKind, Vec<f64>)> = Vec::new();
     let lighting = match method {
-        Method::Lists(strategy) => Some(Lighting::new(
-            &stage.renderer,
-            strategy.as_ref(),
-            mode,
-            stage.lights.has_spots(),
-        )?),
+        Method::Lists(strategy) => {
+            Some(Lighting::new(&stage.renderer, strategy.as_ref(), mode, stage.lights.has_spots())?)
+        }
         Method::Clay => None,
     };
     let mut overflowed_frames = 0;

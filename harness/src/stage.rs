@@ -83,5 +83,8 @@ fn view_of(scene: &Scene, args: &CompareArgs) -> View {
         .unwrap_or(FOV_Y);
     let near = (scene.core_bounds.diagonal() * NEAR_SHARE).max(1e-6);
     let size = [args.size.width, args.size.height];
-    View { world_to_view: pose.world_to_view(), ..View::look_at(pose.eye, pose.target, fov_y, near, size) }
+    View {
+        world_to_view: pose.world_to_view(),
+        ..View::look_at(pose.eye, pose.target, fov_y, near, size)
+    }
 }

@@ -6,7 +6,10 @@ use glam::Mat3;
 use scenes::{Instance, Model, Scene, Vertex};
 use wgpu::util::DeviceExt;
 
-use crate::{ShadingError, materials::{MaterialKey, Materials}};
+use crate::{
+    ShadingError,
+    materials::{MaterialKey, Materials},
+};
 
 /// `scene.wesl`, `struct Instance`. 112 bytes.
 #[repr(C)]
@@ -66,37 +69,26 @@ impl SceneGpu {
         let (records, draws) = plan(scene, &materials, &ranges);
         let buffer = |label: &str, bytes: &[u8], usage| {
             check_size(gpu, label, bytes.len() as u64)?;
-            Ok::<_, ShadingError>(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(label),
-                contents: bytes,
-                usage,
-            }))
+            Ok::<_, ShadingError>(gpu.device.create_buffer_init(
+                &wgpu::util::BufferInitDescriptor { label: Some(label), contents: bytes, usage },
+            ))
         };
         let vertices = buffer("vertices", &vertex_bytes, wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("indices", &index_bytes, wgpu::BufferUsages::INDEX)?;
         let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
-        let layout = gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("scene"),
-                entries: &[
-                    storage_entry(0, wgpu::ShaderStages::VERTEX, true),
-                    storage_entry(1, wgpu::ShaderStages::FRAGMENT, true),
-                ],
-            });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("scene"),
+            entries: &[
+                storage_entry(0, wgpu::ShaderStages::VERTEX, true),
+                storage_entry(1, wgpu::ShaderStages::FRAGMENT, true),
+            ],
+        });
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
             layout: &layout,
             entries: &[entry(0, &instances), entry(1, &materials.factors)],
         });
-        Ok(Self {
-            vertices,
-            indices,
-            draws,
-            materials,
-            layout,
-            bind_group,
-        })
+        Ok(Self { vertices, indices, draws, materials, layout, bind_group })
     }
 
     /// Whether any material emits.
@@ -154,12 +146,7 @@ impl SceneGpu {
 fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), ShadingError> {
     let limit = gpu.device.limits().max_buffer_size;
     if bytes > limit {
-        return Err(assign::AssignError::TooLarge {
-            what: what.into(),
-            bytes,
-            limit,
-        }
-        .into());
+        return Err(assign::AssignError::TooLarge { what: what.into(), bytes, limit }.into());
     }
     Ok(())
 }

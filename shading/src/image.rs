@@ -65,11 +65,7 @@ impl HdrImage {
             let texels: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(row);
             pixels.extend(texels.into_iter().map(|[r, g, b, _]| [r, g, b]));
         }
-        Ok(Self {
-            width: viewport.width,
-            height: viewport.height,
-            pixels,
-        })
+        Ok(Self { width: viewport.width, height: viewport.height, pixels })
     }
 
     /// Compares with `reference`, which must be of the same size.
@@ -109,10 +105,7 @@ impl HdrImage {
 
     /// Exposed, tone mapped and encoded as sRGB: 3 bytes a pixel.
     pub fn tone_mapped(&self, exposure: f32) -> Vec<u8> {
-        self.pixels
-            .iter()
-            .flat_map(|pixel| tone_map(pixel.map(|v| v * exposure)))
-            .collect()
+        self.pixels.iter().flat_map(|pixel| tone_map(pixel.map(|v| v * exposure))).collect()
     }
 
     /// A PNG of the tone-mapped image.
@@ -139,10 +132,7 @@ impl HdrImage {
             let [r, g, b] = self.pixels[y * width + x];
             (r, g, b)
         })
-        .map_err(|e| ShadingError::Write {
-            path: path.to_owned(),
-            reason: e.to_string(),
-        })
+        .map_err(|e| ShadingError::Write { path: path.to_owned(), reason: e.to_string() })
     }
 }
 
@@ -165,16 +155,11 @@ fn encode(linear: f32) -> u8 {
 }
 
 fn encode_png(width: u32, height: u32, bytes: Vec<u8>) -> Result<Vec<u8>, ShadingError> {
-    let fail = |reason: String| ShadingError::Write {
-        path: "image.png".into(),
-        reason,
-    };
+    let fail = |reason: String| ShadingError::Write { path: "image.png".into(), reason };
     let image = RgbImage::from_raw(width, height, bytes)
         .ok_or_else(|| fail("the image has the wrong size".into()))?;
     let mut png = std::io::Cursor::new(Vec::new());
-    image
-        .write_to(&mut png, ImageFormat::Png)
-        .map_err(|e| fail(e.to_string()))?;
+    image.write_to(&mut png, ImageFormat::Png).map_err(|e| fail(e.to_string()))?;
     Ok(png.into_inner())
 }
 
@@ -183,11 +168,7 @@ mod tests {
     use super::*;
 
     fn grey(value: f32) -> HdrImage {
-        HdrImage {
-            width: 2,
-            height: 2,
-            pixels: vec![[value; 3]; 4],
-        }
+        HdrImage { width: 2, height: 2, pixels: vec![[value; 3]; 4] }
     }
 
     #[test]

@@ -27,10 +27,7 @@ impl Lighting {
         mode: Mode,
         spots: bool,
     ) -> Result<Self, ShadingError> {
-        let lists = Lists {
-            lookup: strategy.lookup(),
-            spots,
-        };
+        let lists = Lists { lookup: strategy.lookup(), spots };
         Ok(Self(match mode {
             Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists)?),
             Mode::Forward => Kind::Forward(RasterPipelines::new(
@@ -53,13 +50,9 @@ impl Lighting {
     ) {
         match &self.0 {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
-            Kind::Forward(pipelines) => renderer.record_radiance(
-                "shade",
-                view,
-                pipelines,
-                strategy.bind_group(),
-                passes,
-            ),
+            Kind::Forward(pipelines) => {
+                renderer.record_radiance("shade", view, pipelines, strategy.bind_group(), passes)
+            }
         }
     }
 }
@@ -104,14 +97,11 @@ impl Deferred {
             texture(4, &targets.radiance),
         ];
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
-        let images = renderer
-            .gpu
-            .device
-            .create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("shade"),
-                layout: &self.layout,
-                entries: &entries,
-            });
+        let images = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shade"),
+            layout: &self.layout,
+            entries: &entries,
+        });
         passes.compute("shade", &mut |pass| {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
@@ -134,30 +124,24 @@ pub(crate) fn compute_pipeline(
     entry_point: &str,
 ) -> wgpu::ComputePipeline {
     let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(|l| Some(*l)).collect();
-    let layout = gpu
-        .device
-        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(entry_point),
-            bind_group_layouts: &layouts,
-            immediate_size: 0,
-        });
-    gpu.device
-        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry_point),
-            layout: Some(&layout),
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: Default::default(),
-            cache: None,
-        })
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(entry_point),
+        bind_group_layouts: &layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry_point),
+        layout: Some(&layout),
+        module,
+        entry_point: Some(entry_point),
+        compilation_options: Default::default(),
+        cache: None,
+    })
 }
 
 /// A bind group entry of an image.
 pub(crate) fn texture(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry {
-        binding,
-        resource: wgpu::BindingResource::TextureView(view),
-    }
+    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
 }
 
 /// A layout entry of an image that compute reads.
@@ -200,9 +184,8 @@ fn deferred_layout(gpu: &Gpu, emissive: bool) -> wgpu::BindGroupLayout {
     if emissive {
         entries.push(texture_entry(3, TEXELS));
     }
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("shade"),
-            entries: &entries,
-        })
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shade"),
+        entries: &entries,
+    })
 }

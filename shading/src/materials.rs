@@ -42,12 +42,8 @@ pub(crate) struct MaterialKey {
 }
 
 /// The flags of the four textures, in binding order: slot i has bindings 2i and 2i + 1.
-pub(crate) const TEXTURE_FLAGS: [&str; 4] = [
-    "base_color_texture",
-    "metallic_roughness_texture",
-    "normal_texture",
-    "emissive_texture",
-];
+pub(crate) const TEXTURE_FLAGS: [&str; 4] =
+    ["base_color_texture", "metallic_roughness_texture", "normal_texture", "emissive_texture"];
 
 impl MaterialKey {
     fn of(material: &Material) -> Self {
@@ -124,11 +120,7 @@ fn record(material: &Material) -> MaterialRecord {
     let mut uv_transforms = [[1.0, 0.0, 0.0, 0.0]; 8];
     for (slot, texture) in material.textures().into_iter().enumerate() {
         let transform = texture.map_or(glam::Affine2::IDENTITY, |t| t.uv_transform);
-        let (x, y, t) = (
-            transform.matrix2.x_axis,
-            transform.matrix2.y_axis,
-            transform.translation,
-        );
+        let (x, y, t) = (transform.matrix2.x_axis, transform.matrix2.y_axis, transform.translation);
         uv_transforms[2 * slot] = [x.x, y.x, t.x, 0.0];
         uv_transforms[2 * slot + 1] = [x.y, y.y, t.y, 0.0];
     }
@@ -164,11 +156,10 @@ fn layout(gpu: &Gpu, textures: [bool; 4]) -> wgpu::BindGroupLayout {
             [entry(first, texture), entry(first + 1, sampler)]
         })
         .collect();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("material"),
-            entries: &entries,
-        })
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("material"),
+        entries: &entries,
+    })
 }
 
 fn group(

@@ -7,11 +7,7 @@ use scenes::{Encoding, Image};
 static TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|byte| {
         let v = byte as f32 / 255.0;
-        if v <= 0.04045 {
-            v / 12.92
-        } else {
-            ((v + 0.055) / 1.055).powf(2.4)
-        }
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
     })
 });
 
@@ -22,11 +18,7 @@ static TO_SRGB: LazyLock<[u8; 4096]> = LazyLock::new(|| {
 
 /// sRGB's transfer function, 0..1 to 0..1.
 pub(crate) fn linear_to_srgb(v: f32) -> f32 {
-    if v <= 0.003_130_8 {
-        12.92 * v
-    } else {
-        1.055 * v.powf(1.0 / 2.4) - 0.055
-    }
+    if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// All levels of an image, largest first, and their number.
@@ -60,11 +52,7 @@ fn halve(level: &[u8], size: [usize; 2], encoding: Encoding) -> Vec<u8> {
                 for row in rows.clone() {
                     for column in columns.clone() {
                         let byte = level[(row * size[0] + column) * 4 + channel];
-                        sum += if linear {
-                            f32::from(byte)
-                        } else {
-                            TO_LINEAR[usize::from(byte)]
-                        };
+                        sum += if linear { f32::from(byte) } else { TO_LINEAR[usize::from(byte)] };
                     }
                 }
                 let mean = sum / count;

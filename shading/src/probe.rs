@@ -35,27 +35,21 @@ pub fn probe(
     let positions = gpu.storage("probe positions", pixels * 16)?;
     let groups = gpu.storage("probe groups", pixels * 4)?;
     let stages = wgpu::ShaderStages::COMPUTE;
-    let layout = gpu
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("probe"),
-            entries: &[
-                texture_entry(0, wgpu::TextureSampleType::Depth),
-                texture_entry(1, TEXELS),
-                storage_entry(2, stages, false),
-                storage_entry(3, stages, false),
-            ],
-        });
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("probe"),
+        entries: &[
+            texture_entry(0, wgpu::TextureSampleType::Depth),
+            texture_entry(1, TEXELS),
+            storage_entry(2, stages, false),
+            storage_entry(3, stages, false),
+        ],
+    });
     let lookup = strategy.lookup();
     let module = shaders::lighting(LISTS_GROUP)
         .module("package::strategy", lookup.module)
         .create(&gpu.device, "package::probe")?;
-    let pipeline = compute_pipeline(
-        gpu,
-        &[renderer.frame.layout(), lookup.layout, &layout],
-        &module,
-        "probe",
-    );
+    let pipeline =
+        compute_pipeline(gpu, &[renderer.frame.layout(), lookup.layout, &layout], &module, "probe");
     let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("probe"),
         layout: &layout,
@@ -68,10 +62,7 @@ pub fn probe(
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let viewport = frame.view.viewport;
-    EncoderPasses {
-        encoder: &mut encoder,
-    }
-    .compute("probe", &mut |pass| {
+    EncoderPasses { encoder: &mut encoder }.compute("probe", &mut |pass| {
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
         pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);

@@ -62,11 +62,7 @@ impl RasterPipelines {
 }
 
 /// The WESL of one pass for one material, and the module that is its root.
-pub(crate) fn shader<'a>(
-    pass: RasterPass<'a>,
-    key: DrawKey,
-    emissive: bool,
-) -> Shader<'a> {
+pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> Shader<'a> {
     let material = key.material;
     let is = |wanted: &str| match pass {
         RasterPass::Depth => wanted == "depth",
@@ -86,9 +82,7 @@ pub(crate) fn shader<'a>(
         shader = shader.flag(flag, material.textures[slot]);
     }
     if let RasterPass::Forward(lists) = pass {
-        shader = shader
-            .module("package::strategy", lists.lookup.module)
-            .flag("spots", lists.spots);
+        shader = shader.module("package::strategy", lists.lookup.module).flag("spots", lists.spots);
     }
     shader
 }
@@ -109,13 +103,11 @@ fn pipeline(
         _ => None,
     };
     let textures = fragment.and_then(|_| scene.materials.layout(key.material));
-    let layout = gpu
-        .device
-        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(vertex),
-            bind_group_layouts: &[Some(frame.layout()), lists, Some(&scene.layout), textures],
-            immediate_size: 0,
-        });
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(vertex),
+        bind_group_layouts: &[Some(frame.layout()), lists, Some(&scene.layout), textures],
+        immediate_size: 0,
+    });
     let is_depth = matches!(pass, RasterPass::Depth);
     let nearer = match depth {
         DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
@@ -123,47 +115,37 @@ fn pipeline(
     };
     let targets: Vec<Option<wgpu::ColorTargetState>> =
         formats.into_iter().map(|format| Some(format.into())).collect();
-    Ok(gpu
-        .device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(vertex),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some(vertex),
-                compilation_options: Default::default(),
-                buffers: &[Some(vertex_layout())],
-            },
-            primitive: wgpu::PrimitiveState {
-                front_face: if key.mirrored {
-                    wgpu::FrontFace::Cw
-                } else {
-                    wgpu::FrontFace::Ccw
-                },
-                cull_mode: (!key.material.double_sided).then_some(wgpu::Face::Back),
-                ..Default::default()
-            },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(is_depth),
-                depth_compare: Some(if is_depth {
-                    nearer
-                } else {
-                    wgpu::CompareFunction::Equal
-                }),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: Default::default(),
-            fragment: fragment.map(|entry_point| wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(entry_point),
-                compilation_options: Default::default(),
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        }))
+    Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(vertex),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[Some(vertex_layout())],
+        },
+        primitive: wgpu::PrimitiveState {
+            front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+            cull_mode: (!key.material.double_sided).then_some(wgpu::Face::Back),
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(is_depth),
+            depth_compare: Some(if is_depth { nearer } else { wgpu::CompareFunction::Equal }),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: fragment.map(|entry_point| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry_point),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
 }
 
 /// Vertex and fragment entry point of a pass, and the formats it writes.

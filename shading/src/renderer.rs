@@ -75,9 +75,7 @@ impl Renderer {
     /// The frame a strategy gets: this view and these lights, with this renderer's depth and
     /// normals.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
-        Frame::new(view, lights)
-            .with_depth(&self.targets.depth)
-            .with_normals(&self.targets.normal)
+        Frame::new(view, lights).with_depth(&self.targets.depth).with_normals(&self.targets.normal)
     }
 
     /// Uploads the view and the lights: outside the clock. The view must fit the targets.
@@ -116,10 +114,7 @@ impl Renderer {
     /// Records the pass `gbuffer`, after `depth`.
     pub fn record_gbuffer(&self, view: &View, passes: &mut dyn Passes) {
         let targets = &self.targets;
-        let mut colors = vec![
-            Some(cleared(&targets.base_color)),
-            Some(cleared(&targets.normal)),
-        ];
+        let mut colors = vec![Some(cleared(&targets.base_color)), Some(cleared(&targets.normal))];
         colors.extend(targets.emissive.as_ref().map(|view| Some(cleared(view))));
         let descriptor = wgpu::RenderPassDescriptor {
             color_attachments: &colors,
@@ -181,10 +176,7 @@ impl Renderer {
         });
     }
 
-    fn depth_attachment(
-        &self,
-        clear: Option<f32>,
-    ) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    fn depth_attachment(&self, clear: Option<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
         wgpu::RenderPassDepthStencilAttachment {
             view: &self.targets.depth,
             depth_ops: Some(wgpu::Operations {

@@ -30,7 +30,5 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::geometry", include_str!("shaders/geometry.wesl"))
         .module("package::deferred", include_str!("shaders/deferred.wesl"))
         .module("package::probe", include_str!("shaders/probe.wesl"));
-    flags
-        .into_iter()
-        .fold(shader, |shader, flag| shader.flag(flag, false))
+    flags.into_iter().fold(shader, |shader, flag| shader.flag(flag, false))
 }

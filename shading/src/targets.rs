@@ -42,20 +42,12 @@ impl Targets {
         let height = viewport.y.saturating_add(viewport.height);
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if width == 0 || height == 0 || width.max(height) > limit {
-            return Err(ShadingError::Size {
-                width,
-                height,
-                limit,
-            });
+            return Err(ShadingError::Size { width, height, limit });
         }
         let texture = |label, format, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,

@@ -65,35 +65,28 @@ impl<'a> LightBvh<'a> {
             .map(|light| {
                 // A little more than the range: traversal decides in f32.
                 let reach = light.range_m * 1.000_01 + light.position.abs().max_element() * 1e-6;
-                Aabb::new(
-                    (light.position - reach).into(),
-                    (light.position + reach).into(),
-                )
+                Aabb::new((light.position - reach).into(), (light.position + reach).into())
             })
             .collect();
         let params = BvhBuildParams::medium_build();
-        Self {
-            lights,
-            bvh: build_bvh2(&boxes, params, &mut Duration::default()),
-        }
+        Self { lights, bvh: build_bvh2(&boxes, params, &mut Duration::default()) }
     }
 
     /// Calls `found` with the index and the [`Light::reach`] of every light that reaches `point`.
     pub fn lights_at(&self, point: [f32; 3], mut found: impl FnMut(u32, f64)) {
         let exact = DVec3::from(point.map(f64::from));
-        self.bvh
-            .point_traverse(Vec3A::from(point), |bvh, node| {
-                let node = &bvh.nodes[node as usize];
-                let leaves = node.first_index..node.first_index + node.prim_count;
-                for leaf in leaves {
-                    let light = bvh.primitive_indices[leaf as usize];
-                    let reach = self.lights[light as usize].reach(exact);
-                    if reach > 0.0 {
-                        found(light, reach);
-                    }
+        self.bvh.point_traverse(Vec3A::from(point), |bvh, node| {
+            let node = &bvh.nodes[node as usize];
+            let leaves = node.first_index..node.first_index + node.prim_count;
+            for leaf in leaves {
+                let light = bvh.primitive_indices[leaf as usize];
+                let reach = self.lights[light as usize].reach(exact);
+                if reach > 0.0 {
+                    found(light, reach);
                 }
-                true
-            });
+            }
+            true
+        });
     }
 
     /// Checks a frame's lists against every sample.
@@ -111,7 +104,8 @@ impl<'a> LightBvh<'a> {
         // The run of samples in which a light was last seen listed.
         let mut listed_in = vec![u32::MAX; self.lights.len()];
         let mut truth = ListsTruth::default();
-        let runs = chunk.chunk_by(|&a, &b| samples.groups[a as usize] == samples.groups[b as usize]);
+        let runs =
+            chunk.chunk_by(|&a, &b| samples.groups[a as usize] == samples.groups[b as usize]);
         for (run_ix, run) in runs.enumerate() {
             let group = samples.groups[run[0] as usize];
             let entries = lists.entries_of(group).unwrap_or_default();
@@ -142,9 +136,7 @@ mod tests {
     use super::*;
 
     fn lights(count: u32) -> Vec<Light> {
-        (0..count)
-            .map(|i| Light::point(Vec3::new(i as f32, 0.0, 0.0), 1.5, Vec3::ONE))
-            .collect()
+        (0..count).map(|i| Light::point(Vec3::new(i as f32, 0.0, 0.0), 1.5, Vec3::ONE)).collect()
     }
 
     fn samples() -> Samples {
@@ -162,10 +154,9 @@ mod tests {
             counters: Counters::default(),
         };
         for list in lists {
-            snapshot.lists.push(LightList {
-                first: snapshot.entries.len() as u32,
-                count: list.len() as u32,
-            });
+            snapshot
+                .lists
+                .push(LightList { first: snapshot.entries.len() as u32, count: list.len() as u32 });
             snapshot.entries.extend_from_slice(list);
         }
         snapshot
@@ -177,15 +168,7 @@ mod tests {
         let bvh = LightBvh::new(&lights);
         // Sample 0 is reached by lights 0 and 1; sample 1 by 4, 5 and 6; sample 2 by none.
         let truth = bvh.check(&samples(), &snapshot(&[&[3, 4, 5, 6], &[0, 1]]));
-        assert_eq!(
-            truth,
-            ListsTruth {
-                samples: 3,
-                contributing: 5,
-                listed: 4 + 4 + 2,
-                missed: 0
-            }
-        );
+        assert_eq!(truth, ListsTruth { samples: 3, contributing: 5, listed: 4 + 4 + 2, missed: 0 });
     }
 
     #[test]
@@ -206,9 +189,8 @@ mod tests {
             bvh.lights_at(point, |light, _| found.push(light));
             found.sort_unstable();
             let exact = DVec3::from(point.map(f64::from));
-            let looped: Vec<u32> = (0..200)
-                .filter(|&i| lights[i as usize].reach(exact) > 0.0)
-                .collect();
+            let looped: Vec<u32> =
+                (0..200).filter(|&i| lights[i as usize].reach(exact) > 0.0).collect();
             assert_eq!(found, looped, "at {point:?}");
         }
     }

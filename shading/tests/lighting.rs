@@ -158,7 +158,8 @@ fn lights_on_a_surface_and_out_of_range_give_numbers() {
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
     let mut queries = Vec::new();
     for light in 0..3_u32 {
-        for position in [[0.0; 3], [1e-20, 0.0, 0.0], [0.0, 1.0, 0.0], [1e6, 0.0, 0.0], [-1e-3; 3]] {
+        for position in [[0.0; 3], [1e-20, 0.0, 0.0], [0.0, 1.0, 0.0], [1e6, 0.0, 0.0], [-1e-3; 3]]
+        {
             for roughness in [0.0, 1.0] {
                 let [x, y, z] = position;
                 queries.push([

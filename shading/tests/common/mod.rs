@@ -87,8 +87,10 @@ pub(crate) fn showcase() -> Scene {
         bounds_object: quad(0).bounds,
         object_to_world,
     };
-    let floor = Mat4::from_rotation_x(-std::f32::consts::FRAC_PI_2) * Mat4::from_scale(Vec3::splat(4.0));
-    let wall = Mat4::from_translation(Vec3::new(0.0, 2.0, -4.0)) * Mat4::from_scale(Vec3::splat(4.0));
+    let floor =
+        Mat4::from_rotation_x(-std::f32::consts::FRAC_PI_2) * Mat4::from_scale(Vec3::splat(4.0));
+    let wall =
+        Mat4::from_translation(Vec3::new(0.0, 2.0, -4.0)) * Mat4::from_scale(Vec3::splat(4.0));
     let mask = Mat4::from_translation(Vec3::new(-1.5, 1.0, -1.0));
     let mut sheet = Mat4::from_translation(Vec3::new(1.5, 1.0, -1.5))
         * Mat4::from_rotation_y(0.6)
@@ -137,7 +139,11 @@ pub(crate) fn lights(count: u32) -> Vec<Light> {
     (0..count)
         .map(|i| {
             let f = i as f32;
-            let position = Vec3::new((f * 1.7).sin() * 3.0, 0.2 + (f * 0.61).fract() * 3.0, (f * 2.3).cos() * 3.0);
+            let position = Vec3::new(
+                (f * 1.7).sin() * 3.0,
+                0.2 + (f * 0.61).fract() * 3.0,
+                (f * 2.3).cos() * 3.0,
+            );
             let color = Vec3::new(0.5 + 0.5 * f.sin(), 0.5 + 0.5 * (f * 1.3).cos(), 0.6);
             let mut light = Light::point(position, 0.8 + (f * 0.37).fract() * 2.0, color);
             if i % 3 == 2 {

@@ -1,0 +1,154 @@
+//! The program as a user runs it, on the adapter of this machine.
+
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use harness::results::Results;
+
+fn lightbench(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lightbench")).args(arguments).output().expect("starts")
+}
+
+/// Runs `compare` at a small size into `out`; returns what it wrote.
+fn compare(out: &Path, arguments: &[&str]) -> Results {
+    let small = ["compare", "--size", "160x90", "--frames", "1", "--warmup", "0", "--out"];
+    let all = [&small[..], &[out.to_str().expect("UTF-8")], arguments].concat();
+    let output = lightbench(&all);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Results::read(&out.join("results.json")).expect("results.json")
+}
+
+fn assert_lossless(results: &Results, records: usize) {
+    assert_eq!(results.records.len(), records);
+    for record in &results.records {
+        let what = format!("{} {} {}", record.scene, record.strategy, record.mode.name());
+        assert_eq!(record.missed_pairs, Some(0), "{what}");
+        assert_eq!(record.max_abs_diff, Some(0.0), "{what}");
+        assert_eq!(record.differing_channels, Some(0), "{what}");
+        assert!(record.samples > 1_000, "{what}: {} samples", record.samples);
+        assert!(record.listed_per_sample >= record.contributing_per_sample, "{what}");
+        assert!(record.passes.get("shade").is_some(), "{what}");
+    }
+}
+
+#[test]
+fn the_default_scene_is_lossless_in_both_modes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("new/run");
+    let results = compare(&out, &["--lights", "300", "--spots", "0.3", "--mode", "both"]);
+    assert_lossless(&results, 4);
+    let culled = &results.records[1];
+    assert!(culled.checked_pairs > Some(1_000), "{:?} pairs", culled.checked_pairs);
+    assert!(culled.listed_per_sample < Some(150.0), "{:?} listed", culled.listed_per_sample);
+    assert_eq!(culled.light_kinds.values().sum::<u64>(), 300);
+    assert!(culled.light_kinds["spot"] > 50);
+    assert!(culled.passes.get("cull").is_some());
+    for name in ["index.html", "deferred-None.png", "forward-DC-I-64x64x24.exr"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn clay_and_zero_lights_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["--lights", "0", "--strategies", "Clay,DC-I/32x32x8", "--truth", "none"];
+    let results = compare(folder.path(), &arguments);
+    assert_eq!(results.records.len(), 2);
+    assert_eq!(results.records[0].max_abs_diff, None);
+    assert_eq!(results.records[1].max_abs_diff, Some(0.0));
+    assert_eq!(results.records[1].list_entries, 0);
+}
+
+#[test]
+fn real_scenes_with_their_own_lights_are_lossless() {
+    let folder = std::env::var_os("LIGHTBENCH_SCENES").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes"),
+        Into::into,
+    );
+    let scenes = [
+        ("crytek-sponza/Sponza.gltf", "200"),
+        ("stk-candela-city/scene.gltf", "0"),
+        ("city-munich/scene.gltf", "200"),
+        ("boombox/BoomBox.glb", "50"),
+    ];
+    for (file, lights) in scenes {
+        let path = folder.join(file);
+        if !path.is_file() {
+            println!("skipped: {} is not there", path.display());
+            continue;
+        }
+        let out = tempfile::tempdir().expect("a folder");
+        let scene = path.to_str().expect("UTF-8");
+        let results = compare(out.path(), &["--scene", scene, "--lights", lights]);
+        assert_lossless(&results, 2);
+    }
+}
+
+/// Runs the program on bad input: one line on stderr, exit code 2, and the line holds `wanted`.
+fn assert_refused(arguments: &[&str], wanted: &[&str]) {
+    let output = lightbench(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let said: Vec<&str> = stderr.lines().filter(|line| line.starts_with("lightbench: ")).collect();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert_eq!(said.len(), 1, "{arguments:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
+    for part in wanted {
+        assert!(said[0].contains(part), "{arguments:?}: {:?} lacks {part:?}", said[0]);
+    }
+}
+
+#[test]
+fn bad_input_gets_one_line_and_exit_code_2() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let out = path("out");
+    let broken = path("broken.gltf");
+    std::fs::write(&broken, "{ not json").expect("writes");
+    let no_buffer = path("no-buffer.gltf");
+    std::fs::write(
+        &no_buffer,
+        r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"gone.bin","byteLength":12}],
+            "bufferViews":[{"buffer":0,"byteLength":12}],
+            "accessors":[{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+            "nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}"#,
+    )
+    .expect("writes");
+    let file = path("a-file");
+    std::fs::write(&file, "").expect("writes");
+    let below_file = format!("{file}/out");
+    for (arguments, wanted) in [
+        (vec!["--scene", "atrum", "--out", &out], vec!["atrum", "atrium"]),
+        (vec!["--scene", "gone.gltf", "--out", &out], vec!["gone.gltf"]),
+        (vec!["--scene", &broken, "--out", &out], vec!["broken.gltf"]),
+        (vec!["--scene", &no_buffer, "--out", &out], vec!["gone.bin"]),
+        (vec!["--strategies", "DC-J", "--out", &out], vec!["DC-J", "DC-I"]),
+        (vec!["--strategies", "DC-I/0x64x24", "--out", &out], vec!["0", "tile"]),
+        (vec!["--strategies", "DC-I/1x1x1024", "--out", &out], vec!["clusters"]),
+        (vec!["--lights", "-1", "--out", &out], vec!["--lights", "-1"]),
+        (vec!["--lights", "99999999", "--out", &out], vec!["--lights", "16,777,216"]),
+        (vec!["--size", "0x10", "--out", &out], vec!["--size", "0x10"]),
+        (vec!["--frames", "0", "--out", &out], vec!["--frames", "0"]),
+        (vec!["--mode", "sideways", "--out", &out], vec!["--mode", "sideways", "forward"]),
+        (vec!["--out", &below_file], vec!["a-file"]),
+        (vec!["--adapter", "no such adapter", "--out", &out], vec!["no such adapter"]),
+        (vec!["list", "stratgies"], vec!["stratgies"]),
+    ] {
+        assert_refused(&arguments, &wanted);
+    }
+}
+
+#[test]
+fn lists_and_help_teach() {
+    let text = |arguments: &[&str]| {
+        let output = lightbench(arguments);
+        assert!(output.status.success(), "{arguments:?}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    assert!(text(&["list", "strategies"]).contains("DC-I/64x64x24"));
+    assert!(text(&["list", "scenes"]).contains("atrium"));
+    assert!(!text(&["list", "adapters"]).is_empty());
+    assert!(text(&["--help"]).contains("How to read the result"));
+}
