@@ -16,6 +16,9 @@ const MAX_PASSES: u32 = 64;
 /// A pass and its time, ms.
 pub type PassTime = (String, f64);
 
+/// A query set, and the index of a pass's first query in it.
+type Query<'a> = (&'a wgpu::QuerySet, u32);
+
 /// Times every pass of a frame.
 pub struct PassClock {
     gpu: Gpu,
@@ -72,7 +75,7 @@ impl PassClock {
     fn timed(
         &mut self,
         name: &str,
-        record: &mut dyn FnMut(&mut wgpu::CommandEncoder, Option<(&wgpu::QuerySet, u32)>),
+        record: &mut dyn FnMut(&mut wgpu::CommandEncoder, Option<Query<'_>>),
     ) {
         let query = 2 * self.names.len() as u32;
         self.names.push(name.to_owned());

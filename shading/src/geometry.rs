@@ -127,10 +127,11 @@ impl SceneGpu {
             if bound.0 != Some(draw.key) {
                 pass.set_pipeline(pipeline);
             }
-            if textures && bound != (Some(draw.key), Some(draw.material)) {
-                if let Some(group) = self.materials.bind_group(draw.material) {
-                    pass.set_bind_group(3, group, &[]);
-                }
+            if textures
+                && bound != (Some(draw.key), Some(draw.material))
+                && let Some(group) = self.materials.bind_group(draw.material)
+            {
+                pass.set_bind_group(3, group, &[]);
             }
             bound = (Some(draw.key), Some(draw.material));
             let end = draw.first_index + draw.index_count;

@@ -51,7 +51,7 @@ impl Lighting {
         match &self.0 {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(pipelines) => {
-                renderer.record_radiance("shade", view, pipelines, strategy.bind_group(), passes)
+                renderer.record_radiance("shade", view, pipelines, strategy.bind_group(), passes);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The shaders' lighting function against the f64 reference, on the adapter of this machine.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
 use assign::{
