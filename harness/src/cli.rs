@@ -132,8 +132,9 @@ pub struct CompareArgs {
     pub light_box: LightBox,
 
     /// Factor on the radii of scattered lights, 1e-6 to 1e6; at 1 their mean is one metre
-    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
-    pub radius_scale: f64,
+    /// [default: 1 in a scene of 10 to 100 m, in proportion to its size beyond]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale)]
+    pub radius_scale: Option<f64>,
 
     /// Share of spots among the scattered lights, 0 to 1
     #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]

@@ -264,7 +264,7 @@ impl Run<'_> {
                 .filter(|(_, count)| *count > 0)
                 .map(|(kind, count)| (kind.to_owned(), count))
                 .collect(),
-            radius_scale: self.args.radius_scale,
+            radius_scale: stage.radius_scale,
             width: stage.view.viewport.width,
             height: stage.view.viewport.height,
             frames: self.frames.timed,

@@ -22,6 +22,8 @@ pub struct Stage {
     pub scene: Scene,
     /// Its content hash.
     pub scene_hash: String,
+    /// Factor on the radii of the scattered lights.
+    pub radius_scale: f64,
     /// The lights, faulty ones left out.
     pub lights: LightBuffer,
     /// The camera.
@@ -33,11 +35,15 @@ pub struct Stage {
 impl Stage {
     /// Opens the scene, scatters the lights and uploads both.
     pub fn new(gpu: &Gpu, args: &CompareArgs) -> Result<Self, HarnessError> {
-        let scene = scenes::open(&args.scene)?.scaled(args.scene_scale as f32)?;
-        let lights = lights_of(&scene, args)?;
+        let scene = scenes::open(&args.scene)?;
+        let radius_scale =
+            args.radius_scale.unwrap_or_else(|| radius_scale_of(scene.core_bounds.diagonal()));
+        let scene = scene.scaled(args.scene_scale as f32)?;
+        let lights = lights_of(&scene, radius_scale, args)?;
         let view = view_of(&scene, args);
         Ok(Self {
             scene_hash: scene.hash(),
+            radius_scale,
             lights: LightBuffer::new(gpu, &lights)?,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
@@ -52,12 +58,26 @@ impl Stage {
     }
 }
 
-fn lights_of(scene: &Scene, args: &CompareArgs) -> Result<Vec<Light>, HarnessError> {
+/// Lights as large, against their scene, as lights of one metre are against a hall of 30 m: a
+/// town under lights of one metre is dark. Rooms and halls keep the comparison paper's radii.
+fn radius_scale_of(diagonal_m: f32) -> f64 {
+    if (10.0..=100.0).contains(&diagonal_m) {
+        1.0
+    } else {
+        f64::from(diagonal_m / 30.0).clamp(1e-6, 1e6)
+    }
+}
+
+fn lights_of(
+    scene: &Scene,
+    radius_scale: f64,
+    args: &CompareArgs,
+) -> Result<Vec<Light>, HarnessError> {
     let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
     lights.extend(scatter_lights(&LightSpec {
         count: args.lights,
         seed: args.seed,
-        radius_scale: args.radius_scale as f32,
+        radius_scale: radius_scale as f32,
         bounds: match args.light_box {
             LightBox::Core => scene.core_bounds,
             LightBox::Bounds => scene.bounds,

@@ -41,6 +41,9 @@ const MAX_OPEN: usize = AZIMUTHS / 3;
 /// Views whose loops are tried.
 const FINALISTS: usize = 40;
 
+/// Of the scene's own lights, how many a view is rated by.
+const MAX_LAMPS: usize = 256;
+
 /// Knots of a loop.
 const KNOTS: usize = 24;
 
@@ -90,6 +93,7 @@ pub(crate) fn path(scene: &Scene) -> CameraPath {
         reach_m: core.diagonal().max(f32::MIN_POSITIVE),
         middle_height: middle_height(scene),
         margin_m: 0.03 * core.size().min_element(),
+        lamps: lamps(scene),
     };
     if let Some(camera) = scene.cameras.first() {
         return fit.path_from(&camera.pose);
@@ -110,6 +114,13 @@ pub(crate) fn path(scene: &Scene) -> CameraPath {
         }
         None => orbit(core),
     }
+}
+
+/// Position and range of the scene's own lights, at most [`MAX_LAMPS`] of them, evenly chosen.
+fn lamps(scene: &Scene) -> Vec<(Vec3, f32)> {
+    let usable = scene.lights.iter().filter(|light| light.check().is_ok());
+    let step = scene.lights.len().div_ceil(MAX_LAMPS).max(1);
+    usable.step_by(step).map(|light| (light.position, light.range_m)).collect()
 }
 
 /// The median height of the triangles' corners.
@@ -151,19 +162,31 @@ struct Fit {
     middle_height: f32,
     /// The least distance between the camera and any triangle, metres.
     margin_m: f32,
+    /// The scene's own lights: a view should show what they light.
+    lamps: Vec<(Vec3, f32)>,
 }
 
 impl Fit {
     /// The best view of every usable point of a jittered grid over the core.
     fn views(&self) -> Vec<View> {
         let [nx, ny, nz] = GRID;
-        // Not at the rims, below most of the geometry or among the roofs.
+        // Not at the rims, below most of the geometry or among the roofs; where the scene has
+        // lights, among them.
         let size = self.core.size();
         let mut region = Aabb::new(self.core.min + 0.1 * size, self.core.max - 0.1 * size);
-        region.min.y = self.middle_height.clamp(self.core.min.y, self.core.max.y);
-        region.min.y -= 0.1 * size.y;
-        region.max.y = self.core.min.y + 0.65 * size.y;
-        region.max.y = region.max.y.max(region.min.y + 0.2 * size.y);
+        let reached = |(at, range): &(Vec3, f32)| Aabb::new(*at - *range, *at + *range);
+        let lit = self.lamps.iter().map(reached).fold(Aabb::EMPTY, Aabb::union);
+        let lit_region = region.intersection(lit);
+        if !lit_region.is_empty() {
+            region = lit_region;
+        }
+        if lit_region.is_empty() {
+            let size = self.core.size();
+            region.min.y = self.middle_height.clamp(self.core.min.y, self.core.max.y);
+            region.min.y -= 0.1 * size.y;
+            region.max.y = self.core.min.y + 0.65 * size.y;
+            region.max.y = region.max.y.max(region.min.y + 0.2 * size.y);
+        }
         (0..nx * ny * nz)
             .into_par_iter()
             .filter_map(|ix| {
@@ -192,6 +215,7 @@ impl Fit {
                         hits += 1;
                         back_hits += usize::from(hit.is_back);
                         column.add(hit.distance_m / self.reach_m);
+                        column.lit += self.lit(eye + along * hit.distance_m);
                     }
                     None => column.misses += 1.0,
                 }
@@ -202,7 +226,7 @@ impl Fit {
             return None;
         }
         let best = (0..AZIMUTHS)
-            .map(|middle| (picture_score(&columns, middle), middle))
+            .map(|middle| (picture_score(&columns, middle, !self.lamps.is_empty()), middle))
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
         // Back faces tell of open or inside-out geometry nearby.
         let front_share = 1.0 - back_hits as f32 / hits as f32;
@@ -212,6 +236,12 @@ impl Fit {
             score: best.0 * front_share,
             sky: 1.0 - hits as f32 / (AZIMUTHS * ELEVATIONS.len()) as f32,
         })
+    }
+
+    /// 1 where one of the scene's own lights reaches `point`, else 0.
+    fn lit(&self, point: Vec3) -> f32 {
+        let reaches = |(at, range): &(Vec3, f32)| at.distance_squared(point) < 0.5 * range * range;
+        f32::from(self.lamps.iter().any(reaches))
     }
 
     /// The semi-axes, ahead and sideways, of the largest ellipse that starts at `eye`, has its
@@ -281,6 +311,7 @@ struct Column {
     hits: f32,
     misses: f32,
     near: f32,
+    lit: f32,
     far_sum: f32,
     log_sum: f32,
     log_square_sum: f32,
@@ -298,14 +329,15 @@ impl Column {
 }
 
 /// How good a picture around azimuth `middle` would be: far and varied depth; little that is
-/// very near; some sky, but no more than a third.
-fn picture_score(columns: &[Column; AZIMUTHS], middle: usize) -> f32 {
+/// very near; some sky, but no more than a third; where the scene has lights, what they reach.
+fn picture_score(columns: &[Column; AZIMUTHS], middle: usize, has_lamps: bool) -> f32 {
     let mut all = Column::default();
     for offset in 0..=2 * HALF_WINDOW {
         let column = &columns[(middle + AZIMUTHS + offset - HALF_WINDOW) % AZIMUTHS];
         all.hits += column.hits;
         all.misses += column.misses;
         all.near += column.near;
+        all.lit += column.lit;
         all.far_sum += column.far_sum;
         all.log_sum += column.log_sum;
         all.log_square_sum += column.log_square_sum;
@@ -318,7 +350,8 @@ fn picture_score(columns: &[Column; AZIMUTHS], middle: usize) -> f32 {
     let spread = (all.log_square_sum / all.hits - mean_log * mean_log).max(0.0).sqrt();
     let sky = (all.misses / rays - 0.33).max(0.0);
     let near = all.near / rays;
-    (all.far_sum / rays) * (1.0 + 0.6 * spread) * (1.0 - near) * (1.0 - 1.4 * sky).max(0.0)
+    let lit = if has_lamps { 0.02 + all.lit / rays } else { 1.0 };
+    lit * (all.far_sum / rays) * (1.0 + 0.6 * spread) * (1.0 - near) * (1.0 - 1.4 * sky).max(0.0)
 }
 
 /// The radical inverse of `ix` in `base`.

@@ -96,7 +96,7 @@ fn positions_lie_on_the_surfaces() {
 }
 
 fn plane_distance(point: DVec3, triangle: &[Vec3; 3]) -> f64 {
-    let [a, b, c] = triangle.map(glam::Vec3::as_dvec3);
+    let [a, b, c] = triangle.map(Vec3::as_dvec3);
     (point - a).dot((b - a).cross(c - a).normalize()).abs()
 }
 
