@@ -2,12 +2,22 @@
 
 use std::process::Command;
 
+/// What the program is built from, relative to the workspace.
+const SOURCES: [&str; 7] =
+    ["assign", "assign-clustered", "scenes", "shading", "harness", "Cargo.toml", "Cargo.lock"];
+
 fn main() {
     println!("cargo:rerun-if-changed=../.git/HEAD");
     println!("cargo:rerun-if-changed=../.git/index");
     println!("cargo:rerun-if-changed=../.git/logs/HEAD");
+    for source in SOURCES {
+        println!("cargo:rerun-if-changed=../{source}");
+    }
     let mut commit = output("git", &["rev-parse", "--short=12", "HEAD"]);
-    let changed = output("git", &["status", "--porcelain", "--untracked-files=no"]);
+    let sources = SOURCES.map(|source| format!(":/{source}"));
+    let mut status = vec!["status", "--porcelain", "--"];
+    status.extend(sources.iter().map(String::as_str));
+    let changed = output("git", &status);
     if !commit.is_empty() && !changed.is_empty() {
         commit.push_str("-dirty");
     }

@@ -67,6 +67,10 @@ impl FromStr for ClusterSize {
     }
 }
 
+/// Slices end this many times farther than they begin, 40 octaves; the last one takes the rest.
+/// The shader's depth slack is derived for no more.
+const MAX_DEPTH_RATIO: f32 = (1_u64 << 40) as f32;
+
 /// What the shaders know of the clusters: `struct Clusters`. 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -119,10 +123,9 @@ impl ClustersUniform {
             });
         }
         let near = view.near_m;
-        let last = view
-            .far_m
-            .unwrap_or_else(|| deepest(view, light_bounds).clamp(2.0 * near, 1e30 * near));
+        let last = view.far_m.unwrap_or_else(|| deepest(view, light_bounds).max(2.0 * near));
         let exponential = matches!(view.projection, Projection::Perspective { .. });
+        let last = if exponential { last.min(near * MAX_DEPTH_RATIO) } else { last };
         let span = if exponential { (last / near).log2() } else { last - near };
         Ok(Self {
             counts,
@@ -130,7 +133,7 @@ impl ClustersUniform {
             tile_px: size.tile_px,
             origin_px: [view.viewport.x, view.viewport.y],
             first_m: near,
-            near_m: near,
+            near_m: view.nearest_rebuilt_m(),
             far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
             exponential: u32::from(exponential),
         })

@@ -2,7 +2,7 @@
 
 use assign::{
     AssignError, Assignment, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Frame, FrustumTests,
-    Gpu, GroupCount, GroupShape, LightLists, Lookup, Needs, Passes, entry, uniform_entry,
+    Gpu, GroupShape, LightLists, Lookup, Needs, Passes, entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -56,7 +56,7 @@ impl Assignment for DenseImplicit {
         self.culler.prepare(
             gpu,
             frame,
-            GroupCount::Fixed(clusters.group_count()),
+            clusters.group_count(),
             &[entry(FIRST_STRATEGY_BINDING, &self.clusters)],
         )
     }

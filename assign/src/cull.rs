@@ -42,20 +42,6 @@ impl Default for FrustumTests {
     }
 }
 
-/// How many groups a frame has.
-#[derive(Clone, Copy, Debug)]
-pub enum GroupCount<'a> {
-    /// Known on the CPU.
-    Fixed(u32),
-    /// Written on the GPU: `dispatch` holds `DispatchIndirectArgs`, one workgroup a group.
-    Indirect {
-        /// The arguments.
-        dispatch: &'a wgpu::Buffer,
-        /// No more groups than this.
-        capacity: u32,
-    },
-}
-
 /// What a strategy hands to [`Culler::new`].
 #[derive(Clone, Copy, Debug)]
 pub struct CullerDescriptor<'a> {
@@ -82,13 +68,8 @@ pub struct Culler {
     cull: ListsBindings,
     look_up: ListsBindings,
     lists: LightLists,
-    dispatch: Dispatch,
-}
-
-#[derive(Clone, Debug)]
-enum Dispatch {
-    Direct(u32, u32),
-    Indirect(wgpu::Buffer),
+    /// Workgroups along x and y, one a group.
+    dispatch: [u32; 2],
 }
 
 impl Culler {
@@ -104,7 +85,7 @@ impl Culler {
             cull: ListsBindings::new(cull_layout(gpu, descriptor.label, descriptor.bindings)),
             look_up: ListsBindings::new(lookup_layout(gpu, descriptor.label, descriptor.bindings)),
             lists: LightLists::new(gpu)?,
-            dispatch: Dispatch::Direct(0, 0),
+            dispatch: [0, 0],
         })
     }
 
@@ -113,22 +94,13 @@ impl Culler {
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        groups: GroupCount<'_>,
+        group_count: u32,
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
-        let capacity = match groups {
-            GroupCount::Fixed(count) => count,
-            GroupCount::Indirect { capacity, .. } => capacity,
-        };
-        self.dispatch = match groups {
-            GroupCount::Fixed(count) => {
-                let rows = count.div_ceil(MAX_DISPATCH);
-                Dispatch::Direct(count.div_ceil(rows.max(1)), rows)
-            }
-            GroupCount::Indirect { dispatch, .. } => Dispatch::Indirect(dispatch.clone()),
-        };
-        self.lists.prepare(gpu, frame.lights.count(), capacity)?;
+        let rows = group_count.div_ceil(MAX_DISPATCH);
+        self.dispatch = [group_count.div_ceil(rows.max(1)), rows];
+        self.lists.prepare(gpu, frame.lights.count(), group_count)?;
         let counters = entry(2, self.lists.counters());
         let uniform = entry(3, self.lists.uniform());
         let kernel_entries = [&[counters, uniform], resources].concat();
@@ -177,7 +149,7 @@ impl Culler {
         Ok(())
     }
 
-    /// Records the pass `cull`: inside the clock.
+    /// Records the pass `cull`: inside the clock, after [`prepare`](Self::prepare).
     pub fn record(&mut self, passes: &mut dyn Passes) {
         let (Some((kernel, _)), Some(reset)) = (&self.kernel, &self.reset) else {
             return;
@@ -188,10 +160,7 @@ impl Culler {
             pass.set_pipeline(reset);
             pass.dispatch_workgroups(1, 1, 1);
             pass.set_pipeline(kernel);
-            match &self.dispatch {
-                Dispatch::Direct(columns, rows) => pass.dispatch_workgroups(*columns, *rows, 1),
-                Dispatch::Indirect(buffer) => pass.dispatch_workgroups_indirect(buffer, 0),
-            }
+            pass.dispatch_workgroups(self.dispatch[0], self.dispatch[1], 1);
         });
         self.lists.record_readback(passes.encoder());
     }

@@ -15,6 +15,14 @@ pub enum AssignError {
         /// What was looked for.
         looked_for: String,
     },
+    /// No adapter of that name.
+    #[error("no adapter called {name:?}: known are {known}")]
+    UnknownAdapter {
+        /// The name, or part of it, asked for.
+        name: String,
+        /// The adapters' names.
+        known: String,
+    },
     /// The adapter refused a device.
     #[error("adapter {adapter}: no device: {reason}")]
     NoDevice {
@@ -63,6 +71,14 @@ pub enum AssignError {
         bytes: u64,
         /// The device's limit, bytes.
         limit: u64,
+    },
+    /// The device has no memory left for a buffer.
+    #[error("{what} needs {bytes} bytes: the device has no room for them")]
+    OutOfMemory {
+        /// What the buffer holds.
+        what: String,
+        /// The size asked for, bytes.
+        bytes: u64,
     },
     /// A WESL module does not link or does not validate.
     #[error("shader {module}: {reason}")]

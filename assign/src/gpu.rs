@@ -31,8 +31,9 @@ impl Gpu {
         let adapter = adapters
             .iter()
             .find(|a| a.get_info().name.to_lowercase().contains(&wanted))
-            .ok_or_else(|| AssignError::NoAdapter {
-                looked_for: format!("no name like {wanted:?} among {found}"),
+            .ok_or_else(|| AssignError::UnknownAdapter {
+                name: name.unwrap_or_default().to_owned(),
+                known: found,
             })?;
         Self::from_adapter(adapter)
     }
@@ -61,6 +62,10 @@ impl Gpu {
             max_buffer_size: available.max_buffer_size,
             max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
             max_texture_dimension_2d: available.max_texture_dimension_2d,
+            // Of WebGPU's eight, lights and lists take up to six.
+            max_storage_buffers_per_shader_stage: available
+                .max_storage_buffers_per_shader_stage
+                .min(16),
             ..wgpu::Limits::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -98,14 +103,31 @@ impl Gpu {
         if bytes > limit {
             return Err(AssignError::TooLarge { what: label.into(), bytes, limit });
         }
-        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes.max(16).next_multiple_of(4),
-            usage: wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::COPY_SRC
-                | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        }))
+        self.allocate(label, bytes, || {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes.max(16).next_multiple_of(4),
+                usage: wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_SRC
+                    | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })
+    }
+
+    /// Runs `make`, which allocates about `bytes` on the device; an error where there is no room.
+    pub fn allocate<T>(
+        &self,
+        what: &str,
+        bytes: u64,
+        make: impl FnOnce() -> T,
+    ) -> Result<T, AssignError> {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let made = make();
+        match pollster::block_on(scope.pop()) {
+            None => Ok(made),
+            Some(_) => Err(AssignError::OutOfMemory { what: what.into(), bytes }),
+        }
     }
 
     /// A uniform buffer of `bytes`.
@@ -124,16 +146,23 @@ impl Gpu {
         if size == 0 {
             return Ok(Vec::new());
         }
-        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read-back"),
-            size,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let staging = self.staging("read-back", size)?;
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
         self.map(&staging)
+    }
+
+    /// A buffer to copy to and [`map`](Self::map).
+    pub fn staging(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, AssignError> {
+        self.allocate(label, bytes, || {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })
     }
 
     /// Maps a staging buffer whose copy was submitted, and returns its bytes.

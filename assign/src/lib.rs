@@ -40,9 +40,7 @@ mod shader;
 mod view;
 
 pub use assignment::{Assignment, Lookup};
-pub use cull::{
-    Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, FrustumTests, GroupCount, GroupShape,
-};
+pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, FrustumTests, GroupShape};
 pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};

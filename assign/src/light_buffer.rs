@@ -29,7 +29,7 @@ pub struct LightBuffer {
     shapes: wgpu::Buffer,
 }
 
-/// More lights than an entry's 30 bits, less the two flags, can name.
+/// The most lights that an entry's 30 bits can name.
 pub const MAX_LIGHTS: usize = (1 << 30) - 1;
 
 impl LightBuffer {
@@ -58,27 +58,38 @@ impl LightBuffer {
                 accepted: format!("at most {MAX_LIGHTS}"),
             });
         }
-        self.lights.clear();
-        self.rejected.clear();
+        let mut accepted = Vec::with_capacity(lights.len());
+        let mut rejected = Vec::new();
         for (index, light) in lights.iter().enumerate() {
             match light.check() {
-                Ok(()) => self.lights.push(*light),
-                Err(fault) => self.rejected.push(RejectedLight { index, fault }),
+                Ok(()) => accepted.push(*light),
+                Err(fault) => rejected.push(RejectedLight { index, fault }),
             }
         }
-        let spheres: Vec<LightSphere> = self.lights.iter().map(Light::sphere).collect();
+        let spheres: Vec<LightSphere> = accepted.iter().map(Light::sphere).collect();
         let mut shapes = Vec::new();
         let emissions: Vec<LightEmission> =
-            self.lights.iter().map(|l| l.emission(&mut shapes)).collect();
-        self.has_spots = self.lights.iter().any(|l| l.kind() == LightKind::Spot);
-        self.bounds = self
-            .lights
+            accepted.iter().map(|l| l.emission(&mut shapes)).collect();
+        // All buffers before any field: after an error the old lights are whole.
+        let [sphere_bytes, emission_bytes, shape_bytes] =
+            [cast_slice(&spheres), cast_slice(&emissions), cast_slice(&shapes)];
+        let larger = [
+            fitting(gpu, &self.spheres, "light spheres", sphere_bytes)?,
+            fitting(gpu, &self.emissions, "light emissions", emission_bytes)?,
+            fitting(gpu, &self.shapes, "light shapes", shape_bytes)?,
+        ];
+        [self.spheres, self.emissions, self.shapes] = larger;
+        gpu.queue.write_buffer(&self.spheres, 0, sphere_bytes);
+        gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
+        gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
+        self.has_spots = accepted.iter().any(|l| l.kind() == LightKind::Spot);
+        self.bounds = accepted
             .iter()
             .map(|l| (l.position - l.range_m, l.position + l.range_m))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        upload(gpu, &mut self.spheres, "light spheres", cast_slice(&spheres))?;
-        upload(gpu, &mut self.emissions, "light emissions", cast_slice(&emissions))?;
-        upload(gpu, &mut self.shapes, "light shapes", cast_slice(&shapes))
+        self.lights = accepted;
+        self.rejected = rejected;
+        Ok(())
     }
 
     /// Number of lights that were accepted.
@@ -122,18 +133,16 @@ impl LightBuffer {
     }
 }
 
-/// Writes `bytes`, making a larger buffer where they do not fit.
-fn upload(
+/// The buffer where `bytes` fit, else a larger one.
+fn fitting(
     gpu: &Gpu,
-    buffer: &mut wgpu::Buffer,
+    buffer: &wgpu::Buffer,
     label: &str,
     bytes: &[u8],
-) -> Result<(), AssignError> {
+) -> Result<wgpu::Buffer, AssignError> {
     if bytes.len() as u64 > buffer.size() {
-        *buffer = gpu.storage(label, bytes.len() as u64)?;
+        gpu.storage(label, bytes.len() as u64)
+    } else {
+        Ok(buffer.clone())
     }
-    if !bytes.is_empty() {
-        gpu.queue.write_buffer(buffer, 0, bytes);
-    }
-    Ok(())
 }

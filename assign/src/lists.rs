@@ -20,6 +20,9 @@ pub const ENTRY_LIGHT: u32 = ENTRY_DIFFUSE - 1;
 /// What `group_of` returns for a sample outside all groups: its list holds all lights.
 pub const ALL_LIGHTS: u32 = u32::MAX;
 
+/// The most entries that the pool begins with: 64 MiB.
+const MAX_GUESS: u64 = 16 << 20;
+
 /// A light list: `count` entries from `first`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
@@ -34,7 +37,7 @@ pub struct LightList {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Counters {
-    /// Entries reserved.
+    /// Entries taken from the pool, and those of lists that came too late to fit.
     pub cursor: u32,
     /// Entries asked for, low 32 bits.
     pub requested_low: u32,
@@ -80,7 +83,6 @@ pub struct LightLists {
     entries: wgpu::Buffer,
     counters: wgpu::Buffer,
     uniform: wgpu::Buffer,
-    group_capacity: u32,
     light_capacity: u32,
     pool_capacity: u32,
     /// Upper limit set by the user; the device's limit applies as well.
@@ -122,7 +124,6 @@ impl LightLists {
             entries: gpu.storage("light entries", 4)?,
             counters: gpu.storage("list counters", size_of::<Counters>() as u64)?,
             uniform: gpu.uniform("cull", size_of::<CullUniform>() as u64),
-            group_capacity: 0,
             light_capacity: 0,
             pool_capacity: 0,
             pool_limit: u32::MAX,
@@ -149,14 +150,17 @@ impl LightLists {
     ) -> Result<bool, AssignError> {
         self.readback.poll(gpu);
         let asked = self.readback.latest().map_or(0, |c| c.requested());
-        let mut changed = false;
         let records = u64::from(group_count) + 1;
-        if group_count > self.group_capacity || self.lists.size() < records * 8 {
-            self.lists = gpu.storage("light lists", records * 8)?;
-            self.group_capacity = group_count;
+        let larger = if self.lists.size() < records * 8 {
+            Some(gpu.storage("light lists", records * 8)?)
+        } else {
+            None
+        };
+        let mut changed = self.size_entries(gpu, light_count, group_count, asked)?;
+        if let Some(lists) = larger {
+            self.lists = lists;
             changed = true;
         }
-        changed |= self.size_entries(gpu, light_count, group_count, asked)?;
         if changed || self.counts.0 != light_count {
             let all = LightList { first: 0, count: light_count };
             gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
@@ -192,20 +196,27 @@ impl LightLists {
             });
         }
         // A guess until a frame has counted: 16 entries a group, or every pair if fewer.
-        let guess = u64::from(group_count) * u64::from(light_count.min(16));
+        let guess = (u64::from(group_count) * u64::from(light_count.min(16))).min(MAX_GUESS);
+        let has = u64::from(self.pool_capacity);
         // A quarter more than asked, so that a moving camera does not grow it each frame.
-        let wanted = (asked + asked / 4)
-            .max(guess)
-            .max(u64::from(self.pool_capacity))
-            .min(room - u64::from(light_capacity))
-            .min(u64::from(self.pool_limit)) as u32;
+        let grown = if asked > has { asked + asked / 4 } else { has };
+        let wanted =
+            grown.max(guess).min(room - u64::from(light_capacity)).min(u64::from(self.pool_limit))
+                as u32;
         if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
             return Ok(false);
         }
         let all: Vec<u32> =
             (0..light_capacity).map(|light| light | ENTRY_DIFFUSE | ENTRY_SPECULAR).collect();
         let bytes = (u64::from(light_capacity) + u64::from(wanted)) * 4;
-        self.entries = gpu.storage("light entries", bytes)?;
+        self.entries = match gpu.storage("light entries", bytes) {
+            // The lists that do not fit stay all lights: the pool there is must do.
+            Err(AssignError::OutOfMemory { .. }) if light_capacity == self.light_capacity => {
+                self.pool_limit = self.pool_capacity;
+                return Ok(false);
+            }
+            other => other?,
+        };
         gpu.queue.write_buffer(&self.entries, 0, cast_slice(&all));
         self.light_capacity = light_capacity;
         self.pool_capacity = wanted;
@@ -225,12 +236,14 @@ impl LightLists {
     /// Reads everything back, blocking.
     pub fn snapshot(&self, gpu: &Gpu) -> Result<ListsSnapshot, AssignError> {
         let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
-        let entries = gpu.read(&self.entries, self.entries.size())?;
         let counters = gpu.read(&self.counters, size_of::<Counters>() as u64)?;
+        let counters: Counters = bytemuck::pod_read_unaligned(&counters);
+        let used = self.light_capacity + counters.cursor.min(self.pool_capacity);
+        let entries = gpu.read(&self.entries, u64::from(used) * 4)?;
         Ok(ListsSnapshot {
             lists: pod_collect_to_vec(&lists),
             entries: pod_collect_to_vec(&entries),
-            counters: bytemuck::pod_read_unaligned(&counters),
+            counters,
         })
     }
 

@@ -15,16 +15,18 @@ const DEPTH: usize = 4;
 #[derive(Debug)]
 enum State {
     Free,
-    /// Copied to by an encoder that has been, or is about to be, submitted.
-    Recorded,
-    Mapping(Receiver<bool>),
+    /// Copied to by an encoder that has been, or is about to be, submitted; its number.
+    Recorded(u64),
+    Mapping(u64, Receiver<bool>),
 }
 
 /// Reads a `T` back from the GPU, a frame or more late.
 #[derive(Debug)]
 pub(crate) struct Readback<T> {
     slots: Vec<(wgpu::Buffer, State)>,
-    latest: Option<T>,
+    /// The newest value, and the number of its record.
+    latest: Option<(u64, T)>,
+    recorded: u64,
     value: PhantomData<T>,
 }
 
@@ -39,7 +41,12 @@ impl<T: Pod> Readback<T> {
             });
             (buffer, State::Free)
         };
-        Self { slots: (0..DEPTH).map(|_| slot()).collect(), latest: None, value: PhantomData }
+        Self {
+            slots: (0..DEPTH).map(|_| slot()).collect(),
+            latest: None,
+            recorded: 0,
+            value: PhantomData,
+        }
     }
 
     /// Copies the value; skipped while all slots are in flight.
@@ -47,34 +54,36 @@ impl<T: Pod> Readback<T> {
         let free = self.slots.iter_mut().find(|(_, state)| matches!(state, State::Free));
         if let Some((buffer, state)) = free {
             encoder.copy_buffer_to_buffer(source, 0, buffer, 0, size_of::<T>() as u64);
-            *state = State::Recorded;
+            self.recorded += 1;
+            *state = State::Recorded(self.recorded);
         }
     }
 
     /// Takes what has arrived. Call after the recorded encoder was submitted.
     pub(crate) fn poll(&mut self, gpu: &Gpu) {
         for (buffer, state) in &mut self.slots {
-            if matches!(state, State::Recorded) {
+            if let State::Recorded(number) = *state {
                 let (sender, receiver) = channel();
                 buffer.map_async(wgpu::MapMode::Read, .., move |result| {
                     // The receiver is gone where the lists were dropped meanwhile.
                     let _ = sender.send(result.is_ok());
                 });
-                *state = State::Mapping(receiver);
+                *state = State::Mapping(number, receiver);
             }
         }
         // A lost device shows at the next submission; here it only means no news.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         for (buffer, state) in &mut self.slots {
-            let State::Mapping(receiver) = state else {
+            let State::Mapping(number, receiver) = state else {
                 continue;
             };
             let Ok(mapped) = receiver.try_recv() else {
                 continue;
             };
             if mapped {
-                if let Ok(view) = buffer.get_mapped_range(..) {
-                    self.latest = Some(bytemuck::pod_read_unaligned(&view));
+                let is_newer = self.latest.as_ref().is_none_or(|(newest, _)| *newest < *number);
+                if is_newer && let Ok(view) = buffer.get_mapped_range(..) {
+                    self.latest = Some((*number, bytemuck::pod_read_unaligned(&view)));
                 }
                 buffer.unmap();
             }
@@ -83,6 +92,6 @@ impl<T: Pod> Readback<T> {
     }
 
     pub(crate) fn latest(&self) -> Option<T> {
-        self.latest
+        self.latest.map(|(_, value)| value)
     }
 }

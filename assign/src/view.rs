@@ -130,8 +130,12 @@ impl View {
     /// Checks every field.
     pub fn check(&self) -> Result<(), ViewError> {
         let fail = |field, value: String, accepted| Err(ViewError { field, value, accepted });
-        if !self.world_to_view.is_finite() {
-            return fail("world_to_view", self.world_to_view.to_string(), "finite");
+        if !self.is_rigid() {
+            return fail(
+                "world_to_view",
+                self.world_to_view.to_string(),
+                "a rotation and a translation, without scale, shear or mirror",
+            );
         }
         let (perspective, min, max) = self.window();
         if !(min.is_finite() && max.is_finite() && (max - min).min_element() > 0.0) {
@@ -166,7 +170,21 @@ impl View {
         if !self.jitter.is_finite() {
             return fail("jitter", self.jitter.to_string(), "finite");
         }
+        if !self.view_to_clip().is_finite() {
+            return fail("far", format!("{:?}", self.far_m), "small enough for f32, or infinite");
+        }
         Ok(())
+    }
+
+    /// Whether `world_to_view` keeps lengths and handedness: lights have one range in all spaces.
+    fn is_rigid(&self) -> bool {
+        let matrix = self.world_to_view;
+        let linear = glam::Mat3::from_mat4(matrix);
+        let gram = linear.transpose() * linear;
+        matrix.is_finite()
+            && matrix.row(3) == Vec4::W
+            && gram.abs_diff_eq(glam::Mat3::IDENTITY, 1e-4)
+            && linear.determinant() > 0.0
     }
 
     /// Whether perspective, and the window's corners with the jitter applied.
@@ -198,7 +216,7 @@ impl View {
         let (a, b) = match (perspective, self.far_m) {
             (true, Some(far)) => (
                 (at_near * near - at_far * far) / (far - near),
-                near * far * (at_near - at_far) / (far - near),
+                near * (far / (far - near)) * (at_near - at_far),
             ),
             (true, None) => (-at_far, near * (at_near - at_far)),
             (false, far) => {
@@ -243,13 +261,23 @@ impl View {
     /// far plane well beyond itself: 1,049 m instead of 1,000 m with a near plane at 1 mm.
     pub fn farthest_rebuilt_m(&self) -> Option<f32> {
         let far_m = self.far_m?;
-        let clip = self.view_to_clip();
-        let at_far = self.depth_clear();
-        let rebuilt =
-            (clip.w_axis.z - at_far * clip.w_axis.w) / (clip.z_axis.z - at_far * clip.z_axis.w);
         // WGSL divides to 2.5 units in the last place.
-        let rebuilt = rebuilt * (1.0 + 4.0 * f32::EPSILON);
+        let rebuilt = self.rebuilt_m(self.depth_clear()) * (1.0 + 4.0 * f32::EPSILON);
         (rebuilt.is_finite() && rebuilt > 0.0).then_some(far_m.max(rebuilt))
+    }
+
+    /// The least view depth that shading can rebuild from a clip depth, metres: in front of the
+    /// near plane where a far plane far away leaves an orthographic depth few bits.
+    pub fn nearest_rebuilt_m(&self) -> f32 {
+        let rebuilt = self.rebuilt_m(1.0 - self.depth_clear());
+        let slack = 4.0 * f32::EPSILON * rebuilt.abs();
+        if rebuilt.is_finite() { self.near_m.min(rebuilt - slack) } else { 0.0 }
+    }
+
+    /// View depth of a clip depth as `view.wesl` computes it, metres.
+    fn rebuilt_m(&self, depth_clip: f32) -> f32 {
+        let clip = self.view_to_clip();
+        (clip.w_axis.z - depth_clip * clip.w_axis.w) / (clip.z_axis.z - depth_clip * clip.z_axis.w)
     }
 
     /// The record shaders read.
@@ -274,3 +302,44 @@ impl View {
 /// A position reconstructed from depth passes through three roundings of a product of matrices:
 /// 16 units in the last place bound them with room (the conformance suite's far camera checks it).
 const POSITION_ERROR: f32 = 16.0 * f32::EPSILON;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_rigid_transforms_are_views() {
+        let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
+        assert_eq!(view.check(), Ok(()));
+        let mut sheared = Mat4::IDENTITY;
+        sheared.y_axis.x = 0.2;
+        for bad in [
+            Mat4::from_scale(Vec3::splat(0.5)),
+            Mat4::from_scale(Vec3::splat(2.0)),
+            Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)),
+            Mat4::ZERO,
+            sheared,
+        ] {
+            let error = View { world_to_view: bad * view.world_to_view, ..view }.check();
+            assert_eq!(error.map_err(|e| e.field), Err("world_to_view"), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_far_plane_at_the_end_of_f32_overflows_nothing() {
+        let mut view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 10.0, [64, 48]);
+        view.far_m = Some(f32::MAX);
+        view.depth = DepthMapping::Standard;
+        assert_eq!(view.check(), Ok(()));
+    }
+
+    #[test]
+    fn an_orthographic_near_plane_may_be_rebuilt_before_itself() {
+        let mut view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 1.0, [64, 48]);
+        view.projection = Projection::Orthographic { min: Vec2::splat(-1.0), max: Vec2::ONE };
+        view.far_m = Some(1e6);
+        assert!(view.nearest_rebuilt_m() < 0.96, "{}", view.nearest_rebuilt_m());
+        view.far_m = Some(10.0);
+        assert!((view.nearest_rebuilt_m() - 1.0).abs() < 1e-5, "{}", view.nearest_rebuilt_m());
+    }
+}

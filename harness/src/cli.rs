@@ -111,7 +111,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
     pub scene: String,
 
-    /// Factor on the scene's size, 1e-6 to 1e6; lights keep theirs
+    /// Factor on the scene's size and its own lights, 1e-6 to 1e6; scattered lights keep theirs
     #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
     pub scene_scale: f64,
 
@@ -132,7 +132,7 @@ pub struct CompareArgs {
     pub light_box: LightBox,
 
     /// Factor on the radii of scattered lights, 1e-6 to 1e6; at 1 their mean is one metre
-    /// [default: 1 in a scene of 10 to 100 m, in proportion to its size beyond]
+    /// [default: 1 in a scene of 10 to 60 m, smaller and larger in proportion]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale)]
     pub radius_scale: Option<f64>,
 

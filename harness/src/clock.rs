@@ -61,7 +61,15 @@ impl PassClock {
                 read_timestamps(&self.gpu, queries, resolved, staging, &names)?
             }
         };
-        Ok(names.into_iter().zip(times).collect())
+        // Passes of one name are one pass in several parts.
+        let mut passes: Vec<PassTime> = Vec::new();
+        for (name, time) in names.into_iter().zip(times) {
+            match passes.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, sum)) => *sum += time,
+                None => passes.push((name, time)),
+            }
+        }
+        Ok(passes)
     }
 
     /// Submits what has been recorded.

@@ -1,18 +1,18 @@
 //! `lightbench compare`: the main job.
 
-use std::{collections::HashMap, path::Path};
+use std::{collections::HashMap, path::Path, sync::Arc, time::Duration};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
 use shading::{EDGE, HdrImage, LightBvh, Mode};
 
 use crate::{
-    cli::{CompareArgs, TruthChoice},
+    cli::{CliError, CompareArgs, TruthChoice},
     clock::clock_of,
     error::HarnessError,
     machine::machine,
     measure::{Frames, Measurement, measure},
-    registry::Choice,
+    registry::{Choice, Method},
     report,
     results::{
         Clock, Images, Record, RejectedLight, Results, ResultsError, Truth, write_atomically,
@@ -28,20 +28,28 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 /// Gain of difference images: a difference of 1/64 shows as white.
 const DIFFERENCE_GAIN: f32 = 64.0;
 
-/// Runs a comparison and writes its report. `command` is the command line, for provenance.
-pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<(), HarnessError> {
+/// How long a GPU warms up at least; a software adapter has no clocks to raise.
+const GPU_WARM_UP: Duration = Duration::from_millis(250);
+
+/// Runs a comparison, writes its report, and returns what to print. `command` is the command
+/// line, for provenance.
+pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     let choices: Vec<Choice> =
         args.strategies.0.iter().map(|id| Choice::parse(id)).collect::<Result<_, _>>()?;
     check_writable(&args.out)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
+    end_on_device_error(&gpu);
     let machine = machine(&gpu);
     eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
-    // Parameters are checked before the scene is opened.
-    for choice in &choices {
-        choice.make(&gpu)?;
-    }
+    let choices = checked(choices, &gpu)?;
     let stage = Stage::new(&gpu, args)?;
     describe(&stage);
+    // What a strategy cannot serve shows before anything long begins.
+    for choice in &choices {
+        if let Method::Lists(mut strategy) = choice.make(&gpu)? {
+            strategy.prepare(&gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
+        }
+    }
     let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
     let mut run = Run {
         results: Results::new(machine, command, truth),
@@ -57,19 +65,52 @@ pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<(), HarnessEr
     run.write()
 }
 
+/// An error that no call returned is the device's: one line, exit code 1, no panic.
+fn end_on_device_error(gpu: &Gpu) {
+    gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
+        eprintln!("lightbench: device: {}", CliError::new(error.to_string()));
+        std::process::exit(1);
+    }));
+}
+
+/// The choices with their parameters checked and written alike, none twice.
+fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError> {
+    let mut checked: Vec<Choice> = Vec::new();
+    for choice in choices {
+        let choice = choice.checked(gpu)?;
+        let id = choice.id();
+        if checked.iter().any(|known| known.id() == id) {
+            let accepted = "given once each";
+            return Err(
+                CliError::out_of_range("--strategies", &format!("{id} twice"), accepted).into()
+            );
+        }
+        checked.push(choice);
+    }
+    Ok(checked)
+}
+
 /// The frames asked for, or the defaults of the kind of device.
 fn frames(gpu: &Gpu, args: &CompareArgs) -> Frames {
     let kind = usize::from(gpu.is_software());
     Frames {
         warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
+        warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(DEFAULT_FRAMES[kind]),
     }
 }
 
-/// Makes the output folder and writes to it once, before anything long begins.
+/// Makes the output folder and writes to it once, before anything long begins. An earlier run's
+/// report goes: it would stand beside this run's pictures if this one is interrupted.
 fn check_writable(out: &Path) -> Result<(), ResultsError> {
     let probe = out.join(".lightbench");
     write_atomically(&probe, b"")?;
+    for stale in ["index.html", "results.json"].map(|name| out.join(name)) {
+        if stale.is_file() {
+            std::fs::remove_file(&stale)
+                .map_err(|source| ResultsError::Write { path: stale, source })?;
+        }
+    }
     std::fs::remove_file(&probe)
         .map_err(|source| ResultsError::Write { path: probe.clone(), source })
 }
@@ -82,6 +123,9 @@ fn describe(stage: &Stage) {
         stage.scene.models.len(),
         stage.lights.count()
     );
+    if stage.lights.count() as usize > stage.own_lights {
+        eprintln!("lights   scattered with a mean radius of {:.3} m", stage.radius_scale);
+    }
     for warning in &stage.scene.warnings {
         eprintln!("warning  {warning}");
     }
@@ -129,7 +173,7 @@ impl Run<'_> {
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
         let lights = self.stage.lights.lights().to_vec();
         let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
-        let per_method = u64::from(self.frames.warmup + self.frames.timed) + 1;
+        let per_method = u64::from(self.frames.timed) + 1;
         let modes = self.args.mode.modes();
         let has_reference = choices.iter().any(Choice::is_reference);
         let extra = if has_reference { 0 } else { 2 };
@@ -164,7 +208,7 @@ impl Run<'_> {
                 image
             }
             None => {
-                let once = Frames { warmup: 0, timed: 1 };
+                let once = Frames { warmup: 0, timed: 1, ..self.frames };
                 let none = Choice::parse(crate::results::BASELINE)?;
                 self.measure_one(&none, mode, once, None, bar)?.image
             }
@@ -265,6 +309,11 @@ impl Run<'_> {
                 .map(|(kind, count)| (kind.to_owned(), count))
                 .collect(),
             radius_scale: stage.radius_scale,
+            eye: stage.view.eye().to_array().map(f64::from),
+            forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
+            light_box: [stage.light_box.min, stage.light_box.max]
+                .map(|corner| corner.to_array().map(f64::from)),
+            own_lights: stage.own_lights as u64,
             width: stage.view.viewport.width,
             height: stage.view.viewport.height,
             frames: self.frames.timed,
@@ -277,7 +326,11 @@ impl Run<'_> {
             frame_ms: 0.0,
             groups: lists.groups,
             occupied_groups: u64::from(lists.counters.occupied_groups),
-            list_entries: lists.counters.requested(),
+            list_entries: if choice.is_reference() {
+                u64::from(stage.lights.count())
+            } else {
+                lists.counters.requested()
+            },
             longest_list: u64::from(lists.counters.longest),
             listed_per_sample: truth.map(|t| t.listed_per_sample()),
             contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
@@ -298,29 +351,30 @@ impl Run<'_> {
 
     fn note(&self, mode: Mode, overflowed_frames: u32) -> Option<String> {
         let mut notes = Vec::new();
-        let adapter = &self.results.machine.adapter;
-        if mode == Mode::Forward
-            && ["H100", "H200", "A100", "B200"].iter().any(|n| adapter.contains(n))
-        {
+        let mut words = self.results.machine.adapter.split_whitespace();
+        if mode == Mode::Forward && words.any(|word| ["H100", "H200"].contains(&word)) {
             notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
         }
         if overflowed_frames > 0 {
             notes.push(format!(
-                "lists overflowed in {overflowed_frames} frames, before the pool had grown"
+                "lists overflowed in {overflowed_frames} of the timed frames, which shaded all lights where they did"
             ));
         }
         (!notes.is_empty()).then(|| notes.join("; "))
     }
 
-    /// Writes the results and the report, and prints the table.
-    fn write(&mut self) -> Result<(), HarnessError> {
+    /// Writes the results and the report; returns the table and where they are.
+    fn write(&mut self) -> Result<String, HarnessError> {
         let out = &self.args.out;
-        self.results.write(&out.join("results.json"))?;
-        report::write_html(&self.results, &self.pictures, out)?;
-        println!("{}", report::render_table(&self.results));
-        println!("report   {}", out.join("index.html").display());
-        println!("data     {}", out.join("results.json").display());
-        Ok(())
+        let data = out.join("results.json");
+        self.results.write(&data)?;
+        let page = report::write_html(&self.results, &self.pictures, out)?;
+        Ok(format!(
+            "{}\nreport   {}\ndata     {}\n",
+            report::render_table(&self.results),
+            page.display(),
+            data.display()
+        ))
     }
 }
 

@@ -25,6 +25,9 @@ pub enum HarnessError {
     /// A strategy or the device.
     #[error(transparent)]
     Assign(#[from] AssignError),
+    /// Standard output refused what was written to it.
+    #[error("standard output: {0}")]
+    Output(std::io::Error),
     /// The results.
     #[error(transparent)]
     Results(#[from] ResultsError),
@@ -34,7 +37,8 @@ impl HarnessError {
     /// 2 where the input is at fault, else 1: the device failed.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Assign(AssignError::Device(_) | AssignError::Shader { .. })
+            Self::Output(_)
+            | Self::Assign(AssignError::Device(_) | AssignError::Shader { .. })
             | Self::Shading(ShadingError::Assign(
                 AssignError::Device(_) | AssignError::Shader { .. },
             )) => 1,

@@ -1,19 +1,23 @@
 //! `lightbench`: compare ways of assigning many lights to pixels.
 
-use std::process::ExitCode;
+use std::{
+    io::{ErrorKind, Write},
+    process::ExitCode,
+};
 
 use harness::{
-    cli::{self, Invocation, Listing},
+    cli::{self, CliError, Invocation, Listing},
     compare::compare,
     error::HarnessError,
-    registry::STRATEGIES,
+    registry::{STRATEGIES, StrategyEntry},
 };
 
 fn main() -> ExitCode {
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("lightbench: {error}");
+            // One line, whatever a file's text put into the message.
+            eprintln!("lightbench: {}", CliError::new(error.to_string()));
             ExitCode::from(error.exit_code())
         }
     }
@@ -22,40 +26,42 @@ fn main() -> ExitCode {
 fn run() -> Result<(), HarnessError> {
     let command: Vec<String> =
         std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
-    match cli::parse(std::env::args_os())? {
-        Invocation::Show(text) => print!("{text}"),
-        Invocation::List(Listing::Strategies) => list_strategies(),
-        Invocation::List(Listing::Scenes) => list_scenes(),
-        Invocation::List(Listing::Adapters) => list_adapters()?,
+    let text = match cli::parse(std::env::args_os())? {
+        Invocation::Show(text) => text,
+        Invocation::List(Listing::Strategies) => strategies(),
+        Invocation::List(Listing::Scenes) => scenes(),
+        Invocation::List(Listing::Adapters) => adapters()?,
         Invocation::Compare(args) => compare(&args, command)?,
+    };
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        // Whoever read has read enough.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => other.map_err(HarnessError::Output),
     }
-    Ok(())
 }
 
-fn list_strategies() {
-    for entry in STRATEGIES {
-        let id = if entry.default.is_empty() {
-            entry.family.to_owned()
-        } else {
-            format!("{}/{}", entry.family, entry.default)
-        };
-        println!("{id:<16} {}", entry.summary);
+fn strategies() -> String {
+    let row = |entry: &StrategyEntry| {
+        let id = entry.default_id();
+        let mut row = format!("{id:<16} {}\n", entry.summary);
         if !entry.parameters.is_empty() {
-            println!("{:<16} parameters: {}", "", entry.parameters.join(" x "));
+            row += &format!("{:<16} parameters: {}\n", "", entry.parameters.join(" x "));
         }
-    }
+        row
+    };
+    STRATEGIES.iter().map(row).collect()
 }
 
-fn list_adapters() -> Result<(), HarnessError> {
-    for info in assign::Gpu::adapters()? {
-        println!("{} ({}, {:?})", info.name, info.backend, info.device_type);
-    }
-    Ok(())
+fn adapters() -> Result<String, HarnessError> {
+    let row = |info: &wgpu::AdapterInfo| {
+        format!("{} ({}, {:?})\n", info.name, info.backend, info.device_type)
+    };
+    Ok(assign::Gpu::adapters()?.iter().map(row).collect())
 }
 
-fn list_scenes() {
-    for entry in scenes::list() {
-        println!("{:<16} {}", entry.id, entry.summary);
-    }
-    println!("{:<16} any glTF 2.0 scene", "FILE.gltf|.glb");
+fn scenes() -> String {
+    let row = |entry: &scenes::SceneEntry| format!("{:<16} {}\n", entry.id, entry.summary);
+    let mut rows: String = scenes::list().iter().map(row).collect();
+    rows += &format!("{:<16} any glTF 2.0 scene\n", "FILE.gltf|.glb");
+    rows
 }

@@ -1,5 +1,7 @@
 //! One method in one mode: its times, its lists and its image.
 
+use std::time::{Duration, Instant};
+
 use assign::{Assignment, Counters, EncoderPasses, Gpu};
 use shading::{HdrImage, LightBvh, Lighting, ListsTruth, Mode, probe, record_before_lighting};
 
@@ -32,20 +34,37 @@ pub struct ListsFigures {
     pub bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
-    /// Frames in which a group overflowed.
+    /// Frames on the clock that followed one in which a group overflowed.
     pub overflowed_frames: u32,
 }
 
 /// How many frames to draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Frames {
-    /// Before the clock starts.
+    /// Before the clock starts; after it at least [`warm_up`](Self::warm_up) has passed too.
     pub warmup: u32,
+    /// For how long to warm up at least: clocks fall while a device waits for the CPU.
+    pub warm_up: Duration,
     /// On the clock.
     pub timed: u32,
 }
 
-/// Draws the frames of one method and mode. `tick` is called after each.
+/// Frames added to a warm-up while lists still overflow, at most.
+const MAX_SETTLING: u32 = 8;
+
+impl Frames {
+    /// Whether frame number `drawn`, from 1, belongs on the clock. Without a warm-up all do.
+    fn is_warm(&self, drawn: u32, elapsed: Duration, settled: bool) -> bool {
+        if self.warmup == 0 {
+            return true;
+        }
+        let settled = settled || drawn > self.warmup + MAX_SETTLING;
+        drawn > self.warmup && elapsed >= self.warm_up && settled
+    }
+}
+
+/// Draws the frames of one method and mode. `tick` is called after each that is timed, and once
+/// after the lists were checked.
 pub fn measure(
     gpu: &Gpu,
     stage: &mut Stage,
@@ -65,23 +84,30 @@ pub fn measure(
         Method::Clay => None,
     };
     let mut overflowed_frames = 0;
-    for frame in 0..frames.warmup + frames.timed {
-        match (&mut *method, &lighting) {
+    let mut drawn = 0;
+    let warm = Instant::now();
+    let mut timed = 0;
+    while timed < frames.timed {
+        let settled = match (&mut *method, &lighting) {
             (Method::Lists(strategy), Some(lighting)) => {
                 draw(gpu, stage, strategy.as_mut(), lighting, mode, &mut clock)?;
-                let overflowed = strategy.lists().stats().is_some_and(|c| c.overflowed_groups > 0);
-                overflowed_frames += u32::from(overflowed);
+                // The counters of the frame before: this one grew the pool to what it asked for.
+                strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0)
             }
             _ => {
                 stage.renderer.record_depth(&stage.view, &mut clock);
                 stage.renderer.record_clay(&stage.view, &mut clock);
+                true
             }
-        }
+        };
         let times = clock.finish()?;
-        if frame >= frames.warmup {
+        drawn += 1;
+        if frames.is_warm(drawn, warm.elapsed(), settled) {
             collect(&mut samples, times);
+            overflowed_frames += u32::from(!settled);
+            timed += 1;
+            tick();
         }
-        tick();
     }
     let image = HdrImage::read(gpu, stage.renderer.targets(), stage.view.viewport)?;
     let lists = match method {
@@ -110,7 +136,7 @@ fn draw(
     let frame = stage.renderer.frame(&stage.view, &stage.lights);
     strategy.prepare(gpu, &frame)?;
     record_before_lighting(&stage.renderer, mode, strategy, &frame, clock);
-    lighting.record(&stage.renderer, &stage.view, strategy, clock);
+    lighting.record(&stage.renderer, &stage.view, strategy, clock)?;
     Ok(())
 }
 

@@ -28,6 +28,17 @@ pub struct StrategyEntry {
     make: fn(&Gpu, &str) -> Result<Method, AssignError>,
 }
 
+impl StrategyEntry {
+    /// The id with the parameters it takes where none are given.
+    pub fn default_id(&self) -> String {
+        id(self.family, self.default)
+    }
+}
+
+fn id(family: &str, parameters: &str) -> String {
+    if parameters.is_empty() { family.to_owned() } else { format!("{family}/{parameters}") }
+}
+
 /// All methods.
 pub const STRATEGIES: &[StrategyEntry] = &[
     StrategyEntry {
@@ -87,13 +98,19 @@ impl Choice {
         (self.entry.make)(gpu, &self.parameters)
     }
 
+    /// Makes the method once, to check its parameters and write them as the strategy does.
+    pub fn checked(mut self, gpu: &Gpu) -> Result<Self, AssignError> {
+        if let Method::Lists(strategy) = self.make(gpu)? {
+            let id = strategy.id();
+            self.parameters =
+                id.split_once('/').map_or(String::new(), |(_, parameters)| parameters.to_owned());
+        }
+        Ok(self)
+    }
+
     /// The id with parameters.
     pub fn id(&self) -> String {
-        if self.parameters.is_empty() {
-            self.entry.family.to_owned()
-        } else {
-            format!("{}/{}", self.entry.family, self.parameters)
-        }
+        id(self.entry.family, &self.parameters)
     }
 
     /// The parameters by name.

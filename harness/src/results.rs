@@ -179,7 +179,7 @@ pub struct Record {
     pub scene: String,
     /// Hash of everything in the scene that reaches the GPU, hexadecimal.
     pub scene_hash: String,
-    /// Factor on the scene's size; lights keep theirs.
+    /// Factor on the scene's size and its own lights; scattered lights keep theirs.
     pub scene_scale: f64,
     /// Triangles drawn, instances counted each.
     pub triangles: u64,
@@ -197,6 +197,18 @@ pub struct Record {
     pub light_kinds: BTreeMap<String, u64>,
     /// Factor on the radii of scattered lights; at 1 their mean is one metre.
     pub radius_scale: f64,
+    /// The camera's position, world space, metres.
+    #[serde(default)]
+    pub eye: [f64; 3],
+    /// The direction it looks in, of unit length, world space.
+    #[serde(default)]
+    pub forward: [f64; 3],
+    /// Where lights were scattered: lower and upper corner, world space, metres.
+    #[serde(default)]
+    pub light_box: [[f64; 3]; 2],
+    /// Lights that the scene's file holds, of [`lights`](Self::lights).
+    #[serde(default)]
+    pub own_lights: u64,
     /// Image width, pixels.
     pub width: u32,
     /// Image height, pixels.
@@ -241,7 +253,7 @@ pub struct Record {
     /// (light, sample) pairs within range that were looked up in the lists.
     #[serde(default)]
     pub checked_pairs: Option<u64>,
-    /// View samples: pixels that show a surface.
+    /// View samples: pixels that show a surface; 0 where lists were not checked.
     pub samples: u64,
     /// Largest difference of a channel to the image of no culling, linear HDR; `null` where
     /// there was no such image, or the difference is not finite.

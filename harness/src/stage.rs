@@ -1,8 +1,8 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, Light, LightBuffer, LightKind, View};
-use glam::Vec3;
-use scenes::{Lens, LightSpec, Pose, Scene, scatter_lights};
+use assign::{Gpu, LightBuffer, LightKind, Projection, View};
+use glam::{Vec2, Vec3};
+use scenes::{Aabb, Lens, LightSpec, Pose, Scene, scatter_lights};
 use shading::Renderer;
 
 use crate::{
@@ -24,6 +24,10 @@ pub struct Stage {
     pub scene_hash: String,
     /// Factor on the radii of the scattered lights.
     pub radius_scale: f64,
+    /// Where lights were scattered.
+    pub light_box: Aabb,
+    /// Lights of the scene's own among all that were handed over.
+    pub own_lights: usize,
     /// The lights, faulty ones left out.
     pub lights: LightBuffer,
     /// The camera.
@@ -39,11 +43,25 @@ impl Stage {
         let radius_scale =
             args.radius_scale.unwrap_or_else(|| radius_scale_of(scene.core_bounds.diagonal()));
         let scene = scene.scaled(args.scene_scale as f32)?;
-        let lights = lights_of(&scene, radius_scale, args)?;
+        let light_box = match args.light_box {
+            LightBox::Core => scene.core_bounds,
+            LightBox::Bounds => scene.bounds,
+        };
+        let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
+        let own_lights = lights.len();
+        lights.extend(scatter_lights(&LightSpec {
+            count: args.lights,
+            seed: args.seed,
+            radius_scale: radius_scale as f32,
+            bounds: light_box,
+            spot_share: args.spots as f32,
+        })?);
         let view = view_of(&scene, args);
         Ok(Self {
             scene_hash: scene.hash(),
             radius_scale,
+            light_box,
+            own_lights,
             lights: LightBuffer::new(gpu, &lights)?,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
@@ -58,33 +76,11 @@ impl Stage {
     }
 }
 
-/// Lights as large, against their scene, as lights of one metre are against a hall of 30 m: a
-/// town under lights of one metre is dark. Rooms and halls keep the comparison paper's radii.
+/// Lights as large, against their scene, as lights of one metre are in a hall: a town under
+/// lights of one metre is dark. Rooms and halls keep the comparison paper's radii.
 fn radius_scale_of(diagonal_m: f32) -> f64 {
-    if (10.0..=100.0).contains(&diagonal_m) {
-        1.0
-    } else {
-        f64::from(diagonal_m / 30.0).clamp(1e-6, 1e6)
-    }
-}
-
-fn lights_of(
-    scene: &Scene,
-    radius_scale: f64,
-    args: &CompareArgs,
-) -> Result<Vec<Light>, HarnessError> {
-    let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
-    lights.extend(scatter_lights(&LightSpec {
-        count: args.lights,
-        seed: args.seed,
-        radius_scale: radius_scale as f32,
-        bounds: match args.light_box {
-            LightBox::Core => scene.core_bounds,
-            LightBox::Bounds => scene.bounds,
-        },
-        spot_share: args.spots as f32,
-    })?);
-    Ok(lights)
+    let diagonal_m = f64::from(diagonal_m);
+    (diagonal_m / diagonal_m.clamp(10.0, 60.0)).clamp(1e-6, 1e6)
 }
 
 /// The camera asked for, or the scene's: its path's first pose through its first camera's lens.
@@ -93,18 +89,36 @@ fn view_of(scene: &Scene, args: &CompareArgs) -> View {
         || scene.path.pose(0, 1),
         |camera| Pose::new(Vec3::from(camera.eye), Vec3::from(camera.target)),
     );
-    let fov_y = scene
-        .cameras
-        .iter()
-        .find_map(|camera| match camera.lens {
-            Lens::Perspective { fov_y } => Some(fov_y),
-            Lens::Orthographic { .. } => None,
-        })
-        .unwrap_or(FOV_Y);
+    let lens = scene.cameras.first().map(|camera| camera.lens).filter(|_| args.camera.is_none());
+    let fov_y = match lens {
+        Some(Lens::Perspective { fov_y }) => fov_y,
+        _ => FOV_Y,
+    };
     let near = (scene.core_bounds.diagonal() * NEAR_SHARE).max(1e-6);
     let size = [args.size.width, args.size.height];
-    View {
+    let mut view = View {
         world_to_view: pose.world_to_view(),
         ..View::look_at(pose.eye, pose.target, fov_y, near, size)
+    };
+    if let Some(Lens::Orthographic { half_height, .. }) = lens {
+        // The picture's own shape decides its width.
+        let corner = Vec2::new(half_height * size[0] as f32 / size[1].max(1) as f32, half_height);
+        view.projection = Projection::Orthographic { min: -corner, max: corner };
+        let to_center = scene.bounds.center().distance(pose.eye);
+        view.far_m = Some(to_center + scene.bounds.diagonal());
+    }
+    view
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halls_keep_the_papers_radii_and_towns_get_larger_ones() {
+        assert_eq!(radius_scale_of(28.9), 1.0);
+        assert_eq!(radius_scale_of(600.0), 10.0);
+        assert_eq!(radius_scale_of(1.0), 0.1);
+        assert_eq!(radius_scale_of(0.0), 1e-6);
     }
 }

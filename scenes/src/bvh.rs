@@ -10,6 +10,9 @@ use obvhs::{
 
 use crate::{Aabb, Scene};
 
+/// The most triangles of a hierarchy: 64 bytes each while it is built.
+const MAX_TRIANGLES: u64 = 4_000_000;
+
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
@@ -27,13 +30,10 @@ pub(crate) struct TriangleBvh {
 }
 
 impl TriangleBvh {
-    /// Over all triangles that touch `region`.
+    /// Over the triangles that touch `region`: all of them in scenes of up to [`MAX_TRIANGLES`],
+    /// else at most as many, the largest first.
     pub(crate) fn new(scene: &Scene, region: Aabb) -> Self {
-        let triangles: Vec<_> = scene
-            .world_triangles()
-            .filter(|t| !Aabb::from_points(*t).intersection(region).is_empty())
-            .map(|[a, b, c]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() })
-            .collect();
+        let triangles = choose(scene, region, MAX_TRIANGLES);
         let indices = (0..triangles.len() as u32).collect();
         let bvh = PlocBuilder::with_capacity(triangles.len()).build(
             PlocSearchDistance::Minimum,
@@ -77,6 +77,42 @@ impl TriangleBvh {
     }
 }
 
+/// The triangles that touch `region`. Where the scene has more than `most`, about half of that
+/// number are the scene's largest triangles (walls and floors, which views and loops depend on
+/// most), and the rest are evenly chosen among the others.
+fn choose(scene: &Scene, region: Aabb, most: u64) -> Vec<Triangle> {
+    let touching =
+        scene.world_triangles().filter(|t| !Aabb::from_points(*t).intersection(region).is_empty());
+    let convert = |[a, b, c]: [Vec3; 3]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() };
+    let count = scene.triangle_count();
+    if count <= most {
+        return touching.map(convert).collect();
+    }
+    let half = most / 2;
+    let step = count.div_ceil(half);
+    // What about `half` of all triangles exceed, known from a sample.
+    let mut areas: Vec<f32> = scene.sampled_triangles(half).map(double_area).collect();
+    let rank = areas.len() - 1 - areas.len() / step as usize;
+    let limit = *areas.select_nth_unstable_by(rank, f32::total_cmp).1;
+    let (mut large, mut others) = (0, 0);
+    touching
+        .filter(|&triangle| {
+            // The sample may mislead: never more than `half`.
+            if large < half && double_area(triangle) > limit {
+                large += 1;
+                return true;
+            }
+            others += 1;
+            (others - 1) % step == 0
+        })
+        .map(convert)
+        .collect()
+}
+
+fn double_area([a, b, c]: [Vec3; 3]) -> f32 {
+    (b - a).cross(c - a).length()
+}
+
 /// Distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
 fn distance_to_triangle(p: Vec3, triangle: &Triangle) -> f32 {
     let [a, b, c] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3::from);
@@ -100,6 +136,20 @@ fn distance_to_triangle(p: Vec3, triangle: &Triangle) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn large_scenes_keep_their_largest_triangles() {
+        let scene = crate::atrium(1);
+        let all = choose(&scene, scene.bounds, u64::MAX);
+        assert_eq!(all.len() as u64, scene.triangle_count());
+        let area = |t: &Triangle| double_area([t.v0, t.v1, t.v2].map(Vec3::from));
+        let largest = |list: &[Triangle]| list.iter().map(area).fold(0.0, f32::max);
+        for most in [1000, 100, 10] {
+            let few = choose(&scene, scene.bounds, most);
+            assert!(few.len() as u64 <= most && few.len() as u64 > most / 4, "{}", few.len());
+            assert_eq!(largest(&few), largest(&all));
+        }
+    }
 
     #[test]
     fn distance_to_face_edge_and_corner() {

@@ -1,7 +1,7 @@
 //! What can go wrong, each in one line that names the file, the field, the value and what would
 //! be accepted.
 
-use std::path::PathBuf;
+use std::{fmt::Display, path::PathBuf};
 
 use thiserror::Error;
 
@@ -9,15 +9,33 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum SceneError {
     /// A file that the scene needs cannot be read.
-    #[error("{}: cannot be read: {source}", file.display())]
+    #[error("{}: cannot be read: {}", one_line(file.display()), one_line(source))]
     Read {
         /// The file that could not be read.
         file: PathBuf,
         /// What the system said.
         source: std::io::Error,
     },
-    /// A file does not follow glTF 2.0.
-    #[error("{}: {field} is {value}: it must be {accepted}", file.display())]
+    /// A file that the scene's file names cannot be read.
+    #[error(
+        "{}: {} names {}, which cannot be read: {}",
+        one_line(file.display()), one_line(field), one_line(part.display()), one_line(source)
+    )]
+    ReadPart {
+        /// The scene's file.
+        file: PathBuf,
+        /// The field that names the other file.
+        field: String,
+        /// The file that could not be read.
+        part: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file does not follow glTF 2.0, or asks for more than is accepted.
+    #[error(
+        "{}: {} is {}: it must be {}",
+        one_line(file.display()), one_line(field), quoted(value), one_line(accepted)
+    )]
     Invalid {
         /// The scene's file.
         file: PathBuf,
@@ -29,7 +47,10 @@ pub enum SceneError {
         accepted: String,
     },
     /// The file requires a glTF extension that this importer does not know.
-    #[error("{}: extensionsRequired names {extension}: supported are {supported}", file.display())]
+    #[error(
+        "{}: extensionsRequired names {}: supported are {supported}",
+        one_line(file.display()), quoted(extension)
+    )]
     Extension {
         /// The scene's file.
         file: PathBuf,
@@ -39,7 +60,10 @@ pub enum SceneError {
         supported: String,
     },
     /// An image does not decode.
-    #[error("{}: {image} does not decode as PNG or JPEG: {reason}", file.display())]
+    #[error(
+        "{}: {} does not decode as PNG or JPEG: {}",
+        one_line(file.display()), quoted(image), one_line(reason)
+    )]
     Image {
         /// The scene's file.
         file: PathBuf,
@@ -49,7 +73,7 @@ pub enum SceneError {
         reason: String,
     },
     /// The scene has no triangles.
-    #[error("{name}: scene has 0 triangles: it must have at least 1")]
+    #[error("{}: scene has 0 triangles: it must have at least 1", one_line(name))]
     Empty {
         /// The scene's name or file.
         name: String,
@@ -66,7 +90,8 @@ pub enum SceneError {
     },
     /// Neither the id of a scene nor a glTF file.
     #[error(
-        "scene is \"{name}\": it must be a path that ends in .gltf or .glb, or one of {known}{nearest}"
+        "scene is \"{}\": it must be a path that ends in .gltf or .glb, or one of {known}{nearest}",
+        quoted(name)
     )]
     Unknown {
         /// What was asked for.
@@ -76,4 +101,75 @@ pub enum SceneError {
         /// The nearest ids, as "; nearest: a, b", or nothing.
         nearest: String,
     },
+}
+
+/// The most characters that a message quotes of what a file or a person wrote.
+const MAX_QUOTED: usize = 300;
+
+/// The text with its control characters and line separators escaped.
+pub(crate) fn one_line(text: impl Display) -> String {
+    let mut line = String::new();
+    for c in text.to_string().chars() {
+        if c.is_control() || matches!(c, '\u{2028}' | '\u{2029}') {
+            line.extend(c.escape_default());
+        } else {
+            line.push(c);
+        }
+    }
+    line
+}
+
+/// The same, cut after [`MAX_QUOTED`] characters.
+fn quoted(text: &str) -> String {
+    match text.char_indices().nth(MAX_QUOTED) {
+        Some((end, _)) => one_line(format_args!("{}...", &text[..end])),
+        None => one_line(text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_one_line_of_bounded_length() {
+        let odd = "a\nb\r\u{1b}[31m\u{2028}c";
+        let escaped = "a\\nb\\r\\u{1b}[31m\\u{2028}c";
+        let source = || std::io::Error::other(odd);
+        let (file, text) = (PathBuf::from(odd), || odd.to_owned());
+        let errors = [
+            SceneError::Read { file: file.clone(), source: source() },
+            SceneError::ReadPart {
+                file: file.clone(),
+                field: text(),
+                part: odd.into(),
+                source: source(),
+            },
+            SceneError::Invalid {
+                file: file.clone(),
+                field: text(),
+                value: text(),
+                accepted: text(),
+            },
+            SceneError::Extension {
+                file: file.clone(),
+                extension: text(),
+                supported: String::new(),
+            },
+            SceneError::Image { file: file.clone(), image: text(), reason: text() },
+            SceneError::Empty { name: text() },
+            SceneError::Unknown { name: text(), known: String::new(), nearest: String::new() },
+        ];
+        for error in errors {
+            let line = error.to_string();
+            assert!(line.contains(escaped) && !line.contains(char::is_control), "{line:?}");
+            assert!(!line.contains('\u{2028}'), "{line:?}");
+        }
+        let long = SceneError::Extension {
+            file,
+            extension: "ä".repeat(100_000),
+            supported: String::new(),
+        };
+        assert!(long.to_string().chars().count() < 500);
+    }
 }

@@ -44,6 +44,9 @@ const FINALISTS: usize = 40;
 /// Of the scene's own lights, how many a view is rated by.
 const MAX_LAMPS: usize = 256;
 
+/// Scenes of more triangles are judged by a sample of at most that many, evenly chosen.
+const MAX_SAMPLES: u64 = 2_000_000;
+
 /// Knots of a loop.
 const KNOTS: usize = 24;
 
@@ -62,7 +65,8 @@ pub(crate) fn bounds(scene: &Scene) -> Aabb {
 /// centroids and a margin.
 pub(crate) fn core_bounds(scene: &Scene) -> Aabb {
     let whole = scene.bounds;
-    let centroids: Vec<Vec3> = scene.world_triangles().map(|[a, b, c]| (a + b + c) / 3.0).collect();
+    let sample = scene.sampled_triangles(MAX_SAMPLES);
+    let centroids: Vec<Vec3> = sample.map(|[a, b, c]| (a + b + c) / 3.0).collect();
     if centroids.len() < CORE_TRIANGLES {
         return whole;
     }
@@ -116,16 +120,17 @@ pub(crate) fn path(scene: &Scene) -> CameraPath {
     }
 }
 
-/// Position and range of the scene's own lights, at most [`MAX_LAMPS`] of them, evenly chosen.
+/// Position and range of the scene's own usable lights, at most [`MAX_LAMPS`] of them, evenly chosen.
 fn lamps(scene: &Scene) -> Vec<(Vec3, f32)> {
-    let usable = scene.lights.iter().filter(|light| light.check().is_ok());
-    let step = scene.lights.len().div_ceil(MAX_LAMPS).max(1);
-    usable.step_by(step).map(|light| (light.position, light.range_m)).collect()
+    let usable: Vec<_> = scene.lights.iter().filter(|light| light.check().is_ok()).collect();
+    let step = usable.len().div_ceil(MAX_LAMPS).max(1);
+    usable.iter().step_by(step).map(|light| (light.position, light.range_m)).collect()
 }
 
 /// The median height of the triangles' corners.
 fn middle_height(scene: &Scene) -> f32 {
-    let mut heights: Vec<f32> = scene.world_triangles().map(|[a, ..]| a.y).collect();
+    let sample = scene.sampled_triangles(MAX_SAMPLES);
+    let mut heights: Vec<f32> = sample.map(|[a, ..]| a.y).collect();
     let middle = heights.len() / 2;
     if heights.is_empty() {
         return 0.0;

@@ -24,6 +24,8 @@ impl Feed {
 
     fn floats(&mut self, values: &[f32]) {
         for value in values {
+            // Which NaN arithmetic gives depends on the platform.
+            let value = if value.is_nan() { f32::NAN } else { *value };
             self.0.update(&value.to_le_bytes());
         }
     }

@@ -81,6 +81,8 @@ mod tests {
         assert!(error.contains("nearest: atrium"), "{error}");
         let error = open("xyz").expect_err("no such scene").to_string();
         assert!(error.contains("one of atrium") && !error.contains("nearest"), "{error}");
+        let error = open("a\nb\t\u{1b}[1m").expect_err("no such scene").to_string();
+        assert!(error.starts_with("scene is \"a\\nb\\t\\u{1b}[1m\""), "{error}");
         assert!(matches!(open("no/such.gltf"), Err(SceneError::Read { .. })));
     }
 }

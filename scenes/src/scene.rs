@@ -22,7 +22,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Placed objects; the groups of per-model assignment.
     pub models: Vec<Model>,
-    /// The scene's own lights; may be empty.
+    /// The scene's own lights; may be empty. Faulty ones are among them: they are quarantined
+    /// and reported where lights are uploaded.
     pub lights: Vec<Light>,
     /// The scene's own cameras; may be empty.
     pub cameras: Vec<Camera>,
@@ -88,9 +89,12 @@ impl Mesh {
 
     /// Its triangles' corners, object space.
     pub fn triangles(&self) -> impl ExactSizeIterator<Item = [Vec3; 3]> + '_ {
-        self.indices.chunks_exact(3).map(|corner| {
-            std::array::from_fn(|i| Vec3::from(self.vertices[corner[i] as usize].position))
-        })
+        (0..self.triangle_count()).map(|ix| self.triangle(ix))
+    }
+
+    fn triangle(&self, ix: usize) -> [Vec3; 3] {
+        let corners = &self.indices[3 * ix..3 * ix + 3];
+        std::array::from_fn(|i| Vec3::from(self.vertices[corners[i] as usize].position))
     }
 }
 
@@ -164,10 +168,25 @@ impl Scene {
     /// The corners of every triangle drawn, world space, counter-clockwise seen from the front
     /// even where the model mirrors.
     pub fn world_triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        self.every_nth_triangle(1)
+    }
+
+    /// At most `most` of [`Scene::world_triangles`], evenly chosen; all where there are no more.
+    pub(crate) fn sampled_triangles(&self, most: u64) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        self.every_nth_triangle(self.triangle_count().div_ceil(most).max(1) as usize)
+    }
+
+    fn every_nth_triangle(&self, step: usize) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        // How many triangles of the next instance to pass over.
+        let mut skipped = 0;
         self.instances.iter().flat_map(move |instance| {
             let model = &self.models[instance.model as usize];
             let mirrored = model.is_mirrored();
-            self.meshes[instance.mesh as usize].triangles().map(move |triangle| {
+            let mesh = &self.meshes[instance.mesh as usize];
+            let chosen = (skipped..mesh.triangle_count()).step_by(step);
+            skipped = skipped + chosen.len() * step - mesh.triangle_count();
+            chosen.map(move |ix| {
+                let triangle = mesh.triangle(ix);
                 let [a, b, c] = triangle.map(|p| model.object_to_world.transform_point3(p));
                 if mirrored { [a, c, b] } else { [a, b, c] }
             })
@@ -214,5 +233,21 @@ impl Scene {
             *bounds = Aabb::new(bounds.min * factor, bounds.max * factor);
         }
         Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn samples_are_every_nth_triangle() {
+        let scene = crate::atrium(1);
+        let all: Vec<_> = scene.world_triangles().collect();
+        assert_eq!(all.len() as u64, scene.triangle_count());
+        for most in [all.len(), all.len() / 2, 1000, 7, 1] {
+            let step = all.len().div_ceil(most);
+            let expected: Vec<_> = all.iter().copied().step_by(step).collect();
+            let sample: Vec<_> = scene.sampled_triangles(most as u64).collect();
+            assert!(sample == expected && sample.len() <= most, "{most}");
+        }
     }
 }

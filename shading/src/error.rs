@@ -34,13 +34,16 @@ pub enum ShadingError {
         limit: u32,
     },
     /// Two images differ in size and cannot be compared.
-    #[error("images of {left} and {right} pixels cannot be compared")]
+    #[error("an image of {}x{} pixels does not go with one of {}x{}", left[0], left[1], right[0], right[1])]
     Mismatch {
-        /// Pixels of the first.
-        left: usize,
-        /// Pixels of the second.
-        right: usize,
+        /// Width and height of the first, pixels.
+        left: [u32; 2],
+        /// Width and height of the second, pixels.
+        right: [u32; 2],
     },
+    /// A lighting pass meets a kind of light that its shader was not made for.
+    #[error("the lighting pass was made without spots, and the lights hold one: make it anew")]
+    Spots,
     /// A file could not be written.
     #[error("{path}: cannot be written: {reason}")]
     Write {

@@ -1,6 +1,6 @@
 //! A scene's triangles on the GPU, and the order in which they are drawn.
 
-use assign::{Gpu, entry, storage_entry};
+use assign::{AssignError, Gpu, entry, storage_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::Mat3;
 use scenes::{Instance, Model, Scene, Vertex};
@@ -68,10 +68,10 @@ impl SceneGpu {
         let (ranges, vertex_bytes, index_bytes) = concatenate(scene);
         let (records, draws) = plan(scene, &materials, &ranges);
         let buffer = |label: &str, bytes: &[u8], usage| {
-            check_size(gpu, label, bytes.len() as u64)?;
-            Ok::<_, ShadingError>(gpu.device.create_buffer_init(
-                &wgpu::util::BufferInitDescriptor { label: Some(label), contents: bytes, usage },
-            ))
+            check_size(gpu, label, bytes.len() as u64, usage)?;
+            let descriptor =
+                wgpu::util::BufferInitDescriptor { label: Some(label), contents: bytes, usage };
+            gpu.allocate(label, bytes.len() as u64, || gpu.device.create_buffer_init(&descriptor))
         };
         let vertices = buffer("vertices", &vertex_bytes, wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("indices", &index_bytes, wgpu::BufferUsages::INDEX)?;
@@ -144,10 +144,19 @@ impl SceneGpu {
     }
 }
 
-fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), ShadingError> {
-    let limit = gpu.device.limits().max_buffer_size;
+fn check_size(
+    gpu: &Gpu,
+    what: &str,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> Result<(), AssignError> {
+    let limit = if usage.contains(wgpu::BufferUsages::STORAGE) {
+        gpu.max_storage_bytes()
+    } else {
+        gpu.device.limits().max_buffer_size
+    };
     if bytes > limit {
-        return Err(assign::AssignError::TooLarge { what: what.into(), bytes, limit }.into());
+        return Err(AssignError::TooLarge { what: what.into(), bytes, limit });
     }
     Ok(())
 }

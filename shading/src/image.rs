@@ -25,7 +25,7 @@ pub struct ImageDifference {
     pub max_abs: f64,
     /// Greatest `|a - b| / max(|b|, 1e-6)`.
     pub max_rel: f64,
-    /// Channels whose bits differ.
+    /// Channels whose bits differ, or that are no number in either image.
     pub differing_channels: u64,
 }
 
@@ -36,13 +36,18 @@ impl HdrImage {
         targets: &Targets,
         viewport: assign::Viewport,
     ) -> Result<Self, ShadingError> {
+        let [width, height] = targets.size;
+        if viewport.x.saturating_add(viewport.width) > width
+            || viewport.y.saturating_add(viewport.height) > height
+        {
+            return Err(ShadingError::Mismatch {
+                left: [viewport.width, viewport.height],
+                right: targets.size,
+            });
+        }
         let row_bytes = (targets.size[0] * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("radiance read-back"),
-            size: u64::from(row_bytes) * u64::from(targets.size[1]),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let bytes = u64::from(row_bytes) * u64::from(targets.size[1]);
+        let staging = gpu.staging("radiance read-back", bytes)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_texture_to_buffer(
             targets.radiance_texture.as_image_copy(),
@@ -72,16 +77,17 @@ impl HdrImage {
     pub fn difference(&self, reference: &Self) -> Result<ImageDifference, ShadingError> {
         if (self.width, self.height) != (reference.width, reference.height) {
             return Err(ShadingError::Mismatch {
-                left: self.pixels.len(),
-                right: reference.pixels.len(),
+                left: [self.width, self.height],
+                right: [reference.width, reference.height],
             });
         }
         let mut difference = ImageDifference::default();
         let channels = self.pixels.iter().flatten().zip(reference.pixels.iter().flatten());
         for (&a, &b) in channels {
-            if a.to_bits() != b.to_bits() {
-                difference.differing_channels += 1;
+            if a.to_bits() == b.to_bits() && !a.is_nan() {
+                continue;
             }
+            difference.differing_channels += 1;
             let off = (f64::from(a) - f64::from(b)).abs();
             let off = if a.is_finite() && b.is_finite() { off } else { f64::INFINITY };
             difference.max_abs = difference.max_abs.max(off);

@@ -5,7 +5,7 @@
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
 //! | `depth` | both | triangles | depth |
-//! | `gbuffer` | deferred | triangles, textures | base colour, normal, roughness, emissive |
+//! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive |
 //! | the strategy's own | both | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
 //! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |

@@ -10,7 +10,10 @@ use crate::{
 
 /// The lighting pass of one strategy and mode; recorded as the pass `shade`.
 #[derive(Debug)]
-pub struct Lighting(Kind);
+pub struct Lighting {
+    kind: Kind,
+    spots: bool,
+}
 
 #[derive(Debug)]
 enum Kind {
@@ -28,7 +31,7 @@ impl Lighting {
         spots: bool,
     ) -> Result<Self, ShadingError> {
         let lists = Lists { lookup: strategy.lookup(), spots };
-        Ok(Self(match mode {
+        let kind = match mode {
             Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists)?),
             Mode::Forward => Kind::Forward(RasterPipelines::new(
                 &renderer.gpu,
@@ -37,23 +40,29 @@ impl Lighting {
                 renderer.depth_mapping,
                 RasterPass::Forward(lists),
             )?),
-        }))
+        };
+        Ok(Self { kind, spots })
     }
 
-    /// Records the pass `shade`, after the strategy's own.
+    /// Records the pass `shade`, after the strategy's own. An error where the prepared lights
+    /// hold a spot and the shader was made without.
     pub fn record(
         &self,
         renderer: &Renderer,
         view: &View,
         strategy: &dyn Assignment,
         passes: &mut dyn Passes,
-    ) {
-        match &self.0 {
+    ) -> Result<(), ShadingError> {
+        if renderer.has_spots && !self.spots {
+            return Err(ShadingError::Spots);
+        }
+        match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(pipelines) => {
                 renderer.record_radiance("shade", view, pipelines, strategy.bind_group(), passes);
             }
         }
+        Ok(())
     }
 }
 

@@ -257,5 +257,6 @@ fn upload_images(gpu: &Gpu, images: &[Image]) -> Result<Vec<wgpu::TextureView>, 
         );
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     };
-    Ok(images.iter().zip(chains).map(upload).collect())
+    let bytes = chains.iter().map(|(_, bytes)| bytes.len() as u64).sum();
+    Ok(gpu.allocate("textures", bytes, || images.iter().zip(chains).map(upload).collect())?)
 }

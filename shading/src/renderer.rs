@@ -37,6 +37,8 @@ pub struct Renderer {
     pub(crate) scene: SceneGpu,
     pub(crate) targets: Targets,
     pub(crate) depth_mapping: DepthMapping,
+    /// Whether the prepared lights hold a spot.
+    pub(crate) has_spots: bool,
     depth: RasterPipelines,
     gbuffer: RasterPipelines,
     clay: RasterPipelines,
@@ -56,6 +58,7 @@ impl Renderer {
             clay: pipelines(RasterPass::Clay)?,
             gpu: gpu.clone(),
             depth_mapping: view.depth,
+            has_spots: false,
             frame,
             scene,
             targets,
@@ -99,6 +102,7 @@ impl Renderer {
             }
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights))?;
+        self.has_spots = lights.has_spots();
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The images of a frame: depth, G-buffer, radiance.
 
-use assign::{Gpu, View};
+use assign::{AssignError, Gpu, View};
 
 use crate::ShadingError;
 
@@ -44,6 +44,20 @@ impl Targets {
         if width == 0 || height == 0 || width.max(height) > limit {
             return Err(ShadingError::Size { width, height, limit });
         }
+        // Depth 4, base colour 4, normal 8, emissive 8, radiance 16 bytes a pixel; the largest
+        // must be read back through one buffer.
+        let pixels = u64::from(width) * u64::from(height);
+        let readable = gpu.device.limits().max_buffer_size;
+        if pixels * 16 > readable {
+            let what = format!("an image of {width}x{height}");
+            return Err(AssignError::TooLarge { what, bytes: pixels * 16, limit: readable }.into());
+        }
+        let what = format!("images of {width}x{height}");
+        Ok(gpu.allocate(&what, pixels * 40, || Self::make(gpu, [width, height], emissive))?)
+    }
+
+    fn make(gpu: &Gpu, size: [u32; 2], emissive: bool) -> Self {
+        let [width, height] = size;
         let texture = |label, format, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -63,14 +77,14 @@ impl Targets {
             RADIANCE_FORMAT,
             wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
         );
-        Ok(Self {
-            size: [width, height],
+        Self {
+            size,
             depth: view_of(&texture("depth", DEPTH_FORMAT, sampled)),
             base_color: view_of(&texture("base colour", BASE_COLOR_FORMAT, sampled)),
             normal: view_of(&texture("normal", NORMAL_FORMAT, sampled)),
             emissive: emissive.then(|| view_of(&texture("emissive", EMISSIVE_FORMAT, sampled))),
             radiance: view_of(&radiance_texture),
             radiance_texture,
-        })
+        }
     }
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::Samples;
 
 /// A pair that lies closer to the edge of the light's support than this share of it does not
-/// count as missed: its contribution is below 1e-11 of the light's.
+/// count as missed: the window there is below 2e-11.
 pub const EDGE: f64 = 1e-6;
 
 /// A hierarchy over the lights' bounding boxes: an oracle apart from every strategy's code.
@@ -32,7 +32,7 @@ pub struct ListsTruth {
     pub contributing: u64,
     /// (Light, sample) pairs that shading evaluates.
     pub listed: u64,
-    /// Contributing pairs, off the edge, that are not listed.
+    /// Contributing pairs, off the edge, that are not listed, and samples without a position.
     pub missed: u64,
 }
 
@@ -117,6 +117,11 @@ impl<'a> LightBvh<'a> {
             truth.samples += run.len() as u64;
             truth.listed += run.len() as u64 * entries.len() as u64;
             for &sample in run {
+                // A position that is no number is reached by nothing and lit by anything.
+                if !samples.positions[sample as usize].iter().all(|x| x.is_finite()) {
+                    truth.missed += 1;
+                    continue;
+                }
                 self.lights_at(samples.positions[sample as usize], |light, reach| {
                     truth.contributing += 1;
                     let is_listed = listed_in[light as usize] == run_ix as u32;
@@ -176,6 +181,15 @@ mod tests {
         let lights = lights(10);
         let bvh = LightBvh::new(&lights);
         let truth = bvh.check(&samples(), &snapshot(&[&[4, 6], &[0, 1]]));
+        assert_eq!(truth.missed, 1);
+    }
+
+    #[test]
+    fn a_sample_without_a_position_is_missed() {
+        let lights = lights(10);
+        let mut samples = samples();
+        samples.positions[2] = [f32::NAN, 0.0, 0.0];
+        let truth = LightBvh::new(&lights).check(&samples, &snapshot(&[&[3, 4, 5, 6], &[0, 1]]));
         assert_eq!(truth.missed, 1);
     }
 

@@ -21,7 +21,7 @@ fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, 
     let frame = renderer.frame(view, lights);
     strategy.prepare(gpu, &frame).unwrap();
     record_before_lighting(&renderer, mode, &mut strategy, &frame, &mut passes);
-    lighting.record(&renderer, view, &strategy, &mut passes);
+    lighting.record(&renderer, view, &strategy, &mut passes).unwrap();
     if mode == Mode::Forward {
         renderer.record_gbuffer(view, &mut passes);
     }

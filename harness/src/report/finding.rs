@@ -87,7 +87,7 @@ fn sentence(comparison: &Comparison<'_>) -> String {
 fn image(record: &Record) -> String {
     match loss(record) {
         Some(loss) => format!(", but {loss}"),
-        None if record.differing_channels == Some(0) => {
+        None if record.differing_channels == Some(0) && record.checked_pairs != Some(0) => {
             " and shows the same image, bit for bit".to_owned()
         }
         None => String::new(),
@@ -140,6 +140,17 @@ pub fn notices(results: &Results) -> Vec<String> {
         if let Some(loss) = loss(record) {
             let mode = record.mode.name();
             notices.push(format!("{}, {mode}, {}: {loss}.", record.scene, record.strategy));
+        }
+    }
+    for record in &results.records {
+        if record.checked_pairs == Some(0) && record.lights > 0 {
+            notices.push(format!(
+                "{}, {}, {}: no light reaches any of the {} samples, so nothing was checked.",
+                record.scene,
+                record.mode.name(),
+                record.strategy,
+                number(record.samples as f64),
+            ));
         }
     }
     for record in results.records.iter().filter(|record| record.overflowed_groups > 0) {

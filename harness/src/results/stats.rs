@@ -53,7 +53,7 @@ mod tests {
         assert_eq!(percentile(&samples, 0.951), 96.0);
         assert_eq!(percentile(&samples, 1.0), 100.0);
         assert_eq!(percentile(&samples, 0.0), 1.0);
-        // Eight samples, the default: the 95th percentile is the largest.
+        // Of eight samples the 95th percentile is the largest.
         assert_eq!(percentile(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 9.0], 0.95), 9.0);
         assert_eq!(percentile(&[5.0], 0.95), 5.0);
         assert!(percentile(&[], 0.95).is_nan());

@@ -108,14 +108,21 @@ impl File {
             }
             return Ok(percent_encoding::percent_decode_str(body).collect());
         }
-        if uri.contains("://") {
+        if uri.is_empty() || uri.contains("://") {
+            let shown = format!("{shown:?}");
             return Err(self.invalid(field, &shown, "a data URI or a relative path"));
         }
         let name = percent_encoding::percent_decode_str(uri)
             .decode_utf8()
             .map_err(|_| self.invalid(field, &shown, "UTF-8 when percent-decoded"))?;
         let folder = self.path.parent().unwrap_or(Path::new(""));
-        read(&folder.join(name.as_ref()))
+        let part = folder.join(name.as_ref());
+        std::fs::read(&part).map_err(|source| SceneError::ReadPart {
+            file: self.path.clone(),
+            field: field.into(),
+            part,
+            source,
+        })
     }
 }
 
@@ -180,8 +187,13 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
 
 /// Parses and validates the JSON, so that indices between its parts are in range.
 fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
-    let root: Root = gltf::json::deserialize::from_slice(json)
-        .map_err(|e| invalid(path, "JSON", format!("malformed ({e})"), "glTF 2.0"))?;
+    let root: Root = gltf::json::deserialize::from_slice(json).map_err(|e| {
+        // Other versions look different: better to name the version than what differs.
+        let other: Option<serde_json::Value> = serde_json::from_slice(json).ok();
+        let wrong = other.and_then(|json| check_version_of(path, json.get("asset")?).err());
+        wrong.unwrap_or_else(|| invalid(path, "JSON", format!("malformed ({e})"), "glTF 2.0"))
+    })?;
+    check_version(path, &root.asset.version, root.asset.min_version.as_deref())?;
     if let Some(name) =
         root.extensions_required.iter().find(|name| !SUPPORTED.contains(&name.as_str()))
     {
@@ -210,6 +222,44 @@ fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
             };
             Err(invalid(path, field, value, accepted))
         }
+    }
+}
+
+/// The versions of a file whose JSON is not glTF 2.0's.
+fn check_version_of(path: &Path, asset: &serde_json::Value) -> Result<(), SceneError> {
+    let text = |field: &str| match asset.get(field) {
+        None => Ok(None),
+        Some(serde_json::Value::String(text)) => Ok(Some(text.as_str())),
+        Some(other) => {
+            Err(invalid(path, format!("asset.{field}"), other, "a string such as \"2.0\""))
+        }
+    };
+    check_version(path, text("version")?.unwrap_or("2.0"), text("minVersion")?)
+}
+
+/// Files of any glTF 2 may be read, unless they say that 2.0 is not enough.
+fn check_version(path: &Path, version: &str, least: Option<&str>) -> Result<(), SceneError> {
+    let parts = |text: &str| -> Option<(u32, u32)> {
+        let (major, minor) = text.split_once('.')?;
+        let number = |digits: &str| {
+            let all_digits = digits.bytes().all(|b| b.is_ascii_digit());
+            digits.parse().ok().filter(|_| all_digits)
+        };
+        Some((number(major)?, number(minor)?))
+    };
+    if !matches!(parts(version), Some((2, _))) {
+        return Err(invalid(
+            path,
+            "asset.version",
+            format!("{version:?}"),
+            "\"2.0\" or another 2.x",
+        ));
+    }
+    match least {
+        Some(least) if parts(least).is_none_or(|least| least > (2, 0)) => {
+            Err(invalid(path, "asset.minVersion", format!("{least:?}"), "at most \"2.0\""))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -54,7 +54,7 @@ fn decode(file: &File, ix: usize, encoding: Encoding) -> Result<Image, SceneErro
     let fail = |reason: String| SceneError::Image {
         file: file.path.clone(),
         image: label.clone(),
-        reason: reason.replace('\n', " "),
+        reason,
     };
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()

@@ -18,12 +18,17 @@ pub(super) struct Meshes {
     pub(super) ranges: Vec<std::ops::Range<u32>>,
 }
 
+/// The most vertices and indices, every primitive counting its own: many primitives of a small
+/// file can share one large accessor, and each becomes a mesh of its own.
+const MAX_ELEMENTS: u64 = 1 << 27;
+
 /// Converts every mesh of the file, primitives in parallel.
 pub(super) fn load(
     file: &File,
     materials: &Materials,
     warnings: &mut Warnings,
 ) -> Result<Meshes, SceneError> {
+    check_elements(file)?;
     let all = file.root.meshes.iter().enumerate();
     let jobs: Vec<_> =
         all.flat_map(|(mesh, json)| (0..json.primitives.len()).map(move |ix| (mesh, ix))).collect();
@@ -48,6 +53,25 @@ pub(super) fn load(
         meshes.push(mesh);
     }
     Ok(Meshes { meshes, ranges })
+}
+
+fn check_elements(file: &File) -> Result<(), SceneError> {
+    let positions = |p: &Primitive| p.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
+    let primitives = file.root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let elements = primitives
+        .flat_map(|primitive| [positions(primitive), primitive.indices])
+        .filter_map(|index| Some(file.root.get(index?)?.count.0))
+        // Counts beyond 32 bits are refused by accessor.
+        .filter(|count| *count <= u64::from(u32::MAX))
+        .fold(0, u64::saturating_add);
+    if elements > MAX_ELEMENTS {
+        return Err(file.invalid(
+            "meshes' vertices and indices (each primitive counts its own)",
+            elements,
+            format!("at most {MAX_ELEMENTS}"),
+        ));
+    }
+    Ok(())
 }
 
 /// One primitive on its way.

@@ -19,7 +19,7 @@ use std::path::Path;
 pub(crate) use animation::AnimatedNode;
 use file::File;
 
-use crate::{CameraPath, Scene, SceneError, fit};
+use crate::{CameraPath, Scene, SceneError, error::one_line, fit};
 
 /// One line for each thing left out or changed, without repeats.
 #[derive(Default)]
@@ -27,6 +27,7 @@ struct Warnings(Vec<String>);
 
 impl Warnings {
     fn add(&mut self, line: String) {
+        let line = one_line(line);
         if !self.0.contains(&line) {
             self.0.push(line);
         }
@@ -45,16 +46,22 @@ impl Warnings {
 /// computed flat, missing tangents by MikkTSpace where the material has a normal map. Skins, morph
 /// targets, vertex colours, lines, points and directional lights are left out, and blended
 /// materials become masks; [`Scene::warnings`] says so. Lights without a range get the distance
-/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD); those that
-/// [`Light::check`](assign::Light::check) refuses are left out.
+/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD). Those that
+/// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
+/// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
+///
+/// At most 200 million triangles are accepted, every node counting its mesh's, and at most 2^27
+/// vertices and indices, every primitive counting its own. The boxes and the path of scenes of
+/// more than 2 million triangles are found from a sample of them.
 ///
 /// The path is the animation of the first animated camera; else it is fitted to the scene and
 /// starts at the first camera where there is one.
 ///
 /// # Errors
 ///
-/// [`SceneError`] for a file that cannot be read, that is malformed or cut short, whose images do
-/// not decode, that requires an unknown extension, or that has no triangles.
+/// [`SceneError`] for a file that cannot be read, that is malformed or cut short, that is not of
+/// glTF 2, whose images do not decode, that requires an unknown extension, or that has no
+/// triangles or too many.
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let file = File::open(path)?;
     let mut warnings = Warnings::default();

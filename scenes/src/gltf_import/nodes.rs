@@ -15,6 +15,10 @@ use gltf::json::{
 use super::{Warnings, file::File, meshes::Meshes};
 use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
 
+/// The most triangles drawn, every node counting its mesh's. A small file can place one large
+/// mesh often, and what follows takes time and memory by that number.
+pub(super) const MAX_TRIANGLES: u64 = 200_000_000;
+
 /// What the nodes place.
 #[derive(Default)]
 pub(super) struct Placed {
@@ -24,6 +28,8 @@ pub(super) struct Placed {
     pub(super) cameras: Vec<Camera>,
     /// For each camera, the nodes from the root to the one that holds it.
     pub(super) camera_chains: Vec<Vec<usize>>,
+    /// Every node counts its mesh's; beyond [`MAX_TRIANGLES`], instances are no longer kept.
+    triangles: u64,
 }
 
 /// A node's local transform, before any animation.
@@ -98,6 +104,13 @@ pub(super) fn load(
             stack.push((child.value(), to_world));
         }
     }
+    if placed.triangles > MAX_TRIANGLES {
+        return Err(file.invalid(
+            "scene triangles (each node counts its mesh's)",
+            placed.triangles,
+            format!("at most {MAX_TRIANGLES}"),
+        ));
+    }
     Ok(placed)
 }
 
@@ -138,6 +151,11 @@ impl Placed {
             return;
         }
         let parts = &meshes.meshes[range.start as usize..range.end as usize];
+        let triangles = parts.iter().map(|mesh| mesh.triangle_count() as u64).sum();
+        self.triangles = self.triangles.saturating_add(triangles);
+        if self.triangles > MAX_TRIANGLES {
+            return;
+        }
         let bounds = parts.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
         let model = self.models.len() as u32;
         self.models.push(Model { name: name.into(), bounds_object: bounds, object_to_world });
@@ -166,10 +184,7 @@ impl Placed {
             warnings.add(format!("light {name:?}: directional lights are left out"));
             return Ok(());
         };
-        match light.check() {
-            Ok(()) => self.lights.push(light),
-            Err(fault) => warnings.add(format!("light {name:?} is left out: {fault}")),
-        }
+        self.lights.push(light);
         Ok(())
     }
 
@@ -224,11 +239,15 @@ pub(super) fn pose(to_world: &Mat4) -> Pose {
 }
 
 /// Intensity is candela times colour. A light without a range gets the one at which its
-/// unoccluded illuminance falls to [`THRESHOLD`]. `None` for directional lights.
+/// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported
+/// where lights are uploaded. `None` for directional lights.
 fn convert_light(json: &JsonLight, to_world: Mat4) -> Option<Light> {
     let pose = pose(&to_world);
     let intensity = Vec3::from(json.color) * json.intensity;
-    let unbounded = || Light::range_from_threshold(intensity, THRESHOLD);
+    let shines =
+        intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() > 0.0;
+    // Of a faulty intensity follows no range: the fault to report is the intensity's.
+    let unbounded = || if shines { Light::range_from_threshold(intensity, THRESHOLD) } else { 1.0 };
     let shape = match (&json.type_, &json.spot) {
         (Checked::Valid(LightType::Point), _) => LightShape::Point,
         (Checked::Valid(LightType::Spot), Some(spot)) => LightShape::Spot {

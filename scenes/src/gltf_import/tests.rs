@@ -222,7 +222,20 @@ fn errors_name_field_value_and_what_is_accepted() {
         ("/nodes/1/mesh", json!(9), "nodes[1].mesh"),
         ("/nodes/2/scale", json!([1e38, 1e38, 1e38]), ""),
         ("/scenes/0/nodes", json!([3]), "0 triangles"),
-        ("/asset", json!({"version": 3}), "malformed"),
+        ("/asset", json!({"version": 3}), "asset.version is 3: it must be a string"),
+        ("/asset", json!({}), "malformed"),
+        ("/asset/version", json!("1.0"), "asset.version is \"1.0\": it must be \"2.0\" or"),
+        ("/asset/version", json!("3.0"), "asset.version is \"3.0\": it must be"),
+        ("/asset/version", json!("2"), "asset.version is \"2\": it must be"),
+        ("/asset/version", json!("2.0\n"), "asset.version is \"2.0\\n\": it must be"),
+        ("/asset", json!({"version": "2.1", "minVersion": "2.1"}), "asset.minVersion is \"2.1\""),
+        ("/asset", json!({"version": "2.0", "minVersion": "x"}), "asset.minVersion is \"x\""),
+        ("/extensionsRequired", json!(["EXT\nodd"]), "names EXT\\nodd: supported"),
+        ("/buffers/0", json!({"byteLength": 4, "uri": ""}), "buffers[0].uri is \"\": it must"),
+        ("/buffers/0", json!({"byteLength": 4, "uri": "gone%0A.bin"}), "buffers[0].uri names"),
+        ("/images/0", json!({"uri": ""}), "images[0].uri is \"\": it must be a data URI"),
+        ("/images/0", json!({"uri": "gone.png"}), "images[0].uri names"),
+        ("/images/0", json!({"uri": "data:\n,x"}), "images[0] (data:\\n,x) does not decode"),
     ];
     for (pointer, value, expected) in cases {
         if expected.is_empty() {
@@ -230,7 +243,7 @@ fn errors_name_field_value_and_what_is_accepted() {
         }
         let error = error_with(pointer, value);
         assert!(error.contains(expected), "{pointer}: {error}");
-        assert!(!error.contains('\n'), "{error}");
+        assert!(!error.contains('\n') && error.contains("sample.glb: "), "{error}");
     }
 }
 
@@ -246,6 +259,97 @@ fn bad_indices_and_positions_are_named() {
     let error = load(&bad).expect_err("NaN").to_string();
     assert!(error.contains("POSITION (accessors[0]) element 0 is NaN"), "{error}");
     assert!(matches!(load_bytes("empty.glb", b""), Err(SceneError::Invalid { .. })));
+}
+
+#[test]
+fn files_of_other_versions_are_told_by_their_version() {
+    let old = json!({"asset": {"version": "1.0"}, "meshes": {"mesh": {"primitives": []}}});
+    let error = load_bytes("old.gltf", old.to_string().as_bytes()).expect_err("glTF 1.0");
+    assert!(error.to_string().contains("asset.version is \"1.0\""), "{error}");
+    let mut newer = sample();
+    newer.json["asset"] = json!({"version": "2.7", "minVersion": "2.0"});
+    load(&newer).expect("any glTF 2 that 2.0 is enough for");
+}
+
+#[test]
+fn missing_parts_name_the_scene_the_field_and_the_part() {
+    let mut sample = sample();
+    sample.json["buffers"][0]["uri"] = "gone.bin".into();
+    let error = load(&sample).expect_err("no such buffer").to_string();
+    for part in ["sample.glb: buffers[0].uri names ", "gone.bin, which cannot be read: No such"] {
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn faulty_lights_stay_to_be_reported() {
+    let mut sample = sample();
+    sample.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
+        {"type": "point", "intensity": 1e39}, {"type": "point", "range": -2.0},
+        {"type": "point", "intensity": 0.0}, {"type": "point", "intensity": -1.0},
+        {"type": "point", "intensity": 1e39, "color": [0.0, 1.0, 1.0]},
+        {"type": "spot", "spot": {"outerConeAngle": 9.0}}, {"type": "point"},
+        {"type": "directional", "intensity": 1e39}]);
+    let nodes = sample.json["nodes"].as_array_mut().expect("nodes");
+    nodes[2] = json!({"children": [4, 5, 6, 7, 8, 9, 10, 11]});
+    for light in 0..8 {
+        nodes.push(json!({"extensions": {"KHR_lights_punctual": {"light": light}}}));
+    }
+    // Without the camera, the path is fitted to the scene and its lights.
+    sample.json["scenes"][0]["nodes"] = json!([0]);
+    let scene = load(&sample).expect("valid but for its lights");
+    let faults = |scene: &Scene| -> Vec<_> {
+        let fault = |light: &assign::Light| light.check().err().map(|fault| fault.to_string());
+        let first = |fault: String| fault.split(" is ").next().unwrap_or_default().to_owned();
+        scene.lights.iter().map(|light| fault(light).map(first).unwrap_or_default()).collect()
+    };
+    let expected =
+        ["intensity", "range", "intensity", "intensity", "intensity", "spot outer angle", ""];
+    assert_eq!(faults(&scene), expected);
+    assert_eq!(scene.warnings, ["light \"light 7\": directional lights are left out"]);
+    let pose = scene.path.pose(0, 10);
+    assert!(pose.eye.is_finite() && pose.target.is_finite());
+    assert_eq!(scene.hash(), scene.clone().hash());
+    assert_eq!(faults(&scene.scaled(1e-6).expect("in range"))[..6], expected[..6]);
+}
+
+/// A mesh of 100,000 triangles, placed by that many nodes.
+fn heavy(nodes: usize) -> Sample {
+    let mut sample = sample();
+    let offset = sample.binary.len();
+    sample.binary.extend([0, 1, 2, 0, 2, 3].repeat(50_000));
+    sample.json["buffers"][0]["byteLength"] = sample.binary.len().into();
+    let views = sample.json["bufferViews"].as_array_mut().expect("views");
+    views.push(json!({"buffer": 0, "byteOffset": offset, "byteLength": 300_000}));
+    let accessors = sample.json["accessors"].as_array_mut().expect("accessors");
+    let indices =
+        json!({"bufferView": 7, "count": 300_000, "componentType": 5121, "type": "SCALAR"});
+    accessors.push(indices);
+    sample.json["meshes"][0]["primitives"][0]["indices"] = 6.into();
+    sample.json["materials"][0]["normalTexture"] = json!(null);
+    sample.json["nodes"] = (0..nodes).map(|_| json!({"mesh": 0})).collect();
+    sample.json["scenes"][0]["nodes"] = (0..nodes).collect();
+    sample.json["animations"] = json!([]);
+    sample
+}
+
+#[test]
+fn too_many_triangles_are_refused() {
+    let error = load(&heavy(20_000)).expect_err("too many").to_string();
+    let expected = "is 2000000000: it must be at most 200000000";
+    assert!(error.contains("sample.glb: scene triangles") && error.ends_with(expected), "{error}");
+    let mut shared = heavy(1);
+    let primitive = shared.json["meshes"][0]["primitives"][0].clone();
+    shared.json["meshes"][0]["primitives"] = (0..1000).map(|_| primitive.clone()).collect();
+    let error = load(&shared).expect_err("too many").to_string();
+    assert!(error.ends_with("is 300004000: it must be at most 134217728"), "{error}");
+}
+
+#[test]
+fn large_scenes_are_fitted_from_a_sample() {
+    let scene = load(&heavy(60)).expect("6 million triangles");
+    assert_eq!(scene.triangle_count(), 6_000_000);
+    assert!(scene.path.pose(0, 10).eye.is_finite());
 }
 
 /// Truncations, flipped bytes and replaced JSON values: an error or a scene, never a panic.

@@ -1,0 +1,175 @@
+//! Every permutation of the pipeline's shaders links and validates, without a GPU.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use std::collections::BTreeSet;
+
+/// A strategy's look-up: name, WESL, bindings.
+type LookUp = (&'static str, &'static str, &'static [u32]);
+
+const LOOK_UPS: [LookUp; 2] = [
+    ("no culling", include_str!("../../assign/src/shaders/everything.wesl"), &[0, 1]),
+    ("DC-I", assign_clustered::DENSE_IMPLICIT_WESL, &[0, 1, 4]),
+];
+
+/// In the order of their bindings: slot i has bindings 2i and 2i + 1.
+const TEXTURES: [&str; 4] =
+    ["base_color_texture", "metallic_roughness_texture", "normal_texture", "emissive_texture"];
+
+type Flags = BTreeSet<&'static str>;
+
+/// Every subset of the flags of a material and of `more`, with `pass` always on.
+fn material_flags(pass: Option<&'static str>, more: &[&'static str]) -> Vec<Flags> {
+    let flags = [&TEXTURES[..], &["uv_transforms"], more].concat();
+    subsets(&flags).into_iter().map(|set| set.into_iter().chain(pass).collect()).collect()
+}
+
+fn subsets(flags: &[&'static str]) -> Vec<Flags> {
+    let chosen = |bits: usize| (0..flags.len()).filter(move |i| bits >> i & 1 == 1);
+    (0..1 << flags.len()).map(|bits| chosen(bits).map(|i| flags[i]).collect()).collect()
+}
+
+/// What a linked and validated shader has.
+#[derive(Debug, PartialEq)]
+struct Linked {
+    entry_points: BTreeSet<String>,
+    /// Group and binding of what the entry points use.
+    bindings: BTreeSet<(u32, u32)>,
+    source: String,
+}
+
+fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
+    let what = format!("{root}, {flags:?}, {:?}", look_up.map(|(name, ..)| name));
+    let mut shader = shading::lighting_shader();
+    for flag in flags {
+        shader = shader.flag(flag, true);
+    }
+    if let Some((_, module, _)) = look_up {
+        shader = shader.module("package::strategy", module);
+    }
+    let source = shader.link(root).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let module = naga::front::wgsl::parse_str(&source)
+        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
+    // What WebGPU has without any optional feature.
+    let info = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
+    let used = |handle: naga::Handle<naga::GlobalVariable>| {
+        (0..module.entry_points.len()).any(|i| !info.get_entry_point(i)[handle].is_empty())
+    };
+    let bindings = module
+        .global_variables
+        .iter()
+        .filter(|&(handle, _)| used(handle))
+        .filter_map(|(_, variable)| variable.binding.map(|b| (b.group, b.binding)))
+        .collect();
+    let entry_points = module.entry_points.iter().map(|e| e.name.clone()).collect();
+    Linked { entry_points, bindings, source }
+}
+
+/// Links a pass over the triangles; checks its entry points, and that it reads the textures of
+/// `slots` that its flags name, the lists of `look_up`, and nothing else of the two groups.
+fn check_geometry(flags: &Flags, look_up: Option<LookUp>, fragment: Option<&str>, slots: &[u32]) {
+    let linked = link("package::geometry", flags, look_up);
+    let entry_points = ["vertex_depth", "vertex_surface"].into_iter().chain(fragment);
+    assert_eq!(linked.entry_points, entry_points.map(str::to_owned).collect(), "{flags:?}");
+    let textures = slots
+        .iter()
+        .filter(|&&slot| flags.contains(TEXTURES[slot as usize]))
+        .flat_map(|slot| [(3, 2 * slot), (3, 2 * slot + 1)]);
+    let lists = look_up.map_or(&[][..], |(_, _, bindings)| bindings);
+    let expected: BTreeSet<_> = textures.chain(lists.iter().map(|&binding| (1, binding))).collect();
+    let of_lists_and_textures = |&(group, _): &(u32, u32)| group == 1 || group == 3;
+    let read: BTreeSet<_> = linked.bindings.into_iter().filter(of_lists_and_textures).collect();
+    assert_eq!(read, expected, "{flags:?}");
+}
+
+#[test]
+fn depth() {
+    for flags in material_flags(None, &["mask"]) {
+        let mask = flags.contains("mask");
+        let slots: &[u32] = if mask { &[0] } else { &[] };
+        check_geometry(&flags, None, mask.then_some("fragment_mask"), slots);
+    }
+}
+
+/// The textures that shading reads.
+fn shaded_slots(flags: &Flags) -> &'static [u32] {
+    if flags.contains("emissive") { &[0, 1, 2, 3] } else { &[0, 1, 2] }
+}
+
+#[test]
+fn gbuffer() {
+    for flags in material_flags(Some("gbuffer"), &["emissive"]) {
+        check_geometry(&flags, None, Some("fragment_gbuffer"), shaded_slots(&flags));
+    }
+}
+
+#[test]
+fn clay() {
+    for flags in material_flags(Some("clay"), &[]) {
+        check_geometry(&flags, None, Some("fragment_clay"), &[]);
+    }
+}
+
+#[test]
+fn forward() {
+    for look_up in LOOK_UPS {
+        for flags in material_flags(Some("forward"), &["emissive", "spots"]) {
+            let slots = shaded_slots(&flags);
+            check_geometry(&flags, Some(look_up), Some("fragment_forward"), slots);
+        }
+    }
+}
+
+/// Links a pass of one compute entry point; checks that it reads the lists of `look_up` at
+/// `lists` and `images` of group 2.
+fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], images: &[u32]) {
+    let linked = link(&format!("package::{root}"), flags, Some(look_up));
+    let entry_point = if root == "deferred" { "shade" } else { root };
+    assert_eq!(linked.entry_points, [entry_point.to_owned()].into(), "{root} {flags:?}");
+    let of_group = |group| -> Vec<u32> {
+        linked.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
+    };
+    assert_eq!(of_group(1), lists, "{root} {flags:?} {}", look_up.0);
+    assert_eq!(of_group(2), images, "{root} {flags:?} {}", look_up.0);
+}
+
+#[test]
+fn deferred() {
+    for look_up in LOOK_UPS {
+        for flags in subsets(&["emissive", "spots"]) {
+            let emissive = flags.contains("emissive");
+            let images: &[u32] = if emissive { &[0, 1, 2, 3, 4] } else { &[0, 1, 2, 4] };
+            check_compute("deferred", &flags, look_up, look_up.2, images);
+        }
+    }
+}
+
+#[test]
+fn probe() {
+    for look_up in LOOK_UPS {
+        // It asks for the group, and reads no list.
+        let own: Vec<u32> = look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
+        check_compute("probe", &Flags::new(), look_up, &own, &[0, 1, 2, 3]);
+    }
+}
+
+/// The flags that bind nothing reach the module as well.
+#[test]
+fn flags_change_the_shader() {
+    let source = |flags: &[&'static str]| {
+        let flags = flags.iter().copied().collect();
+        link("package::geometry", &flags, Some(LOOK_UPS[0]))
+    };
+    let forward = source(&["forward", "base_color_texture"]);
+    let moved = source(&["forward", "base_color_texture", "uv_transforms"]);
+    assert_ne!(moved.source, forward.source);
+    assert_ne!(source(&["forward", "emissive"]).source, source(&["forward"]).source);
+    let shapes = (0, 3);
+    let spots = source(&["forward", "base_color_texture", "spots"]);
+    assert!(spots.bindings.contains(&shapes) && !forward.bindings.contains(&shapes));
+}
