@@ -345,13 +345,6 @@ fn too_many_triangles_are_refused() {
     assert!(error.ends_with("is 300004000: it must be at most 134217728"), "{error}");
 }
 
-#[test]
-fn large_scenes_are_fitted_from_a_sample() {
-    let scene = load(&heavy(60)).expect("6 million triangles");
-    assert_eq!(scene.triangle_count(), 6_000_000);
-    assert!(scene.path.pose(0, 10).eye.is_finite());
-}
-
 /// Truncations, flipped bytes and replaced JSON values: an error or a scene, never a panic.
 #[test]
 fn no_damage_makes_it_panic() {
