@@ -83,6 +83,14 @@ impl Gpu {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
+    /// The most lights that one loop of a shader can sum here; `None` where nothing bounds it.
+    ///
+    /// llvmpipe ends an invocation's loops after 65,535 rounds without a word: with more lights
+    /// its image of no culling is wrong.
+    pub fn max_looped_lights(&self) -> Option<u32> {
+        self.info.name.contains("llvmpipe").then_some(65_535)
+    }
+
     /// Blocks until all submitted work is done.
     pub fn wait(&self) -> Result<(), AssignError> {
         self.device

@@ -1,6 +1,6 @@
 //! One scene drawn into one set of targets: the passes that all strategies share.
 
-use assign::{Assignment, DepthMapping, Frame, FrameBindings, Gpu, Passes, View};
+use assign::{AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, Passes, View};
 use scenes::Scene;
 
 use crate::{
@@ -47,7 +47,7 @@ pub struct Renderer {
 impl Renderer {
     /// Uploads `scene` and makes targets for views like `view`: its viewport and depth mapping.
     pub fn new(gpu: &Gpu, scene: &Scene, view: &View) -> Result<Self, ShadingError> {
-        view.check().map_err(assign::AssignError::from)?;
+        view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(gpu);
         let scene = SceneGpu::new(gpu, scene)?;
         let targets = Targets::new(gpu, view, scene.has_emissive())?;
@@ -87,6 +87,18 @@ impl Renderer {
         view: &View,
         lights: &assign::LightBuffer,
     ) -> Result<(), ShadingError> {
+        // A list may be all lights at any time.
+        if let Some(most) = self.gpu.max_looped_lights().filter(|most| lights.count() > *most) {
+            return Err(AssignError::Parameter {
+                field: "lights".into(),
+                value: lights.count().to_string(),
+                accepted: format!(
+                    "at most {most} on {}, which ends longer loops",
+                    self.gpu.info.name
+                ),
+            }
+            .into());
+        }
         let viewport = view.viewport;
         let [width, height] = self.targets.size;
         let fits = viewport.x.saturating_add(viewport.width) <= width

@@ -173,6 +173,22 @@ fn every_pipeline_passes_validation_without_a_gpu() {
 }
 
 #[test]
+fn more_lights_than_a_loop_can_sum_are_an_error() {
+    let gpu = common::gpu();
+    let Some(most) = gpu.max_looped_lights() else {
+        println!("skipped: nothing bounds a loop on {}", gpu.info.name);
+        return;
+    };
+    let view = common::view([8, 8]);
+    let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+    let few = LightBuffer::new(&gpu, &common::lights(most)).unwrap();
+    renderer.prepare(&view, &few).unwrap();
+    let many = LightBuffer::new(&gpu, &common::lights(most + 1)).unwrap();
+    let error = renderer.prepare(&view, &many).unwrap_err().to_string();
+    assert!(error.contains("65536"), "{error}");
+}
+
+#[test]
 fn sizes_out_of_range_are_errors() {
     let gpu = common::gpu();
     let view = common::view([100_000, 8]);
