@@ -6,11 +6,11 @@
 
 use std::error::Error;
 
-use assign::{
-    Assignment, EncoderPasses, Frame, FrameBindings, FrustumTests, Gpu, Light, LightBuffer, Passes,
+use assign::{Bounds, 
+    Assignment, EncoderPasses, Frame, FrameBindings, CullSettings, Gpu, Light, LightBuffer, Passes,
     Shader, View, entry, storage_entry,
 };
-use assign_clustered::DenseImplicit;
+use assign_clustered::{Clustered, Occupancy};
 use glam::Vec3;
 
 /// The renderer's own shader: it finds the plane under each pixel and sums its list's lights.
@@ -33,7 +33,7 @@ fn shade(@builtin(global_invocation_id) thread: vec3u) {
   let ahead = world_of_view(position_view_at(ndc_of_pixel(pixel), 1.0)) - eye_world();
   let t = -eye_world().y / ahead.y;
   let position = eye_world() + t * ahead;
-  let list = list_of(group_of(ViewSample(pixel, t, position, vec3f(0.0, 1.0, 0.0), 0u)));
+  let list = list_of(group_of(ViewSample(pixel, 0.5, t, position, vec3f(0.0, 1.0, 0.0), 0u)));
   var brightness = 0.0;
   for (var i = 0u; i < list.count; i++) {
     let sphere = light_spheres[entries[list.first + i] & ENTRY_LIGHT];
@@ -55,7 +55,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let view = View::look_at(Vec3::new(0.0, 12.0, 16.0), Vec3::ZERO, 1.0, 0.1, [width, height]);
 
     // Once: the strategy, and its look-up spliced into the renderer's shader.
-    let mut strategy = DenseImplicit::new(&gpu, "32x32x16".parse()?, FrustumTests::default())?;
+    let mut strategy = Clustered::new(
+        &gpu,
+        "32x32x16".parse()?,
+        Bounds::Implicit,
+        Occupancy::Dense,
+        CullSettings::default(),
+    )?;
     let module = Shader::new(1)
         .module("package::strategy", strategy.lookup().module)
         .module("package::shade", SHADE)

@@ -71,7 +71,7 @@ impl FromStr for ClusterSize {
 /// The shader's depth slack is derived for no more.
 const MAX_DEPTH_RATIO: f32 = (1_u64 << 40) as f32;
 
-/// What the shaders know of the clusters: `struct Clusters`. 48 bytes.
+/// What the shaders know of the clusters: `struct Clusters`. 64 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ClustersUniform {
@@ -92,6 +92,10 @@ pub struct ClustersUniform {
     pub far_m: f32,
     /// 1 where slices grow exponentially.
     pub exponential: u32,
+    /// 1 where lists are made for the surfaces in the depth buffer alone.
+    pub surfaces_only: u32,
+    /// Pads to 64 bytes.
+    pub padding: [u32; 3],
 }
 
 /// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
@@ -136,6 +140,8 @@ impl ClustersUniform {
             near_m: view.nearest_rebuilt_m(),
             far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
             exponential: u32::from(exponential),
+            surfaces_only: 0,
+            padding: [0; 3],
         })
     }
 

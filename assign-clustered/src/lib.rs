@@ -28,8 +28,10 @@
 //! plane much closer than the first surface spends slices on nothing: they grow with
 //! `log(far / near)`.
 
+mod clustered;
 mod clusters;
-mod dense_implicit;
+mod gather;
 
+pub use clustered::{Clustered, EXPLICIT_WESL, IMPLICIT_WESL, Occupancy};
 pub use clusters::{ClusterSize, ClustersUniform, UNBOUNDED};
-pub use dense_implicit::{DENSE_IMPLICIT_WESL, DenseImplicit};
+pub use gather::gather_source;

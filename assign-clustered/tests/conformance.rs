@@ -1,53 +1,102 @@
-//! DC-I keeps the contract, and the suite would notice if it did not.
+//! DC-I, DC-E, SC-I and SC-E keep the contract, and the suite would notice if they did not.
 
 use assign::{
-    AssignError, Assignment, FrustumTests, Gpu,
+    AssignError, Assignment, Bounds, CullSettings, Gpu, LightSource,
     conformance::{self, faulty::Fault},
 };
-use assign_clustered::DenseImplicit;
+use assign_clustered::{Clustered, Occupancy};
 
-fn dense_implicit(
+const DC_I: (Bounds, Occupancy) = (Bounds::Implicit, Occupancy::Dense);
+const DC_E: (Bounds, Occupancy) = (Bounds::Explicit, Occupancy::Dense);
+const SC_I: (Bounds, Occupancy) = (Bounds::Implicit, Occupancy::Sparse);
+const SC_E: (Bounds, Occupancy) = (Bounds::Explicit, Occupancy::Sparse);
+
+fn clustered(
+    (bounds, occupancy): (Bounds, Occupancy),
     size: &str,
-    sat_n: bool,
+    settings: CullSettings,
 ) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
-    move |gpu| {
-        let tests = FrustumTests { sat_n };
-        Ok(Box::new(DenseImplicit::new(gpu, size.parse()?, tests)?))
-    }
+    move |gpu| Ok(Box::new(Clustered::new(gpu, size.parse()?, bounds, occupancy, settings)?))
 }
 
-fn conforms(size: &str, sat_n: bool) {
-    let report = conformance::run(&dense_implicit(size, sat_n)).expect("conforms");
+fn conforms(variant: (Bounds, Occupancy), size: &str, settings: CullSettings) {
+    let report = conformance::run(&clustered(variant, size, settings)).expect("conforms");
     println!("{report}");
 }
 
-#[test]
-fn usual_clusters_conform() {
-    conforms("32x32x8", true);
+fn tests(union: &str) -> CullSettings {
+    CullSettings { tests: union.parse().unwrap(), ..CullSettings::default() }
+}
+
+fn through_hierarchy() -> CullSettings {
+    CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() }
 }
 
 #[test]
-fn clusters_tested_by_half_spaces_alone_conform() {
-    conforms("32x32x8", false);
+fn dense_implicit_conforms() {
+    conforms(DC_I, "32x32x8", CullSettings::default());
+    conforms(DC_I, "13x9x5", CullSettings::default());
+    conforms(DC_I, "4096x4096x1", CullSettings::default());
 }
 
 #[test]
-fn small_uneven_clusters_conform() {
-    conforms("13x9x5", true);
+fn dense_implicit_conforms_with_other_tests() {
+    conforms(DC_I, "32x32x8", tests("hs"));
+    conforms(DC_I, "32x32x8", tests("sat-e+sat-n+sat-p"));
+    conforms(DC_I, "32x32x8", tests("hs+sat-e+sat-p+sat-v"));
 }
 
 #[test]
-fn thin_slices_conform() {
-    conforms("64x16x40", true);
+fn dense_explicit_conforms() {
+    conforms(DC_E, "32x32x8", CullSettings::default());
+    conforms(DC_E, "13x9x40", CullSettings::default());
 }
 
 #[test]
-fn one_cluster_conforms() {
-    conforms("4096x4096x1", true);
+fn sparse_implicit_conforms() {
+    conforms(SC_I, "32x32x8", CullSettings::default());
+    conforms(SC_I, "13x9x40", CullSettings::default());
+}
+
+#[test]
+fn sparse_explicit_conforms() {
+    conforms(SC_E, "32x32x8", CullSettings::default());
+    conforms(SC_E, "13x9x40", CullSettings::default());
+    conforms(SC_E, "3x3x200", CullSettings::default());
+}
+
+#[test]
+fn all_conform_through_the_hierarchy() {
+    for variant in [DC_I, DC_E, SC_I, SC_E] {
+        conforms(variant, "48x48x16", through_hierarchy());
+    }
+}
+
+#[test]
+fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
+    for (variant, served) in [(DC_I, true), (DC_E, false), (SC_I, false), (SC_E, false)] {
+        let gpu = Gpu::open(None).unwrap();
+        let mut strategy = clustered(variant, "32x32x8", CullSettings::default())(&gpu).unwrap();
+        let lights = assign::LightBuffer::new(&gpu, &[]).unwrap();
+        let view = assign::View::look_at(glam::Vec3::ONE, glam::Vec3::ZERO, 1.0, 0.1, [64, 48]);
+        let frame = assign::Frame::new(&view, &lights);
+        let any = frame.sampled_at(assign::SampleDomain::AnyDepth);
+        match strategy.prepare(&gpu, &any) {
+            Ok(()) => assert!(served),
+            Err(error) => {
+                assert!(!served && matches!(error, AssignError::Unsupported { .. }), "{error}");
+                // Nor without a depth buffer.
+                let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
+                assert!(error.contains("needs depth"), "{error}");
+            }
+        }
+    }
 }
 
 #[test]
 fn faults_are_rejected() {
-    let planted = conformance::rejects_faults(&dense_implicit("16x16x8", true)).expect("rejects");
-    assert_eq!(planted, Fault::ALL);
+    for variant in [DC_I, DC_E, SC_I, SC_E] {
+        let make = clustered(variant, "16x16x8", CullSettings::default());
+        assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::ALL);
+    }
 }

@@ -1,36 +1,56 @@
-//! DC-I's module, linked without a GPU: it validates, and its uniform has the same size and the
+//! The clusters' modules, linked without a GPU: they validate, and their uniform has the same size and the
 //! same offsets in Rust and in WESL.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use std::mem::offset_of;
 
-use assign::{Culler, FrustumTests, GroupShape};
-use assign_clustered::{ClustersUniform, DENSE_IMPLICIT_WESL};
+use assign::{Bounds, CullSettings, Culler, GroupShape, LightSource};
+use assign_clustered::{ClustersUniform, EXPLICIT_WESL, IMPLICIT_WESL, Occupancy, gather_source};
 
-/// The culling kernel around DC-I's module, validated.
-fn kernel(sat_n: bool, spots: bool) -> naga::Module {
-    let what = format!("sat_n {sat_n}, spots {spots}");
-    let shape = GroupShape::Frustum(FrustumTests { sat_n });
-    let source = Culler::kernel_source(shape, DENSE_IMPLICIT_WESL, spots)
-        .unwrap_or_else(|e| panic!("{what}: {e}"));
-    let module = naga::front::wgsl::parse_str(&source)
-        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
+fn validated(what: &str, source: &str) -> naga::Module {
+    let module = naga::front::wgsl::parse_str(source)
+        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
     // What WebGPU has without any optional feature.
     naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
         naga::valid::Capabilities::empty(),
     )
     .validate(&module)
-    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
+    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
     module
 }
 
+/// The culling kernel around a module of clusters, validated.
+fn kernel(bounds: Bounds, sparse: bool, source: LightSource, spots: bool) -> naga::Module {
+    let (shape, module) = match bounds {
+        Bounds::Implicit => (GroupShape::Frustum, IMPLICIT_WESL),
+        Bounds::Explicit => (GroupShape::Box, EXPLICIT_WESL),
+    };
+    let what = format!("{bounds:?}, sparse {sparse}, {source:?}, spots {spots}");
+    let settings = CullSettings { source, ..CullSettings::default() };
+    let source = Culler::kernel_source(shape, settings, sparse, module, spots)
+        .unwrap_or_else(|e| panic!("{what}: {e}"));
+    validated(&what, &source)
+}
+
 #[test]
-fn kernel_validates() {
-    for sat_n in [false, true] {
-        for spots in [false, true] {
-            kernel(sat_n, spots);
+fn kernels_validate() {
+    for bounds in [Bounds::Implicit, Bounds::Explicit] {
+        for source in [LightSource::Linear, LightSource::Hierarchy] {
+            for (sparse, spots) in [(false, false), (false, true), (true, false), (true, true)] {
+                kernel(bounds, sparse, source, spots);
+            }
+        }
+    }
+}
+
+#[test]
+fn gathering_validates() {
+    for bounds in [Bounds::Implicit, Bounds::Explicit] {
+        for occupancy in [Occupancy::Dense, Occupancy::Sparse] {
+            let what = format!("{bounds:?}, {occupancy:?}");
+            validated(&what, &gather_source(bounds, occupancy).unwrap());
         }
     }
 }
@@ -44,7 +64,7 @@ macro_rules! fields {
 
 #[test]
 fn clusters() {
-    let module = kernel(true, false);
+    let module = kernel(Bounds::Implicit, false, LightSource::Linear, false);
     let variable = module
         .global_variables
         .iter()
@@ -57,7 +77,7 @@ fn clusters() {
     let wesl: Vec<_> =
         members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
     let rust = fields!(ClustersUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential);
+        near_m, far_m, exponential, surfaces_only);
     assert_eq!(wesl, rust, "fields of WESL, then of Rust");
     assert_eq!(*span as usize, size_of::<ClustersUniform>());
 }

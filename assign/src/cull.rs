@@ -4,41 +4,53 @@
 //! resources it reads. The driver supplies the kernel (`cull.wesl`), the tests and the lists.
 
 use crate::{
-    AssignError, Frame, FrameBindings, Gpu, LightLists, Lookup, Passes, Shader,
+    AssignError, CullSettings, Frame, FrameBindings, Gpu, LightLists, LightSource, LiveGroups,
+    Lookup, Passes, Shader,
     frame::{entry, storage_entry, uniform_entry},
 };
 
 /// Bind group of the lists inside the driver's own kernels.
 const LISTS_GROUP: u32 = 1;
 
+/// Bind group of what is culled: live groups and light nodes.
+const SOURCE_GROUP: u32 = 2;
+
 /// First binding of a strategy's own resources, in the kernel and in the look-up alike.
 pub const FIRST_STRATEGY_BINDING: u32 = 4;
 
-/// Workgroups a dispatch may have along one axis.
+/// Workgroups a dispatch may have along one axis; each takes several groups where there are more.
 const MAX_DISPATCH: u32 = 65_535;
 
 /// The shape of a strategy's groups, and with it the test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GroupShape {
     /// A pixel rectangle and a depth range: `bounds_frustum.wesl`.
-    Frustum(FrustumTests),
+    Frustum,
     /// A box along the world's axes: `bounds_box.wesl`.
     Box,
     /// A box along axes of its own: `bounds_oriented_box.wesl`.
     OrientedBox,
 }
 
-/// Tests of a light against a frustum; a light must pass all. HS is always on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrustumTests {
-    /// The axis from the nearest corner to the light.
-    pub sat_n: bool,
+/// Which groups get a list in a frame.
+#[derive(Clone, Copy, Debug)]
+pub enum Groups<'a> {
+    /// All of them: their number.
+    All(u32),
+    /// Those that the strategy's own pass appended.
+    Live {
+        /// Number of all groups, live or not.
+        count: u32,
+        /// The live ones.
+        live: &'a LiveGroups,
+    },
 }
 
-impl Default for FrustumTests {
-    /// HS+SAT-N, the comparison paper's choice (Enhuber 2019, section 4.3.2).
-    fn default() -> Self {
-        Self { sat_n: true }
+impl Groups<'_> {
+    fn count(&self) -> u32 {
+        match self {
+            Self::All(count) | Self::Live { count, .. } => *count,
+        }
     }
 }
 
@@ -49,6 +61,10 @@ pub struct CullerDescriptor<'a> {
     pub label: &'a str,
     /// The shape of its groups.
     pub shape: GroupShape,
+    /// The user's choice.
+    pub settings: CullSettings,
+    /// Whether only [`Groups::Live`] get a list.
+    pub sparse: bool,
     /// WESL with `group_bounds(group: u32) -> GroupBounds` and `group_of(sample: ViewSample) -> u32`.
     pub module: &'static str,
     /// Layout of its resources, bindings from [`FIRST_STRATEGY_BINDING`], read-only.
@@ -59,33 +75,56 @@ pub struct CullerDescriptor<'a> {
 #[derive(Debug)]
 pub struct Culler {
     label: String,
-    shape: GroupShape,
+    variant: Variant,
     module: &'static str,
-    /// The kernel and whether it was made for spots.
-    kernel: Option<(wgpu::ComputePipeline, bool)>,
-    reset: Option<wgpu::ComputePipeline>,
+    kernel: Option<Kernel>,
     frame: FrameBindings,
     cull: ListsBindings,
     look_up: ListsBindings,
+    source_layout: wgpu::BindGroupLayout,
+    source: Option<wgpu::BindGroup>,
     lists: LightLists,
-    /// Workgroups along x and y, one a group.
-    dispatch: [u32; 2],
+    dispatch: Dispatch,
+}
+
+/// What the kernel is compiled for, beside the kinds of lights.
+#[derive(Clone, Copy, Debug)]
+struct Variant {
+    shape: GroupShape,
+    settings: CullSettings,
+    sparse: bool,
+}
+
+#[derive(Debug)]
+struct Kernel {
+    cull: wgpu::ComputePipeline,
+    reset: wgpu::ComputePipeline,
+    spots: bool,
+}
+
+#[derive(Debug)]
+enum Dispatch {
+    Workgroups(u32),
+    Indirect(wgpu::Buffer),
 }
 
 impl Culler {
     /// Makes the layouts; pipelines follow at the first [`prepare`](Self::prepare).
     pub fn new(gpu: &Gpu, descriptor: &CullerDescriptor<'_>) -> Result<Self, AssignError> {
+        let CullerDescriptor { label, shape, settings, sparse, module, bindings } = *descriptor;
+        let variant = Variant { shape, settings, sparse };
         Ok(Self {
-            label: descriptor.label.to_owned(),
-            shape: descriptor.shape,
-            module: descriptor.module,
+            label: label.to_owned(),
+            variant,
+            module,
             kernel: None,
-            reset: None,
             frame: FrameBindings::new(gpu),
-            cull: ListsBindings::new(cull_layout(gpu, descriptor.label, descriptor.bindings)),
-            look_up: ListsBindings::new(lookup_layout(gpu, descriptor.label, descriptor.bindings)),
+            cull: ListsBindings::new(cull_layout(gpu, label, bindings)),
+            look_up: ListsBindings::new(lookup_layout(gpu, label, bindings)),
+            source_layout: source_layout(gpu, variant),
+            source: None,
             lists: LightLists::new(gpu)?,
-            dispatch: [0, 0],
+            dispatch: Dispatch::Workgroups(0),
         })
     }
 
@@ -94,40 +133,64 @@ impl Culler {
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        group_count: u32,
+        groups: Groups<'_>,
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
-        let rows = group_count.div_ceil(MAX_DISPATCH);
-        self.dispatch = [group_count.div_ceil(rows.max(1)), rows];
-        self.lists.prepare(gpu, frame.lights.count(), group_count)?;
+        self.lists.prepare(gpu, frame.lights.count(), groups.count())?;
         let counters = entry(2, self.lists.counters());
         let uniform = entry(3, self.lists.uniform());
         let kernel_entries = [&[counters, uniform], resources].concat();
         self.cull.bind(gpu, &self.lists, &kernel_entries);
         self.look_up.bind(gpu, &self.lists, resources);
+        self.bind_source(gpu, frame, groups);
         let spots = frame.lights.has_spots();
-        if self.kernel.as_ref().is_none_or(|(_, made_for)| *made_for != spots) {
-            self.compile(gpu, spots)?;
+        if self.kernel.as_ref().is_none_or(|kernel| kernel.spots != spots) {
+            self.kernel = Some(self.compile(gpu, spots)?);
         }
         Ok(())
+    }
+
+    fn bind_source(&mut self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) {
+        let mut entries = Vec::new();
+        self.dispatch = match groups {
+            Groups::All(count) => Dispatch::Workgroups(count.min(MAX_DISPATCH)),
+            Groups::Live { live, .. } => {
+                entries.push(entry(0, live.buffer()));
+                Dispatch::Indirect(live.buffer().clone())
+            }
+        };
+        if self.variant.settings.source == LightSource::Hierarchy {
+            entries.push(entry(1, frame.lights.nodes()));
+        }
+        self.source = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("cull source"),
+            layout: &self.source_layout,
+            entries: &entries,
+        }));
     }
 
     /// The linked WGSL of the kernel, for a scene with or without spots.
     pub fn kernel_source(
         shape: GroupShape,
+        settings: CullSettings,
+        sparse: bool,
         module: &str,
         spots: bool,
     ) -> Result<String, AssignError> {
-        kernel_shader(shape, module, spots).link("package::cull")
+        kernel_shader(Variant { shape, settings, sparse }, module, spots).link("package::cull")
     }
 
-    fn compile(&mut self, gpu: &Gpu, spots: bool) -> Result<(), AssignError> {
+    fn compile(&self, gpu: &Gpu, spots: bool) -> Result<Kernel, AssignError> {
         let module =
-            kernel_shader(self.shape, self.module, spots).create(&gpu.device, "package::cull")?;
+            kernel_shader(self.variant, self.module, spots).create(&gpu.device, "package::cull")?;
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&self.label),
-            bind_group_layouts: &[Some(self.frame.layout()), Some(self.cull.layout())],
+            bind_group_layouts: &[
+                Some(self.frame.layout()),
+                Some(self.cull.layout()),
+                Some(&self.source_layout),
+            ],
             immediate_size: 0,
         });
         let pipeline = |entry_point| {
@@ -144,23 +207,25 @@ impl Culler {
                 cache: None,
             })
         };
-        self.kernel = Some((pipeline("cull_groups"), spots));
-        self.reset = Some(pipeline("reset"));
-        Ok(())
+        Ok(Kernel { cull: pipeline("cull_groups"), reset: pipeline("reset"), spots })
     }
 
     /// Records the pass `cull`: inside the clock, after [`prepare`](Self::prepare).
     pub fn record(&mut self, passes: &mut dyn Passes) {
-        let (Some((kernel, _)), Some(reset)) = (&self.kernel, &self.reset) else {
+        let Some(kernel) = &self.kernel else {
             return;
         };
         passes.compute("cull", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(LISTS_GROUP, self.cull.bind_group(), &[]);
-            pass.set_pipeline(reset);
+            pass.set_bind_group(SOURCE_GROUP, self.source.as_ref(), &[]);
+            pass.set_pipeline(&kernel.reset);
             pass.dispatch_workgroups(1, 1, 1);
-            pass.set_pipeline(kernel);
-            pass.dispatch_workgroups(self.dispatch[0], self.dispatch[1], 1);
+            pass.set_pipeline(&kernel.cull);
+            match &self.dispatch {
+                Dispatch::Workgroups(count) => pass.dispatch_workgroups(*count, 1, 1),
+                Dispatch::Indirect(live) => pass.dispatch_workgroups_indirect(live, 0),
+            }
         });
         self.lists.record_readback(passes.encoder());
     }
@@ -186,18 +251,41 @@ impl Culler {
     }
 }
 
-fn kernel_shader<'a>(shape: GroupShape, module: &'a str, spots: bool) -> Shader<'a> {
-    let (bounds, sat_n) = match shape {
-        GroupShape::Frustum(tests) => (include_str!("shaders/bounds_frustum.wesl"), tests.sat_n),
-        GroupShape::Box => (include_str!("shaders/bounds_box.wesl"), false),
-        GroupShape::OrientedBox => (include_str!("shaders/bounds_oriented_box.wesl"), false),
+fn kernel_shader<'a>(variant: Variant, module: &'a str, spots: bool) -> Shader<'a> {
+    let bounds = match variant.shape {
+        GroupShape::Frustum => include_str!("shaders/bounds_frustum.wesl"),
+        GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
+        GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
     };
+    let tests = variant.settings.tests;
     Shader::new(LISTS_GROUP)
         .module("package::cull", include_str!("shaders/cull.wesl"))
         .module("package::bounds", bounds)
         .module("package::strategy", module)
-        .flag("sat_n", sat_n)
+        .flag("hs", tests.hs)
+        .flag("sat_e", tests.sat_e)
+        .flag("sat_n", tests.sat_n)
+        .flag("sat_p", tests.sat_p)
+        .flag("sat_v", tests.sat_v)
+        .flag("hierarchy", variant.settings.source == LightSource::Hierarchy)
+        .flag("sparse", variant.sparse)
         .flag("spots", spots)
+}
+
+/// Layout of what is culled: live groups where sparse, light nodes where there is a hierarchy.
+fn source_layout(gpu: &Gpu, variant: Variant) -> wgpu::BindGroupLayout {
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let mut entries = Vec::new();
+    if variant.sparse {
+        entries.push(storage_entry(0, stages, true));
+    }
+    if variant.settings.source == LightSource::Hierarchy {
+        entries.push(storage_entry(1, stages, true));
+    }
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("cull source"),
+        entries: &entries,
+    })
 }
 
 /// Lists and a strategy's resources in one bind group.

@@ -2,7 +2,9 @@
 
 use bytemuck::bytes_of;
 
-use crate::{AssignError, Gpu, LightBuffer, View, ViewUniform};
+use glam::Vec3;
+
+use crate::{AssignError, Gpu, LightBuffer, ModelBox, View, ViewUniform};
 
 /// Where shading will look lists up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +23,7 @@ pub struct Needs {
     pub depth: bool,
     /// Shading normals.
     pub normals: bool,
-    /// Model indices per pixel, and the models' oriented boxes.
+    /// The models' boxes, and `ViewSample.model_ix` of every sample.
     pub models: bool,
     /// The scene's triangles.
     pub triangles: bool,
@@ -42,12 +44,24 @@ pub struct Frame<'a> {
     pub depth: Option<&'a wgpu::TextureView>,
     /// Shading normals, world space, `texture_2d<f32>`, the size of the target.
     pub normals: Option<&'a wgpu::TextureView>,
+    /// The models' boxes; `ViewSample.model_ix` is an index here.
+    pub models: Option<&'a [ModelBox]>,
+    /// A box that holds all surfaces: lowest and highest corner, world space, metres.
+    pub surface_bounds: Option<(Vec3, Vec3)>,
 }
 
 impl<'a> Frame<'a> {
     /// A frame of opaque surfaces.
     pub fn new(view: &'a View, lights: &'a LightBuffer) -> Self {
-        Self { view, lights, samples: SampleDomain::default(), depth: None, normals: None }
+        Self {
+            view,
+            lights,
+            samples: SampleDomain::default(),
+            depth: None,
+            normals: None,
+            models: None,
+            surface_bounds: None,
+        }
     }
 
     /// Adds the depth buffer.
@@ -61,6 +75,20 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn with_normals(mut self, normals: &'a wgpu::TextureView) -> Self {
         self.normals = Some(normals);
+        self
+    }
+
+    /// Adds the models' boxes.
+    #[must_use]
+    pub fn with_models(mut self, models: &'a [ModelBox]) -> Self {
+        self.models = Some(models);
+        self
+    }
+
+    /// Adds a box that holds all surfaces: lowest and highest corner, world space, metres.
+    #[must_use]
+    pub fn with_surface_bounds(mut self, min_world: Vec3, max_world: Vec3) -> Self {
+        self.surface_bounds = Some((min_world, max_world));
         self
     }
 

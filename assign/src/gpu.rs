@@ -13,6 +13,10 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
 }
 
+/// Asked for where the adapter has them: GPU time, and adding up light volumes in f32.
+const OPTIONAL_FEATURES: wgpu::Features =
+    wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::FLOAT32_BLENDABLE);
+
 impl Gpu {
     /// Wraps a renderer's own device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
@@ -70,7 +74,7 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("lightbench"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: adapter.features() & OPTIONAL_FEATURES,
             required_limits: limits,
             ..Default::default()
         }))
@@ -107,6 +111,17 @@ impl Gpu {
 
     /// A storage buffer of `bytes`, at least 16, with room for copies in and out.
     pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, AssignError> {
+        let copies = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        self.buffer(label, bytes, wgpu::BufferUsages::STORAGE | copies)
+    }
+
+    /// A buffer of `bytes`, at least 16, that shaders bind as storage, for other uses as well.
+    pub fn buffer(
+        &self,
+        label: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, AssignError> {
         let limit = self.max_storage_bytes();
         if bytes > limit {
             return Err(AssignError::TooLarge { what: label.into(), bytes, limit });
@@ -115,9 +130,7 @@ impl Gpu {
             self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size: bytes.max(16).next_multiple_of(4),
-                usage: wgpu::BufferUsages::STORAGE
-                    | wgpu::BufferUsages::COPY_SRC
-                    | wgpu::BufferUsages::COPY_DST,
+                usage,
                 mapped_at_creation: false,
             })
         })

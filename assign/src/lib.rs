@@ -26,6 +26,7 @@ mod assignment;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod cull;
+mod cull_settings;
 mod error;
 mod everything;
 mod frame;
@@ -33,14 +34,19 @@ mod gpu;
 pub mod intersect;
 mod light;
 mod light_buffer;
+mod light_nodes;
+mod light_order;
 mod lists;
+mod live_groups;
+mod models;
 mod passes;
 mod readback;
 mod shader;
 mod view;
 
 pub use assignment::{Assignment, Lookup};
-pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, FrustumTests, GroupShape};
+pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, GroupShape, Groups};
+pub use cull_settings::{Bounds, CullSettings, FrustumTests, LightSource};
 pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
@@ -50,10 +56,14 @@ pub use light::{
     MAX_RANGE_M, MIN_RANGE_M,
 };
 pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
+pub use light_nodes::LightNode;
+pub use light_order::LightOrder;
 pub use lists::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
     LightLists, ListsSnapshot,
 };
+pub use live_groups::LiveGroups;
+pub use models::ModelBox;
 pub use passes::{EncoderPasses, Passes};
 pub use shader::Shader;
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};

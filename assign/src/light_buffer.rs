@@ -1,9 +1,14 @@
-//! Lights on the GPU, faulty ones quarantined.
+//! Lights on the GPU: faulty ones quarantined, the others in order, and the hierarchy over them.
+
+use std::time::{Duration, Instant};
 
 use bytemuck::cast_slice;
 use glam::Vec3;
 
-use crate::{AssignError, Gpu, Light, LightEmission, LightFault, LightKind, LightSphere};
+use crate::{
+    AssignError, Gpu, Light, LightEmission, LightFault, LightKind, LightOrder, LightSphere,
+    light_nodes::{LightNode, nodes},
+};
 
 /// A light that was left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,35 +19,49 @@ pub struct RejectedLight {
     pub fault: LightFault,
 }
 
-/// The lights of a frame on the GPU: spheres for culling, emissions and shapes for shading.
+/// The lights of a frame on the GPU: spheres and the hierarchy for culling, emissions and shapes
+/// for shading.
 ///
-/// Lights keep their order; faulty ones are left out, so a light's index here is its place among
-/// the accepted.
+/// Faulty lights are left out. The others lie in the buffer's [`LightOrder`], and a light's index
+/// is its place there: [`given_index`](Self::given_index) leads back to the renderer's list.
 #[derive(Debug)]
 pub struct LightBuffer {
+    order: LightOrder,
     lights: Vec<Light>,
+    given: Vec<u32>,
     rejected: Vec<RejectedLight>,
     has_spots: bool,
     bounds: Option<(Vec3, Vec3)>,
     spheres: wgpu::Buffer,
     emissions: wgpu::Buffer,
     shapes: wgpu::Buffer,
+    nodes: wgpu::Buffer,
+    build_time: Duration,
 }
 
 /// The most lights that an entry's 30 bits can name.
 pub const MAX_LIGHTS: usize = (1 << 30) - 1;
 
 impl LightBuffer {
-    /// Uploads `lights`, leaving out those that [`Light::check`] faults.
+    /// Uploads `lights` in their order, leaving out those that [`Light::check`] faults.
     pub fn new(gpu: &Gpu, lights: &[Light]) -> Result<Self, AssignError> {
+        Self::ordered(gpu, lights, LightOrder::Given)
+    }
+
+    /// Uploads `lights` in the given order, leaving out those that [`Light::check`] faults.
+    pub fn ordered(gpu: &Gpu, lights: &[Light], order: LightOrder) -> Result<Self, AssignError> {
         let mut buffer = Self {
+            order,
             lights: Vec::new(),
+            given: Vec::new(),
             rejected: Vec::new(),
             has_spots: false,
             bounds: None,
             spheres: gpu.storage("light spheres", 0)?,
             emissions: gpu.storage("light emissions", 0)?,
             shapes: gpu.storage("light shapes", 0)?,
+            nodes: gpu.storage("light nodes", size_of::<LightNode>() as u64)?,
+            build_time: Duration::ZERO,
         };
         buffer.update(gpu, lights)?;
         Ok(buffer)
@@ -58,36 +77,50 @@ impl LightBuffer {
                 accepted: format!("at most {MAX_LIGHTS}"),
             });
         }
-        let mut accepted = Vec::with_capacity(lights.len());
+        let mut sound = Vec::with_capacity(lights.len());
+        let mut indices = Vec::with_capacity(lights.len());
         let mut rejected = Vec::new();
         for (index, light) in lights.iter().enumerate() {
             match light.check() {
-                Ok(()) => accepted.push(*light),
+                Ok(()) => {
+                    sound.push(*light);
+                    indices.push(index as u32);
+                }
                 Err(fault) => rejected.push(RejectedLight { index, fault }),
             }
         }
+        let began = Instant::now();
+        let order = self.order.of(&sound);
+        let accepted: Vec<Light> = order.iter().map(|&ix| sound[ix as usize]).collect();
+        let given: Vec<u32> = order.iter().map(|&ix| indices[ix as usize]).collect();
+        let nodes = nodes(&accepted);
+        let build_time = began.elapsed();
         let spheres: Vec<LightSphere> = accepted.iter().map(Light::sphere).collect();
         let mut shapes = Vec::new();
         let emissions: Vec<LightEmission> =
             accepted.iter().map(|l| l.emission(&mut shapes)).collect();
         // All buffers before any field: after an error the old lights are whole.
-        let [sphere_bytes, emission_bytes, shape_bytes] =
-            [cast_slice(&spheres), cast_slice(&emissions), cast_slice(&shapes)];
+        let [sphere_bytes, emission_bytes, shape_bytes, node_bytes] =
+            [cast_slice(&spheres), cast_slice(&emissions), cast_slice(&shapes), cast_slice(&nodes)];
         let larger = [
             fitting(gpu, &self.spheres, "light spheres", sphere_bytes)?,
             fitting(gpu, &self.emissions, "light emissions", emission_bytes)?,
             fitting(gpu, &self.shapes, "light shapes", shape_bytes)?,
+            fitting(gpu, &self.nodes, "light nodes", node_bytes)?,
         ];
-        [self.spheres, self.emissions, self.shapes] = larger;
+        [self.spheres, self.emissions, self.shapes, self.nodes] = larger;
         gpu.queue.write_buffer(&self.spheres, 0, sphere_bytes);
         gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
+        gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
         self.has_spots = accepted.iter().any(|l| l.kind() == LightKind::Spot);
         self.bounds = accepted
             .iter()
             .map(|l| (l.position - l.range_m, l.position + l.range_m))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         self.lights = accepted;
+        self.given = given;
+        self.build_time = build_time;
         self.rejected = rejected;
         Ok(())
     }
@@ -100,6 +133,21 @@ impl LightBuffer {
     /// The accepted lights, in the order of their indices.
     pub fn lights(&self) -> &[Light] {
         &self.lights
+    }
+
+    /// Where in the renderer's list a light of this buffer stood; `None` beyond the last.
+    pub fn given_index(&self, light: u32) -> Option<u32> {
+        self.given.get(light as usize).copied()
+    }
+
+    /// The order in which the lights lie.
+    pub fn order(&self) -> LightOrder {
+        self.order
+    }
+
+    /// How long the CPU took to order the lights and to build the hierarchy over them.
+    pub fn build_time(&self) -> Duration {
+        self.build_time
     }
 
     /// The lights that were left out.
@@ -130,6 +178,11 @@ impl LightBuffer {
     /// The shapes: `array<vec4f>`.
     pub fn shapes(&self) -> &wgpu::Buffer {
         &self.shapes
+    }
+
+    /// The hierarchy: `array<LightNode>`, a box around every 64 lights.
+    pub fn nodes(&self) -> &wgpu::Buffer {
+        &self.nodes
     }
 }
 

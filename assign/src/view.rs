@@ -107,6 +107,10 @@ pub struct ViewUniform {
     /// How far rounding can move a world-space position seen from this camera, metres per metre
     /// of distance from the world's origin or from the camera.
     pub position_error: f32,
+    /// The clip depth that the depth buffer is cleared to.
+    pub depth_clear: f32,
+    /// Pads to 272 bytes.
+    pub padding: [f32; 3],
 }
 
 impl View {
@@ -295,6 +299,8 @@ impl View {
             far_m: self.far_m.unwrap_or(f32::MAX),
             perspective: if perspective { 1.0 } else { 0.0 },
             position_error: POSITION_ERROR,
+            depth_clear: self.depth_clear(),
+            padding: [0.0; 3],
         }
     }
 }

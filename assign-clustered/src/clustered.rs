@@ -1,0 +1,166 @@
+//! DC-I, DC-E, SC-I and SC-E: clusters on the axes of bounds and occupancy.
+
+use assign::{
+    AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
+    FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
+    SampleDomain, entry, storage_entry, uniform_entry,
+};
+use bytemuck::bytes_of;
+
+use crate::{
+    clusters::{ClusterSize, ClustersUniform},
+    gather::Gather,
+};
+
+/// Which clusters get a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Occupancy {
+    /// All.
+    Dense,
+    /// Those that hold a sample.
+    Sparse,
+}
+
+/// Clusters, each with a list of lights.
+#[derive(Debug)]
+pub struct Clustered {
+    size: ClusterSize,
+    bounds: Bounds,
+    occupancy: Occupancy,
+    settings: CullSettings,
+    clusters: wgpu::Buffer,
+    gather: Option<Gather>,
+    culler: Culler,
+}
+
+/// The WESL module of clusters bounded by their frusta: `group_of` and `group_bounds`.
+pub const IMPLICIT_WESL: &str =
+    concat!(include_str!("shaders/clusters.wesl"), include_str!("shaders/implicit.wesl"));
+
+/// The WESL module of clusters bounded by the samples in them: `group_of` and `group_bounds`.
+pub const EXPLICIT_WESL: &str =
+    concat!(include_str!("shaders/clusters.wesl"), include_str!("shaders/explicit.wesl"));
+
+impl Clustered {
+    /// Makes the strategy; `size` is checked.
+    pub fn new(
+        gpu: &Gpu,
+        size: ClusterSize,
+        bounds: Bounds,
+        occupancy: Occupancy,
+        settings: CullSettings,
+    ) -> Result<Self, AssignError> {
+        size.check()?;
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        let clusters = uniform_entry(FIRST_STRATEGY_BINDING, stages);
+        let boxes = storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true);
+        let (module, bindings) = match bounds {
+            Bounds::Implicit => (IMPLICIT_WESL, vec![clusters]),
+            Bounds::Explicit => (EXPLICIT_WESL, vec![clusters, boxes]),
+        };
+        let sparse = occupancy == Occupancy::Sparse;
+        let reads_samples = sparse || bounds == Bounds::Explicit;
+        Ok(Self {
+            size,
+            bounds,
+            occupancy,
+            settings,
+            clusters: gpu.uniform("clusters", size_of::<ClustersUniform>() as u64),
+            gather: match reads_samples {
+                true => Some(Gather::new(gpu, bounds, occupancy)?),
+                false => None,
+            },
+            culler: Culler::new(
+                gpu,
+                &CullerDescriptor {
+                    label: family(bounds, occupancy),
+                    shape: shape(bounds),
+                    settings,
+                    sparse,
+                    module,
+                    bindings: &bindings,
+                },
+            )?,
+        })
+    }
+}
+
+fn family(bounds: Bounds, occupancy: Occupancy) -> &'static str {
+    match (occupancy, bounds) {
+        (Occupancy::Dense, Bounds::Implicit) => "DC-I",
+        (Occupancy::Dense, Bounds::Explicit) => "DC-E",
+        (Occupancy::Sparse, Bounds::Implicit) => "SC-I",
+        (Occupancy::Sparse, Bounds::Explicit) => "SC-E",
+    }
+}
+
+fn shape(bounds: Bounds) -> GroupShape {
+    match bounds {
+        Bounds::Implicit => GroupShape::Frustum,
+        Bounds::Explicit => GroupShape::Box,
+    }
+}
+
+impl Assignment for Clustered {
+    fn id(&self) -> String {
+        let suffix = self.settings.suffix(shape(self.bounds));
+        format!("{}/{}{suffix}", family(self.bounds, self.occupancy), self.size)
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { depth: self.gather.is_some(), ..Needs::default() }
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        let mut clusters = ClustersUniform::new(self.size, frame.view, frame.lights.bounds())?;
+        let count = clusters.group_count();
+        let mut groups = Groups::All(count);
+        let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.clusters)];
+        let id = self.id();
+        if let Some(gather) = &mut self.gather {
+            if frame.samples == SampleDomain::AnyDepth {
+                return Err(AssignError::Unsupported {
+                    strategy: id,
+                    asked: "look-ups at any depth".into(),
+                    reason: "its lists are made for the opaque surfaces in the depth buffer".into(),
+                });
+            }
+            let missing = || AssignError::Missing { strategy: id, missing: "depth" };
+            let depth = frame.depth.ok_or_else(missing)?;
+            clusters.surfaces_only = 1;
+            gather.prepare(gpu, frame, depth, &self.clusters, count)?;
+            if self.occupancy == Occupancy::Sparse {
+                groups = Groups::Live { count, live: gather.live() };
+            }
+            if self.bounds == Bounds::Explicit {
+                resources.push(entry(FIRST_STRATEGY_BINDING + 1, gather.marks()));
+            }
+        }
+        gpu.queue.write_buffer(&self.clusters, 0, bytes_of(&clusters));
+        self.culler.prepare(gpu, frame, groups, &resources)
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some(gather) = &self.gather {
+            gather.record(frame.view, passes);
+        }
+        self.culler.record(passes);
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        self.culler.lookup()
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.culler.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.culler.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.culler.lists_mut()
+    }
+}

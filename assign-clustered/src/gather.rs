@@ -1,0 +1,185 @@
+//! The pass `bounds`: which clusters hold samples, and the boxes around those samples.
+
+use assign::{
+    AssignError, Bounds, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, LiveGroups, Passes,
+    Shader, View, entry, storage_entry, uniform_entry,
+};
+
+use crate::{EXPLICIT_WESL, IMPLICIT_WESL, Occupancy};
+
+/// Bind group of the pass's own resources, and of the clusters' uniform.
+const GATHER_GROUP: u32 = 1;
+const LIVE_GROUP: u32 = 2;
+
+/// Width and height of the pixels that one workgroup reads: `BLOCK_PX` of `gather.wesl`.
+const BLOCK_PX: u32 = 32;
+
+/// Marks that one workgroup clears at least; more where the dispatch would be too wide.
+const CLEARED: u64 = 256;
+const MAX_DISPATCH: u64 = 65_535;
+
+/// Reads the depth buffer once.
+#[derive(Debug)]
+pub(crate) struct Gather {
+    words: u64,
+    frame: FrameBindings,
+    layout: wgpu::BindGroupLayout,
+    bind_group: Option<wgpu::BindGroup>,
+    live_bind_group: Option<wgpu::BindGroup>,
+    live_layout: wgpu::BindGroupLayout,
+    clear: wgpu::ComputePipeline,
+    gather: wgpu::ComputePipeline,
+    marks: wgpu::Buffer,
+    live: LiveGroups,
+    clear_workgroups: u32,
+}
+
+impl Gather {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        bounds: Bounds,
+        occupancy: Occupancy,
+    ) -> Result<Self, AssignError> {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let bind_group_layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(label),
+                entries,
+            })
+        };
+        let depth = wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: stages,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let layout = bind_group_layout(
+            "gather",
+            &[
+                depth,
+                storage_entry(1, stages, false),
+                uniform_entry(FIRST_STRATEGY_BINDING, stages),
+            ],
+        );
+        let live_layout = bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
+        let frame = FrameBindings::new(gpu);
+        let module = gather_shader(bounds, occupancy).create(&gpu.device, "package::gather")?;
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("gather"),
+            bind_group_layouts: &[Some(frame.layout()), Some(&layout), Some(&live_layout)],
+            immediate_size: 0,
+        });
+        let pipeline = |entry_point| {
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry_point),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    // The kernel writes what it reads.
+                    zero_initialize_workgroup_memory: false,
+                    ..Default::default()
+                },
+                cache: None,
+            })
+        };
+        let (clear, gather) = (pipeline("clear"), pipeline("gather"));
+        Ok(Self {
+            words: if bounds == Bounds::Explicit { 6 } else { 1 },
+            frame,
+            layout,
+            bind_group: None,
+            live_bind_group: None,
+            live_layout,
+            clear,
+            gather,
+            marks: gpu.storage("cluster marks", 0)?,
+            live: LiveGroups::new(gpu)?,
+            clear_workgroups: 0,
+        })
+    }
+
+    /// Sizes buffers for `count` clusters and binds them: outside the clock.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        depth: &wgpu::TextureView,
+        clusters: &wgpu::Buffer,
+        count: u32,
+    ) -> Result<(), AssignError> {
+        self.frame.update(gpu, frame)?;
+        let marks = u64::from(count) * self.words;
+        if self.marks.size() < marks * 4 {
+            self.marks = gpu.storage("cluster marks", marks * 4)?;
+        }
+        // The kernel clears the whole buffer, which may be that of a larger view.
+        self.clear_workgroups = (self.marks.size() / 4).div_ceil(CLEARED).min(MAX_DISPATCH) as u32;
+        self.live.prepare(gpu, count)?;
+        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("gather"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(depth),
+                },
+                entry(1, &self.marks),
+                entry(FIRST_STRATEGY_BINDING, clusters),
+            ],
+        }));
+        self.live_bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("live groups"),
+            layout: &self.live_layout,
+            entries: &[entry(0, self.live.buffer())],
+        }));
+        Ok(())
+    }
+
+    /// Records the pass `bounds`: inside the clock.
+    pub(crate) fn record(&self, view: &View, passes: &mut dyn Passes) {
+        passes.compute("bounds", &mut |pass| {
+            pass.set_bind_group(0, self.frame.bind_group(), &[]);
+            pass.set_bind_group(GATHER_GROUP, self.bind_group.as_ref(), &[]);
+            pass.set_bind_group(LIVE_GROUP, self.live_bind_group.as_ref(), &[]);
+            pass.set_pipeline(&self.clear);
+            pass.dispatch_workgroups(self.clear_workgroups, 1, 1);
+            pass.set_pipeline(&self.gather);
+            let blocks = |pixels: u32| pixels.div_ceil(BLOCK_PX);
+            pass.dispatch_workgroups(blocks(view.viewport.width), blocks(view.viewport.height), 1);
+        });
+    }
+
+    /// The clusters that hold samples.
+    pub(crate) fn live(&self) -> &LiveGroups {
+        &self.live
+    }
+
+    /// Explicit bounds: six words a cluster, see `gather.wesl`.
+    pub(crate) fn marks(&self) -> &wgpu::Buffer {
+        &self.marks
+    }
+}
+
+/// The pass's shader.
+pub(crate) fn gather_shader<'a>(bounds: Bounds, occupancy: Occupancy) -> Shader<'a> {
+    let strategy = match bounds {
+        Bounds::Implicit => IMPLICIT_WESL,
+        Bounds::Explicit => EXPLICIT_WESL,
+    };
+    Shader::new(GATHER_GROUP)
+        .module("package::gather", include_str!("shaders/gather.wesl"))
+        .module("package::live", LiveGroups::WESL)
+        .module("package::strategy", strategy)
+        .flag("explicit_bounds", bounds == Bounds::Explicit)
+        .flag("sparse", occupancy == Occupancy::Sparse)
+}
+
+/// The linked WGSL of the pass, for tests of layout and validity.
+pub fn gather_source(bounds: Bounds, occupancy: Occupancy) -> Result<String, AssignError> {
+    gather_shader(bounds, occupancy).link("package::gather")
+}

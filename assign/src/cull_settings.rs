@@ -1,0 +1,146 @@
+//! What a user chooses of the culling driver: the tests, and where lights come from.
+
+use std::{fmt, str::FromStr};
+
+use crate::{AssignError, GroupShape};
+
+/// Tests of a light against a frustum; a light is a hit unless one of them separates it.
+///
+/// HS tests the half spaces of the planes. The others are separating axes (Enhuber 2019, section
+/// 3.5.2): SAT-E the frustum's edges, SAT-N from the light's centre to the nearest corner, SAT-P
+/// the planes' normals, SAT-V from the light's centre to every corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(clippy::struct_excessive_bools, reason = "a set of tests")]
+pub struct FrustumTests {
+    /// The half spaces of the six planes.
+    pub hs: bool,
+    /// The directions of the edges.
+    pub sat_e: bool,
+    /// The axis from the nearest corner to the light.
+    pub sat_n: bool,
+    /// The normals of the planes, both ends.
+    pub sat_p: bool,
+    /// The axes from all corners to the light.
+    pub sat_v: bool,
+}
+
+impl FrustumTests {
+    /// No test at all: a start to add to.
+    const NONE: Self = Self { hs: false, sat_e: false, sat_n: false, sat_p: false, sat_v: false };
+
+    /// Names of the tests and whether each is on, in the order in which they run.
+    pub fn named(self) -> [(&'static str, bool); 5] {
+        [
+            ("hs", self.hs),
+            ("sat-e", self.sat_e),
+            ("sat-n", self.sat_n),
+            ("sat-p", self.sat_p),
+            ("sat-v", self.sat_v),
+        ]
+    }
+}
+
+impl Default for FrustumTests {
+    /// HS+SAT-N, the comparison paper's choice (Enhuber 2019, section 4.3.2).
+    fn default() -> Self {
+        Self { hs: true, sat_n: true, ..Self::NONE }
+    }
+}
+
+impl fmt::Display for FrustumTests {
+    /// As [`FromStr`] reads it: `hs+sat-n`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let on: Vec<&str> =
+            self.named().into_iter().filter_map(|(name, on)| on.then_some(name)).collect();
+        f.write_str(&on.join("+"))
+    }
+}
+
+impl FromStr for FrustumTests {
+    type Err = AssignError;
+
+    /// Reads a union such as `hs+sat-n`, in any case.
+    fn from_str(text: &str) -> Result<Self, AssignError> {
+        let mut tests = Self::NONE;
+        for name in text.to_lowercase().split('+') {
+            let test = match name {
+                "hs" => &mut tests.hs,
+                "sat-e" => &mut tests.sat_e,
+                "sat-n" => &mut tests.sat_n,
+                "sat-p" => &mut tests.sat_p,
+                "sat-v" => &mut tests.sat_v,
+                _ => {
+                    return Err(AssignError::Parameter {
+                        field: "intersection test".into(),
+                        value: text.into(),
+                        accepted: "a union of hs, sat-e, sat-n, sat-p and sat-v, such as hs+sat-n"
+                            .into(),
+                    });
+                }
+            };
+            *test = true;
+        }
+        Ok(tests)
+    }
+}
+
+/// What bounds a group for the test of a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Bounds {
+    /// The whole group.
+    Implicit,
+    /// The samples in it.
+    Explicit,
+}
+
+/// Which lights a group's workgroup tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LightSource {
+    /// All of them.
+    #[default]
+    Linear,
+    /// Those below the nodes of the light hierarchy that reach the group; see
+    /// [`LightBuffer`](crate::LightBuffer).
+    Hierarchy,
+}
+
+/// What a user chooses of the culling driver; the lists hold what they must under any choice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct CullSettings {
+    /// Tests of groups that are frusta; boxes take the nearest point (NP, NPT), which is exact.
+    pub tests: FrustumTests,
+    /// Where lights come from.
+    pub source: LightSource,
+}
+
+impl CullSettings {
+    /// What an id says of these settings behind its parameters: nothing of a default, tests only
+    /// where groups are frusta. `/hs`, `/bvh`, `/hs/bvh`.
+    pub fn suffix(&self, shape: GroupShape) -> String {
+        let mut suffix = String::new();
+        if shape == GroupShape::Frustum && self.tests != FrustumTests::default() {
+            suffix = format!("/{}", self.tests);
+        }
+        if self.source == LightSource::Hierarchy {
+            suffix += "/bvh";
+        }
+        suffix
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unions_print_as_they_parse() {
+        for text in ["hs", "hs+sat-n", "sat-e+sat-n+sat-p", "hs+sat-e+sat-p+sat-v"] {
+            assert_eq!(text.parse::<FrustumTests>().unwrap().to_string(), text);
+        }
+        assert_eq!("SAT-N+HS".parse::<FrustumTests>().unwrap(), FrustumTests::default());
+        for bad in ["", "sat", "hs,sat-n", "hs+"] {
+            let error = bad.parse::<FrustumTests>().unwrap_err().to_string();
+            assert!(error.contains("hs+sat-n"), "{bad}: {error}");
+        }
+    }
+}

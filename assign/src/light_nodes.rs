@@ -1,0 +1,57 @@
+//! The light hierarchy: boxes around consecutive lights.
+//!
+//! Two levels serve a workgroup: it tests a box a lane, and lights only below the boxes that reach
+//! its group. A box holds the supports of [`NODE_LIGHTS`] consecutive lights, so nodes need no
+//! pointers, lists made through them ascend as others do, and one kernel over the light buffer
+//! could build them on the GPU for lights that move. How small the boxes are is up to the
+//! [`LightOrder`](crate::LightOrder).
+//!
+//! Worked example: 130 lights have three nodes: lights 0 to 63, 64 to 127, 128 and 129.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use crate::{Light, intersect::LightVolume};
+
+/// Lights below one node: `NODE_LIGHTS` of `cull.wesl`.
+pub(crate) const NODE_LIGHTS: usize = 64;
+
+/// A box around the supports of consecutive lights: `struct LightNode` of `lights.wesl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct LightNode {
+    /// Lowest corner, world space, metres.
+    pub min_world: [f32; 3],
+    /// Pads to 16 bytes.
+    pub padding: f32,
+    /// Highest corner, world space, metres.
+    pub max_world: [f32; 3],
+    /// Pads to 32 bytes.
+    pub padding_2: f32,
+}
+
+/// The nodes over lights in the order of their buffer.
+pub(crate) fn nodes(lights: &[Light]) -> Vec<LightNode> {
+    let boxes = lights.chunks(NODE_LIGHTS).filter_map(|chunk| {
+        chunk.iter().map(light_box).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    });
+    boxes
+        .map(|(min, max)| LightNode {
+            min_world: min.to_array(),
+            max_world: max.to_array(),
+            ..LightNode::default()
+        })
+        .collect()
+}
+
+/// A box around a light's support, its centre included, world space, metres.
+pub(crate) fn light_box(light: &Light) -> (Vec3, Vec3) {
+    let volume = LightVolume::from(light);
+    let along = |axis: Vec3| volume.extent_along(axis);
+    let low = Vec3::new(along(Vec3::NEG_X), along(Vec3::NEG_Y), along(Vec3::NEG_Z));
+    let high = Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z));
+    // Rounded outwards: the sums are good to half a unit in the last place.
+    let down = |v: Vec3| Vec3::from_array(v.to_array().map(f32::next_down));
+    let up = |v: Vec3| Vec3::from_array(v.to_array().map(f32::next_up));
+    (down(light.position - low), up(light.position + high))
+}

@@ -1,0 +1,206 @@
+//! The order of lights in their buffer.
+//!
+//! Lists ascend in light index, so an order that follows space makes neighbours in space neighbours
+//! in every list and in memory, and boxes around consecutive lights small: see
+//! [`light_nodes`](crate::light_nodes).
+
+use std::{fmt, str::FromStr, time::Duration};
+
+use glam::Vec3;
+use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
+
+use crate::{AssignError, Light, light_nodes::light_box};
+
+/// In which order lights lie in the buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LightOrder {
+    /// As the renderer gave them.
+    #[default]
+    Given,
+    /// By the Morton code of their centres, 21 bits an axis.
+    Morton,
+    /// As the leaves of a bounding volume hierarchy over their supports, depth first: for lights
+    /// that stand still. Built on the CPU.
+    Bvh,
+}
+
+/// Lights that share one place, beyond which a hierarchy is not built over them: the search for
+/// pairs to merge is quadratic in coincident boxes.
+const MOST_COINCIDENT: usize = 20_000;
+
+impl LightOrder {
+    /// The lights' indices in this order: a permutation.
+    pub(crate) fn of(self, lights: &[Light]) -> Vec<u32> {
+        match self {
+            Self::Given => (0..lights.len() as u32).collect(),
+            Self::Morton => morton(lights),
+            Self::Bvh => bvh(lights),
+        }
+    }
+}
+
+fn morton(lights: &[Light]) -> Vec<u32> {
+    let codes = morton_codes(lights);
+    let mut order: Vec<u32> = (0..lights.len() as u32).collect();
+    // Stable: lights at one place keep the order they were given in.
+    order.sort_by_key(|&light| codes[light as usize]);
+    order
+}
+
+fn morton_codes(lights: &[Light]) -> Vec<u64> {
+    let low = lights.iter().map(|l| l.position).fold(Vec3::INFINITY, Vec3::min).as_dvec3();
+    let high = lights.iter().map(|l| l.position).fold(Vec3::NEG_INFINITY, Vec3::max).as_dvec3();
+    let cells = f64::from((1 << 21) - 1);
+    let scale = cells / (high - low).max_element().max(f64::MIN_POSITIVE);
+    let code = |light: &Light| {
+        let cell = ((light.position.as_dvec3() - low) * scale).min(glam::DVec3::splat(cells));
+        cell.to_array()
+            .iter()
+            .enumerate()
+            .fold(0, |code, (axis, &x)| code | spread(x as u64) << axis)
+    };
+    lights.iter().map(code).collect()
+}
+
+/// Puts two zero bits between each of the low 21 bits.
+fn spread(x: u64) -> u64 {
+    let x = (x | x << 32) & 0x001f_0000_0000_ffff;
+    let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
+    let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    let x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+fn bvh(lights: &[Light]) -> Vec<u32> {
+    if lights.len() < 2 || most_coincident(lights) > MOST_COINCIDENT {
+        return morton(lights);
+    }
+    let boxes: Vec<Aabb> = lights
+        .iter()
+        .map(|light| {
+            let (min, max) = light_box(light);
+            Aabb::new(min.into(), max.into())
+        })
+        .collect();
+    let bvh = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+    let mut order = Vec::with_capacity(lights.len());
+    let mut open = vec![0_u32];
+    while let Some(node) = open.pop() {
+        let Some(node) = bvh.nodes.get(node as usize) else { continue };
+        if node.prim_count > 0 {
+            let first = node.first_index as usize;
+            order.extend(&bvh.primitive_indices[first..first + node.prim_count as usize]);
+        } else {
+            open.extend([node.first_index + 1, node.first_index]);
+        }
+    }
+    // A hierarchy that lost or repeated a light orders nothing.
+    let mut seen = vec![false; lights.len()];
+    order.retain(|&light| {
+        seen.get_mut(light as usize).is_some_and(|seen| !std::mem::replace(seen, true))
+    });
+    if order.len() == lights.len() { order } else { morton(lights) }
+}
+
+/// The most lights that share one Morton code.
+fn most_coincident(lights: &[Light]) -> usize {
+    let mut codes = morton_codes(lights);
+    codes.sort_unstable();
+    codes.chunk_by(|a, b| a == b).map(<[u64]>::len).max().unwrap_or(0)
+}
+
+impl fmt::Display for LightOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Given => "given",
+            Self::Morton => "morton",
+            Self::Bvh => "bvh",
+        })
+    }
+}
+
+impl FromStr for LightOrder {
+    type Err = AssignError;
+
+    fn from_str(text: &str) -> Result<Self, AssignError> {
+        match text.to_lowercase().as_str() {
+            "given" => Ok(Self::Given),
+            "morton" => Ok(Self::Morton),
+            "bvh" => Ok(Self::Bvh),
+            _ => Err(AssignError::Parameter {
+                field: "light order".into(),
+                value: text.into(),
+                accepted: "given, morton or bvh".into(),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lights(count: u32) -> Vec<Light> {
+        (0..count)
+            .map(|i| {
+                let x = i.wrapping_mul(2_654_435_761);
+                let at = [x >> 22, (x >> 11) & 1023, x & 1023].map(|v| v as f32 * 0.1);
+                Light::point(Vec3::from(at), 0.5 + (i % 7) as f32 * 0.3, Vec3::ONE)
+            })
+            .collect()
+    }
+
+    /// Mean diagonal of the boxes around 64 consecutive lights, metres.
+    fn spread_of(order: LightOrder, lights: &[Light]) -> f32 {
+        let order = order.of(lights);
+        let diagonals: Vec<f32> = order
+            .chunks(64)
+            .map(|chunk| {
+                let boxes = chunk.iter().map(|&i| light_box(&lights[i as usize]));
+                let (min, max) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap();
+                min.distance(max)
+            })
+            .collect();
+        diagonals.iter().sum::<f32>() / diagonals.len() as f32
+    }
+
+    #[test]
+    fn orders_are_permutations() {
+        for count in [0, 1, 2, 63, 64, 65, 1000] {
+            for order in [LightOrder::Given, LightOrder::Morton, LightOrder::Bvh] {
+                let mut indices = order.of(&lights(count));
+                indices.sort_unstable();
+                assert_eq!(indices, (0..count).collect::<Vec<_>>(), "{order}");
+            }
+        }
+    }
+
+    #[test]
+    fn orders_follow_space() {
+        let lights = lights(5000);
+        let given = spread_of(LightOrder::Given, &lights);
+        for order in [LightOrder::Morton, LightOrder::Bvh] {
+            let ordered = spread_of(order, &lights);
+            assert!(ordered < 0.4 * given, "{order}: {ordered} m of {given} m");
+        }
+    }
+
+    #[test]
+    fn coincident_lights_keep_their_order() {
+        let lights = vec![Light::point(Vec3::ONE, 1.0, Vec3::ONE); 30_000];
+        for order in [LightOrder::Morton, LightOrder::Bvh] {
+            assert!(order.of(&lights).is_sorted(), "{order}");
+        }
+    }
+
+    #[test]
+    fn extreme_places_are_ordered_without_panic() {
+        let mut lights = lights(100);
+        lights[3].position = Vec3::splat(3e38);
+        lights[5].position = Vec3::splat(-3e38);
+        lights[7].range_m = 1e9;
+        for order in [LightOrder::Morton, LightOrder::Bvh] {
+            assert_eq!(order.of(&lights).len(), 100);
+        }
+    }
+}
