@@ -123,7 +123,7 @@ impl FrameBindings {
             label: Some("frame"),
             entries: &[
                 uniform_entry(0, stages),
-                storage_entry(1, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
+                storage_entry(1, stages, true),
                 storage_entry(2, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
                 storage_entry(3, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
             ],

@@ -6,6 +6,7 @@
 //! |---|---|---|---|
 //! | `depth` | both | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive |
+//! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
 //! | the strategy's own | both | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
 //! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |
@@ -25,6 +26,7 @@ mod materials;
 mod mips;
 mod probe;
 mod raster;
+mod raster_spheres;
 pub mod reference;
 mod renderer;
 mod shaders;
@@ -34,9 +36,10 @@ mod truth;
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use image::{HdrImage, ImageDifference, luminance};
-pub use lighting::Lighting;
+pub use lighting::{Lighting, LightingOptions};
 pub use materials::MaterialRecord;
-pub use probe::{Samples, probe};
+pub use probe::{Samples, probe, record_for_probe};
+pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};
 pub use renderer::{Mode, Renderer, record_before_lighting};
 pub use shaders::lighting_shader;
 pub use targets::Targets;

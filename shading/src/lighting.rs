@@ -12,7 +12,17 @@ use crate::{
 #[derive(Debug)]
 pub struct Lighting {
     kind: Kind,
-    spots: bool,
+    options: LightingOptions,
+}
+
+/// What the lighting shader is compiled for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LightingOptions {
+    /// Whether any light is a spot.
+    pub spots: bool,
+    /// Whether a light out of a sample's range is skipped before its BRDF: the survey's bounding
+    /// sphere (Watrous 2024). The image is the same in every bit.
+    pub sphere_test: bool,
 }
 
 #[derive(Debug)]
@@ -22,17 +32,17 @@ enum Kind {
 }
 
 impl Lighting {
-    /// Splices the strategy's look-up into the pipeline's shader. `spots` says whether any light
-    /// is a spot.
+    /// Splices the strategy's look-up into the pipeline's shader.
     pub fn new(
         renderer: &Renderer,
         strategy: &dyn Assignment,
         mode: Mode,
-        spots: bool,
+        options: LightingOptions,
     ) -> Result<Self, ShadingError> {
-        let lists = Lists { lookup: strategy.lookup(), spots };
+        let lists = Lists { lookup: strategy.lookup(), options };
+        let model_ids = strategy.needs().models;
         let kind = match mode {
-            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists)?),
+            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists, model_ids)?),
             Mode::Forward => Kind::Forward(RasterPipelines::new(
                 &renderer.gpu,
                 &renderer.frame,
@@ -41,7 +51,7 @@ impl Lighting {
                 RasterPass::Forward(lists),
             )?),
         };
-        Ok(Self { kind, spots })
+        Ok(Self { kind, options })
     }
 
     /// Records the pass `shade`, after the strategy's own. An error where the prepared lights
@@ -53,7 +63,7 @@ impl Lighting {
         strategy: &dyn Assignment,
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
-        if renderer.has_spots && !self.spots {
+        if renderer.has_spots && !self.options.spots {
             return Err(ShadingError::Spots);
         }
         match &self.kind {
@@ -70,16 +80,19 @@ impl Lighting {
 struct Deferred {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
+    model_ids: bool,
 }
 
 impl Deferred {
-    fn new(renderer: &Renderer, lists: Lists<'_>) -> Result<Self, ShadingError> {
+    fn new(renderer: &Renderer, lists: Lists<'_>, model_ids: bool) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
-        let layout = deferred_layout(gpu, emissive);
+        let layout = deferred_layout(gpu, emissive, model_ids);
         let module = shaders::lighting(LISTS_GROUP)
             .module("package::strategy", lists.lookup.module)
-            .flag("spots", lists.spots)
+            .flag("spots", lists.options.spots)
+            .flag("sphere_test", lists.options.sphere_test)
+            .flag("model_ids", model_ids)
             .flag("emissive", emissive)
             .create(&gpu.device, "package::deferred")?;
         let pipeline = compute_pipeline(
@@ -88,7 +101,7 @@ impl Deferred {
             &module,
             "shade",
         );
-        Ok(Self { pipeline, layout })
+        Ok(Self { pipeline, layout, model_ids })
     }
 
     fn record(
@@ -106,6 +119,9 @@ impl Deferred {
             texture(4, &targets.radiance),
         ];
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
+        if self.model_ids {
+            entries.push(texture(MODEL_BINDING, &targets.model_ids));
+        }
         let images = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shade"),
             layout: &self.layout,
@@ -174,7 +190,10 @@ pub(crate) fn texture_entry(
 pub(crate) const TEXELS: wgpu::TextureSampleType =
     wgpu::TextureSampleType::Float { filterable: false };
 
-fn deferred_layout(gpu: &Gpu, emissive: bool) -> wgpu::BindGroupLayout {
+/// Where deferred lighting and the probe bind model ids.
+pub(crate) const MODEL_BINDING: u32 = 5;
+
+fn deferred_layout(gpu: &Gpu, emissive: bool, model_ids: bool) -> wgpu::BindGroupLayout {
     let mut entries = vec![
         texture_entry(0, wgpu::TextureSampleType::Depth),
         texture_entry(1, TEXELS),
@@ -192,6 +211,9 @@ fn deferred_layout(gpu: &Gpu, emissive: bool) -> wgpu::BindGroupLayout {
     ];
     if emissive {
         entries.push(texture_entry(3, TEXELS));
+    }
+    if model_ids {
+        entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
     }
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("shade"),

@@ -1,11 +1,11 @@
 //! What the GPU saw: each pixel's position and group, copied to the CPU for the truth.
 
-use assign::{Assignment, EncoderPasses, Frame, Passes, entry, storage_entry};
+use assign::{Assignment, EncoderPasses, Frame, Passes, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
 
 use crate::{
     Renderer, ShadingError,
-    lighting::{TEXELS, compute_pipeline, texture, texture_entry},
+    lighting::{MODEL_BINDING, TEXELS, compute_pipeline, texture, texture_entry},
     raster::LISTS_GROUP,
     shaders,
 };
@@ -21,10 +21,24 @@ pub struct Samples {
     pub pixels: Vec<u32>,
 }
 
-/// Draws the frame's surfaces and asks the strategy for every pixel's group, blocking.
+/// Records what [`probe`] reads beside depth: G-buffer, and model ids where the strategy needs them.
+/// Forward shading draws neither.
+pub fn record_for_probe(
+    renderer: &Renderer,
+    view: &View,
+    strategy: &dyn Assignment,
+    passes: &mut dyn Passes,
+) {
+    renderer.record_gbuffer(view, passes);
+    if strategy.needs().models {
+        renderer.record_model_ids(view, passes);
+    }
+}
+
+/// Asks the strategy for every pixel's group, blocking.
 ///
-/// Depth and normals are those of the last recorded geometry passes; call it after a frame in
-/// which the G-buffer was drawn.
+/// Depth, normals and model ids are those of the last recorded geometry passes: see
+/// [`record_for_probe`].
 pub fn probe(
     renderer: &Renderer,
     strategy: &dyn Assignment,
@@ -35,30 +49,38 @@ pub fn probe(
     let positions = gpu.storage("probe positions", pixels * 16)?;
     let groups = gpu.storage("probe groups", pixels * 4)?;
     let stages = wgpu::ShaderStages::COMPUTE;
+    let mut entries = vec![
+        texture_entry(0, wgpu::TextureSampleType::Depth),
+        texture_entry(1, TEXELS),
+        storage_entry(2, stages, false),
+        storage_entry(3, stages, false),
+    ];
+    let mut resources = vec![
+        texture(0, &renderer.targets.depth),
+        texture(1, &renderer.targets.normal),
+        entry(2, &positions),
+        entry(3, &groups),
+    ];
+    let model_ids = strategy.needs().models;
+    if model_ids {
+        entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
+        resources.push(texture(MODEL_BINDING, &renderer.targets.model_ids));
+    }
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("probe"),
-        entries: &[
-            texture_entry(0, wgpu::TextureSampleType::Depth),
-            texture_entry(1, TEXELS),
-            storage_entry(2, stages, false),
-            storage_entry(3, stages, false),
-        ],
+        entries: &entries,
     });
     let lookup = strategy.lookup();
     let module = shaders::lighting(LISTS_GROUP)
         .module("package::strategy", lookup.module)
+        .flag("model_ids", model_ids)
         .create(&gpu.device, "package::probe")?;
     let pipeline =
         compute_pipeline(gpu, &[renderer.frame.layout(), lookup.layout, &layout], &module, "probe");
     let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("probe"),
         layout: &layout,
-        entries: &[
-            texture(0, &renderer.targets.depth),
-            texture(1, &renderer.targets.normal),
-            entry(2, &positions),
-            entry(3, &groups),
-        ],
+        entries: &resources,
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let viewport = frame.view.viewport;

@@ -7,9 +7,13 @@ use assign::{DepthMapping, FrameBindings, Gpu, Shader};
 use crate::{
     ShadingError,
     geometry::{DrawKey, SceneGpu},
+    lighting::LightingOptions,
     materials::TEXTURE_FLAGS,
     shaders,
-    targets::{BASE_COLOR_FORMAT, DEPTH_FORMAT, EMISSIVE_FORMAT, NORMAL_FORMAT, RADIANCE_FORMAT},
+    targets::{
+        BASE_COLOR_FORMAT, DEPTH_FORMAT, EMISSIVE_FORMAT, MODEL_FORMAT, NORMAL_FORMAT,
+        RADIANCE_FORMAT,
+    },
 };
 
 /// What a pass over the triangles draws.
@@ -19,6 +23,8 @@ pub(crate) enum RasterPass<'a> {
     Depth,
     /// The G-buffer, where the depth equals.
     GBuffer,
+    /// Index of the model, where the depth equals.
+    ModelIds,
     /// Lit radiance, where the depth equals.
     Forward(Lists<'a>),
     /// The control, where the depth equals.
@@ -29,7 +35,7 @@ pub(crate) enum RasterPass<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lists<'a> {
     pub(crate) lookup: assign::Lookup<'a>,
-    pub(crate) spots: bool,
+    pub(crate) options: LightingOptions,
 }
 
 /// Bind group of the lists in lighting shaders.
@@ -69,12 +75,14 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
         RasterPass::GBuffer => wanted == "gbuffer",
         RasterPass::Forward(_) => wanted == "forward",
         RasterPass::Clay => wanted == "clay",
+        RasterPass::ModelIds => wanted == "write_model_ids",
     };
     let shades = is("gbuffer") || is("forward");
     let mut shader = shaders::lighting(LISTS_GROUP)
         .flag("gbuffer", is("gbuffer"))
         .flag("forward", is("forward"))
         .flag("clay", is("clay"))
+        .flag("write_model_ids", is("write_model_ids"))
         .flag("mask", is("depth") && material.mask)
         .flag("emissive", emissive && shades)
         .flag("uv_transforms", material.uv_transforms);
@@ -82,7 +90,10 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
         shader = shader.flag(flag, material.textures[slot]);
     }
     if let RasterPass::Forward(lists) = pass {
-        shader = shader.module("package::strategy", lists.lookup.module).flag("spots", lists.spots);
+        shader = shader
+            .module("package::strategy", lists.lookup.module)
+            .flag("spots", lists.options.spots)
+            .flag("sphere_test", lists.options.sphere_test);
     }
     shader
 }
@@ -165,6 +176,7 @@ fn entry_points(
         RasterPass::Forward(_) => {
             ("vertex_surface", Some("fragment_forward"), vec![RADIANCE_FORMAT])
         }
+        RasterPass::ModelIds => ("vertex_surface", Some("fragment_model_ids"), vec![MODEL_FORMAT]),
         RasterPass::Clay => ("vertex_surface", Some("fragment_clay"), vec![RADIANCE_FORMAT]),
     }
 }

@@ -1,7 +1,10 @@
 //! One scene drawn into one set of targets: the passes that all strategies share.
 
-use assign::{AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, Passes, View};
-use scenes::Scene;
+use assign::{
+    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
+};
+use glam::Vec3;
+use scenes::{Aabb, Model, Scene};
 
 use crate::{
     ShadingError,
@@ -39,7 +42,10 @@ pub struct Renderer {
     pub(crate) depth_mapping: DepthMapping,
     /// Whether the prepared lights hold a spot.
     pub(crate) has_spots: bool,
+    models: Vec<ModelBox>,
+    surface_bounds: (Vec3, Vec3),
     depth: RasterPipelines,
+    model_ids: RasterPipelines,
     gbuffer: RasterPipelines,
     clay: RasterPipelines,
 }
@@ -49,12 +55,21 @@ impl Renderer {
     pub fn new(gpu: &Gpu, scene: &Scene, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(gpu);
+        let surface_bounds = (scene.bounds.min, scene.bounds.max);
+        let model_box = |model: &Model| {
+            let Aabb { min, max } = model.bounds_object;
+            ModelBox::new(model.object_to_world, min, max)
+        };
+        let models = scene.models.iter().map(model_box).collect();
         let scene = SceneGpu::new(gpu, scene)?;
         let targets = Targets::new(gpu, view, scene.has_emissive())?;
         let pipelines = |pass| RasterPipelines::new(gpu, &frame, &scene, view.depth, pass);
         Ok(Self {
             depth: pipelines(RasterPass::Depth)?,
             gbuffer: pipelines(RasterPass::GBuffer)?,
+            model_ids: pipelines(RasterPass::ModelIds)?,
+            models,
+            surface_bounds,
             clay: pipelines(RasterPass::Clay)?,
             gpu: gpu.clone(),
             depth_mapping: view.depth,
@@ -76,9 +91,13 @@ impl Renderer {
     }
 
     /// The frame a strategy gets: this view and these lights, with this renderer's depth and
-    /// normals.
+    /// normals, its models' boxes and the box around its surfaces.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
-        Frame::new(view, lights).with_depth(&self.targets.depth).with_normals(&self.targets.normal)
+        Frame::new(view, lights)
+            .with_depth(&self.targets.depth)
+            .with_normals(&self.targets.normal)
+            .with_models(&self.models)
+            .with_surface_bounds(self.surface_bounds.0, self.surface_bounds.1)
     }
 
     /// Uploads the view and the lights: outside the clock. The view must fit the targets.
@@ -138,6 +157,16 @@ impl Renderer {
             ..Default::default()
         };
         self.record_raster("gbuffer", view, &descriptor, &self.gbuffer, None, passes);
+    }
+
+    /// Records the pass `model-ids`, after `depth`: the model of each pixel.
+    pub fn record_model_ids(&self, view: &View, passes: &mut dyn Passes) {
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(cleared(&self.targets.model_ids))],
+            depth_stencil_attachment: Some(self.depth_attachment(None)),
+            ..Default::default()
+        };
+        self.record_raster("model-ids", view, &descriptor, &self.model_ids, None, passes);
     }
 
     /// Records the pass `clay`, after `depth`: the scene at the cost of no lights at all.
@@ -215,6 +244,10 @@ pub fn record_before_lighting(
     renderer.record_depth(frame.view, passes);
     if mode == Mode::Deferred || strategy.needs().normals {
         renderer.record_gbuffer(frame.view, passes);
+    }
+    // Fragments know their model; a pixel of the G-buffer does not.
+    if mode == Mode::Deferred && strategy.needs().models {
+        renderer.record_model_ids(frame.view, passes);
     }
     strategy.record(frame, passes);
 }

@@ -14,6 +14,9 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "gbuffer",
         "forward",
         "clay",
+        "write_model_ids",
+        "model_ids",
+        "sphere_test",
         "mask",
         "emissive",
         "uv_transforms",
@@ -29,6 +32,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::material", include_str!("shaders/material.wesl"))
         .module("package::geometry", include_str!("shaders/geometry.wesl"))
         .module("package::deferred", include_str!("shaders/deferred.wesl"))
-        .module("package::probe", include_str!("shaders/probe.wesl"));
+        .module("package::probe", include_str!("shaders/probe.wesl"))
+        .module("package::raster_spheres", include_str!("shaders/raster_spheres.wesl"));
     flags.into_iter().fold(shader, |shader, flag| shader.flag(flag, false))
 }

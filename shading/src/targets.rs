@@ -14,6 +14,8 @@ pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba1
 pub(crate) const EMISSIVE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Lit radiance: single precision, so that images compare bit for bit.
 pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Index of the model.
+pub(crate) const MODEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 /// The render targets of one size.
 #[derive(Debug)]
@@ -28,6 +30,8 @@ pub struct Targets {
     pub normal: wgpu::TextureView,
     /// Emitted radiance, where the scene emits.
     pub emissive: Option<wgpu::TextureView>,
+    /// Index of each pixel's model, where a strategy asked for it.
+    pub model_ids: wgpu::TextureView,
     /// The lit image, linear RGB.
     pub radiance: wgpu::TextureView,
     /// The texture behind `radiance`.
@@ -44,7 +48,7 @@ impl Targets {
         if width == 0 || height == 0 || width.max(height) > limit {
             return Err(ShadingError::Size { width, height, limit });
         }
-        // Depth 4, base colour 4, normal 8, emissive 8, radiance 16 bytes a pixel; the largest
+        // Depth 4, base colour 4, normal 8, emissive 8, model 4, radiance 16 bytes a pixel; the largest
         // must be read back through one buffer.
         let pixels = u64::from(width) * u64::from(height);
         let readable = gpu.device.limits().max_buffer_size;
@@ -53,7 +57,7 @@ impl Targets {
             return Err(AssignError::TooLarge { what, bytes: pixels * 16, limit: readable }.into());
         }
         let what = format!("images of {width}x{height}");
-        Ok(gpu.allocate(&what, pixels * 40, || Self::make(gpu, [width, height], emissive))?)
+        Ok(gpu.allocate(&what, pixels * 44, || Self::make(gpu, [width, height], emissive))?)
     }
 
     fn make(gpu: &Gpu, size: [u32; 2], emissive: bool) -> Self {
@@ -83,6 +87,7 @@ impl Targets {
             base_color: view_of(&texture("base colour", BASE_COLOR_FORMAT, sampled)),
             normal: view_of(&texture("normal", NORMAL_FORMAT, sampled)),
             emissive: emissive.then(|| view_of(&texture("emissive", EMISSIVE_FORMAT, sampled))),
+            model_ids: view_of(&texture("model ids", MODEL_FORMAT, sampled)),
             radiance: view_of(&radiance_texture),
             radiance_texture,
         }

@@ -9,7 +9,7 @@ type LookUp = (&'static str, &'static str, &'static [u32]);
 
 const LOOK_UPS: [LookUp; 2] = [
     ("no culling", include_str!("../../assign/src/shaders/everything.wesl"), &[0, 1]),
-    ("DC-I", assign_clustered::DENSE_IMPLICIT_WESL, &[0, 1, 4]),
+    ("DC-I", assign_clustered::IMPLICIT_WESL, &[0, 1, 4]),
 ];
 
 /// In the order of their bindings: slot i has bindings 2i and 2i + 1.
@@ -96,6 +96,25 @@ fn depth() {
     }
 }
 
+#[test]
+fn model_ids() {
+    for flags in material_flags(Some("write_model_ids"), &[]) {
+        check_geometry(&flags, None, Some("fragment_model_ids"), &[]);
+    }
+}
+
+#[test]
+fn raster_spheres() {
+    for flags in subsets(&["emissive", "spots"]) {
+        let linked = link("package::raster_spheres", &flags, None);
+        let emissive = flags.contains("emissive");
+        let expected = if emissive { vec![0, 1, 2, 3] } else { vec![0, 1, 2] };
+        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
+        assert_eq!(images, expected, "{flags:?}");
+        assert_eq!(linked.entry_points.len(), if emissive { 4 } else { 2 }, "{flags:?}");
+    }
+}
+
 /// The textures that shading reads.
 fn shaded_slots(flags: &Flags) -> &'static [u32] {
     if flags.contains("emissive") { &[0, 1, 2, 3] } else { &[0, 1, 2] }
@@ -118,7 +137,7 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        for flags in material_flags(Some("forward"), &["emissive", "spots"]) {
+        for flags in material_flags(Some("forward"), &["emissive", "spots", "sphere_test"]) {
             let slots = shaded_slots(&flags);
             check_geometry(&flags, Some(look_up), Some("fragment_forward"), slots);
         }
@@ -141,10 +160,12 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in subsets(&["emissive", "spots"]) {
-            let emissive = flags.contains("emissive");
-            let images: &[u32] = if emissive { &[0, 1, 2, 3, 4] } else { &[0, 1, 2, 4] };
-            check_compute("deferred", &flags, look_up, look_up.2, images);
+        for flags in subsets(&["emissive", "spots", "sphere_test", "model_ids"]) {
+            let mut images = vec![0, 1, 2, 4];
+            images.extend(flags.contains("emissive").then_some(3));
+            images.extend(flags.contains("model_ids").then_some(5));
+            images.sort_unstable();
+            check_compute("deferred", &flags, look_up, look_up.2, &images);
         }
     }
 }
@@ -155,6 +176,8 @@ fn probe() {
         // It asks for the group, and reads no list.
         let own: Vec<u32> = look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
         check_compute("probe", &Flags::new(), look_up, &own, &[0, 1, 2, 3]);
+        let model_ids = ["model_ids"].into();
+        check_compute("probe", &model_ids, look_up, &own, &[0, 1, 2, 3, 5]);
     }
 }
 

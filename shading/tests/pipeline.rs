@@ -7,15 +7,20 @@ mod common;
 use assign::{Assignment, EncoderPasses, Everything, Gpu, LightBuffer, View};
 use glam::{DVec3, Vec3};
 use shading::{
-    HdrImage, LightBvh, Lighting, Mode, Renderer, Samples, probe, record_before_lighting,
+    HdrImage, LightBvh, Lighting, LightingOptions, Mode, Renderer, Samples, probe,
+    record_before_lighting, record_for_probe,
 };
+
+fn options(spots: bool) -> LightingOptions {
+    LightingOptions { spots, ..LightingOptions::default() }
+}
 
 /// A frame lit by every light, its image and its samples.
 fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, Samples) {
     let mut renderer = Renderer::new(gpu, &common::showcase(), view).unwrap();
     renderer.prepare(view, lights).unwrap();
     let mut strategy = Everything::new(gpu).unwrap();
-    let lighting = Lighting::new(&renderer, &strategy, mode, lights.has_spots()).unwrap();
+    let lighting = Lighting::new(&renderer, &strategy, mode, options(lights.has_spots())).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
     let frame = renderer.frame(view, lights);
@@ -23,7 +28,7 @@ fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, 
     record_before_lighting(&renderer, mode, &mut strategy, &frame, &mut passes);
     lighting.record(&renderer, view, &strategy, &mut passes).unwrap();
     if mode == Mode::Forward {
-        renderer.record_gbuffer(view, &mut passes);
+        record_for_probe(&renderer, view, &strategy, &mut passes);
     }
     gpu.queue.submit([encoder.finish()]);
     let image = HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap();
@@ -167,7 +172,7 @@ fn every_pipeline_passes_validation_without_a_gpu() {
     let strategy = Everything::new(&gpu).unwrap();
     for mode in [Mode::Deferred, Mode::Forward] {
         for spots in [false, true] {
-            Lighting::new(&renderer, &strategy, mode, spots).unwrap();
+            Lighting::new(&renderer, &strategy, mode, options(spots)).unwrap();
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{
     lights::{Kinds, bad_lights, lights_at, mix, reaching},
-    stage::{Rng, Solid, Stage, room},
+    stage::{IN_THE_OPEN, Rng, Solid, Stage, room},
     views::{self, SIZE},
 };
 use crate::{DepthMapping, Light, View};
@@ -278,7 +278,7 @@ fn beyond_far(rng: &mut Rng) -> Plan {
 /// With near at 1 mm and far at 1 km, clip depth 1 is rebuilt as 1,049 m.
 fn far_plane(rng: &mut Rng) -> Plan {
     let mut stage = in_room(rng, &views::standard(0.001, Some(1_000.0)));
-    stage.samples.retain(|s| s.on_surface || s.depth_clip == 1.0);
+    stage.samples.retain(|s| s.model_ix != IN_THE_OPEN || s.depth_clip == 1.0);
     stage = stage.thinned(60);
     Plan::Still(on(rng, stage, 300, |r, s, n| mix(r, s, n, (1.0, 60.0), Kinds::Mixed)))
 }

@@ -114,7 +114,13 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
             );
             findings.add(Breach::Lookup, place, detail);
         }
-        Some(_) => {}
+        Some(_) => {
+            let held = seen.entries(probe.group).last();
+            if held.is_some_and(|&last| last != probe.last) {
+                let detail = format!("its list ends with {:#010x}, not {held:#010x?}", probe.last);
+                findings.add(Breach::Lookup, place, detail);
+            }
+        }
     }
 }
 

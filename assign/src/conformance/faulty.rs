@@ -84,7 +84,7 @@ impl Fault {
             Self::StarvedPool => ("overflow", Breach::OverflowStays),
             Self::Unrecorded => ("33-lights", Breach::Unwritten),
             Self::LostGroup => ("33-lights", Breach::NoSuchGroup),
-            Self::StaleBinding => ("resize", Breach::Lookup),
+            Self::StaleBinding => ("light-count-changes", Breach::Lookup),
         }
     }
 

@@ -15,19 +15,21 @@ const PROBE_GROUP: u32 = 2;
 const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A looked-up sample: `probe.wesl`, `struct Probe`. 48 bytes.
+/// A looked-up sample: `probe.wesl`, `struct Probe`. 64 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct Probe {
     pub(super) pixel: [f32; 2],
     depth_clip: f32,
-    on_surface: u32,
+    model_ix: u32,
     pub(super) position_world: [f32; 3],
     pub(super) depth_view: f32,
     pub(super) group: u32,
     pub(super) first: u32,
     pub(super) count: u32,
     depth_used: f32,
+    pub(super) last: u32,
+    padding: [u32; 3],
 }
 
 /// A stage on the GPU.
@@ -83,7 +85,7 @@ impl<'a> Rig<'a> {
             .map(|s| Probe {
                 pixel: s.pixel.map(|p| p as f32 + 0.5),
                 depth_clip: s.depth_clip,
-                on_surface: u32::from(s.on_surface),
+                model_ix: s.model_ix,
                 ..Probe::zeroed()
             })
             .collect();

@@ -1,8 +1,8 @@
 //! What a case looks at: a view, surfaces traced on the CPU, and view samples.
 
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, Mat3, Vec3};
 
-use crate::{Projection, View};
+use crate::{ModelBox, Projection, View};
 
 /// A stream of numbers from a seed (SplitMix64), the same on every platform.
 #[derive(Debug)]
@@ -115,13 +115,17 @@ pub(super) fn room(rng: &mut Rng, scale_m: f64) -> Vec<Solid> {
     solids
 }
 
+/// The model of a sample that lies on no surface.
+pub(super) const IN_THE_OPEN: u32 = u32::MAX;
+
 /// A view sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub(super) pixel: [u32; 2],
     /// Clip depth: on a surface what the depth buffer holds.
     pub(super) depth_clip: f32,
-    pub(super) on_surface: bool,
+    /// The model it lies on; [`IN_THE_OPEN`] of none.
+    pub(super) model_ix: u32,
     /// Where it lies: lights are aimed at it.
     pub(super) point: DVec3,
 }
@@ -137,6 +141,8 @@ pub(super) struct Stage {
     /// Samples on surfaces, then samples in the open.
     pub(super) samples: Vec<Sample>,
     pub(super) on_surfaces: usize,
+    /// A box around the samples of each solid, turned a little further each.
+    pub(super) models: Vec<ModelBox>,
     view_to_world: DMat4,
     view_to_clip: DMat4,
 }
@@ -150,6 +156,7 @@ impl Stage {
             texels: vec![[0.0, 0.0, 0.0, -1.0]; (target[0] * target[1]) as usize],
             samples: Vec::new(),
             on_surfaces: 0,
+            models: Vec::new(),
             view_to_world: view.world_to_view.as_dmat4().inverse(),
             view_to_clip: view.view_to_clip().as_dmat4(),
         };
@@ -160,8 +167,39 @@ impl Stage {
             }
         }
         stage.on_surfaces = stage.samples.len();
+        stage.models = (0..solids.len() as u32).map(|ix| stage.model(ix)).collect();
         stage.sample_in_the_open(open);
         stage
+    }
+
+    /// The box of a model, from where shading rebuilds its samples.
+    fn model(&self, model_ix: u32) -> ModelBox {
+        let turn = Mat3::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.2 * model_ix as f32);
+        let axes = [turn.x_axis, turn.y_axis, turn.z_axis];
+        let along = |point: DVec3| DVec3::from_array(axes.map(|axis| axis.as_dvec3().dot(point)));
+        let points = || self.samples.iter().filter(|s| s.model_ix == model_ix).map(|s| s.point);
+        let low = points().map(along).fold(DVec3::INFINITY, DVec3::min);
+        let high = points().map(along).fold(DVec3::NEG_INFINITY, DVec3::max);
+        if !(low.is_finite() && high.is_finite()) {
+            return ModelBox { center_world: Vec3::ZERO, axes, half_extents_m: Vec3::ZERO };
+        }
+        let center = 0.5 * (low + high);
+        let [x, y, z] = axes.map(Vec3::as_dvec3);
+        ModelBox {
+            center_world: (x * center.x + y * center.y + z * center.z).as_vec3(),
+            axes,
+            half_extents_m: (0.5 * (high - low)).as_vec3(),
+        }
+    }
+
+    /// A box around the samples on surfaces, world space; `None` without any.
+    pub(super) fn surface_bounds(&self) -> Option<(Vec3, Vec3)> {
+        let points = || self.samples[..self.on_surfaces].iter().map(|s| s.point.as_vec3());
+        points().next()?;
+        Some((
+            points().fold(Vec3::INFINITY, Vec3::min),
+            points().fold(Vec3::NEG_INFINITY, Vec3::max),
+        ))
     }
 
     /// Keeps no more than `count` samples of each kind.
@@ -208,12 +246,12 @@ impl Stage {
     fn trace(&mut self, pixel: [u32; 2], solids: &[Solid]) {
         let ray = self.ray(pixel);
         let (near, far) = self.depth_range();
-        let nearest = solids
-            .iter()
-            .filter_map(|solid| solid.hit(&ray))
-            .filter(|(depth, _)| (near..=far).contains(depth))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((depth, normal)) = nearest else {
+        let nearest = (0..)
+            .zip(solids)
+            .filter_map(|(model_ix, solid)| Some((model_ix, solid.hit(&ray)?)))
+            .filter(|(_, (depth, _))| (near..=far).contains(depth))
+            .min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+        let Some((model_ix, (depth, normal))) = nearest else {
             return;
         };
         let depth_clip = self.depth_clip(depth);
@@ -227,7 +265,7 @@ impl Stage {
         self.samples.push(Sample {
             pixel,
             depth_clip,
-            on_surface: true,
+            model_ix,
             point: self.rebuilt(&ray, depth_clip),
         });
     }
@@ -266,7 +304,8 @@ impl Stage {
             if !point.is_finite() {
                 continue;
             }
-            self.samples.push(Sample { pixel: [x, y], depth_clip, on_surface: false, point });
+            let pixel = [x, y];
+            self.samples.push(Sample { pixel, depth_clip, model_ix: IN_THE_OPEN, point });
         }
     }
 

@@ -1,0 +1,160 @@
+//! How a box is cut into cells.
+
+use std::{fmt, str::FromStr};
+
+use assign::AssignError;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// Cells along x, y and z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellCounts(pub [u32; 3]);
+
+/// More cells than this are refused: their records alone would take 128 MiB.
+const MAX_CELLS: u64 = 1 << 24;
+
+impl CellCounts {
+    /// Checks each field.
+    pub fn check(&self) -> Result<(), AssignError> {
+        let fail = |value: String, accepted: String| {
+            Err(AssignError::Parameter { field: "cell count".into(), value, accepted })
+        };
+        if let Some(value) = self.0.iter().find(|n| !(1..=1024).contains(*n)) {
+            return fail(value.to_string(), "1 to 1024 along each axis".into());
+        }
+        let total = self.0.iter().map(|&n| u64::from(n)).product::<u64>();
+        if total > MAX_CELLS {
+            return fail(format!("{self}: {total} cells"), format!("at most {MAX_CELLS} cells"));
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for CellCounts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}x{}", self.0[0], self.0[1], self.0[2])
+    }
+}
+
+impl FromStr for CellCounts {
+    type Err = AssignError;
+
+    /// Reads `XxYxZ`.
+    fn from_str(text: &str) -> Result<Self, AssignError> {
+        let fail = || AssignError::Parameter {
+            field: "cell count".into(),
+            value: text.into(),
+            accepted: "XxYxZ, cells along each axis, such as 20x20x20".into(),
+        };
+        let numbers: Vec<u32> = text
+            .split('x')
+            .map(|part| part.parse().map_err(|_| fail()))
+            .collect::<Result<_, _>>()?;
+        let [x, y, z] = numbers[..] else {
+            return Err(fail());
+        };
+        let counts = Self([x, y, z]);
+        counts.check()?;
+        Ok(counts)
+    }
+}
+
+/// What the shaders know of the cells: `struct Cells`. 80 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct CellsUniform {
+    /// Lowest corner of the first cell, world space, metres.
+    pub min_world: [f32; 3],
+    /// By how much a cell's box is wider than the cell, on each side, metres.
+    pub slack_m: f32,
+    /// Size of a cell, metres, above 0.
+    pub cell_m: [f32; 3],
+    /// Pads to 32 bytes.
+    pub padding: f32,
+    /// Cells along each axis.
+    pub counts: [u32; 3],
+    /// Pads to 48 bytes.
+    pub padding_2: u32,
+    /// Lowest corner of the box around all lights, world space, metres: cells at the border reach
+    /// that far.
+    pub lights_min: [f32; 3],
+    /// Pads to 64 bytes.
+    pub padding_3: f32,
+    /// Highest corner of that box.
+    pub lights_max: [f32; 3],
+    /// Pads to 80 bytes.
+    pub padding_4: f32,
+}
+
+/// Rounding of a sample's place among the cells, a share of the largest coordinate involved:
+/// three roundings of half a unit in the last place, of a difference, a division and a product,
+/// with room.
+const ROUNDING: f32 = 8.0 * f32::EPSILON;
+
+/// No cell is smaller than this share of the largest coordinate: below it, f32 cannot tell them
+/// apart.
+const LEAST_CELL: f32 = 32.0 * f32::EPSILON;
+
+impl CellsUniform {
+    /// Cuts a box into cells; `lights` is the box around all lights, `None` without any.
+    pub fn new(counts: CellCounts, cut: (Vec3, Vec3), lights: Option<(Vec3, Vec3)>) -> Self {
+        let finite = |v: Vec3| v.clamp(Vec3::splat(-1e30), Vec3::splat(1e30));
+        let (min, max) = (finite(cut.0.min(cut.1)), finite(cut.1.max(cut.0)));
+        let lights = lights.unwrap_or((min, max));
+        let magnitude = min.abs().max(max.abs()).max_element().max(f32::MIN_POSITIVE / LEAST_CELL);
+        let parts = Vec3::from_array(counts.0.map(|n| n as f32));
+        let cell = ((max - min) / parts).max(Vec3::splat(magnitude * LEAST_CELL));
+        Self {
+            min_world: min.to_array(),
+            slack_m: (magnitude + (max - min).max_element()) * ROUNDING,
+            cell_m: cell.to_array(),
+            padding: 0.0,
+            counts: counts.0,
+            padding_2: 0,
+            lights_min: finite(lights.0).to_array(),
+            padding_3: 0.0,
+            lights_max: finite(lights.1).to_array(),
+            padding_4: 0.0,
+        }
+    }
+
+    /// Number of cells.
+    pub fn group_count(&self) -> u32 {
+        self.counts.iter().product()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_parse_and_print_alike() {
+        let counts: CellCounts = "40x10x20".parse().unwrap();
+        assert_eq!(counts.to_string(), "40x10x20");
+        for bad in ["", "20", "0x1x1", "1025x1x1", "1024x1024x1024", "axbxc", "1x1x1x1"] {
+            let error = bad.parse::<CellCounts>().unwrap_err().to_string();
+            assert!(error.contains("must be"), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn any_box_has_cells() {
+        let counts = CellCounts([4, 2, 1]);
+        let inf = Vec3::INFINITY;
+        for (min, max) in [
+            (Vec3::ZERO, Vec3::ZERO),
+            (Vec3::splat(1e6), Vec3::splat(1e6)),
+            (-inf, inf),
+            (Vec3::ONE, Vec3::NEG_ONE),
+            (Vec3::splat(-1e9), Vec3::splat(1e9)),
+        ] {
+            let cells = CellsUniform::new(counts, (min, max), None);
+            assert!(cells.cell_m.iter().all(|m| m.is_finite() && *m > 0.0), "{cells:?}");
+            assert!(cells.slack_m.is_finite(), "{cells:?}");
+        }
+        let cells = CellsUniform::new(counts, (Vec3::ZERO, Vec3::splat(8.0)), None);
+        assert_eq!(cells.cell_m, [2.0, 4.0, 8.0]);
+        assert_eq!(cells.group_count(), 8);
+    }
+}

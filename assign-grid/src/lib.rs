@@ -1,0 +1,34 @@
+//! Grid light assignment: a box in world space cut into cells.
+//!
+//! # Idea
+//!
+//! Cells stand still in the world, whatever the camera does (Enhuber 2019, section 3.3). A view
+//! sample belongs to the cell it lies in.
+//!
+//! | id | box that is cut into cells |
+//! |---|---|
+//! | `G` | around the lights' supports |
+//! | `G/…/surfaces` | the same, cut to the box around the scene's surfaces |
+//!
+//! # Phases
+//!
+//! 1. `cull`: one workgroup per cell tests lights against the cell's box, which is exact for point
+//!    lights, and writes its list. Nothing else: neither depth nor view is read.
+//!
+//! # Cost
+//!
+//! `cull` grows with cells times lights, and with neither pixels nor view. Memory is 8 bytes a
+//! cell and 4 bytes a listed light.
+//!
+//! # Where it fails
+//!
+//! Cells that nobody sees are culled as well. Cells are as large far away as they are near, so a
+//! large scene has either cells that hold hundreds of lights before the camera's nose, or millions
+//! of cells. One light of great range makes all cells large: take the box of the surfaces. The
+//! best count of cells is another for each scene.
+
+mod cells;
+mod grid;
+
+pub use cells::{CellCounts, CellsUniform};
+pub use grid::{GRID_WESL, Grid, GridBox};

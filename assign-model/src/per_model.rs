@@ -1,0 +1,141 @@
+//! M: models, whole or in parts.
+
+use assign::{
+    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Frame,
+    Gpu, GroupShape, Groups, LightLists, Lookup, ModelBox, Needs, Passes, SampleDomain, entry,
+    storage_entry,
+};
+use bytemuck::cast_slice;
+
+use crate::parts::{ModelRecord, Parts};
+
+/// Models, each or each part of it with a list of lights.
+#[derive(Debug)]
+pub struct PerModel {
+    limit_m: Option<f32>,
+    settings: CullSettings,
+    /// What the buffers hold.
+    boxes: Option<Vec<ModelBox>>,
+    models: wgpu::Buffer,
+    model_of_group: wgpu::Buffer,
+    group_count: u32,
+    culler: Culler,
+}
+
+/// The strategy's WESL module: `group_of` and `group_bounds`.
+pub const MODELS_WESL: &str = include_str!("shaders/models.wesl");
+
+impl PerModel {
+    /// Makes the strategy. `limit_m` is the largest size of a part along each axis of its model's
+    /// box, metres, 0.001 to 1,000,000; `None` leaves models whole.
+    pub fn new(
+        gpu: &Gpu,
+        limit_m: Option<f32>,
+        settings: CullSettings,
+    ) -> Result<Self, AssignError> {
+        if let Some(limit) = limit_m.filter(|limit| !(1e-3..=1e6).contains(limit)) {
+            return Err(AssignError::Parameter {
+                field: "size of a part".into(),
+                value: limit.to_string(),
+                accepted: "0.001 to 1000000 m".into(),
+            });
+        }
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        Ok(Self {
+            limit_m,
+            settings,
+            boxes: None,
+            models: gpu.storage("models", size_of::<ModelRecord>() as u64)?,
+            model_of_group: gpu.storage("model of group", 0)?,
+            group_count: 0,
+            culler: Culler::new(
+                gpu,
+                &CullerDescriptor {
+                    label: "M",
+                    shape: GroupShape::OrientedBox,
+                    settings,
+                    sparse: false,
+                    module: MODELS_WESL,
+                    bindings: &[
+                        storage_entry(FIRST_STRATEGY_BINDING, stages, true),
+                        storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true),
+                    ],
+                },
+            )?,
+        })
+    }
+
+    /// Cuts the models and uploads the parts, where they are not those of the last frame.
+    fn upload(&mut self, gpu: &Gpu, boxes: &[ModelBox]) -> Result<(), AssignError> {
+        if self.boxes.as_deref() == Some(boxes) {
+            return Ok(());
+        }
+        let parts = Parts::new(boxes, self.limit_m)?;
+        let (models, of_group): (&[u8], &[u8]) =
+            (cast_slice(&parts.models), cast_slice(&parts.model_of_group));
+        if self.models.size() < models.len() as u64 {
+            self.models = gpu.storage("models", models.len() as u64)?;
+        }
+        if self.model_of_group.size() < of_group.len() as u64 {
+            self.model_of_group = gpu.storage("model of group", of_group.len() as u64)?;
+        }
+        gpu.queue.write_buffer(&self.models, 0, models);
+        gpu.queue.write_buffer(&self.model_of_group, 0, of_group);
+        self.group_count = parts.model_of_group.len() as u32;
+        self.boxes = Some(boxes.to_vec());
+        Ok(())
+    }
+}
+
+impl Assignment for PerModel {
+    fn id(&self) -> String {
+        let limit = self.limit_m.map_or(String::new(), |limit| format!("/{limit}"));
+        format!("M{limit}{}", self.settings.suffix(GroupShape::OrientedBox))
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { models: true, ..Needs::default() }
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        if frame.samples == SampleDomain::AnyDepth {
+            return Err(AssignError::Unsupported {
+                strategy: self.id(),
+                asked: "look-ups at any depth".into(),
+                reason: "a sample in the open lies on no model".into(),
+            });
+        }
+        let missing = || AssignError::Missing { strategy: self.id(), missing: "models" };
+        self.upload(gpu, frame.models.ok_or_else(missing)?)?;
+        self.culler.prepare(
+            gpu,
+            frame,
+            Groups::All(self.group_count),
+            &[
+                entry(FIRST_STRATEGY_BINDING, &self.models),
+                entry(FIRST_STRATEGY_BINDING + 1, &self.model_of_group),
+            ],
+        )
+    }
+
+    fn record(&mut self, _frame: &Frame<'_>, passes: &mut dyn Passes) {
+        self.culler.record(passes);
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        self.culler.lookup()
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.culler.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.culler.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.culler.lists_mut()
+    }
+}

@@ -1,0 +1,62 @@
+//! M keeps the contract, and the suite would notice if it did not.
+
+use assign::{
+    AssignError, Assignment, CullSettings, Frame, Gpu, LightBuffer, LightSource, SampleDomain,
+    View,
+    conformance::{self, faulty::Fault},
+};
+use assign_model::PerModel;
+use glam::Vec3;
+
+fn per_model(
+    limit_m: Option<f32>,
+    settings: CullSettings,
+) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    move |gpu| Ok(Box::new(PerModel::new(gpu, limit_m, settings)?))
+}
+
+fn conforms(limit_m: Option<f32>, settings: CullSettings) {
+    let report = conformance::run(&per_model(limit_m, settings)).expect("conforms");
+    println!("{report}");
+}
+
+#[test]
+fn whole_models_conform() {
+    conforms(None, CullSettings::default());
+}
+
+#[test]
+fn models_in_parts_conform() {
+    conforms(Some(4.0), CullSettings::default());
+}
+
+#[test]
+fn all_conform_through_the_hierarchy() {
+    let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
+    conforms(None, settings);
+}
+
+#[test]
+fn what_it_cannot_serve_is_refused() {
+    let gpu = Gpu::open(None).unwrap();
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
+    let frame = Frame::new(&view, &lights);
+    let mut strategy = PerModel::new(&gpu, None, CullSettings::default()).unwrap();
+    let error = strategy.prepare(&gpu, &frame.sampled_at(SampleDomain::AnyDepth)).unwrap_err();
+    assert!(matches!(error, AssignError::Unsupported { .. }), "{error}");
+    let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
+    assert!(error.contains("needs models"), "{error}");
+    // A scene without models is served: no sample lies on any.
+    strategy.prepare(&gpu, &frame.with_models(&[])).unwrap();
+    for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let error = PerModel::new(&gpu, Some(bad), CullSettings::default()).unwrap_err();
+        assert!(error.to_string().contains("0.001 to 1000000 m"), "{error}");
+    }
+}
+
+#[test]
+fn faults_are_rejected() {
+    let make = per_model(Some(2.0), CullSettings::default());
+    assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::ALL);
+}

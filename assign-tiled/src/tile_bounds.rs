@@ -1,0 +1,123 @@
+//! The pass `bounds`: the depth range of each tile's samples.
+
+use assign::{
+    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, Passes, Shader, entry,
+    storage_entry, uniform_entry,
+};
+
+use crate::EXPLICIT_WESL;
+
+/// Bind group of the pass's own resources, and of the tiles' uniform.
+const BOUNDS_GROUP: u32 = 1;
+
+/// Reads the depth buffer once.
+#[derive(Debug)]
+pub(crate) struct TileBounds {
+    frame: FrameBindings,
+    layout: wgpu::BindGroupLayout,
+    bind_group: Option<wgpu::BindGroup>,
+    pipeline: wgpu::ComputePipeline,
+    depths: wgpu::Buffer,
+    counts: [u32; 2],
+}
+
+impl TileBounds {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let depth = wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: stages,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("tile bounds"),
+            entries: &[
+                depth,
+                storage_entry(1, stages, false),
+                uniform_entry(FIRST_STRATEGY_BINDING, stages),
+            ],
+        });
+        let frame = FrameBindings::new(gpu);
+        let module = bounds_shader().create(&gpu.device, "package::tile_bounds")?;
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("tile bounds"),
+            bind_group_layouts: &[Some(frame.layout()), Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("tile bounds"),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some("reduce"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                // The kernel writes what it reads.
+                zero_initialize_workgroup_memory: false,
+                ..Default::default()
+            },
+            cache: None,
+        });
+        let depths = gpu.storage("tile depths", 0)?;
+        Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0] })
+    }
+
+    /// Sizes the buffer for `counts` tiles along x and y and binds it: outside the clock.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        depth: &wgpu::TextureView,
+        tiles: &wgpu::Buffer,
+        counts: [u32; 2],
+    ) -> Result<(), AssignError> {
+        self.frame.update(gpu, frame)?;
+        self.counts = counts;
+        let bytes = u64::from(counts[0]) * u64::from(counts[1]) * 8;
+        if self.depths.size() < bytes {
+            self.depths = gpu.storage("tile depths", bytes)?;
+        }
+        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tile bounds"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(depth),
+                },
+                entry(1, &self.depths),
+                entry(FIRST_STRATEGY_BINDING, tiles),
+            ],
+        }));
+        Ok(())
+    }
+
+    /// Records the pass `bounds`: inside the clock.
+    pub(crate) fn record(&self, passes: &mut dyn Passes) {
+        passes.compute("bounds", &mut |pass| {
+            pass.set_bind_group(0, self.frame.bind_group(), &[]);
+            pass.set_bind_group(BOUNDS_GROUP, self.bind_group.as_ref(), &[]);
+            pass.set_pipeline(&self.pipeline);
+            pass.dispatch_workgroups(self.counts[0], self.counts[1], 1);
+        });
+    }
+
+    /// Nearest and farthest view depth of each tile's samples, metres: `array<vec2f>`.
+    pub(crate) fn depths(&self) -> &wgpu::Buffer {
+        &self.depths
+    }
+}
+
+fn bounds_shader<'a>() -> Shader<'a> {
+    Shader::new(BOUNDS_GROUP)
+        .module("package::tile_bounds", include_str!("shaders/tile_bounds.wesl"))
+        .module("package::strategy", EXPLICIT_WESL)
+}
+
+/// The linked WGSL of the pass, for tests of layout and validity.
+pub fn bounds_source() -> Result<String, AssignError> {
+    bounds_shader().link("package::tile_bounds")
+}

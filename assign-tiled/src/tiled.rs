@@ -1,0 +1,127 @@
+//! T-I and T-E: tiles on the axis of bounds.
+
+use assign::{
+    AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
+    FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
+    SampleDomain, entry, storage_entry, uniform_entry,
+};
+use bytemuck::bytes_of;
+
+use crate::{
+    tile_bounds::TileBounds,
+    tiles::{TileSize, TilesUniform},
+};
+
+/// Tiles, each with a list of lights.
+#[derive(Debug)]
+pub struct Tiled {
+    size: TileSize,
+    settings: CullSettings,
+    tiles: wgpu::Buffer,
+    tile_bounds: Option<TileBounds>,
+    culler: Culler,
+}
+
+/// The WESL module of tiles bounded by their frusta: `group_of` and `group_bounds`.
+pub const IMPLICIT_WESL: &str =
+    concat!(include_str!("shaders/tiles.wesl"), include_str!("shaders/implicit.wesl"));
+
+/// The WESL module of tiles bounded by the samples in them: `group_of` and `group_bounds`.
+pub const EXPLICIT_WESL: &str =
+    concat!(include_str!("shaders/tiles.wesl"), include_str!("shaders/explicit.wesl"));
+
+impl Tiled {
+    /// Makes the strategy; `size` is checked.
+    pub fn new(
+        gpu: &Gpu,
+        size: TileSize,
+        bounds: Bounds,
+        settings: CullSettings,
+    ) -> Result<Self, AssignError> {
+        size.check()?;
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        let tiles = uniform_entry(FIRST_STRATEGY_BINDING, stages);
+        let depths = storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true);
+        let (label, module, bindings) = match bounds {
+            Bounds::Implicit => ("T-I", IMPLICIT_WESL, vec![tiles]),
+            Bounds::Explicit => ("T-E", EXPLICIT_WESL, vec![tiles, depths]),
+        };
+        Ok(Self {
+            size,
+            settings,
+            tiles: gpu.uniform("tiles", size_of::<TilesUniform>() as u64),
+            tile_bounds: match bounds {
+                Bounds::Implicit => None,
+                Bounds::Explicit => Some(TileBounds::new(gpu)?),
+            },
+            culler: Culler::new(
+                gpu,
+                &CullerDescriptor {
+                    label,
+                    shape: GroupShape::Frustum,
+                    settings,
+                    sparse: false,
+                    module,
+                    bindings: &bindings,
+                },
+            )?,
+        })
+    }
+}
+
+impl Assignment for Tiled {
+    fn id(&self) -> String {
+        let family = if self.tile_bounds.is_some() { "T-E" } else { "T-I" };
+        format!("{family}/{}{}", self.size, self.settings.suffix(GroupShape::Frustum))
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { depth: self.tile_bounds.is_some(), ..Needs::default() }
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        let mut tiles = TilesUniform::new(self.size, frame.view);
+        let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.tiles)];
+        let id = self.id();
+        if let Some(tile_bounds) = &mut self.tile_bounds {
+            if frame.samples == SampleDomain::AnyDepth {
+                return Err(AssignError::Unsupported {
+                    strategy: id,
+                    asked: "look-ups at any depth".into(),
+                    reason: "its lists are made for the opaque surfaces in the depth buffer".into(),
+                });
+            }
+            let missing = || AssignError::Missing { strategy: id, missing: "depth" };
+            let depth = frame.depth.ok_or_else(missing)?;
+            tiles.surfaces_only = 1;
+            tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;
+            resources.push(entry(FIRST_STRATEGY_BINDING + 1, tile_bounds.depths()));
+        }
+        gpu.queue.write_buffer(&self.tiles, 0, bytes_of(&tiles));
+        self.culler.prepare(gpu, frame, Groups::All(tiles.group_count()), &resources)
+    }
+
+    fn record(&mut self, _frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some(tile_bounds) = &self.tile_bounds {
+            tile_bounds.record(passes);
+        }
+        self.culler.record(passes);
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        self.culler.lookup()
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.culler.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.culler.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.culler.lists_mut()
+    }
+}

@@ -1,0 +1,123 @@
+//! How the viewport is cut into tiles.
+
+use std::{fmt, str::FromStr};
+
+use assign::{AssignError, View};
+use bytemuck::{Pod, Zeroable};
+
+/// Width and height of a tile, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TileSize(pub [u32; 2]);
+
+impl TileSize {
+    /// Checks each field.
+    pub fn check(&self) -> Result<(), AssignError> {
+        match self.0.iter().find(|t| !(1..=16_384).contains(*t)) {
+            None => Ok(()),
+            Some(value) => Err(AssignError::Parameter {
+                field: "tile size".into(),
+                value: value.to_string(),
+                accepted: "1 to 16384 pixels".into(),
+            }),
+        }
+    }
+}
+
+impl fmt::Display for TileSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.0[0], self.0[1])
+    }
+}
+
+impl FromStr for TileSize {
+    type Err = AssignError;
+
+    /// Reads `WIDTHxHEIGHT`.
+    fn from_str(text: &str) -> Result<Self, AssignError> {
+        let fail = || AssignError::Parameter {
+            field: "tile size".into(),
+            value: text.into(),
+            accepted: "WIDTHxHEIGHT, pixels, such as 28x28".into(),
+        };
+        let numbers: Vec<u32> = text
+            .split('x')
+            .map(|part| part.parse().map_err(|_| fail()))
+            .collect::<Result<_, _>>()?;
+        let [width, height] = numbers[..] else {
+            return Err(fail());
+        };
+        let size = Self([width, height]);
+        size.check()?;
+        Ok(size)
+    }
+}
+
+/// What the shaders know of the tiles: `struct Tiles`. 48 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct TilesUniform {
+    /// Tiles along x and y.
+    pub counts: [u32; 2],
+    /// Pixels of a tile.
+    pub tile_px: [u32; 2],
+    /// Upper left pixel of the viewport.
+    pub origin_px: [u32; 2],
+    /// Least view depth of a sample, metres, as shading rebuilds it.
+    pub near_m: f32,
+    /// Greatest view depth of a sample, metres, as shading rebuilds it, or [`UNBOUNDED`].
+    pub far_m: f32,
+    /// 1 where lists are made for the surfaces in the depth buffer alone.
+    pub surfaces_only: u32,
+    /// Pads to 48 bytes.
+    pub padding: [u32; 3],
+}
+
+/// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
+pub const UNBOUNDED: f32 = 3.4e38;
+
+impl TilesUniform {
+    /// Cuts `view` into tiles.
+    pub fn new(size: TileSize, view: &View) -> Self {
+        let viewport = [view.viewport.width, view.viewport.height];
+        Self {
+            counts: [0, 1].map(|i| viewport[i].div_ceil(size.0[i])),
+            tile_px: size.0,
+            origin_px: [view.viewport.x, view.viewport.y],
+            near_m: view.nearest_rebuilt_m(),
+            far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
+            surfaces_only: 0,
+            padding: [0; 3],
+        }
+    }
+
+    /// Number of tiles.
+    pub fn group_count(&self) -> u32 {
+        self.counts.iter().product()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn sizes_parse_and_print_alike() {
+        let size: TileSize = "28x16".parse().unwrap();
+        assert_eq!(size.to_string(), "28x16");
+        for bad in ["", "28", "0x28", "28x16385", "axb", "28x28x2"] {
+            let error = bad.parse::<TileSize>().unwrap_err().to_string();
+            assert!(error.contains("must be"), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_last_tile_may_be_cut() {
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
+        let tiles = TilesUniform::new(TileSize([64, 64]), &view);
+        assert_eq!(tiles.counts, [3, 1]);
+        assert_eq!(tiles.group_count(), 3);
+        assert_eq!(tiles.far_m, UNBOUNDED);
+    }
+}

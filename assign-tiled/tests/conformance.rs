@@ -1,0 +1,75 @@
+//! T-I and T-E keep the contract, and the suite would notice if they did not.
+
+use assign::{
+    AssignError, Assignment, Bounds, CullSettings, Frame, Gpu, LightBuffer, LightSource,
+    SampleDomain, View,
+    conformance::{self, faulty::Fault},
+};
+use assign_tiled::Tiled;
+use glam::Vec3;
+
+fn tiled(
+    bounds: Bounds,
+    size: &str,
+    settings: CullSettings,
+) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    move |gpu| Ok(Box::new(Tiled::new(gpu, size.parse()?, bounds, settings)?))
+}
+
+fn conforms(bounds: Bounds, size: &str, settings: CullSettings) {
+    let report = conformance::run(&tiled(bounds, size, settings)).expect("conforms");
+    println!("{report}");
+}
+
+#[test]
+fn implicit_conforms() {
+    conforms(Bounds::Implicit, "28x28", CullSettings::default());
+    conforms(Bounds::Implicit, "13x9", CullSettings::default());
+    conforms(Bounds::Implicit, "4096x4096", CullSettings::default());
+}
+
+#[test]
+fn explicit_conforms() {
+    conforms(Bounds::Explicit, "28x28", CullSettings::default());
+    conforms(Bounds::Explicit, "13x9", CullSettings::default());
+    conforms(Bounds::Explicit, "4096x4096", CullSettings::default());
+}
+
+#[test]
+fn other_tests_conform() {
+    for union in ["hs", "sat-n+sat-p", "hs+sat-e+sat-p+sat-v"] {
+        let settings = CullSettings { tests: union.parse().unwrap(), ..CullSettings::default() };
+        conforms(Bounds::Explicit, "28x28", settings);
+    }
+}
+
+#[test]
+fn all_conform_through_the_hierarchy() {
+    let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
+    conforms(Bounds::Implicit, "28x28", settings);
+    conforms(Bounds::Explicit, "28x28", settings);
+}
+
+#[test]
+fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
+    let gpu = Gpu::open(None).unwrap();
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
+    let frame = Frame::new(&view, &lights);
+    let any = frame.sampled_at(SampleDomain::AnyDepth);
+    let mut strategy = tiled(Bounds::Implicit, "28x28", CullSettings::default())(&gpu).unwrap();
+    strategy.prepare(&gpu, &any).unwrap();
+    let mut strategy = tiled(Bounds::Explicit, "28x28", CullSettings::default())(&gpu).unwrap();
+    let refused = strategy.prepare(&gpu, &any).unwrap_err();
+    assert!(matches!(refused, AssignError::Unsupported { .. }), "{refused}");
+    let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
+    assert!(error.contains("needs depth"), "{error}");
+}
+
+#[test]
+fn faults_are_rejected() {
+    for bounds in [Bounds::Implicit, Bounds::Explicit] {
+        let make = tiled(bounds, "16x16", CullSettings::default());
+        assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::ALL);
+    }
+}

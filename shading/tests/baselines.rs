@@ -1,0 +1,155 @@
+//! Methods without lists of their own against no culling, and the models of pixels.
+
+#![allow(dead_code, reason = "the common module serves several tests")]
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+mod common;
+
+use std::f32::consts::FRAC_PI_4;
+
+use assign::{
+    Assignment, CullSettings, DepthMapping, EncoderPasses, Everything, Gpu, Light, LightBuffer,
+    LightShape, Projection, View,
+};
+use assign_model::PerModel;
+use glam::{Vec2, Vec3};
+use shading::{
+    HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres, Renderer,
+    probe, record_before_lighting, record_for_probe,
+};
+
+/// Points, spots, one around the camera and one beyond any far plane that reaches in.
+fn lights(view: &View) -> Vec<Light> {
+    let mut lights = common::lights(60);
+    for light in lights.iter_mut().step_by(3) {
+        light.shape = LightShape::Spot {
+            direction: Vec3::new(0.3, -1.0, 0.2).normalize(),
+            inner_angle: 0.3,
+            outer_angle: FRAC_PI_4,
+        };
+    }
+    lights.push(Light::point(view.eye(), 3.0, Vec3::ONE));
+    lights.push(Light::point(Vec3::new(0.0, 1.0, -40.0), 41.0, Vec3::splat(30.0)));
+    lights
+}
+
+fn views() -> Vec<(&'static str, View)> {
+    let perspective = common::view([96, 64]);
+    let orthographic = View {
+        projection: Projection::Orthographic {
+            min: Vec2::new(-3.0, -2.0),
+            max: Vec2::new(3.0, 2.0),
+        },
+        near_m: 0.0,
+        far_m: Some(30.0),
+        ..perspective
+    };
+    let standard =
+        View { depth: DepthMapping::Standard, far_m: Some(20.0), ..common::view([96, 64]) };
+    let mut offset = common::view([64, 48]);
+    (offset.viewport.x, offset.viewport.y) = (13, 7);
+    vec![
+        ("reversed infinite", perspective),
+        ("orthographic", orthographic),
+        ("standard", standard),
+        ("viewport with an offset", offset),
+    ]
+}
+
+/// The image of no culling, by the given shader.
+fn everything(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    view: &View,
+    lights: &LightBuffer,
+    mode: Mode,
+    sphere_test: bool,
+) -> HdrImage {
+    renderer.prepare(view, lights).unwrap();
+    let mut strategy = Everything::new(gpu).unwrap();
+    let options = LightingOptions { spots: lights.has_spots(), sphere_test };
+    let lighting = Lighting::new(renderer, &strategy, mode, options).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut passes = EncoderPasses { encoder: &mut encoder };
+    let frame = renderer.frame(view, lights);
+    strategy.prepare(gpu, &frame).unwrap();
+    record_before_lighting(renderer, mode, &mut strategy, &frame, &mut passes);
+    lighting.record(renderer, view, &strategy, &mut passes).unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap()
+}
+
+#[test]
+fn the_sphere_test_changes_no_bit() {
+    let gpu = common::gpu();
+    for (name, view) in views() {
+        let lights = LightBuffer::new(&gpu, &lights(&view)).unwrap();
+        let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+        for mode in [Mode::Deferred, Mode::Forward] {
+            let mut image = |test| everything(&gpu, &mut renderer, &view, &lights, mode, test);
+            let difference = image(true).difference(&image(false)).unwrap();
+            assert_eq!(difference.differing_channels, 0, "{name}, {mode:?}");
+        }
+    }
+}
+
+#[test]
+fn raster_spheres_show_the_image_of_no_culling() {
+    let gpu = common::gpu();
+    if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
+        println!("skipped: {} does not blend 32-bit floats", gpu.info.name);
+        return;
+    }
+    for (name, view) in views() {
+        let all = lights(&view);
+        let lights = LightBuffer::new(&gpu, &all).unwrap();
+        let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+        let reference = everything(&gpu, &mut renderer, &view, &lights, Mode::Deferred, false);
+        let spheres = RasterSpheres::new(&renderer, true).unwrap();
+        let draw = |lights: &LightBuffer| {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let mut passes = EncoderPasses { encoder: &mut encoder };
+            renderer.record_depth(&view, &mut passes);
+            renderer.record_gbuffer(&view, &mut passes);
+            spheres.record(&renderer, &view, lights, &mut passes).unwrap();
+            gpu.queue.submit([encoder.finish()]);
+            HdrImage::read(&gpu, renderer.targets(), view.viewport).unwrap()
+        };
+        let difference = draw(&lights).difference(&reference).unwrap();
+        println!("{name}: {difference:?}");
+        assert!(difference.max_rel <= RASTER_SPHERE_TOLERANCE, "{name}: {difference:?}");
+        // The camera's own light left out must show.
+        let fewer = LightBuffer::new(&gpu, &all[..60]).unwrap();
+        let difference = draw(&fewer).difference(&reference).unwrap();
+        assert!(difference.max_rel > 10.0 * RASTER_SPHERE_TOLERANCE, "{name}: {difference:?}");
+    }
+}
+
+#[test]
+fn both_modes_find_the_models_of_their_pixels() {
+    let gpu = common::gpu();
+    let view = common::view([96, 64]);
+    let lights = LightBuffer::new(&gpu, &common::lights(40)).unwrap();
+    let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+    for mode in [Mode::Deferred, Mode::Forward] {
+        let reference = everything(&gpu, &mut renderer, &view, &lights, mode, false);
+        let mut strategy = PerModel::new(&gpu, Some(0.7), CullSettings::default()).unwrap();
+        let options = LightingOptions { spots: lights.has_spots(), sphere_test: false };
+        let lighting = Lighting::new(&renderer, &strategy, mode, options).unwrap();
+        let frame = renderer.frame(&view, &lights);
+        strategy.prepare(&gpu, &frame).unwrap();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut passes = EncoderPasses { encoder: &mut encoder };
+        record_before_lighting(&renderer, mode, &mut strategy, &frame, &mut passes);
+        lighting.record(&renderer, &view, &strategy, &mut passes).unwrap();
+        record_for_probe(&renderer, &view, &strategy, &mut passes);
+        gpu.queue.submit([encoder.finish()]);
+        let image = HdrImage::read(&gpu, renderer.targets(), view.viewport).unwrap();
+        let difference = image.difference(&reference).unwrap();
+        assert_eq!(difference.differing_channels, 0, "{mode:?}: {difference:?}");
+        // Every pixel found its model's box, and there are several.
+        let mut groups = probe(&renderer, &strategy, &frame).unwrap().groups;
+        groups.sort_unstable();
+        groups.dedup();
+        assert!(groups.len() > 8 && groups.iter().all(|&g| g != assign::ALL_LIGHTS), "{groups:?}");
+    }
+}
