@@ -3,8 +3,18 @@
 use std::process::Command;
 
 /// What the program is built from, relative to the workspace.
-const SOURCES: [&str; 7] =
-    ["assign", "assign-clustered", "scenes", "shading", "harness", "Cargo.toml", "Cargo.lock"];
+const SOURCES: [&str; 10] = [
+    "assign",
+    "assign-clustered",
+    "assign-grid",
+    "assign-model",
+    "assign-tiled",
+    "scenes",
+    "shading",
+    "harness",
+    "Cargo.toml",
+    "Cargo.lock",
+];
 
 fn main() {
     println!("cargo:rerun-if-changed=../.git/HEAD");

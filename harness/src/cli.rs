@@ -11,6 +11,7 @@ mod values;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use assign::{FrustumTests, LightOrder};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -35,7 +36,7 @@ report: DIR/index.html to look at, DIR/results.json to compute with.";
 const EXAMPLES: &str = "\
 Examples:
   lightbench
-      The embedded atrium with 1,000 lights: no culling against clusters.
+      The embedded atrium with 1,000 lights: no culling against clusters, dense and sparse.
   lightbench --scene Sponza.gltf --lights 10000 --size 1920x1080 --mode both
       Your scene, its own lights and 10,000 more, deferred and forward.
   lightbench --strategies None,DC-I/128x128x64,DC-I/64x64x24,DC-I/32x32x32 --frames 32
@@ -115,9 +116,22 @@ pub struct CompareArgs {
     #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
     pub scene_scale: f64,
 
-    /// Strategies, separated by commas, with their parameters; None is no culling
-    #[arg(long, value_name = "A,B,C", default_value = "None,DC-I/64x64x24")]
+    /// Strategies, separated by commas, with their parameters; None is no culling, all is every one
+    #[arg(long, value_name = "A,B,C", default_value = "None,DC-I/64x64x24,SC-E/48x48x40/bvh")]
     pub strategies: Strategies,
+
+    /// Tests of lights against frusta, for strategies that name none: hs, sat-e, sat-n, sat-p and
+    /// sat-v, joined by + [default: hs+sat-n]
+    #[arg(long, value_name = "UNION", value_parser = values::tests)]
+    pub test: Option<FrustumTests>,
+
+    /// Where strategies take lights from that name no source: the list of all, or the hierarchy
+    #[arg(long, value_name = "SOURCE", default_value = "linear")]
+    pub source: SourceChoice,
+
+    /// Order of the lights in their buffer, for all methods alike
+    #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order)]
+    pub light_order: LightOrder,
 
     /// Lights to scatter in addition to the scene's own, 0 to 16,777,216
     #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
@@ -184,6 +198,17 @@ pub enum LightBox {
     Core,
     /// The box of everything in the scene
     Bounds,
+}
+
+/// Where lights come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SourceChoice {
+    /// The list of all lights
+    Linear,
+    /// The hierarchy of boxes around them
+    Bvh,
+    /// Each strategy twice
+    Both,
 }
 
 /// How pixels are lit.

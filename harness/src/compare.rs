@@ -4,18 +4,22 @@ use std::{collections::HashMap, path::Path, sync::Arc, time::Duration};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
-use shading::{EDGE, HdrImage, LightBvh, Mode};
+use shading::{
+    EDGE, HdrImage, LightBvh, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres, heat_map_png,
+};
 
 use crate::{
+    choice::{Choice, choices},
     cli::{CliError, CompareArgs, TruthChoice},
     clock::clock_of,
     error::HarnessError,
     machine::machine,
     measure::{Frames, Measurement, measure},
-    registry::{Choice, Method},
+    registry::Method,
     report,
     results::{
-        Clock, Images, Record, RejectedLight, Results, ResultsError, Truth, write_atomically,
+        CONTROL, Clock, Images, Record, RejectedLight, Results, ResultsError, Truth,
+        write_atomically,
     },
     stage::Stage,
 };
@@ -28,14 +32,16 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 /// Gain of difference images: a difference of 1/64 shows as white.
 const DIFFERENCE_GAIN: f32 = 64.0;
 
+/// The method without lists whose image is not exact.
+const RASTER_SPHERE: &str = "RasterSphere";
+
 /// How long a GPU warms up at least; a software adapter has no clocks to raise.
 const GPU_WARM_UP: Duration = Duration::from_millis(250);
 
 /// Runs a comparison, writes its report, and returns what to print. `command` is the command
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
-    let choices: Vec<Choice> =
-        args.strategies.0.iter().map(|id| Choice::parse(id)).collect::<Result<_, _>>()?;
+    let choices = choices(args)?;
     check_writable(&args.out)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
     end_on_device_error(&gpu);
@@ -45,11 +51,7 @@ pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, Harne
     let stage = Stage::new(&gpu, args)?;
     describe(&stage);
     // What a strategy cannot serve shows before anything long begins.
-    for choice in &choices {
-        if let Method::Lists(mut strategy) = choice.make(&gpu)? {
-            strategy.prepare(&gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
-        }
-    }
+    let (choices, left_out) = served(choices, &gpu, &stage)?;
     let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
     let mut run = Run {
         results: Results::new(machine, command, truth),
@@ -60,6 +62,7 @@ pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, Harne
         stage,
         pictures: Vec::new(),
     };
+    run.results.warnings.extend(left_out);
     run.warn();
     run.measure_all(&choices)?;
     run.write()
@@ -80,6 +83,9 @@ fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError>
         let choice = choice.checked(gpu)?;
         let id = choice.id();
         if checked.iter().any(|known| known.id() == id) {
+            if !choice.is_named {
+                continue;
+            }
             let accepted = "given once each";
             return Err(
                 CliError::out_of_range("--strategies", &format!("{id} twice"), accepted).into()
@@ -88,6 +94,39 @@ fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError>
         checked.push(choice);
     }
     Ok(checked)
+}
+
+/// The choices that can serve the scene on this device, and what to say of those that cannot: an
+/// error where one was named.
+fn served(
+    choices: Vec<Choice>,
+    gpu: &Gpu,
+    stage: &Stage,
+) -> Result<(Vec<Choice>, Vec<String>), HarnessError> {
+    let mut served = Vec::new();
+    let mut left_out = Vec::new();
+    for choice in choices {
+        let check = || -> Result<(), HarnessError> {
+            match choice.make(gpu)? {
+                Method::Lists { mut strategy, .. } => {
+                    strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
+                }
+                Method::RasterSphere => {
+                    RasterSpheres::new(&stage.renderer, stage.lights.has_spots())?;
+                }
+                Method::Clay => {}
+            }
+            Ok(())
+        };
+        match check() {
+            Ok(()) => served.push(choice),
+            Err(error) if !choice.is_named => {
+                left_out.push(format!("{} was left out: {error}", choice.id()));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((served, left_out))
 }
 
 /// The frames asked for, or the defaults of the kind of device.
@@ -173,7 +212,7 @@ impl Run<'_> {
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
         let lights = self.stage.lights.lights().to_vec();
         let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
-        let per_method = u64::from(self.frames.timed) + 1;
+        let per_method = per_method(self.frames);
         let modes = self.args.mode.modes();
         let has_reference = choices.iter().any(Choice::is_reference);
         let extra = if has_reference { 0 } else { 2 };
@@ -218,6 +257,11 @@ impl Run<'_> {
         let reference = Reference { image, exposure, picture };
         self.picture(&reference.picture, reference.image.to_png(exposure)?, &reference.image)?;
         for (ix, choice) in choices.iter().enumerate() {
+            if mode == Mode::Forward && choice.family() == RASTER_SPHERE {
+                self.results.warnings.push(format!("{RASTER_SPHERE} has no forward mode"));
+                bar.inc(per_method(self.frames));
+                continue;
+            }
             let measurement = match measured.remove(&ix) {
                 Some(measurement) => measurement,
                 None => self.measure_one(choice, mode, self.frames, bvh, bar)?,
@@ -258,7 +302,7 @@ impl Run<'_> {
         measurement: &Measurement,
         reference: &Reference,
     ) -> Result<Record, HarnessError> {
-        let is_control = measurement.lists.is_none();
+        let is_control = choice.family() == CONTROL;
         let difference = measurement.image.difference(&reference.image)?;
         let mut images = Images { baseline: Some(reference.picture.clone()), ..Images::default() };
         if choice.is_reference() {
@@ -280,7 +324,15 @@ impl Run<'_> {
                 images.difference_amplification = Some(f64::from(gain));
             }
         }
-        let lists = measurement.lists.unwrap_or_default();
+        let lists = measurement.lists.clone().unwrap_or_default();
+        if !lists.lengths.per_pixel.is_empty() {
+            let name = format!("{}-{}-heat.png", mode.name(), choice.id().replace('/', "-"));
+            let lengths = &lists.lengths.per_pixel;
+            let png = heat_map_png(&reference.image, reference.exposure, lengths)?;
+            write_atomically(&self.args.out.join(&name), &png)?;
+            self.pictures.push((name.clone(), png));
+            images.heat_map = Some(name);
+        }
         let truth = lists.truth;
         let stage = &self.stage;
         let compared = |value: f64| (!is_control && value.is_finite()).then_some(value);
@@ -289,14 +341,8 @@ impl Run<'_> {
             scene_hash: stage.scene_hash.clone(),
             scene_scale: self.args.scene_scale,
             triangles: stage.scene.triangle_count(),
-            strategy: choice.id(),
-            strategy_parameters: choice
-                .parameters()
-                .map(|(name, value)| {
-                    let value = value.parse::<u64>().map_or_else(|_| value.into(), Into::into);
-                    (name.to_owned(), value)
-                })
-                .collect(),
+            strategy: choice.id().to_owned(),
+            strategy_parameters: choice.parameters(),
             mode: match mode {
                 Mode::Deferred => crate::results::Mode::Deferred,
                 Mode::Forward => crate::results::Mode::Forward,
@@ -326,7 +372,7 @@ impl Run<'_> {
             frame_ms: 0.0,
             groups: lists.groups,
             occupied_groups: u64::from(lists.counters.occupied_groups),
-            list_entries: if choice.is_reference() {
+            list_entries: if lists.groups == 0 && measurement.lists.is_some() {
                 u64::from(stage.lights.count())
             } else {
                 lists.counters.requested()
@@ -341,6 +387,10 @@ impl Run<'_> {
             max_rel_diff: compared(difference.max_rel),
             differing_channels: (!is_control).then_some(difference.differing_channels),
             lists_bytes: lists.bytes,
+            histogram: lists.lengths.histogram.clone(),
+            light_order: Some(stage.lights.order().to_string()),
+            light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
+            tolerance: (choice.family() == RASTER_SPHERE).then_some(RASTER_SPHERE_TOLERANCE),
             overflowed_groups: u64::from(lists.counters.overflowed_groups),
             images,
             note: self.note(mode, lists.overflowed_frames),
@@ -376,6 +426,11 @@ impl Run<'_> {
             data.display()
         ))
     }
+}
+
+/// Ticks of a method in one mode: its timed frames and the check of its lists.
+fn per_method(frames: Frames) -> u64 {
+    u64::from(frames.timed) + 1
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

@@ -47,6 +47,9 @@ fn strategies() -> String {
         if !entry.parameters.is_empty() {
             row += &format!("{:<16} parameters: {}\n", "", entry.parameters.join(" x "));
         }
+        for axis in entry.axes {
+            row += &format!("{:<16} /{}\n", "", axis.accepted());
+        }
         row
     };
     STRATEGIES.iter().map(row).collect()

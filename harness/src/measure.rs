@@ -2,21 +2,25 @@
 
 use std::time::{Duration, Instant};
 
-use assign::{Assignment, Counters, EncoderPasses, Gpu};
-use shading::{HdrImage, LightBvh, Lighting, ListsTruth, Mode, probe, record_before_lighting};
+use assign::{Assignment, Counters, EncoderPasses, Gpu, Passes};
+use shading::{
+    HdrImage, LightBvh, Lighting, LightingOptions, ListsTruth, Mode, RasterSpheres, probe,
+    record_before_lighting, record_for_probe,
+};
 
 use crate::{
     clock::PassClock,
     error::HarnessError,
+    list_lengths::ListLengths,
     registry::Method,
-    results::{PassKind, PassTimes, Passes},
+    results::{PassKind, PassTimes},
     stage::Stage,
 };
 
 /// What was measured.
 pub struct Measurement {
     /// Times per pass.
-    pub passes: Passes,
+    pub passes: crate::results::Passes,
     /// The last frame's radiance.
     pub image: HdrImage,
     /// The lists of the last frame; `None` for a method without lists.
@@ -24,7 +28,7 @@ pub struct Measurement {
 }
 
 /// What was counted of the lists.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ListsFigures {
     /// Groups.
     pub groups: u64,
@@ -34,6 +38,8 @@ pub struct ListsFigures {
     pub bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
+    /// How long the lists are that samples read; empty where the truth was not asked for.
+    pub lengths: ListLengths,
     /// Frames on the clock that followed one in which a group overflowed.
     pub overflowed_frames: u32,
 }
@@ -77,29 +83,13 @@ pub fn measure(
     stage.renderer.prepare(&stage.view, &stage.lights)?;
     let mut clock = PassClock::new(gpu);
     let mut samples: Vec<(String, PassKind, Vec<f64>)> = Vec::new();
-    let lighting = match method {
-        Method::Lists(strategy) => {
-            Some(Lighting::new(&stage.renderer, strategy.as_ref(), mode, stage.lights.has_spots())?)
-        }
-        Method::Clay => None,
-    };
+    let mut painter = Painter::new(stage, method, mode)?;
     let mut overflowed_frames = 0;
     let mut drawn = 0;
     let warm = Instant::now();
     let mut timed = 0;
     while timed < frames.timed {
-        let settled = match (&mut *method, &lighting) {
-            (Method::Lists(strategy), Some(lighting)) => {
-                draw(gpu, stage, strategy.as_mut(), lighting, mode, &mut clock)?;
-                // The counters of the frame before: this one grew the pool to what it asked for.
-                strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0)
-            }
-            _ => {
-                stage.renderer.record_depth(&stage.view, &mut clock);
-                stage.renderer.record_clay(&stage.view, &mut clock);
-                true
-            }
-        };
+        let settled = painter.draw(gpu, stage, mode, &mut clock)?;
         let times = clock.finish()?;
         drawn += 1;
         if frames.is_warm(drawn, warm.elapsed(), settled) {
@@ -110,11 +100,11 @@ pub fn measure(
         }
     }
     let image = HdrImage::read(gpu, stage.renderer.targets(), stage.view.viewport)?;
-    let lists = match method {
-        Method::Lists(strategy) => {
-            Some(count(gpu, stage, strategy.as_ref(), mode, truth, overflowed_frames)?)
+    let lists = match painter {
+        Painter::Lists { strategy, .. } => {
+            Some(count(gpu, stage, strategy, mode, truth, overflowed_frames)?)
         }
-        Method::Clay => None,
+        Painter::RasterSphere(_) | Painter::Clay => None,
     };
     tick();
     let passes = samples
@@ -124,20 +114,68 @@ pub fn measure(
     Ok(Measurement { passes, image, lists })
 }
 
-/// One frame: geometry, the strategy's passes, lighting.
-fn draw(
-    gpu: &Gpu,
-    stage: &Stage,
-    strategy: &mut dyn Assignment,
-    lighting: &Lighting,
-    mode: Mode,
-    clock: &mut PassClock,
-) -> Result<(), HarnessError> {
-    let frame = stage.renderer.frame(&stage.view, &stage.lights);
-    strategy.prepare(gpu, &frame)?;
-    record_before_lighting(&stage.renderer, mode, strategy, &frame, clock);
-    lighting.record(&stage.renderer, &stage.view, strategy, clock)?;
-    Ok(())
+/// A method with the pipelines that draw with it.
+pub enum Painter<'a> {
+    /// Lists, and lighting by them.
+    Lists {
+        /// The strategy.
+        strategy: &'a mut dyn Assignment,
+        /// Lighting with its look-up.
+        lighting: Lighting,
+    },
+    /// Light volumes.
+    RasterSphere(RasterSpheres),
+    /// Surfaces alone.
+    Clay,
+}
+
+impl<'a> Painter<'a> {
+    /// Compiles what `method` needs in one mode.
+    pub fn new(stage: &Stage, method: &'a mut Method, mode: Mode) -> Result<Self, HarnessError> {
+        let spots = stage.lights.has_spots();
+        Ok(match method {
+            Method::Lists { strategy, sphere_test } => {
+                let options = LightingOptions { spots, sphere_test: *sphere_test };
+                let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
+                Self::Lists { strategy: strategy.as_mut(), lighting }
+            }
+            Method::RasterSphere => Self::RasterSphere(RasterSpheres::new(&stage.renderer, spots)?),
+            Method::Clay => Self::Clay,
+        })
+    }
+
+    /// Records one frame: geometry, the strategy's passes, lighting. Returns whether no list of
+    /// the frame before overflowed.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        stage: &Stage,
+        mode: Mode,
+        passes: &mut dyn Passes,
+    ) -> Result<bool, HarnessError> {
+        let Stage { renderer, view, lights, .. } = stage;
+        match self {
+            Self::Lists { strategy, lighting } => {
+                let frame = renderer.frame(view, lights);
+                strategy.prepare(gpu, &frame)?;
+                record_before_lighting(renderer, mode, *strategy, &frame, passes);
+                lighting.record(renderer, view, *strategy, passes)?;
+                // The counters of the frame before: this one grew the pool to what it asked for.
+                Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
+            }
+            Self::RasterSphere(spheres) => {
+                renderer.record_depth(view, passes);
+                renderer.record_gbuffer(view, passes);
+                spheres.record(renderer, view, lights, passes)?;
+                Ok(true)
+            }
+            Self::Clay => {
+                renderer.record_depth(view, passes);
+                renderer.record_clay(view, passes);
+                Ok(true)
+            }
+        }
+    }
 }
 
 fn collect(samples: &mut Vec<(String, PassKind, Vec<f64>)>, times: Vec<(String, f64)>) {
@@ -166,18 +204,21 @@ fn count(
     overflowed_frames: u32,
 ) -> Result<ListsFigures, HarnessError> {
     let snapshot = strategy.lists().snapshot(gpu)?;
+    let mut lengths = ListLengths::default();
     let truth = match truth {
         None => None,
         Some(bvh) => {
+            let Stage { renderer, view, lights, .. } = stage;
             if mode == Mode::Forward {
-                // The probe reads normals, which forward shading does not draw.
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 let mut passes = EncoderPasses { encoder: &mut encoder };
-                stage.renderer.record_gbuffer(&stage.view, &mut passes);
+                record_for_probe(renderer, view, strategy, &mut passes);
                 gpu.queue.submit([encoder.finish()]);
             }
-            let frame = stage.renderer.frame(&stage.view, &stage.lights);
-            Some(bvh.check(&probe(&stage.renderer, strategy, &frame)?, &snapshot))
+            let samples = probe(renderer, strategy, &renderer.frame(view, lights))?;
+            let pixels = view.viewport.width as usize * view.viewport.height as usize;
+            lengths = ListLengths::new(&samples, &snapshot, pixels);
+            Some(bvh.check(&samples, &snapshot))
         }
     };
     Ok(ListsFigures {
@@ -185,6 +226,7 @@ fn count(
         counters: snapshot.counters,
         bytes: strategy.lists().bytes(),
         truth,
+        lengths,
         overflowed_frames,
     })
 }

@@ -1,17 +1,71 @@
 //! Every method that can be compared: one row each. The command line, the lists and the report
 //! derive from it.
 
-use assign::{AssignError, Assignment, Everything, FrustumTests, Gpu};
-use assign_clustered::DenseImplicit;
-
-use crate::cli::CliError;
+use assign::{
+    AssignError, Assignment,
+    Bounds::{Explicit, Implicit},
+    CullSettings, Everything, Gpu,
+};
+use assign_clustered::{
+    Clustered,
+    Occupancy::{Dense, Sparse},
+};
+use assign_grid::{Grid, GridBox};
+use assign_model::PerModel;
+use assign_tiled::Tiled;
 
 /// How a method lights its pixels.
 pub enum Method {
     /// A strategy fills lists, the shared pipeline shades by them.
-    Lists(Box<dyn Assignment>),
+    Lists {
+        /// The strategy.
+        strategy: Box<dyn Assignment>,
+        /// Whether lighting skips a light out of a sample's range.
+        sphere_test: bool,
+    },
+    /// Light volumes are rasterised; deferred only.
+    RasterSphere,
     /// The control: surfaces drawn at the cost of no lights.
     Clay,
+}
+
+impl Method {
+    fn lists(strategy: impl Assignment + 'static) -> Self {
+        Self::Lists { strategy: Box::new(strategy), sphere_test: false }
+    }
+}
+
+/// An axis that a method can be varied on, beside its parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The union of frustum tests: `hs+sat-n`.
+    Tests,
+    /// Where lights come from: `linear` or `bvh`.
+    Source,
+    /// The box that is cut into cells: `lights` or `surfaces`.
+    Box,
+}
+
+impl Axis {
+    /// What a segment of an id may say of it.
+    pub fn accepted(self) -> &'static str {
+        match self {
+            Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
+            Self::Source => "linear or bvh",
+            Self::Box => "lights or surfaces",
+        }
+    }
+}
+
+/// One point on all axes of a method.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spec {
+    /// Parameters, joined by `x`; empty where there are none.
+    pub parameters: String,
+    /// Tests and source of the culling driver.
+    pub settings: CullSettings,
+    /// The box of a grid.
+    pub grid_box: GridBox,
 }
 
 /// One row: a method, or a family of methods with parameters.
@@ -22,128 +76,161 @@ pub struct StrategyEntry {
     pub parameters: &'static [&'static str],
     /// Parameters where none are given.
     pub default: &'static str,
+    /// Further axes, each a segment behind a slash of its own.
+    pub axes: &'static [Axis],
     /// What it is, one line.
     pub summary: &'static str,
-    /// Makes it from its parameters.
-    make: fn(&Gpu, &str) -> Result<Method, AssignError>,
+    /// Makes it.
+    pub(crate) make: fn(&Gpu, &Spec) -> Result<Method, AssignError>,
 }
 
 impl StrategyEntry {
     /// The id with the parameters it takes where none are given.
     pub fn default_id(&self) -> String {
-        id(self.family, self.default)
+        match self.default {
+            "" => self.family.to_owned(),
+            parameters => format!("{}/{parameters}", self.family),
+        }
     }
 }
 
-fn id(family: &str, parameters: &str) -> String {
-    if parameters.is_empty() { family.to_owned() } else { format!("{family}/{parameters}") }
-}
+const CLUSTER: &[&str] = &["tile_width_px", "tile_height_px", "slices"];
+const TILE: &[&str] = &["tile_width_px", "tile_height_px"];
+const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source];
+const BOXES: &[Axis] = &[Axis::Source];
 
-/// All methods.
+/// All methods, at the comparison paper's parameters (Enhuber 2019, table 4.3).
 pub const STRATEGIES: &[StrategyEntry] = &[
     StrategyEntry {
         family: "None",
         parameters: &[],
         default: "",
+        axes: &[],
         summary: "no culling: every light for every sample; the reference of all images",
-        make: |gpu, _| Ok(Method::Lists(Box::new(Everything::new(gpu)?))),
+        make: |gpu, _| Ok(Method::lists(Everything::new(gpu)?)),
     },
     StrategyEntry {
         family: "Clay",
         parameters: &[],
         default: "",
+        axes: &[],
         summary: "control: surfaces without lights or textures, what drawing alone costs",
         make: |_, _| Ok(Method::Clay),
     },
     StrategyEntry {
+        family: "Sphere",
+        parameters: &[],
+        default: "",
+        axes: &[],
+        summary: "no lists: every light for every sample, skipped where out of range",
+        make: |gpu, _| {
+            Ok(Method::Lists { strategy: Box::new(Everything::new(gpu)?), sphere_test: true })
+        },
+    },
+    StrategyEntry {
+        family: "RasterSphere",
+        parameters: &[],
+        default: "",
+        axes: &[],
+        summary: "no lists: light volumes rasterised and added up; deferred only",
+        make: |_, _| Ok(Method::RasterSphere),
+    },
+    StrategyEntry {
+        family: "T-I",
+        parameters: TILE,
+        default: "28x28",
+        axes: FRUSTA,
+        summary: "tiles, implicit bounds: every tile has a list from near to far",
+        make: |gpu, spec| {
+            let size = spec.parameters.parse()?;
+            Ok(Method::lists(Tiled::new(gpu, size, Implicit, spec.settings)?))
+        },
+    },
+    StrategyEntry {
+        family: "T-E",
+        parameters: TILE,
+        default: "28x28",
+        axes: FRUSTA,
+        summary: "tiles, explicit bounds: the depth range of each tile's samples",
+        make: |gpu, spec| {
+            let size = spec.parameters.parse()?;
+            Ok(Method::lists(Tiled::new(gpu, size, Explicit, spec.settings)?))
+        },
+    },
+    StrategyEntry {
         family: "DC-I",
-        parameters: &["tile_width_px", "tile_height_px", "slices"],
-        default: "64x64x24",
+        parameters: CLUSTER,
+        default: "128x128x64",
+        axes: FRUSTA,
         summary: "dense clusters, implicit bounds: every tile and depth slice has a list",
-        make: |gpu, parameters| {
-            let tests = FrustumTests::default();
-            Ok(Method::Lists(Box::new(DenseImplicit::new(gpu, parameters.parse()?, tests)?)))
+        make: |gpu, spec| {
+            let size = spec.parameters.parse()?;
+            Ok(Method::lists(Clustered::new(gpu, size, Implicit, Dense, spec.settings)?))
+        },
+    },
+    StrategyEntry {
+        family: "DC-E",
+        parameters: CLUSTER,
+        default: "64x64x40",
+        axes: BOXES,
+        summary: "dense clusters, explicit bounds: the box around each cluster's samples",
+        make: |gpu, spec| {
+            let size = spec.parameters.parse()?;
+            Ok(Method::lists(Clustered::new(gpu, size, Explicit, Dense, spec.settings)?))
+        },
+    },
+    StrategyEntry {
+        family: "SC-I",
+        parameters: CLUSTER,
+        default: "48x48x40",
+        axes: FRUSTA,
+        summary: "sparse clusters, implicit bounds: only clusters that hold samples have a list",
+        make: |gpu, spec| {
+            let size = spec.parameters.parse()?;
+            Ok(Method::lists(Clustered::new(gpu, size, Implicit, Sparse, spec.settings)?))
+        },
+    },
+    StrategyEntry {
+        family: "SC-E",
+        parameters: CLUSTER,
+        default: "48x48x40",
+        axes: BOXES,
+        summary: "sparse clusters, explicit bounds: both at once",
+        make: |gpu, spec| {
+            let size = spec.parameters.parse()?;
+            Ok(Method::lists(Clustered::new(gpu, size, Explicit, Sparse, spec.settings)?))
+        },
+    },
+    StrategyEntry {
+        family: "G",
+        parameters: &["cells_x", "cells_y", "cells_z"],
+        default: "20x20x20",
+        axes: &[Axis::Box, Axis::Source],
+        summary: "a grid of cells in world space, over the lights' box or the surfaces'",
+        make: |gpu, spec| {
+            let counts = spec.parameters.parse()?;
+            Ok(Method::lists(Grid::new(gpu, counts, spec.grid_box, spec.settings)?))
+        },
+    },
+    StrategyEntry {
+        family: "M",
+        parameters: &["part_size_m"],
+        default: "",
+        axes: BOXES,
+        summary: "a list for each model, or, with a size, for each part of it",
+        make: |gpu, spec| {
+            Ok(Method::lists(PerModel::new(gpu, part_size(&spec.parameters)?, spec.settings)?))
         },
     },
 ];
 
-/// A method chosen by its id.
-#[derive(Clone)]
-pub struct Choice {
-    entry: &'static StrategyEntry,
-    parameters: String,
-}
-
-impl Choice {
-    /// Looks an id such as `DC-I/64x64x24` up; a family alone takes its default parameters.
-    pub fn parse(id: &str) -> Result<Self, CliError> {
-        let (family, parameters) = id.split_once('/').unwrap_or((id, ""));
-        let same = |entry: &&StrategyEntry| entry.family.eq_ignore_ascii_case(family);
-        let Some(entry) = STRATEGIES.iter().find(same) else {
-            let known: Vec<&str> = STRATEGIES.iter().map(|entry| entry.family).collect();
-            return Err(CliError::unknown("strategy", id, &known));
-        };
-        if entry.parameters.is_empty() && !parameters.is_empty() {
-            return Err(CliError::new(format!(
-                "strategy {id}: {} takes no parameters",
-                entry.family
-            )));
-        }
-        let parameters = if parameters.is_empty() { entry.default } else { parameters };
-        Ok(Self { entry, parameters: parameters.to_owned() })
+fn part_size(text: &str) -> Result<Option<f32>, AssignError> {
+    if text.is_empty() {
+        return Ok(None);
     }
-
-    /// Makes the method on a device.
-    pub fn make(&self, gpu: &Gpu) -> Result<Method, AssignError> {
-        (self.entry.make)(gpu, &self.parameters)
-    }
-
-    /// Makes the method once, to check its parameters and write them as the strategy does.
-    pub fn checked(mut self, gpu: &Gpu) -> Result<Self, AssignError> {
-        if let Method::Lists(strategy) = self.make(gpu)? {
-            let id = strategy.id();
-            self.parameters =
-                id.split_once('/').map_or(String::new(), |(_, parameters)| parameters.to_owned());
-        }
-        Ok(self)
-    }
-
-    /// The id with parameters.
-    pub fn id(&self) -> String {
-        id(self.entry.family, &self.parameters)
-    }
-
-    /// The parameters by name.
-    pub fn parameters(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        self.entry.parameters.iter().copied().zip(self.parameters.split('x'))
-    }
-
-    /// Whether it is the reference of all images.
-    pub fn is_reference(&self) -> bool {
-        self.entry.family == crate::results::BASELINE
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ids_are_found_in_any_case_and_complete_themselves() {
-        assert_eq!(Choice::parse("dc-i").map(|c| c.id()).unwrap(), "DC-I/64x64x24");
-        assert_eq!(Choice::parse("DC-I/32x32x8").map(|c| c.id()).unwrap(), "DC-I/32x32x8");
-        let choice = Choice::parse("DC-I/32x16x8").unwrap();
-        let parameters: Vec<_> = choice.parameters().collect();
-        assert_eq!(
-            parameters,
-            [("tile_width_px", "32"), ("tile_height_px", "16"), ("slices", "8")]
-        );
-    }
-
-    #[test]
-    fn unknown_ids_name_the_nearest() {
-        let error = Choice::parse("DCI").err().unwrap().to_string();
-        assert!(error.contains("DC-I"), "{error}");
-        assert!(Choice::parse("None/3").is_err());
-    }
+    text.parse().map(Some).map_err(|_| AssignError::Parameter {
+        field: "size of a part".into(),
+        value: text.into(),
+        accepted: "a number of metres, such as 2".into(),
+    })
 }

@@ -267,6 +267,21 @@ pub struct Record {
     pub differing_channels: Option<u64>,
     /// GPU memory of groups and lists, bytes.
     pub lists_bytes: u64,
+    /// Groups that some sample reads, by the length of their list: none, 1, 2 to 3, 4 to 7 and so
+    /// on. Empty where lists were not checked.
+    #[serde(default)]
+    pub histogram: Vec<u64>,
+    /// Order of the lights in their buffer: `given`, `morton` or `bvh`.
+    #[serde(default)]
+    pub light_order: Option<String>,
+    /// Time in which the CPU put the lights in order and built the hierarchy over them, ms: once,
+    /// for lights that stand still.
+    #[serde(default)]
+    pub light_build_ms: Option<f64>,
+    /// The largest relative difference that the method states of itself; none where it states
+    /// that no bit differs.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
     /// Groups that fell back to all lights because a list did not fit.
     pub overflowed_groups: u64,
     /// Pictures, beside `results.json`.
@@ -289,6 +304,9 @@ pub struct Images {
     /// The absolute difference to no culling, linear, times the amplification.
     #[serde(default)]
     pub difference: Option<String>,
+    /// Lights per pixel over the scene: blue at none, red at 150, green above.
+    #[serde(default)]
+    pub heat_map: Option<String>,
     /// The factor on the difference; 1 where absent.
     #[serde(default)]
     pub difference_amplification: Option<f64>,
@@ -332,10 +350,14 @@ impl Record {
         self.strategy == CONTROL
     }
 
-    /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs.
+    /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs by
+    /// more than the method states of itself.
     pub fn is_lossless(&self) -> bool {
-        self.missed_pairs.unwrap_or(0) == 0
-            && self.differing_channels.unwrap_or(0) == 0
-            && self.max_abs_diff.unwrap_or(0.0) == 0.0
+        let same =
+            self.differing_channels.unwrap_or(0) == 0 && self.max_abs_diff.unwrap_or(0.0) == 0.0;
+        let tolerated = self
+            .tolerance
+            .is_some_and(|most| self.max_rel_diff.is_some_and(|difference| difference <= most));
+        self.missed_pairs.unwrap_or(0) == 0 && (same || tolerated)
     }
 }

@@ -62,7 +62,7 @@ impl Stage {
             radius_scale,
             light_box,
             own_lights,
-            lights: LightBuffer::new(gpu, &lights)?,
+            lights: LightBuffer::ordered(gpu, &lights, args.light_order)?,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,

@@ -160,7 +160,7 @@ fn encode(linear: f32) -> u8 {
     (linear_to_srgb(linear.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8
 }
 
-fn encode_png(width: u32, height: u32, bytes: Vec<u8>) -> Result<Vec<u8>, ShadingError> {
+pub(crate) fn encode_png(width: u32, height: u32, bytes: Vec<u8>) -> Result<Vec<u8>, ShadingError> {
     let fail = |reason: String| ShadingError::Write { path: "image.png".into(), reason };
     let image = RgbImage::from_raw(width, height, bytes)
         .ok_or_else(|| fail("the image has the wrong size".into()))?;

@@ -20,6 +20,7 @@
 
 mod error;
 mod geometry;
+mod heat_map;
 mod image;
 mod lighting;
 mod materials;
@@ -35,6 +36,7 @@ mod truth;
 
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
+pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
 pub use image::{HdrImage, ImageDifference, luminance};
 pub use lighting::{Lighting, LightingOptions};
 pub use materials::MaterialRecord;

@@ -3,6 +3,8 @@
 
 use std::str::FromStr;
 
+use assign::{AssignError, FrustumTests, LightOrder};
+
 use super::MAX_LIGHTS;
 
 const MAX_SIDE: u32 = 16_384;
@@ -115,4 +117,20 @@ fn number(text: &str, least: f64, most: f64) -> Option<f64> {
 
 fn whole(text: &str, least: u32, most: u32) -> Option<u32> {
     text.parse().ok().filter(|number| (least..=most).contains(number))
+}
+
+pub(super) fn tests(text: &str) -> Result<FrustumTests, String> {
+    accepted(text.parse())
+}
+
+pub(super) fn light_order(text: &str) -> Result<LightOrder, String> {
+    accepted(text.parse())
+}
+
+/// What would be accepted, of a value that was not.
+fn accepted<T>(parsed: Result<T, AssignError>) -> Result<T, String> {
+    parsed.map_err(|error| match error {
+        AssignError::Parameter { accepted, .. } => accepted,
+        other => other.to_string(),
+    })
 }

@@ -1,0 +1,260 @@
+//! Methods chosen by their ids: `FAMILY/PARAMETERS/TESTS/SOURCE`, segments after the first in any
+//! order.
+
+use std::collections::BTreeMap;
+
+use assign::{AssignError, FrustumTests, Gpu, LightSource};
+use serde_json::Value;
+
+use crate::{
+    cli::{CliError, CompareArgs, SourceChoice},
+    registry::{Axis, Method, STRATEGIES, Spec, StrategyEntry},
+};
+
+/// Names every method, at its default parameters.
+pub const ALL: &str = "all";
+
+/// A method chosen by its id.
+#[derive(Clone)]
+pub struct Choice {
+    entry: &'static StrategyEntry,
+    spec: Spec,
+    /// Whether the id says which tests, and which source.
+    says: (bool, bool),
+    /// Whether it was named, and not meant by [`ALL`].
+    pub is_named: bool,
+    id: String,
+}
+
+/// All methods that a command line asks for, in its order.
+pub fn choices(args: &CompareArgs) -> Result<Vec<Choice>, CliError> {
+    let mut named = Vec::new();
+    for id in &args.strategies.0 {
+        if id.eq_ignore_ascii_case(ALL) {
+            for entry in STRATEGIES {
+                named.push(Choice { is_named: false, ..Choice::parse(entry.family)? });
+            }
+        } else {
+            named.push(Choice::parse(id)?);
+        }
+    }
+    let mut choices = Vec::new();
+    for mut choice in named {
+        if let Some(tests) = args.test.filter(|_| !choice.says.0) {
+            choice.spec.settings.tests = tests;
+        }
+        let sources: &[LightSource] = match args.source {
+            _ if choice.says.1 || !choice.entry.axes.contains(&Axis::Source) => {
+                &[choice.spec.settings.source]
+            }
+            SourceChoice::Linear => &[LightSource::Linear],
+            SourceChoice::Bvh => &[LightSource::Hierarchy],
+            SourceChoice::Both => &[LightSource::Linear, LightSource::Hierarchy],
+        };
+        for source in sources {
+            choice.spec.settings.source = *source;
+            choices.push(choice.clone());
+        }
+    }
+    Ok(choices)
+}
+
+impl Choice {
+    /// Looks an id such as `SC-E/48x48x40/bvh` up; a family alone takes its default parameters.
+    pub fn parse(id: &str) -> Result<Self, CliError> {
+        let mut segments = id.split('/');
+        let family = segments.next().unwrap_or_default();
+        let same = |entry: &&StrategyEntry| entry.family.eq_ignore_ascii_case(family);
+        let Some(entry) = STRATEGIES.iter().find(same) else {
+            let mut known: Vec<&str> = STRATEGIES.iter().map(|entry| entry.family).collect();
+            known.push(ALL);
+            return Err(CliError::unknown("strategy", id, &known));
+        };
+        let mut choice = Self {
+            entry,
+            spec: Spec { parameters: entry.default.to_owned(), ..Spec::default() },
+            says: (false, false),
+            is_named: true,
+            id: id.to_owned(),
+        };
+        let mut has_parameters = false;
+        for segment in segments {
+            let segment = segment.to_lowercase();
+            match axis_of(&segment) {
+                Some(axis) if !entry.axes.contains(&axis) => return Err(choice.refuse(&segment)),
+                Some(Axis::Tests) => {
+                    choice.spec.settings.tests =
+                        segment.parse().map_err(|_| choice.refuse(&segment))?;
+                    choice.says.0 = true;
+                }
+                Some(Axis::Source) => {
+                    choice.spec.settings.source = match segment.as_str() {
+                        "bvh" => LightSource::Hierarchy,
+                        _ => LightSource::Linear,
+                    };
+                    choice.says.1 = true;
+                }
+                Some(Axis::Box) => {
+                    choice.spec.grid_box = segment.parse().map_err(|_| choice.refuse(&segment))?;
+                }
+                None if !entry.parameters.is_empty() && !has_parameters && !segment.is_empty() => {
+                    choice.spec.parameters = segment;
+                    has_parameters = true;
+                }
+                None => return Err(choice.refuse(&segment)),
+            }
+        }
+        Ok(choice)
+    }
+
+    fn refuse(&self, segment: &str) -> CliError {
+        let mut accepted: Vec<String> = Vec::new();
+        if !self.entry.parameters.is_empty() {
+            accepted.push(self.entry.parameters.join(" x "));
+        }
+        accepted.extend(self.entry.axes.iter().map(|axis| axis.accepted().to_owned()));
+        let accepted = if accepted.is_empty() {
+            "nothing behind a slash".to_owned()
+        } else {
+            format!("segments that are {}", accepted.join(", or "))
+        };
+        CliError::new(format!(
+            "strategy {}: {segment:?} is not understood: {} takes {accepted}",
+            self.id, self.entry.family
+        ))
+    }
+
+    /// Makes the method on a device.
+    pub fn make(&self, gpu: &Gpu) -> Result<Method, AssignError> {
+        (self.entry.make)(gpu, &self.spec)
+    }
+
+    /// Makes the method once, to check its parameters and take its id from the strategy.
+    pub fn checked(mut self, gpu: &Gpu) -> Result<Self, AssignError> {
+        self.id = match self.make(gpu)? {
+            Method::Lists { strategy, sphere_test: false } => strategy.id(),
+            _ => self.entry.family.to_owned(),
+        };
+        if !self.spec.parameters.is_empty() {
+            let written = self.id.split('/').nth(1).unwrap_or_default();
+            self.spec.parameters = written.to_owned();
+        }
+        Ok(self)
+    }
+
+    /// The id with parameters.
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// The family: the id without parameters.
+    pub fn family(&self) -> &'static str {
+        self.entry.family
+    }
+
+    /// Parameters and settings by name.
+    pub fn parameters(&self) -> BTreeMap<String, Value> {
+        let number = |text: &str| {
+            let whole = text.parse::<u64>().map(Value::from);
+            whole.or_else(|_| text.parse::<f64>().map(Value::from)).unwrap_or_else(|_| text.into())
+        };
+        let values = self.spec.parameters.split('x').filter(|value| !value.is_empty());
+        let mut all: BTreeMap<String, Value> = self
+            .entry
+            .parameters
+            .iter()
+            .zip(values)
+            .map(|(name, value)| ((*name).to_owned(), number(value)))
+            .collect();
+        let settings = self.spec.settings;
+        for axis in self.entry.axes {
+            let (name, value) = match axis {
+                Axis::Tests => ("tests", settings.tests.to_string()),
+                Axis::Source if settings.source == LightSource::Hierarchy => {
+                    ("source", "bvh".into())
+                }
+                Axis::Source => ("source", "linear".into()),
+                Axis::Box => ("box", format!("{:?}", self.spec.grid_box).to_lowercase()),
+            };
+            all.insert(name.to_owned(), value.into());
+        }
+        all
+    }
+
+    /// Whether it is the reference of all images.
+    pub fn is_reference(&self) -> bool {
+        self.entry.family == crate::results::BASELINE
+    }
+}
+
+/// The axis that a segment speaks of; `None` where it can only be parameters.
+fn axis_of(segment: &str) -> Option<Axis> {
+    match segment {
+        "linear" | "bvh" => Some(Axis::Source),
+        "lights" | "surfaces" => Some(Axis::Box),
+        _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters(id: &str) -> String {
+        Choice::parse(id).map(|choice| choice.spec.parameters).unwrap()
+    }
+
+    fn asked(line: &[&str]) -> Vec<String> {
+        let line = [&["lightbench"], line].concat();
+        let Ok(crate::cli::Invocation::Compare(args)) = crate::cli::parse(line) else {
+            panic!("not understood");
+        };
+        let gpu = Gpu::noop().unwrap();
+        let checked = |choice: Choice| choice.checked(&gpu).unwrap().id().to_owned();
+        choices(&args).unwrap().into_iter().map(checked).collect()
+    }
+
+    #[test]
+    fn ids_are_found_in_any_case_and_complete_themselves() {
+        assert_eq!(parameters("sc-e"), "48x48x40");
+        assert_eq!(parameters("SC-E/32x16x8"), "32x16x8");
+        assert_eq!(asked(&["--strategies", "t-i/BVH/28X28"]), ["T-I/28x28/bvh"]);
+        assert_eq!(asked(&["--strategies", "m,M/2"]), ["M", "M/2"]);
+        assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
+    }
+
+    #[test]
+    fn settings_are_taken_where_the_id_says_none() {
+        let ids = ["--strategies", "T-I/hs,T-E,DC-E,None", "--test", "hs+sat-p", "--source", "bvh"];
+        let expected = ["T-I/28x28/hs/bvh", "T-E/28x28/hs+sat-p/bvh", "DC-E/64x64x40/bvh", "None"];
+        assert_eq!(asked(&ids), expected);
+    }
+
+    #[test]
+    fn all_is_every_row_and_both_is_two() {
+        assert_eq!(asked(&["--strategies", "all"]).len(), STRATEGIES.len());
+        let both = asked(&["--strategies", "all", "--source", "both"]);
+        let sources = STRATEGIES.iter().filter(|entry| entry.axes.contains(&Axis::Source));
+        assert_eq!(both.len(), STRATEGIES.len() + sources.count());
+        assert!(both.contains(&"SC-E/48x48x40/bvh".to_owned()), "{both:?}");
+    }
+
+    #[test]
+    fn parameters_are_told_by_name() {
+        let told = Choice::parse("SC-I/32x16x8/hs").unwrap().parameters();
+        assert_eq!(told["tile_width_px"], 32);
+        assert_eq!(told["slices"], 8);
+        assert_eq!(told["tests"], "hs");
+        assert_eq!(told["source"], "linear");
+    }
+
+    #[test]
+    fn what_is_not_understood_names_what_is() {
+        let error = |id| Choice::parse(id).err().unwrap().to_string();
+        assert!(error("DCI").contains("DC-I"), "{}", error("DCI"));
+        assert!(error("None/3").contains("nothing behind"), "{}", error("None/3"));
+        assert!(error("DC-E/hs").contains("linear or bvh"), "{}", error("DC-E/hs"));
+        assert!(error("T-I/28x28/16x16").contains("16x16"), "{}", error("T-I/28x28/16x16"));
+        assert!(error("T-I/surfaces").contains("hs"), "{}", error("T-I/surfaces"));
+    }
+}
