@@ -6,9 +6,9 @@
 
 use std::error::Error;
 
-use assign::{Bounds, 
-    Assignment, EncoderPasses, Frame, FrameBindings, CullSettings, Gpu, Light, LightBuffer, Passes,
-    Shader, View, entry, storage_entry,
+use assign::{
+    Assignment, Bounds, CullSettings, EncoderPasses, Frame, FrameBindings, Gpu, Light, LightBuffer,
+    Passes, Shader, View, entry, storage_entry,
 };
 use assign_clustered::{Clustered, Occupancy};
 use glam::Vec3;

@@ -9,24 +9,38 @@
 //! | id | which clusters get a list | bounds of a cluster |
 //! |---|---|---|
 //! | `DC-I` | all (dense) | its whole frustum (implicit) |
+//! | `DC-E` | all (dense) | the world-space box around the samples in it (explicit) |
+//! | `SC-I` | those that hold a sample (sparse) | its whole frustum |
+//! | `SC-E` | those that hold a sample (sparse) | the box around the samples |
 //!
 //! # Phases
 //!
-//! 1. `cull`: one workgroup per cluster tests all lights against the cluster's frustum (HS and
-//!    SAT-N) and writes its list. Nothing else: no depth buffer is read, so lists serve look-ups
-//!    at any depth, transparent layers and volumes included.
+//! 1. `bounds` (all but DC-I): reads the depth buffer once. Each workgroup collects the clusters of
+//!    32 x 32 pixels, and the boxes around their samples, in a hash table in workgroup memory, then
+//!    merges them into global memory, one set of atomics a cluster and block. The first block to
+//!    meet a cluster appends it to the clusters that live.
+//! 2. `cull`: one workgroup per cluster, all or the live ones, tests lights against the cluster's
+//!    frustum (HS and SAT-N by default) or box (NP) and writes its list.
+//!
+//! Worked example: of clusters 0 to 7 a view's samples lie in 2, 5 and 6. Dense culls eight, sparse
+//! appends `[5, 2, 6]`, in any order, and culls three; the lists of the others are never looked up.
 //!
 //! # Cost
 //!
-//! `cull` grows with clusters times lights, and with neither pixels nor triangles. Memory is 8
-//! bytes a cluster and 4 bytes a listed light.
+//! `bounds` grows with pixels, `cull` with clusters that get a list times lights. Memory is 8 bytes
+//! a cluster, 24 more with explicit bounds (4 with sparse implicit ones), and 4 bytes a listed
+//! light.
 //!
 //! # Where it fails
 //!
-//! Empty clusters are culled as well: most of a dense grid shows no surface. Deep slices far
-//! away, and wide ones where the tile is large, list lights that no visible sample meets. A near
-//! plane much closer than the first surface spends slices on nothing: they grow with
+//! Dense: empty clusters are culled as well, and most of a dense grid shows no surface. Implicit:
+//! deep slices far away, and wide ones where the tile is large, list lights that no visible sample
+//! meets. A near plane much closer than the first surface spends slices on nothing: they grow with
 //! `log(far / near)`.
+//!
+//! DC-I serves look-ups at any depth, transparent layers and volumes included. The others serve
+//! the opaque surfaces in the depth buffer alone, and refuse the rest. A surface whose depth equals
+//! the cleared one cannot be told from background: its samples get all lights.
 
 mod clustered;
 mod clusters;

@@ -45,10 +45,13 @@ pub struct Parts {
     pub model_of_group: Vec<u32>,
 }
 
-/// A box is widened by this share of its size and of its distance from the origin: sixteen units
-/// in the last place bound how far rounding moves a sample in the box's frame. What depth moves
-/// further is outside, and gets all lights.
+/// A box is widened by this share of its distance from the origin: sixteen units in the last place
+/// bound how far rounding moves a sample in the box's frame.
 const ROUNDING: f32 = 16.0 * f32::EPSILON;
+
+/// And by this share of its size: a rasteriser's depth of a large triangle is off by as much, and
+/// walls are models without thickness. What depth moves further is outside, and gets all lights.
+const DEPTH_ERROR: f32 = 1.0e-3;
 
 impl Parts {
     /// Cuts boxes into parts of at most `limit_m` along each axis, or a 64th of the model where
@@ -78,7 +81,8 @@ impl Parts {
             }
             let magnitude =
                 model.center_world.abs().max_element() + model.half_extents_m.max_element();
-            let slack_m = ROUNDING * magnitude;
+            let size = model.half_extents_m.max_element();
+            let slack_m = ROUNDING * magnitude + DEPTH_ERROR * size;
             parts.model_of_group.resize(first_group + total as usize, parts.models.len() as u32);
             let [axis_x, axis_y, axis_z] = model.axes.map(|axis| axis.to_array());
             parts.models.push(ModelRecord {

@@ -20,6 +20,9 @@ pub const ENTRY_LIGHT: u32 = ENTRY_DIFFUSE - 1;
 /// What `group_of` returns for a sample outside all groups: its list holds all lights.
 pub const ALL_LIGHTS: u32 = u32::MAX;
 
+/// The most entries of the pool, 4 GiB: `CAREFUL` of `cull.wesl` counts on it.
+const MAX_POOL: u64 = 1 << 30;
+
 /// The most entries that the pool begins with: 64 MiB.
 const MAX_GUESS: u64 = 16 << 20;
 
@@ -200,9 +203,8 @@ impl LightLists {
         let has = u64::from(self.pool_capacity);
         // A quarter more than asked, so that a moving camera does not grow it each frame.
         let grown = if asked > has { asked + asked / 4 } else { has };
-        let wanted =
-            grown.max(guess).min(room - u64::from(light_capacity)).min(u64::from(self.pool_limit))
-                as u32;
+        let most = (room - u64::from(light_capacity)).min(MAX_POOL);
+        let wanted = grown.max(guess).min(most).min(u64::from(self.pool_limit)) as u32;
         if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
             return Ok(false);
         }

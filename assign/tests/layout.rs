@@ -6,7 +6,8 @@
 use std::mem::offset_of;
 
 use assign::{
-    Counters, CullUniform, Culler, GroupShape, LightEmission, LightList, LightSphere, ViewUniform,
+    Counters, CullSettings, CullUniform, Culler, GroupShape, LightEmission, LightList, LightNode,
+    LightSource, LightSphere, ViewUniform,
 };
 
 const STRATEGY: &str = "
@@ -28,7 +29,8 @@ macro_rules! fields {
 }
 
 fn kernel() -> naga::Module {
-    let source = Culler::kernel_source(GroupShape::Box, STRATEGY, true).unwrap();
+    let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
+    let source = Culler::kernel_source(GroupShape::Box, settings, false, STRATEGY, true).unwrap();
     naga::front::wgsl::parse_str(&source).unwrap()
 }
 
@@ -65,7 +67,8 @@ fn check(name: &str, bytes: usize, fields: &[(&str, usize)], stride: Option<usiz
 #[test]
 fn view() {
     let fields = fields!(ViewUniform: world_to_view, view_to_world, view_to_clip, ray_scale,
-        ray_offset, viewport_origin, viewport_size, near_m, far_m, perspective, position_error);
+        ray_offset, viewport_origin, viewport_size, near_m, far_m, perspective, position_error,
+        depth_clear);
     check("View", size_of::<ViewUniform>(), &fields, None);
 }
 
@@ -81,6 +84,13 @@ fn light_emission() {
     let fields = fields!(LightEmission: intensity, kind_and_shape);
     let bytes = size_of::<LightEmission>();
     check("LightEmission", bytes, &fields, Some(bytes));
+}
+
+#[test]
+fn light_node() {
+    let fields = fields!(LightNode: min_world, max_world);
+    let bytes = size_of::<LightNode>();
+    check("LightNode", bytes, &fields, Some(bytes));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Every permutation of the culling kernel links and validates, without a GPU.
 
-use assign::{Culler, FrustumTests, GroupShape};
+use assign::{CullSettings, Culler, GroupShape, LightSource};
 
 const GROUP_OF: &str = "
 import package::sample::ViewSample;
@@ -9,15 +9,42 @@ fn group_of(sample: ViewSample) -> u32 {
 }
 ";
 
-const SHAPES: [(GroupShape, &str); 4] = [
-    (GroupShape::Frustum(FrustumTests { sat_n: false }), "vec2f(-1.0), vec2f(1.0), 1.0, 2.0"),
-    (GroupShape::Frustum(FrustumTests { sat_n: true }), "vec2f(-1.0), vec2f(1.0), 1.0, 2.0"),
+const FRUSTUM: (GroupShape, &str) = (GroupShape::Frustum, "vec2f(-1.0), vec2f(1.0), 1.0, 2.0");
+const BOXES: [(GroupShape, &str); 2] = [
     (GroupShape::Box, "vec3f(0.0), vec3f(1.0)"),
     (
         GroupShape::OrientedBox,
         "vec3f(0.0), vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0), vec3f(1.0)",
     ),
 ];
+
+/// A shape with its bounds, settings, and whether only live groups are culled.
+type Permutation = (GroupShape, &'static str, CullSettings, bool);
+
+fn settings(tests: &str, source: LightSource) -> CullSettings {
+    CullSettings { tests: tests.parse().unwrap(), source }
+}
+
+/// Every subset of the frustum tests but none, and the boxes; from both sources, all or live.
+fn permutations() -> Vec<Permutation> {
+    let names = ["hs", "sat-e", "sat-n", "sat-p", "sat-v"];
+    let union = |bits: usize| {
+        let chosen = (0..names.len()).filter(|i| bits >> i & 1 == 1).map(|i| names[i]);
+        chosen.collect::<Vec<_>>().join("+")
+    };
+    let mut all = Vec::new();
+    for source in [LightSource::Linear, LightSource::Hierarchy] {
+        for sparse in [false, true] {
+            for bits in 1..1 << names.len() {
+                all.push((FRUSTUM.0, FRUSTUM.1, settings(&union(bits), source), sparse));
+            }
+            for (shape, bounds) in BOXES {
+                all.push((shape, bounds, settings("hs", source), sparse));
+            }
+        }
+    }
+    all
+}
 
 /// A strategy of one group with the given bounds.
 fn strategy(bounds: &str) -> String {
@@ -44,20 +71,24 @@ fn validate(source: &str) -> Result<naga::Module, String> {
 
 #[test]
 fn every_permutation_of_the_kernel_validates() {
-    for (shape, bounds) in SHAPES {
+    for (shape, bounds, settings, sparse) in permutations() {
         for spots in [false, true] {
-            let what = format!("{shape:?}, spots {spots}");
-            let source = Culler::kernel_source(shape, &strategy(bounds), spots)
+            let what = format!("{shape:?}, {settings:?}, sparse {sparse}, spots {spots}");
+            let source = Culler::kernel_source(shape, settings, sparse, &strategy(bounds), spots)
                 .unwrap_or_else(|e| panic!("{what}: {e}"));
             let module = validate(&source).unwrap_or_else(|e| panic!("{what}: {e}"));
             let mut entry_points: Vec<_> = module.entry_points.iter().map(|e| &e.name).collect();
             entry_points.sort();
             assert_eq!(entry_points, ["cull_groups", "reset"], "{what}");
-            let reads_shapes = module
-                .global_variables
-                .iter()
-                .any(|(_, v)| v.name.as_deref().is_some_and(|n| n.contains("light_shapes")));
-            assert_eq!(reads_shapes, spots, "{what}");
+            let reads = |name: &str| {
+                let is_named = |n: &str| n.contains(name);
+                let mut variables = module.global_variables.iter();
+                variables.any(|(_, v)| v.name.as_deref().is_some_and(is_named))
+            };
+            assert_eq!(reads("light_shapes"), spots, "{what}");
+            assert_eq!(reads("light_nodes"), settings.source == LightSource::Hierarchy, "{what}");
+            let reads_live = source.contains("live.count") || source.contains("live_live.count");
+            assert_eq!(reads_live, sparse, "{what}");
         }
     }
 }
@@ -65,21 +96,23 @@ fn every_permutation_of_the_kernel_validates() {
 /// Permutations differ where they should: the flags reach the module.
 #[test]
 fn flags_change_the_kernel() {
-    let source =
-        |shape, bounds, spots| Culler::kernel_source(shape, &strategy(bounds), spots).unwrap();
-    let sources: Vec<String> = SHAPES
-        .iter()
-        .flat_map(|(shape, bounds)| [false, true].map(|spots| source(*shape, bounds, spots)))
-        .collect();
-    for (i, a) in sources.iter().enumerate() {
-        assert!(sources[..i].iter().all(|b| a != b), "permutation {i}");
+    let mut sources = Vec::new();
+    for (shape, bounds, settings, sparse) in permutations() {
+        for spots in [false, true] {
+            let module = strategy(bounds);
+            sources.push(Culler::kernel_source(shape, settings, sparse, &module, spots).unwrap());
+        }
     }
+    let count = sources.len();
+    sources.sort();
+    sources.dedup();
+    assert_eq!(sources.len(), count);
 }
 
 #[test]
 fn a_strategy_of_the_wrong_shape_is_rejected() {
-    let boxes = strategy("vec3f(0.0), vec3f(1.0)");
-    let shape = GroupShape::Frustum(FrustumTests::default());
-    let linked = Culler::kernel_source(shape, &boxes, false).map_err(|e| e.to_string());
-    assert!(linked.and_then(|source| validate(&source)).is_err());
+    let boxes = strategy(BOXES[0].1);
+    let settings = CullSettings::default();
+    let linked = Culler::kernel_source(GroupShape::Frustum, settings, false, &boxes, false);
+    assert!(linked.map_err(|e| e.to_string()).and_then(|source| validate(&source)).is_err());
 }

@@ -1,1 +1,121 @@
-fn main() {}
+//! Device time of every method: `cargo bench --bench gpu -- SC-E/` runs one.
+//!
+//! Benches are named `strategy/scene/lights`, then `assign` or `shade`. The environment chooses
+//! what is drawn: `LIGHTBENCH_SCENE` (a name or a file, default atrium), `LIGHTBENCH_LIGHTS`
+//! (default 1000), `LIGHTBENCH_SIZE` (default 320x180), and `LIGHTBENCH_STRATEGIES` (default all,
+//! from both sources). Times are those of the clock of `lightbench compare`; on a software adapter
+//! they are the host's, and say nothing of a GPU.
+
+use std::{cell::OnceCell, time::Duration};
+
+use assign::Gpu;
+use criterion::{Criterion, criterion_group, criterion_main};
+use harness::{
+    choice::{Choice, choices},
+    cli::{self, CompareArgs, Invocation},
+    clock::PassClock,
+    error::HarnessError,
+    measure::{Painter, pass_kind},
+    results::PassKind,
+    stage::Stage,
+};
+use shading::Mode;
+
+fn setting(name: &str, default: &str) -> String {
+    std::env::var(name).unwrap_or_else(|_| default.to_owned())
+}
+
+fn arguments() -> Result<CompareArgs, HarnessError> {
+    let options = [
+        ("--scene", setting("LIGHTBENCH_SCENE", "atrium")),
+        ("--lights", setting("LIGHTBENCH_LIGHTS", "1000")),
+        ("--size", setting("LIGHTBENCH_SIZE", "320x180")),
+        ("--strategies", setting("LIGHTBENCH_STRATEGIES", "all")),
+        ("--source", "both".to_owned()),
+    ];
+    let words = options.into_iter().flat_map(|(option, value)| [option.to_owned(), value]);
+    match cli::parse(std::iter::once("lightbench".to_owned()).chain(words))? {
+        Invocation::Compare(args) => Ok(args),
+        _ => unreachable!("no subcommand was given"),
+    }
+}
+
+/// Device time of the passes of a kind, summed over `frames` frames.
+fn time_of(
+    kind: PassKind,
+    frames: u64,
+    gpu: &Gpu,
+    stage: &Stage,
+    choice: &Choice,
+) -> Result<Duration, HarnessError> {
+    let mut method = choice.make(gpu)?;
+    let mut painter = Painter::new(stage, &mut method, Mode::Deferred)?;
+    let mut clock = PassClock::new(gpu);
+    // The pool grows to what the lists ask for before anything is timed.
+    for _ in 0..3 {
+        painter.draw(gpu, stage, Mode::Deferred, &mut clock)?;
+        clock.finish()?;
+    }
+    let mut ms = 0.0;
+    for _ in 0..frames {
+        painter.draw(gpu, stage, Mode::Deferred, &mut clock)?;
+        let passes = clock.finish()?;
+        ms += passes
+            .iter()
+            .filter(|(name, _)| pass_kind(name) == kind)
+            .map(|(_, ms)| ms)
+            .sum::<f64>();
+    }
+    Ok(Duration::from_secs_f64(ms / 1e3))
+}
+
+fn methods(criterion: &mut Criterion) {
+    let run = |criterion: &mut Criterion| -> Result<(), HarnessError> {
+        let args = arguments()?;
+        let gpu = Gpu::open(None)?;
+        // Loaded when the first bench that no filter leaves out runs.
+        let stage = OnceCell::new();
+        let stage = || {
+            stage.get_or_init(|| {
+                let mut stage = Stage::new(&gpu, &args).unwrap_or_else(|error| fail(&error));
+                let prepared = stage.renderer.prepare(&stage.view, &stage.lights);
+                prepared.unwrap_or_else(|error| fail(&error.into()));
+                stage
+            })
+        };
+        for choice in choices(&args)? {
+            let choice = choice.checked(&gpu)?;
+            let scene = args.scene.rsplit('/').next().unwrap_or_default();
+            let name = format!("{}/{scene}/{}", choice.id(), args.lights);
+            for (kind, family) in [(PassKind::Assign, "assign"), (PassKind::Shade, "shade")] {
+                // No lists, nothing to assign.
+                if kind == PassKind::Assign && !choice.has_groups() {
+                    continue;
+                }
+                criterion.bench_function(&format!("{name}/{family}"), |bencher| {
+                    bencher.iter_custom(|frames| {
+                        time_of(kind, frames, &gpu, stage(), &choice)
+                            .unwrap_or_else(|error| fail(&error))
+                    });
+                });
+            }
+        }
+        Ok(())
+    };
+    run(criterion).unwrap_or_else(|error| fail(&error));
+}
+
+fn fail(error: &HarnessError) -> ! {
+    eprintln!("bench: {error}");
+    std::process::exit(1);
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_secs(1));
+    targets = methods
+}
+criterion_main!(benches);

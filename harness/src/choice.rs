@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use assign::{AssignError, FrustumTests, Gpu, LightSource};
 use serde_json::Value;
+use shading::{RASTER_SPHERE_TOLERANCE, SPHERE_TEST_TOLERANCE};
 
 use crate::{
     cli::{CliError, CompareArgs, SourceChoice},
@@ -179,6 +180,21 @@ impl Choice {
             all.insert(name.to_owned(), value.into());
         }
         all
+    }
+
+    /// Whether it cuts the samples into groups, and so has something to assign.
+    pub fn has_groups(&self) -> bool {
+        self.entry.axes.contains(&Axis::Source)
+    }
+
+    /// The largest relative difference of a channel that the method states of itself; `None` where
+    /// it states that no bit differs.
+    pub fn tolerance(&self) -> Option<f64> {
+        match self.entry.family {
+            "Sphere" => Some(SPHERE_TEST_TOLERANCE),
+            "RasterSphere" => Some(RASTER_SPHERE_TOLERANCE),
+            _ => None,
+        }
     }
 
     /// Whether it is the reference of all images.

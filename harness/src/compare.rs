@@ -4,9 +4,7 @@ use std::{collections::HashMap, path::Path, sync::Arc, time::Duration};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
-use shading::{
-    EDGE, HdrImage, LightBvh, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres, heat_map_png,
-};
+use shading::{EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
 
 use crate::{
     choice::{Choice, choices},
@@ -32,7 +30,7 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 /// Gain of difference images: a difference of 1/64 shows as white.
 const DIFFERENCE_GAIN: f32 = 64.0;
 
-/// The method without lists whose image is not exact.
+/// The method that has no forward mode.
 const RASTER_SPHERE: &str = "RasterSphere";
 
 /// How long a GPU warms up at least; a software adapter has no clocks to raise.
@@ -390,7 +388,7 @@ impl Run<'_> {
             histogram: lists.lengths.histogram.clone(),
             light_order: Some(stage.lights.order().to_string()),
             light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
-            tolerance: (choice.family() == RASTER_SPHERE).then_some(RASTER_SPHERE_TOLERANCE),
+            tolerance: choice.tolerance(),
             overflowed_groups: u64::from(lists.counters.overflowed_groups),
             images,
             note: self.note(mode, lists.overflowed_frames),

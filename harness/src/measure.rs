@@ -178,16 +178,21 @@ impl<'a> Painter<'a> {
     }
 }
 
+/// Which bill a pass is on: what the pipeline does not know is a strategy's own.
+pub fn pass_kind(name: &str) -> PassKind {
+    match name {
+        "depth" | "gbuffer" => PassKind::Scene,
+        "shade" | "clay" => PassKind::Shade,
+        _ => PassKind::Assign,
+    }
+}
+
 fn collect(samples: &mut Vec<(String, PassKind, Vec<f64>)>, times: Vec<(String, f64)>) {
     for (name, ms) in times {
         match samples.iter_mut().find(|(known, ..)| *known == name) {
             Some((.., list)) => list.push(ms),
             None => {
-                let kind = match name.as_str() {
-                    "depth" | "gbuffer" => PassKind::Scene,
-                    "shade" | "clay" => PassKind::Shade,
-                    _ => PassKind::Assign,
-                };
+                let kind = pass_kind(&name);
                 samples.push((name, kind, vec![ms]));
             }
         }

@@ -33,20 +33,44 @@ fn assert_lossless(results: &Results, records: usize) {
     }
 }
 
+/// The heat map of the default run's last strategy.
+const HEAT_MAP: &str = "forward-SC-E-48x48x40-bvh-heat.png";
+
 #[test]
 fn the_default_scene_is_lossless_in_both_modes() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("new/run");
     let results = compare(&out, &["--lights", "300", "--spots", "0.3", "--mode", "both"]);
-    assert_lossless(&results, 4);
+    assert_lossless(&results, 6);
     let culled = &results.records[1];
     assert!(culled.checked_pairs > Some(1_000), "{:?} pairs", culled.checked_pairs);
     assert!(culled.listed_per_sample < Some(150.0), "{:?} listed", culled.listed_per_sample);
     assert_eq!(culled.light_kinds.values().sum::<u64>(), 300);
     assert!(culled.light_kinds["spot"] > 50);
     assert!(culled.passes.get("cull").is_some());
-    for name in ["index.html", "deferred-None.png", "forward-DC-I-64x64x24.exr"] {
+    let sparse = &results.records[2];
+    assert!(sparse.passes.get("bounds").is_some());
+    assert!(sparse.histogram.iter().sum::<u64>() > 20, "{:?}", sparse.histogram);
+    assert!(sparse.listed_per_sample < culled.listed_per_sample);
+    for name in ["index.html", "deferred-None.png", "forward-DC-I-64x64x24.exr", HEAT_MAP] {
         assert!(out.join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn all_methods_are_lossless_or_within_what_they_state() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["--strategies", "all,M/2", "--source", "both", "--mode", "both"];
+    let lights = ["--lights", "200", "--spots", "0.3"];
+    let results = compare(folder.path(), &[&arguments[..], &lights].concat());
+    assert!(results.records.len() > 40, "{} records", results.records.len());
+    for record in results.records.iter().filter(|record| record.strategy != "Clay") {
+        let what = format!("{} {}", record.strategy, record.mode.name());
+        assert!(record.is_lossless(), "{what}: {:?}", record.max_rel_diff);
+        let is_raster = record.strategy == "RasterSphere";
+        let states = is_raster || record.strategy == "Sphere";
+        assert_eq!(record.tolerance.is_some(), states, "{what}");
+        assert_eq!(record.missed_pairs, (!is_raster).then_some(0), "{what}");
     }
 }
 
@@ -82,7 +106,7 @@ fn real_scenes_with_their_own_lights_are_lossless() {
         let out = tempfile::tempdir().expect("a folder");
         let scene = path.to_str().expect("UTF-8");
         let results = compare(out.path(), &["--scene", scene, "--lights", lights]);
-        assert_lossless(&results, 2);
+        assert_lossless(&results, 3);
     }
 }
 
@@ -140,7 +164,10 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["list", "stratgies"], vec!["stratgies"]),
         (vec!["--scene", "two\nlines.gltf", "--out", &out], vec!["lines.gltf"]),
         (vec!["--strategies", "DC-I/a\nb", "--out", &out], vec!["a\\nb"]),
-        (vec!["--strategies", "DC-I,dc-i/64x64x24", "--out", &out], vec!["DC-I/64x64x24", "once"]),
+        (vec!["--strategies", "DC-E,dc-e/64x64x40", "--out", &out], vec!["DC-E/64x64x40", "once"]),
+        (vec!["--strategies", "DC-E/hs", "--out", &out], vec!["hs", "linear or bvh"]),
+        (vec!["--test", "sat", "--out", &out], vec!["--test", "hs+sat-n"]),
+        (vec!["--light-order", "zigzag", "--out", &out], vec!["--light-order", "morton"]),
         (vec!["--size", "16384x16384", "--lights", "1", "--out", &out], vec!["16384x16384"]),
     ] {
         assert_refused(&arguments, &wanted);
@@ -154,7 +181,7 @@ fn lists_and_help_teach() {
         assert!(output.status.success(), "{arguments:?}");
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
-    assert!(text(&["list", "strategies"]).contains("DC-I/64x64x24"));
+    assert!(text(&["list", "strategies"]).contains("DC-I/128x128x64"));
     assert!(text(&["list", "scenes"]).contains("atrium"));
     assert!(!text(&["list", "adapters"]).is_empty());
     assert!(text(&["--help"]).contains("How to read the result"));

@@ -15,13 +15,17 @@ pub struct Lighting {
     options: LightingOptions,
 }
 
+/// The largest relative difference of a channel to no culling that the sphere test may show.
+pub const SPHERE_TEST_TOLERANCE: f64 = 1e-4;
+
 /// What the lighting shader is compiled for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LightingOptions {
     /// Whether any light is a spot.
     pub spots: bool,
     /// Whether a light out of a sample's range is skipped before its BRDF: the survey's bounding
-    /// sphere (Watrous 2024). The image is the same in every bit.
+    /// sphere (Watrous 2024). The sum is the same, but the shader is another, and a compiler may
+    /// round it otherwise: [`SPHERE_TEST_TOLERANCE`].
     pub sphere_test: bool,
 }
 

@@ -14,7 +14,7 @@ use assign_model::PerModel;
 use glam::{Vec2, Vec3};
 use shading::{
     HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres, Renderer,
-    probe, record_before_lighting, record_for_probe,
+    SPHERE_TEST_TOLERANCE, probe, record_before_lighting, record_for_probe,
 };
 
 /// Points, spots, one around the camera and one beyond any far plane that reaches in.
@@ -79,7 +79,7 @@ fn everything(
 }
 
 #[test]
-fn the_sphere_test_changes_no_bit() {
+fn the_sphere_test_changes_no_more_than_it_states() {
     let gpu = common::gpu();
     for (name, view) in views() {
         let lights = LightBuffer::new(&gpu, &lights(&view)).unwrap();
@@ -87,7 +87,12 @@ fn the_sphere_test_changes_no_bit() {
         for mode in [Mode::Deferred, Mode::Forward] {
             let mut image = |test| everything(&gpu, &mut renderer, &view, &lights, mode, test);
             let difference = image(true).difference(&image(false)).unwrap();
-            assert_eq!(difference.differing_channels, 0, "{name}, {mode:?}");
+            assert!(
+                difference.max_rel <= SPHERE_TEST_TOLERANCE,
+                "{name}, {mode:?}: {difference:?}"
+            );
+            // The software adapter's compiler rounds both alike.
+            assert!(!gpu.is_software() || difference.differing_channels == 0, "{name}, {mode:?}");
         }
     }
 }

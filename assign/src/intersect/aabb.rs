@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::LightVolume;
+use super::{LightVolume, box_magnitude};
 use crate::View;
 
 /// A box along the world's axes.
@@ -34,6 +34,12 @@ impl Aabb {
                 * (super::eye_world(&uniform).length() + 2.0 * extreme.length()),
             slack_per_m: uniform.position_error,
         }
+    }
+
+    /// Whether a light whose support lies in a world-space box may reach this one.
+    pub fn reaches_box(&self, min_world: Vec3, max_world: Vec3) -> bool {
+        let slack_m = self.slack_m + self.slack_per_m * box_magnitude(min_world, max_world);
+        (min_world - self.max_world).max(self.min_world - max_world).max_element() <= slack_m
     }
 
     /// Whether the light's volume may reach the box.

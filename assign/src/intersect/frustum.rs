@@ -3,13 +3,12 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-use super::{LightVolume, UNBOUNDED, eye_world};
+use super::{LightVolume, UNBOUNDED, box_magnitude, eye_world};
 use crate::{FrustumTests, View, ViewUniform};
 
 /// A piece of the view frustum, perspective or orthographic.
 ///
-/// Tests (Enhuber 2019, section 3.5.2): HS, the half spaces of the six planes; SAT-N, the axis
-/// from the nearest corner to the light.
+/// Tests (Enhuber 2019, section 3.5.2): see [`FrustumTests`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     /// World-space corners: bit 0 of the index is x, bit 1 y, bit 2 depth. Without a far plane
@@ -18,6 +17,8 @@ pub struct Frustum {
     /// World-space planes, outward: `dot(xyz, p) + w <= 0` inside. Left, right, bottom, top,
     /// near, far.
     pub planes: [Vec4; 6],
+    /// Unit vectors along the edges, zero where an edge has no length: x, y, four along depth.
+    pub edges: [Vec3; 6],
     /// Centre of a sphere around the corners.
     pub center: Vec3,
     /// Radius of that sphere, metres.
@@ -36,7 +37,7 @@ impl Frustum {
     pub fn new(view: &View, ndc_min: Vec2, ndc_max: Vec2, depth_min: f32, depth_max: f32) -> Self {
         let lens = Lens::new(&view.uniform());
         let bounded = depth_max < UNBOUNDED;
-        let corners = std::array::from_fn(|i| {
+        let corners: [Vec3; 8] = std::array::from_fn(|i| {
             let pick = |bit: usize, low: f32, high: f32| if i & bit == 0 { low } else { high };
             let ndc = Vec2::new(pick(1, ndc_min.x, ndc_max.x), pick(2, ndc_min.y, ndc_max.y));
             let far = if bounded { depth_max } else { depth_min };
@@ -52,6 +53,11 @@ impl Frustum {
             lens.world_plane(Vec3::Z, depth_min),
             lens.world_plane(Vec3::NEG_Z, -depth_max),
         ];
+        let ends = [[0, 1], [0, 2], [0, 4], [1, 5], [2, 6], [3, 7]];
+        let edges = ends.map(|[from, to]: [usize; 2]| {
+            let edge: Vec3 = corners[to] - corners[from];
+            if edge.length() > 0.0 { edge / edge.length() } else { Vec3::ZERO }
+        });
         let center = corners.iter().fold(Vec3::ZERO, |sum, corner| sum + 0.125 * corner);
         let radius =
             corners.iter().fold(0.0, |radius: f32, corner| radius.max(center.distance(*corner)));
@@ -59,6 +65,7 @@ impl Frustum {
         Self {
             corners,
             planes,
+            edges,
             center,
             radius_m: radius,
             slack_m,
@@ -72,13 +79,28 @@ impl Frustum {
         let magnitude = volume.center.abs();
         let slack_m = self.slack_m
             + self.slack_per_m * (magnitude.x + magnitude.y + magnitude.z + volume.range_m);
-        if self.half_spaces_miss(volume, slack_m) {
+        if tests.hs && self.half_spaces_miss(volume, slack_m) {
             return false;
         }
+        // Without a far plane there are no far corners.
         if !self.bounded {
             return true;
         }
-        if tests.sat_n && self.nearest_corner_axis_misses(volume, slack_m) {
+        let gap = |axes: &[Vec3]| {
+            axes.iter().fold(f32::NEG_INFINITY, |gap, axis| gap.max(self.gap_along(*axis, volume)))
+        };
+        if tests.sat_n && self.gap_towards(self.nearest_corner(volume.center), volume) > slack_m {
+            return false;
+        }
+        if tests.sat_e && gap(&self.edges) > slack_m {
+            return false;
+        }
+        // The far plane's normal is the near plane's.
+        if tests.sat_p && gap(&self.planes.map(Vec4::truncate)[..5]) > slack_m {
+            return false;
+        }
+        let misses = |corner: &Vec3| self.gap_towards(*corner, volume) > slack_m;
+        if tests.sat_v && self.corners.iter().any(misses) {
             return false;
         }
         !volume.cone_misses_sphere(self.center, self.radius_m + slack_m)
@@ -94,25 +116,50 @@ impl Frustum {
         })
     }
 
-    /// SAT-N: whether the axis from the nearest corner to the light separates the volume.
-    fn nearest_corner_axis_misses(&self, volume: &LightVolume, slack_m: f32) -> bool {
-        let mut to_light = volume.center - self.corners[0];
-        for corner in &self.corners[1..] {
-            let candidate = volume.center - corner;
-            if candidate.dot(candidate) < to_light.dot(to_light) {
-                to_light = candidate;
-            }
-        }
-        let distance_m = to_light.length();
+    /// How far an axis separates volume and frustum, whichever lies first, metres.
+    fn gap_along(&self, axis: Vec3, volume: &LightVolume) -> f32 {
+        let (low, high) = self.corner_range(axis, volume.center);
+        (low - volume.extent_along(axis)).max(-high - volume.extent_along(-axis))
+    }
+
+    /// How far the axis from the light to a corner separates volume and frustum, metres.
+    fn gap_towards(&self, corner: Vec3, volume: &LightVolume) -> f32 {
+        let to_corner = corner - volume.center;
+        let distance_m = to_corner.length();
         if distance_m == 0.0 {
-            return false;
+            return -1.0;
         }
-        let axis = to_light / distance_m;
-        let gap = self
-            .corners
-            .iter()
-            .fold(distance_m, |gap, corner| gap.min(axis.dot(volume.center - corner)));
-        gap > volume.extent_along(-axis) + slack_m
+        let axis = to_corner / distance_m;
+        self.corner_range(axis, volume.center).0 - volume.extent_along(axis)
+    }
+
+    /// Least and greatest coordinate of the corners along an axis, seen from `origin`.
+    fn corner_range(&self, axis: Vec3, origin: Vec3) -> (f32, f32) {
+        let along = self.corners.map(|corner| axis.dot(corner - origin));
+        let low = along.into_iter().fold(f32::INFINITY, f32::min);
+        (low, along.into_iter().fold(f32::NEG_INFINITY, f32::max))
+    }
+
+    fn nearest_corner(&self, center: Vec3) -> Vec3 {
+        self.corners.into_iter().fold(self.corners[0], |nearest, corner| {
+            let nearer = (corner - center).length_squared() < (nearest - center).length_squared();
+            if nearer { corner } else { nearest }
+        })
+    }
+
+    /// Whether a light whose support lies in a world-space box may reach the frustum.
+    pub fn reaches_box(&self, min_world: Vec3, max_world: Vec3) -> bool {
+        let slack_m = self.slack_m + self.slack_per_m * box_magnitude(min_world, max_world);
+        let center = 0.5 * (min_world + max_world);
+        let half_size = 0.5 * (max_world - min_world);
+        let outside = |plane: &Vec4| {
+            let normal = plane.truncate();
+            normal.dot(center) + plane.w - normal.abs().dot(half_size) > slack_m
+        };
+        let nearest = self.center.max(min_world).min(max_world);
+        let beside = self.bounded && self.center.distance(nearest) - self.radius_m > slack_m;
+        let count = if self.bounded { 6 } else { 5 };
+        !(beside || self.planes[..count].iter().any(outside))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::LightVolume;
+use super::{LightVolume, box_magnitude};
 use crate::View;
 
 /// A box along axes of its own.
@@ -35,6 +35,22 @@ impl OrientedBox {
             slack_m: uniform.position_error * (super::eye_world(&uniform).length() + 2.0 * extreme),
             slack_per_m: uniform.position_error,
         }
+    }
+
+    /// Whether a light whose support lies in a world-space box may reach this one.
+    pub fn reaches_box(&self, min_world: Vec3, max_world: Vec3) -> bool {
+        let slack_m = self.slack_m + self.slack_per_m * box_magnitude(min_world, max_world);
+        let offset = 0.5 * (min_world + max_world) - self.center_world;
+        let half_size = 0.5 * (max_world - min_world);
+        let [x, y, z] = self.axes;
+        let own = x.abs() * self.half_extents_m.x
+            + y.abs() * self.half_extents_m.y
+            + z.abs() * self.half_extents_m.z;
+        let along_world = offset.abs() - half_size - own;
+        let local = Vec3::from_array(self.axes.map(|axis| offset.dot(axis).abs()));
+        let reach = Vec3::from_array(self.axes.map(|axis| axis.abs().dot(half_size)));
+        let along_own = local - self.half_extents_m - reach;
+        along_world.max(along_own).max_element() <= slack_m
     }
 
     /// Whether the light's volume may reach the box.

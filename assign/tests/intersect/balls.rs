@@ -5,6 +5,7 @@ use proptest::prelude::*;
 
 use crate::cases::{aim, group};
 use crate::deterministic;
+use crate::groups::{UNIONS, box_of, union};
 
 proptest! {
     #![proptest_config(deterministic(6_000))]
@@ -18,13 +19,15 @@ proptest! {
             let range = f64::from(light.range_m);
             let distance = group.hull(center, range).distance(DVec3::ZERO);
             if distance <= range {
-                for sat_n in [false, true] {
+                for tests in UNIONS {
                     prop_assert!(
-                        bounds.reaches(&light, sat_n),
-                        "tight by {:e} m of {range:e} m, sat_n {sat_n}: {light:?}",
+                        bounds.reaches(&light, union(tests)),
+                        "tight by {:e} m of {range:e} m, {tests}: {light:?}",
                         range - distance,
                     );
                 }
+                let (min_world, max_world) = box_of(&light);
+                prop_assert!(bounds.reaches_box(min_world, max_world), "box of {light:?}");
             }
         }
     }

@@ -27,13 +27,43 @@ pub(crate) enum Bounds {
     Oriented(OrientedBox),
 }
 
+/// Unions of tests: each alone, and those that a user would choose.
+pub(crate) const UNIONS: [&str; 7] =
+    ["hs", "sat-e", "sat-n", "sat-p", "sat-v", "hs+sat-n", "hs+sat-e+sat-p+sat-v"];
+
+pub(crate) fn union(text: &str) -> FrustumTests {
+    text.parse().unwrap()
+}
+
+/// The box around a light's support, as the hierarchy over lights has it.
+pub(crate) fn box_of(light: &Light) -> (Vec3, Vec3) {
+    let volume = LightVolume::from(light);
+    let along = |sign: f32| {
+        Vec3::new(
+            volume.extent_along(sign * Vec3::X),
+            volume.extent_along(sign * Vec3::Y),
+            volume.extent_along(sign * Vec3::Z),
+        )
+    };
+    (light.position - along(-1.0), light.position + along(1.0))
+}
+
 impl Bounds {
-    pub(crate) fn reaches(&self, light: &Light, sat_n: bool) -> bool {
+    pub(crate) fn reaches(&self, light: &Light, tests: FrustumTests) -> bool {
         let volume = LightVolume::from(light);
         match self {
-            Self::Frustum(frustum) => frustum.reaches(&volume, FrustumTests { sat_n }),
+            Self::Frustum(frustum) => frustum.reaches(&volume, tests),
             Self::Aabb(aabb) => aabb.reaches(&volume),
             Self::Oriented(oriented) => oriented.reaches(&volume),
+        }
+    }
+
+    /// Whether a light in a box may reach the group.
+    pub(crate) fn reaches_box(&self, min_world: Vec3, max_world: Vec3) -> bool {
+        match self {
+            Self::Frustum(frustum) => frustum.reaches_box(min_world, max_world),
+            Self::Aabb(aabb) => aabb.reaches_box(min_world, max_world),
+            Self::Oriented(oriented) => oriented.reaches_box(min_world, max_world),
         }
     }
 

@@ -2,25 +2,32 @@
 //! `assign::intersect`, printed by
 //! `cargo test -p assign --test intersect rates -- --nocapture`.
 
-use assign::{Light, LightShape, View};
+use assign::{FrustumTests, Light, LightShape, View};
 use glam::{DVec3, Mat3, Vec2, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::groups::{Group, Shape};
+use crate::groups::{Group, Shape, UNIONS, union};
 use crate::oracle::{Overlap, overlap, wedges};
 
 const CLUSTERS: usize = 600;
 const LIGHTS: usize = 8_000;
+/// The unions of tests on frusta, and two kinds of boxes.
+const ROWS: usize = UNIONS.len() + 2;
 /// Size of Sponza, metres (Enhuber 2019, table 4.2): lights lie in it, the camera at an end.
 const SCENE_M: Vec3 = Vec3::new(37.2, 15.6, 22.9);
 
 /// Half angle of the lights' cones, degrees; `None` for point lights.
 const KINDS: [Option<f32>; 5] = [None, Some(15.0), Some(45.0), Some(75.0), Some(90.0)];
 /// The documented share of hits that are false, per cent: a row per test, a column per kind.
-const DOCUMENTED: [(&str, [f64; 5]); 4] = [
-    ("frustum, HS", [36.0, 21.7, 25.7, 32.0, 34.8]),
-    ("frustum, HS+SAT-N", [6.5, 20.4, 15.2, 14.5, 14.1]),
+const DOCUMENTED: [(&str, [f64; 5]); 9] = [
+    ("hs", [36.0, 21.7, 25.7, 32.0, 34.8]),
+    ("sat-e", [60.3, 71.5, 64.1, 61.8, 61.3]),
+    ("sat-n", [53.5, 86.7, 76.1, 66.6, 63.0]),
+    ("sat-p", [35.1, 21.4, 25.0, 31.3, 34.0]),
+    ("sat-v", [41.1, 79.7, 66.0, 55.0, 51.1]),
+    ("hs+sat-n", [6.5, 20.4, 15.2, 14.5, 14.1]),
+    ("hs+sat-e+sat-p+sat-v", [5.5, 17.6, 12.8, 12.3, 12.1]),
     ("box", [0.0, 16.7, 12.5, 7.6, 5.8]),
     ("oriented box", [0.0, 16.5, 11.5, 7.5, 5.5]),
 ];
@@ -102,31 +109,34 @@ fn is_apart(group: &Group, light: &Light) -> bool {
 #[test]
 fn rates_are_as_documented() {
     println!("false share of hits, % | point | spots of half angle 15, 45, 75, 90 degrees");
-    let mut measured = [[0.0; 5]; 4];
+    let mut measured = [[0.0; 5]; ROWS];
     for (column, kind) in KINDS.into_iter().enumerate() {
         let mut rng = Pcg64Mcg::seed_from_u64(2019);
         let lights: Vec<Light> = (0..LIGHTS).map(|_| light(&mut rng, kind)).collect();
-        let mut hits = [0_usize; 4];
-        let mut wrong = [0_usize; 4];
+        let mut hits = [0_usize; ROWS];
+        let mut wrong = [0_usize; ROWS];
         for _ in 0..CLUSTERS {
             let [frustum, aabb, oriented] = groups(&mut rng);
-            let tests = [(frustum, false), (frustum, true), (aabb, true), (oriented, true)];
-            for (row, (group, sat_n)) in tests.into_iter().enumerate() {
+            let frusta = UNIONS.map(|tests| (frustum, union(tests)));
+            let boxes = [aabb, oriented].map(|group| (group, FrustumTests::default()));
+            for (row, (group, tests)) in frusta.into_iter().chain(boxes).enumerate() {
                 let bounds = group.bounds();
-                for light in lights.iter().filter(|l| bounds.reaches(l, sat_n)) {
+                for light in lights.iter().filter(|l| bounds.reaches(l, tests)) {
                     hits[row] += 1;
                     wrong[row] += usize::from(is_apart(&group, light));
                 }
             }
         }
-        for row in 0..4 {
+        for row in 0..ROWS {
             // Enough hits for a standard error of 1 point.
             assert!(hits[row] > 2_000, "{hits:?}");
             measured[row][column] = 100.0 * wrong[row] as f64 / hits[row] as f64;
         }
     }
-    for ((name, documented), row) in DOCUMENTED.iter().zip(measured) {
+    for ((name, _), row) in DOCUMENTED.iter().zip(measured) {
         println!("{name} | {}", row.map(|share| format!("{share:.2}")).join(" | "));
+    }
+    for ((name, documented), row) in DOCUMENTED.iter().zip(measured) {
         for (documented, measured) in documented.iter().zip(row) {
             assert!(
                 (documented - measured).abs() < 0.3,

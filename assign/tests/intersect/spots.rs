@@ -3,13 +3,13 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use assign::{Light, LightShape, Projection, View};
+use assign::{FrustumTests, Light, LightShape, Projection, View};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use proptest::prelude::*;
 
 use crate::cases::{aim, group, witness};
 use crate::deterministic;
-use crate::groups::{Group, Shape};
+use crate::groups::{Group, Shape, UNIONS, box_of, union};
 
 /// Whether shading gives the sample any light: `fall_off` and `cone_fall_off` of
 /// `shading/src/shaders/lighting.wesl`, in f32.
@@ -49,9 +49,11 @@ proptest! {
                 || points.clone().any(|p| light.reach(p) > 0.0)
                 || points.map(DVec3::as_vec3).chain(seen).any(|p| is_lit(&light, p));
             if must {
-                for sat_n in [false, true] {
-                    prop_assert!(bounds.reaches(&light, sat_n), "sat_n {sat_n}: {light:?}");
+                for tests in UNIONS {
+                    prop_assert!(bounds.reaches(&light, union(tests)), "{tests}: {light:?}");
                 }
+                let (min_world, max_world) = box_of(&light);
+                prop_assert!(bounds.reaches_box(min_world, max_world), "box of {light:?}");
             }
         }
     }
@@ -88,7 +90,7 @@ proptest! {
             Shape::Aabb { min_world: sample, max_world: sample },
             Shape::Oriented { center_world: sample, axes: [Vec3::X, Vec3::Y, Vec3::Z], half_extents_m: Vec3::ZERO },
         ] {
-            let reaches = Group { view, shape }.bounds().reaches(&light, true);
+            let reaches = Group { view, shape }.bounds().reaches(&light, FrustumTests::default());
             prop_assert!(reaches || !is_lit(&light, sample), "{light:?}");
         }
     }
@@ -124,7 +126,7 @@ fn a_half_ball_turned_away_dips_its_rim_into_a_plate() {
             // The plate's slack, 16 units in the last place of its size, is 4 m.
             let light = spot(Vec3::new(0.0, 0.0, 10.0), 12.0 / dip.sin(), away, FRAC_PI_2);
             assert!(witness(&group, &light).is_some(), "{dip:e}");
-            assert!(group.bounds().reaches(&light, true), "{dip:e}: {shape:?}");
+            assert!(group.bounds().reaches(&light, FrustumTests::default()), "{dip:e}: {shape:?}");
         }
     }
 }

@@ -16,10 +16,11 @@ const PAGE: &str = include_str!("report.html");
 const STYLE: &str = include_str!("report.css");
 
 /// The page's programs, in the order in which they are read.
-const SCRIPTS: [&str; 4] = [
+const SCRIPTS: [&str; 5] = [
     include_str!("report.js"),
     include_str!("bars.js"),
     include_str!("samples.js"),
+    include_str!("lists.js"),
     include_str!("pictures.js"),
 ];
 

@@ -65,7 +65,9 @@ function show(record, baseline) {
   return [
     h("figure", { class: "main" }, main, h("figcaption", {}, hint, h("b", {}, record.strategy), own && baseline ? " on its right." : ".")),
     differenceFigure(record),
-  ];
+    heatFigure(record),
+    histogramFigure(record),
+  ].filter((figure) => figure !== null);
 }
 
 function drawPictures(place, records, baselineRecord) {

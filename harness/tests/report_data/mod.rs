@@ -96,10 +96,15 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         differing_channels: Some(0),
         lists_bytes: if is_none { 4_016 } else { 1_310_720 },
         overflowed_groups: 0,
+        histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
+        light_order: Some("bvh".to_owned()),
+        light_build_ms: Some(0.4),
+        tolerance: None,
         images: Images {
             image: Some(format!("{stem}.png")),
             baseline: None,
             difference: (!is_none).then(|| format!("{stem}-difference.png")),
+            heat_map: (!is_none).then(|| format!("{stem}-heat.png")),
             difference_amplification: (!is_none).then_some(64.0),
         },
         note: None,
@@ -140,6 +145,7 @@ pub(crate) fn pictures(results: &Results) -> Vec<(String, Vec<u8>)> {
             (&record.images.image, scene(width, height, lossy)),
             (&record.images.baseline, scene(width, height, false)),
             (&record.images.difference, difference(width, height, lossy)),
+            (&record.images.heat_map, scene(width, height, !lossy)),
         ] {
             if let Some(name) = name {
                 all.push((name.clone(), png));
