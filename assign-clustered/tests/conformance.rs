@@ -1,5 +1,7 @@
 //! DC-I, DC-E, SC-I and SC-E keep the contract, and the suite would notice if they did not.
 
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Gpu, LightSource,
     conformance::{self, faulty::Fault},

@@ -87,8 +87,8 @@ pub struct CellsUniform {
 }
 
 /// Rounding of a sample's place among the cells, a share of the largest coordinate involved:
-/// three roundings of half a unit in the last place, of a difference, a division and a product,
-/// with room.
+/// a division good to 2.5 units in the last place, and four roundings to half a unit, of the
+/// difference before it and of the product and two sums of a cell's bounds. With room.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 /// No cell is smaller than this share of the largest coordinate: below it, f32 cannot tell them

@@ -81,14 +81,21 @@ impl Grid {
         })
     }
 
-    /// The box to cut, world space; a point where there are no lights.
+    /// The box to cut, world space; a unit box where there are no lights.
     fn cut(&self, frame: &Frame<'_>) -> Result<(Vec3, Vec3), AssignError> {
-        let lights = frame.lights.bounds().unwrap_or_default();
+        let lights = frame.lights.bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
         if self.grid_box == GridBox::Lights {
             return Ok(lights);
         }
         let missing = || AssignError::Missing { strategy: self.id(), missing: "surface_bounds" };
         let surfaces = frame.surface_bounds.ok_or_else(missing)?;
+        if surfaces.0.is_nan() || surfaces.1.is_nan() {
+            return Err(AssignError::Parameter {
+                field: "surface_bounds".into(),
+                value: format!("{} to {}", surfaces.0, surfaces.1),
+                accepted: "two corners, in numbers".into(),
+            });
+        }
         // Where the boxes are apart no light reaches a surface, and any cells will do.
         Ok((lights.0.max(surfaces.0), lights.1.min(surfaces.1)))
     }

@@ -1,10 +1,11 @@
 //! G keeps the contract, and the suite would notice if it did not.
 
 use assign::{
-    AssignError, Assignment, CullSettings, Gpu, LightSource,
+    AssignError, Assignment, CullSettings, Frame, Gpu, Light, LightBuffer, LightSource, View,
     conformance::{self, faulty::Fault},
 };
 use assign_grid::{Grid, GridBox};
+use glam::Vec3;
 
 fn grid(
     counts: &str,
@@ -29,12 +30,39 @@ fn cells_of_the_lights_box_conform() {
 #[test]
 fn cells_of_the_surfaces_box_conform() {
     conforms("8x8x8", GridBox::Surfaces, CullSettings::default());
+    conforms("3x17x2", GridBox::Surfaces, CullSettings::default());
 }
 
 #[test]
 fn all_conform_through_the_hierarchy() {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
     conforms("8x8x8", GridBox::Lights, settings);
+    conforms("8x8x8", GridBox::Surfaces, settings);
+}
+
+#[test]
+fn boxes_of_surfaces_are_checked() {
+    let gpu = Gpu::open(None).unwrap();
+    let lights = LightBuffer::new(&gpu, &[Light::point(Vec3::ZERO, 2.0, Vec3::ONE)]).unwrap();
+    let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
+    let frame = Frame::new(&view, &lights);
+    let mut of_lights = grid("8x8x8", GridBox::Lights, CullSettings::default())(&gpu).unwrap();
+    of_lights.prepare(&gpu, &frame).unwrap();
+    let mut strategy = grid("8x8x8", GridBox::Surfaces, CullSettings::default())(&gpu).unwrap();
+    assert_eq!(strategy.id(), "G/8x8x8/surfaces");
+    let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
+    assert!(error.contains("needs surface_bounds"), "{error}");
+    let nowhere = frame.with_surface_bounds(Vec3::NAN, Vec3::ONE);
+    let error = strategy.prepare(&gpu, &nowhere).unwrap_err().to_string();
+    assert!(error.contains("surface_bounds is"), "{error}");
+    // Apart from the lights, inside out and infinite: any cells will do.
+    for (min, max) in [
+        (Vec3::splat(50.0), Vec3::splat(60.0)),
+        (Vec3::INFINITY, Vec3::NEG_INFINITY),
+        (Vec3::NEG_INFINITY, Vec3::INFINITY),
+    ] {
+        strategy.prepare(&gpu, &frame.with_surface_bounds(min, max)).unwrap();
+    }
 }
 
 #[test]

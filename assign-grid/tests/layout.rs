@@ -1,5 +1,5 @@
-//! The grid's module, linked without a GPU: it validates, and its uniform has the same size and the
-//! same offsets in Rust and in WESL.
+//! The cells' module, linked without a GPU: it validates, and its uniform has the same size and
+//! the same offsets in Rust and in WESL.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -8,51 +8,60 @@ use std::mem::offset_of;
 use assign::{CullSettings, Culler, GroupShape, LightSource};
 use assign_grid::{CellsUniform, GRID_WESL};
 
-fn validated(what: &str, source: &str) -> naga::Module {
-    let module = naga::front::wgsl::parse_str(source)
-        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
+/// The culling kernel around the module of cells, validated.
+fn kernel(source: LightSource, spots: bool) -> naga::Module {
+    let what = format!("{source:?}, spots {spots}");
+    let settings = CullSettings { source, ..CullSettings::default() };
+    let source = Culler::kernel_source(GroupShape::Box, settings, false, GRID_WESL, spots)
+        .unwrap_or_else(|e| panic!("{what}: {e}"));
+    let module = naga::front::wgsl::parse_str(&source)
+        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
     // What WebGPU has without any optional feature.
     naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
         naga::valid::Capabilities::empty(),
     )
     .validate(&module)
-    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
+    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
     module
 }
 
-/// Fields and offsets, and the size, of a struct of the shader.
-fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
-    // The linker may put the module before a name.
-    let is_named = |n: &str| n == name || n.ends_with(&format!("_{name}"));
-    let named = |(_, ty): &(_, &naga::Type)| ty.name.as_deref().is_some_and(is_named);
-    let (_, ty) = module.types.iter().find(named).unwrap_or_else(|| panic!("{name}: not there"));
-    let naga::TypeInner::Struct { members, span } = &ty.inner else {
-        panic!("{name}: not a struct");
-    };
-    let field = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize);
-    (members.iter().map(field).collect(), *span as usize)
+#[test]
+fn kernels_validate() {
+    for source in [LightSource::Linear, LightSource::Hierarchy] {
+        for spots in [false, true] {
+            kernel(source, spots);
+        }
+    }
 }
 
-/// Name and offset of fields of a Rust struct; those that pad are not told in WESL.
+/// Name and offset of every field of a Rust struct, in its order.
 macro_rules! fields {
     ($name:ty: $($field:ident),+) => {
-        vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+]
+        vec![$((stringify!($field), offset_of!($name, $field))),+]
     };
 }
 
 #[test]
 fn cells() {
-    for source in [LightSource::Linear, LightSource::Hierarchy] {
-        for spots in [false, true] {
-            let settings = CullSettings { source, ..CullSettings::default() };
-            let source = Culler::kernel_source(GroupShape::Box, settings, false, GRID_WESL, spots);
-            let module = validated("cull", &source.unwrap());
-            let (fields, bytes) = layout(&module, "Cells");
-            let rust = fields!(CellsUniform: min_world, slack_m, cell_m, counts, lights_min,
-                lights_max);
-            assert_eq!(fields, rust, "fields of WESL, then of Rust");
-            assert_eq!(bytes, size_of::<CellsUniform>());
-        }
-    }
+    let module = kernel(LightSource::Linear, false);
+    let variable = module
+        .global_variables
+        .iter()
+        .map(|(_, variable)| variable)
+        .find(|v| v.space == naga::AddressSpace::Uniform && v.binding.is_some_and(is_first))
+        .expect("the uniform of the cells");
+    let naga::TypeInner::Struct { members, span } = &module.types[variable.ty].inner else {
+        panic!("not a struct");
+    };
+    let wesl: Vec<_> =
+        members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
+    let rust = fields!(CellsUniform: min_world, slack_m, cell_m, counts, lights_min, lights_max);
+    assert_eq!(wesl, rust, "fields of WESL, then of Rust");
+    assert_eq!(*span as usize, size_of::<CellsUniform>());
+}
+
+/// The first binding that is a strategy's own.
+fn is_first(at: naga::ResourceBinding) -> bool {
+    at.binding == assign::FIRST_STRATEGY_BINDING
 }

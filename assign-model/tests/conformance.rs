@@ -1,5 +1,7 @@
 //! M keeps the contract, and the suite would notice if it did not.
 
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
 use assign::{
     AssignError, Assignment, CullSettings, Frame, Gpu, LightBuffer, LightSource, SampleDomain,
     View,

@@ -52,7 +52,7 @@ impl FromStr for TileSize {
     }
 }
 
-/// What the shaders know of the tiles: `struct Tiles`. 48 bytes.
+/// What the shaders know of the tiles: `struct Tiles`. 40 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TilesUniform {
@@ -68,8 +68,8 @@ pub struct TilesUniform {
     pub far_m: f32,
     /// 1 where lists are made for the surfaces in the depth buffer alone.
     pub surfaces_only: u32,
-    /// Pads to 48 bytes.
-    pub padding: [u32; 3],
+    /// Pads to 40 bytes.
+    pub padding: u32,
 }
 
 /// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
@@ -86,7 +86,7 @@ impl TilesUniform {
             near_m: view.nearest_rebuilt_m(),
             far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
             surfaces_only: 0,
-            padding: [0; 3],
+            padding: 0,
         }
     }
 

@@ -1,11 +1,11 @@
-//! The tiles' modules, linked without a GPU: they validate, and their uniform has the same size and
-//! the same offsets in Rust and in WESL.
+//! The tiles' modules, linked without a GPU: they validate, and their uniform has the same size
+//! and the same offsets in Rust and in WESL.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use std::mem::offset_of;
 
-use assign::{CullSettings, Culler, GroupShape, LightSource};
+use assign::{Bounds, CullSettings, Culler, GroupShape, LightSource};
 use assign_tiled::{EXPLICIT_WESL, IMPLICIT_WESL, TilesUniform, bounds_source};
 
 fn validated(what: &str, source: &str) -> naga::Module {
@@ -21,45 +21,69 @@ fn validated(what: &str, source: &str) -> naga::Module {
     module
 }
 
-/// Fields and offsets, and the size, of a struct of the shader.
-fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
-    // The linker may put the module before a name.
-    let is_named = |n: &str| n == name || n.ends_with(&format!("_{name}"));
-    let named = |(_, ty): &(_, &naga::Type)| ty.name.as_deref().is_some_and(is_named);
-    let (_, ty) = module.types.iter().find(named).unwrap_or_else(|| panic!("{name}: not there"));
-    let naga::TypeInner::Struct { members, span } = &ty.inner else {
-        panic!("{name}: not a struct");
+/// The culling kernel around a module of tiles, validated.
+fn kernel(bounds: Bounds, settings: CullSettings, spots: bool) -> naga::Module {
+    let module = match bounds {
+        Bounds::Implicit => IMPLICIT_WESL,
+        Bounds::Explicit => EXPLICIT_WESL,
     };
-    let field = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize);
-    (members.iter().map(field).collect(), *span as usize)
-}
-
-/// Name and offset of fields of a Rust struct; those that pad are not told in WESL.
-macro_rules! fields {
-    ($name:ty: $($field:ident),+) => {
-        vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+]
-    };
+    let what = format!("{bounds:?}, {settings:?}, spots {spots}");
+    let source = Culler::kernel_source(GroupShape::Frustum, settings, false, module, spots)
+        .unwrap_or_else(|e| panic!("{what}: {e}"));
+    validated(&what, &source)
 }
 
 #[test]
 fn kernels_validate() {
-    for module in [IMPLICIT_WESL, EXPLICIT_WESL] {
+    for bounds in [Bounds::Implicit, Bounds::Explicit] {
         for source in [LightSource::Linear, LightSource::Hierarchy] {
-            for spots in [false, true] {
-                let settings = CullSettings { source, ..CullSettings::default() };
-                let source =
-                    Culler::kernel_source(GroupShape::Frustum, settings, false, module, spots);
-                validated("cull", &source.unwrap());
+            for union in ["hs+sat-n", "hs", "sat-e+sat-p+sat-v"] {
+                for spots in [false, true] {
+                    let settings = CullSettings { tests: union.parse().unwrap(), source };
+                    kernel(bounds, settings, spots);
+                }
             }
         }
     }
 }
 
+/// Name and offset of every field of a Rust struct, in its order.
+macro_rules! fields {
+    ($name:ty: $($field:ident),+) => {
+        vec![$((stringify!($field), offset_of!($name, $field))),+]
+    };
+}
+
+/// Checks the uniform at the first binding that is a strategy's own.
+fn check_tiles(module: &naga::Module) {
+    let variable = module
+        .global_variables
+        .iter()
+        .map(|(_, variable)| variable)
+        .find(|v| v.space == naga::AddressSpace::Uniform && v.binding.is_some_and(is_first))
+        .expect("the uniform of the tiles");
+    let naga::TypeInner::Struct { members, span } = &module.types[variable.ty].inner else {
+        panic!("not a struct");
+    };
+    let wesl: Vec<_> =
+        members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
+    let rust = fields!(TilesUniform: counts, tile_px, origin_px, near_m, far_m, surfaces_only);
+    assert_eq!(wesl, rust, "fields of WESL, then of Rust");
+    assert_eq!(*span as usize, size_of::<TilesUniform>());
+}
+
+fn is_first(at: naga::ResourceBinding) -> bool {
+    at.binding == assign::FIRST_STRATEGY_BINDING
+}
+
 #[test]
 fn tiles() {
-    let module = validated("bounds", &bounds_source().unwrap());
-    let (fields, bytes) = layout(&module, "Tiles");
-    let rust = fields!(TilesUniform: counts, tile_px, origin_px, near_m, far_m, surfaces_only);
-    assert_eq!(fields, rust, "fields of WESL, then of Rust");
-    assert_eq!(bytes.next_multiple_of(16), size_of::<TilesUniform>());
+    for bounds in [Bounds::Implicit, Bounds::Explicit] {
+        check_tiles(&kernel(bounds, CullSettings::default(), false));
+    }
+}
+
+#[test]
+fn the_bounds_pass_validates_and_reads_the_same_tiles() {
+    check_tiles(&validated("tile bounds", &bounds_source().unwrap()));
 }

@@ -1,5 +1,7 @@
 //! Every permutation of the culling kernel links and validates, without a GPU.
 
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
 use assign::{CullSettings, Culler, GroupShape, LightSource};
 
 const GROUP_OF: &str = "

@@ -54,6 +54,7 @@ Exit codes: 0 done, 1 failed, 2 bad input.";
 
 /// What `lightbench` is asked to do.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "one value a run")]
 pub enum Invocation {
     /// Compare strategies.
     Compare(CompareArgs),
@@ -83,6 +84,7 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
+#[allow(clippy::large_enum_variant, reason = "one value a run")]
 enum Command {
     /// Compare strategies on one scene (the default: `lightbench --scene X` is enough)
     #[command(long_about = LONG_ABOUT, after_long_help = EXAMPLES)]

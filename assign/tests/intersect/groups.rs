@@ -21,6 +21,7 @@ pub(crate) struct Group {
 
 /// The mirror's bounds of a group.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "one value a test")]
 pub(crate) enum Bounds {
     Frustum(Frustum),
     Aabb(Aabb),
