@@ -2,9 +2,9 @@
 //!
 //! Benches are named `strategy/scene/lights`, then `assign` or `shade`. The environment chooses
 //! what is drawn: `LIGHTBENCH_SCENE` (a name or a file, default atrium), `LIGHTBENCH_LIGHTS`
-//! (default 1000), `LIGHTBENCH_SIZE` (default 320x180), and `LIGHTBENCH_STRATEGIES` (default all,
-//! from both sources). Times are those of the clock of `lightbench compare`; on a software adapter
-//! they are the host's, and say nothing of a GPU.
+//! (default 200), `LIGHTBENCH_SIZE` (default 128x72), and `LIGHTBENCH_STRATEGIES` (default all,
+//! from both sources). The defaults are small, for software adapters. Times are those of the clock
+//! of `lightbench compare`; on a software adapter they are the host's, and say nothing of a GPU.
 
 use std::{cell::OnceCell, time::Duration};
 
@@ -28,8 +28,8 @@ fn setting(name: &str, default: &str) -> String {
 fn arguments() -> Result<CompareArgs, HarnessError> {
     let options = [
         ("--scene", setting("LIGHTBENCH_SCENE", "atrium")),
-        ("--lights", setting("LIGHTBENCH_LIGHTS", "1000")),
-        ("--size", setting("LIGHTBENCH_SIZE", "320x180")),
+        ("--lights", setting("LIGHTBENCH_LIGHTS", "200")),
+        ("--size", setting("LIGHTBENCH_SIZE", "128x72")),
         ("--strategies", setting("LIGHTBENCH_STRATEGIES", "all")),
         ("--source", "both".to_owned()),
     ];
