@@ -20,6 +20,11 @@
 //! `cull` grows with cells times lights, and with neither pixels nor view. Memory is 8 bytes a
 //! cell and 4 bytes a listed light.
 //!
+//! Figures, ms, of
+//! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all --source both`
+//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): G/20x20x20 0.199 to
+//! cull and 0.426 to shade lists of 49.8 lights a sample; through the hierarchy 0.059 to cull.
+//!
 //! # Where it fails
 //!
 //! Cells that nobody sees are culled as well. Cells are as large far away as they are near, so a

@@ -24,6 +24,12 @@
 //! `cull` grows with parts times lights, and with neither pixels nor view. Memory is 8 bytes a
 //! part, 84 bytes a model and 4 bytes a listed light.
 //!
+//! Figures, ms, of
+//! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all,M/2 --source both`
+//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): M 0.582 to
+//! assign, of which 0.503 for the models of pixels, and 35.3 to shade lists of 3,858 lights a sample;
+//! M/2 0.662 and 0.463 with 55.0.
+//!
 //! # Where it fails
 //!
 //! A building that is one model is one group, and its list holds every light in it: the longest

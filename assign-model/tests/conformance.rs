@@ -29,7 +29,7 @@ fn whole_models_conform() {
 
 #[test]
 fn models_in_parts_conform() {
-    conforms(Some(4.0), CullSettings::default());
+    conforms(Some(20.0), CullSettings::default());
 }
 
 #[test]

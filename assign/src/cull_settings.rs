@@ -41,7 +41,9 @@ impl FrustumTests {
 }
 
 impl Default for FrustumTests {
-    /// HS+SAT-N, the comparison paper's choice (Enhuber 2019, section 4.3.2).
+    /// HS+SAT-N, the comparison paper's choice (Enhuber 2019, section 4.3.2), and the fastest on an
+    /// H200: T-E/28x28 culls and shades Sponza in 0.338 ms with it, 0.455 with HS, 0.358 with
+    /// HS+SAT-V and 0.373 with all but SAT-N (`results/h200-all/tests.json`).
     fn default() -> Self {
         Self { hs: true, sat_n: true, ..Self::NONE }
     }

@@ -151,7 +151,7 @@ fn the_page_holds_everything() {
     assert_eq!(path, folder.path().join("index.html"));
     let page = std::fs::read_to_string(path).expect("reads");
     let uris = page.matches("data:image/png;base64,").count();
-    assert_eq!(uris, 2, "equal pictures are stored once");
+    assert_eq!(uris, 3, "equal pictures are stored once");
     for text in ["AMD EPYC 7B13", "9833da8c41f6", "5f0c1b7e9ad24410", "--mode both", "2026-11-22"] {
         assert!(page.contains(text), "{text}");
     }
