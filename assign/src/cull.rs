@@ -97,8 +97,7 @@ struct Variant {
 
 #[derive(Debug)]
 struct Kernel {
-    cull: wgpu::ComputePipeline,
-    reset: wgpu::ComputePipeline,
+    pipeline: wgpu::ComputePipeline,
     spots: bool,
 }
 
@@ -154,7 +153,8 @@ impl Culler {
     fn bind_source(&mut self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) {
         let mut entries = Vec::new();
         self.dispatch = match groups {
-            Groups::All(count) => Dispatch::Workgroups(count.min(MAX_DISPATCH)),
+            // One workgroup at least empties the next frame's counters.
+            Groups::All(count) => Dispatch::Workgroups(count.clamp(1, MAX_DISPATCH)),
             Groups::Live { live, .. } => {
                 entries.push(entry(0, live.buffer()));
                 Dispatch::Indirect(live.buffer().clone())
@@ -193,21 +193,19 @@ impl Culler {
             ],
             immediate_size: 0,
         });
-        let pipeline = |entry_point| {
-            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(&self.label),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some(entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    // The kernel writes what it reads.
-                    zero_initialize_workgroup_memory: false,
-                    ..Default::default()
-                },
-                cache: None,
-            })
-        };
-        Ok(Kernel { cull: pipeline("cull_groups"), reset: pipeline("reset"), spots })
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&self.label),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some("cull_groups"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                // The kernel writes what it reads.
+                zero_initialize_workgroup_memory: false,
+                ..Default::default()
+            },
+            cache: None,
+        });
+        Ok(Kernel { pipeline, spots })
     }
 
     /// Records the pass `cull`: inside the clock, after [`prepare`](Self::prepare).
@@ -219,9 +217,7 @@ impl Culler {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(LISTS_GROUP, self.cull.bind_group(), &[]);
             pass.set_bind_group(SOURCE_GROUP, self.source.as_ref(), &[]);
-            pass.set_pipeline(&kernel.reset);
-            pass.dispatch_workgroups(1, 1, 1);
-            pass.set_pipeline(&kernel.cull);
+            pass.set_pipeline(&kernel.pipeline);
             match &self.dispatch {
                 Dispatch::Workgroups(count) => pass.dispatch_workgroups(*count, 1, 1),
                 Dispatch::Indirect(live) => pass.dispatch_workgroups_indirect(live, 0),

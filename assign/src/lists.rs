@@ -75,9 +75,14 @@ pub struct CullUniform {
     pub pool_capacity: u32,
     /// 1 where the reserved entries could exceed 32 bits.
     pub guard_cursor: u32,
+    /// Which of the two sets of counters is this frame's.
+    pub turn: u32,
     /// Pads to 32 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
+
+/// Bytes of one set of counters.
+const COUNTERS_BYTES: u64 = size_of::<Counters>() as u64;
 
 /// The lists of one strategy. Buffers grow outside the clock, between frames.
 #[derive(Debug)]
@@ -91,6 +96,10 @@ pub struct LightLists {
     /// Upper limit set by the user; the device's limit applies as well.
     pool_limit: u32,
     counts: (u32, u32),
+    /// The set of counters of the frame: the kernel empties the other for the next one.
+    turn: u32,
+    /// Whether the set was filled since the last `prepare`.
+    is_filled: bool,
     readback: Readback<Counters>,
 }
 
@@ -125,12 +134,14 @@ impl LightLists {
         Ok(Self {
             lists: gpu.storage("light lists", 8)?,
             entries: gpu.storage("light entries", 4)?,
-            counters: gpu.storage("list counters", size_of::<Counters>() as u64)?,
+            counters: gpu.storage("list counters", 2 * COUNTERS_BYTES)?,
             uniform: gpu.uniform("cull", size_of::<CullUniform>() as u64),
             light_capacity: 0,
             pool_capacity: 0,
             pool_limit: u32::MAX,
             counts: (0, 0),
+            turn: 0,
+            is_filled: false,
             readback: Readback::new(gpu, "list counters"),
         })
     }
@@ -152,6 +163,9 @@ impl LightLists {
         group_count: u32,
     ) -> Result<bool, AssignError> {
         self.readback.poll(gpu);
+        if std::mem::take(&mut self.is_filled) {
+            self.turn = 1 - self.turn;
+        }
         let asked = self.readback.latest().map_or(0, |c| c.requested());
         let records = u64::from(group_count) + 1;
         let larger = if self.lists.size() < records * 8 {
@@ -175,7 +189,8 @@ impl LightLists {
             pool_first: self.light_capacity,
             pool_capacity: self.pool_capacity,
             guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
-            padding: [0; 3],
+            turn: self.turn,
+            padding: [0; 2],
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
         Ok(changed)
@@ -227,7 +242,8 @@ impl LightLists {
 
     /// Copies the counters for [`stats`](Self::stats); call between passes, after the last.
     pub fn record_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        self.readback.record(encoder, &self.counters);
+        self.readback.record(encoder, &self.counters, self.counters_offset());
+        self.is_filled = true;
     }
 
     /// The newest counters that have come back, which may be a few frames old.
@@ -238,8 +254,9 @@ impl LightLists {
     /// Reads everything back, blocking.
     pub fn snapshot(&self, gpu: &Gpu) -> Result<ListsSnapshot, AssignError> {
         let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
-        let counters = gpu.read(&self.counters, size_of::<Counters>() as u64)?;
-        let counters: Counters = bytemuck::pod_read_unaligned(&counters);
+        let both = gpu.read(&self.counters, self.counters.size())?;
+        let both: Vec<Counters> = pod_collect_to_vec(&both);
+        let counters = both.get(self.turn as usize).copied().unwrap_or_default();
         let used = self.light_capacity + counters.cursor.min(self.pool_capacity);
         let entries = gpu.read(&self.entries, u64::from(used) * 4)?;
         Ok(ListsSnapshot {
@@ -269,7 +286,11 @@ impl LightLists {
         &self.entries
     }
 
-    /// The counters: `struct Counters`.
+    fn counters_offset(&self) -> u64 {
+        u64::from(self.turn) * COUNTERS_BYTES
+    }
+
+    /// Two sets of counters, `array<Counters, 2>`: a frame fills one and empties the other.
     pub fn counters(&self) -> &wgpu::Buffer {
         &self.counters
     }

@@ -65,7 +65,8 @@ impl<'a> Shader<'a> {
         compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
-    /// Links `root` and makes a shader module of it.
+    /// Links `root` and makes a shader module of it. Its loops must end by themselves: see
+    /// [`checks`].
     pub fn create(
         &self,
         device: &wgpu::Device,
@@ -73,10 +74,15 @@ impl<'a> Shader<'a> {
     ) -> Result<wgpu::ShaderModule, AssignError> {
         let source = self.link(root)?;
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        let descriptor = wgpu::ShaderModuleDescriptor {
             label: Some(root),
             source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
+        };
+        // SAFETY: only the counters that end endless loops are left out, and every loop here ends:
+        // it counts up to a number that does not change meanwhile, clears a bit of a word a round,
+        // or tries to take what fits into a pool that only fills up.
+        #[allow(unsafe_code, reason = "the one way to a module without loop counters")]
+        let module = unsafe { device.create_shader_module_trusted(descriptor, checks()) };
         match pollster::block_on(scope.pop()) {
             None => Ok(module),
             Some(error) => {
@@ -84,4 +90,13 @@ impl<'a> Shader<'a> {
             }
         }
     }
+}
+
+/// What the compiler checks at run time: every index, and no loop.
+///
+/// By default it adds a counter to every loop, so that none is endless, which drivers may answer
+/// with anything. A counter keeps loops from being unrolled: on an H200 it made the pass `bounds`
+/// of SC-E/48x48x40/bvh 26 %, `cull` 19 % and `shade` 9 % slower.
+fn checks() -> wgpu::ShaderRuntimeChecks {
+    wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use assign::{AssignError, FrustumTests, Gpu, LightSource};
 use serde_json::Value;
-use shading::{RASTER_SPHERE_TOLERANCE, SPHERE_TEST_TOLERANCE};
+use shading::RASTER_SPHERE_TOLERANCE;
 
 use crate::{
     cli::{CliError, CompareArgs, SourceChoice},
@@ -133,7 +133,7 @@ impl Choice {
     /// Makes the method once, to check its parameters and take its id from the strategy.
     pub fn checked(mut self, gpu: &Gpu) -> Result<Self, AssignError> {
         self.id = match self.make(gpu)? {
-            Method::Lists { strategy, sphere_test: false } => strategy.id(),
+            Method::Lists { strategy, .. } if self.has_groups() => strategy.id(),
             _ => self.entry.family.to_owned(),
         };
         if !self.spec.parameters.is_empty() {
@@ -191,7 +191,6 @@ impl Choice {
     /// it states that no bit differs.
     pub fn tolerance(&self) -> Option<f64> {
         match self.entry.family {
-            "Sphere" => Some(SPHERE_TEST_TOLERANCE),
             "RasterSphere" => Some(RASTER_SPHERE_TOLERANCE),
             _ => None,
         }

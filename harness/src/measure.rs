@@ -134,8 +134,8 @@ impl<'a> Painter<'a> {
     pub fn new(stage: &Stage, method: &'a mut Method, mode: Mode) -> Result<Self, HarnessError> {
         let spots = stage.lights.has_spots();
         Ok(match method {
-            Method::Lists { strategy, sphere_test } => {
-                let options = LightingOptions { spots, sphere_test: *sphere_test };
+            Method::Lists { strategy, early_exit } => {
+                let options = LightingOptions { spots, early_exit: *early_exit };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
             }

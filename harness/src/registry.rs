@@ -20,8 +20,8 @@ pub enum Method {
     Lists {
         /// The strategy.
         strategy: Box<dyn Assignment>,
-        /// Whether lighting skips a light out of a sample's range.
-        sphere_test: bool,
+        /// Whether lighting leaves out lights that add nothing to a sample.
+        early_exit: bool,
     },
     /// Light volumes are rasterised; deferred only.
     RasterSphere,
@@ -31,7 +31,7 @@ pub enum Method {
 
 impl Method {
     fn lists(strategy: impl Assignment + 'static) -> Self {
-        Self::Lists { strategy: Box::new(strategy), sphere_test: false }
+        Self::Lists { strategy: Box::new(strategy), early_exit: true }
     }
 }
 
@@ -107,7 +107,9 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "",
         axes: &[],
         summary: "no culling: every light for every sample; the reference of all images",
-        make: |gpu, _| Ok(Method::lists(Everything::new(gpu)?)),
+        make: |gpu, _| {
+            Ok(Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false })
+        },
     },
     StrategyEntry {
         family: "Clay",
@@ -122,10 +124,8 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         parameters: &[],
         default: "",
         axes: &[],
-        summary: "no lists: every light for every sample, skipped where out of range",
-        make: |gpu, _| {
-            Ok(Method::Lists { strategy: Box::new(Everything::new(gpu)?), sphere_test: true })
-        },
+        summary: "no culling with an early exit: every light for every sample, left out where it adds nothing",
+        make: |gpu, _| Ok(Method::lists(Everything::new(gpu)?)),
     },
     StrategyEntry {
         family: "RasterSphere",

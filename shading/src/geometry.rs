@@ -1,6 +1,6 @@
 //! A scene's triangles on the GPU, and the order in which they are drawn.
 
-use assign::{AssignError, Gpu, entry, storage_entry};
+use assign::{AssignError, Gpu, entry, storage_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::Mat3;
 use scenes::{Instance, Model, Scene, Vertex};
@@ -8,6 +8,7 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     ShadingError,
+    lighting::LIGHTING_BINDING,
     materials::{MaterialKey, Materials},
 };
 
@@ -58,7 +59,15 @@ pub struct SceneGpu {
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
     pub(crate) layout: wgpu::BindGroupLayout,
-    pub(crate) bind_group: wgpu::BindGroup,
+    /// Whether lights that add nothing are left out: no, yes.
+    exits: [Exit; 2],
+}
+
+/// `LightingUniform` with one of its two values, and the bind group that holds it.
+#[derive(Debug)]
+struct Exit {
+    uniform: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
 }
 
 impl SceneGpu {
@@ -81,14 +90,37 @@ impl SceneGpu {
             entries: &[
                 storage_entry(0, wgpu::ShaderStages::VERTEX, true),
                 storage_entry(1, wgpu::ShaderStages::FRAGMENT, true),
+                uniform_entry(LIGHTING_BINDING, wgpu::ShaderStages::FRAGMENT),
             ],
         });
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("scene"),
-            layout: &layout,
-            entries: &[entry(0, &instances), entry(1, &materials.factors)],
+        let exits = [-1.0_f32, 0.0].map(|exit_weight| {
+            let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("lighting"),
+                contents: cast_slice(&[exit_weight, 0.0, 0.0, 0.0]),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
+            let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("scene"),
+                layout: &layout,
+                entries: &[
+                    entry(0, &instances),
+                    entry(1, &materials.factors),
+                    entry(LIGHTING_BINDING, &uniform),
+                ],
+            });
+            Exit { uniform, bind_group }
         });
-        Ok(Self { vertices, indices, draws, materials, layout, bind_group })
+        Ok(Self { vertices, indices, draws, materials, layout, exits })
+    }
+
+    /// Bind group 2, for lighting with or without an early exit.
+    pub(crate) fn bind_group(&self, early_exit: bool) -> &wgpu::BindGroup {
+        &self.exits[usize::from(early_exit)].bind_group
+    }
+
+    /// `LightingUniform` with or without an early exit.
+    pub(crate) fn lighting_uniform(&self, early_exit: bool) -> &wgpu::Buffer {
+        &self.exits[usize::from(early_exit)].uniform
     }
 
     /// Whether any material emits.
@@ -118,7 +150,6 @@ impl SceneGpu {
     ) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.set_bind_group(2, &self.bind_group, &[]);
         let mut bound = (None, None);
         for draw in &self.draws {
             let Some(pipeline) = pipeline(draw.key) else {

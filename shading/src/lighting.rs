@@ -1,6 +1,6 @@
 //! Lighting with one strategy's lists, in one mode.
 
-use assign::{Assignment, Gpu, Passes, View};
+use assign::{Assignment, Gpu, Passes, View, entry, uniform_entry};
 
 use crate::{
     Mode, Renderer, ShadingError,
@@ -15,18 +15,15 @@ pub struct Lighting {
     options: LightingOptions,
 }
 
-/// The largest relative difference of a channel to no culling that the sphere test may show.
-pub const SPHERE_TEST_TOLERANCE: f64 = 1e-4;
-
-/// What the lighting shader is compiled for.
+/// How the lights of a list are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LightingOptions {
     /// Whether any light is a spot.
     pub spots: bool,
-    /// Whether a light out of a sample's range is skipped before its BRDF: the survey's bounding
-    /// sphere (Watrous 2024). The sum is the same, but the shader is another, and a compiler may
-    /// round it otherwise: [`SPHERE_TEST_TOLERANCE`].
-    pub sphere_test: bool,
+    /// Whether a light that adds nothing to a sample, out of its range (the survey's bounding
+    /// sphere, Watrous 2024), cone or horizon, is left out before its BRDF. The image is the same
+    /// in every bit: the shader is one, told by a uniform.
+    pub early_exit: bool,
 }
 
 #[derive(Debug)]
@@ -73,7 +70,9 @@ impl Lighting {
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(pipelines) => {
-                renderer.record_radiance("shade", view, pipelines, strategy.bind_group(), passes);
+                let scene = renderer.scene.bind_group(self.options.early_exit);
+                let groups = (strategy.bind_group(), scene);
+                renderer.record_radiance("shade", view, pipelines, groups, passes);
             }
         }
         Ok(())
@@ -85,6 +84,7 @@ struct Deferred {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     model_ids: bool,
+    early_exit: bool,
 }
 
 impl Deferred {
@@ -95,7 +95,6 @@ impl Deferred {
         let module = shaders::lighting(LISTS_GROUP)
             .module("package::strategy", lists.lookup.module)
             .flag("spots", lists.options.spots)
-            .flag("sphere_test", lists.options.sphere_test)
             .flag("model_ids", model_ids)
             .flag("emissive", emissive)
             .create(&gpu.device, "package::deferred")?;
@@ -105,7 +104,7 @@ impl Deferred {
             &module,
             "shade",
         );
-        Ok(Self { pipeline, layout, model_ids })
+        Ok(Self { pipeline, layout, model_ids, early_exit: lists.options.early_exit })
     }
 
     fn record(
@@ -121,6 +120,7 @@ impl Deferred {
             texture(1, &targets.base_color),
             texture(2, &targets.normal),
             texture(4, &targets.radiance),
+            entry(LIGHTING_BINDING, renderer.scene.lighting_uniform(self.early_exit)),
         ];
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
         if self.model_ids {
@@ -197,6 +197,9 @@ pub(crate) const TEXELS: wgpu::TextureSampleType =
 /// Where deferred lighting and the probe bind model ids.
 pub(crate) const MODEL_BINDING: u32 = 5;
 
+/// Where lighting binds `LightingUniform`, in both modes.
+pub(crate) const LIGHTING_BINDING: u32 = 6;
+
 fn deferred_layout(gpu: &Gpu, emissive: bool, model_ids: bool) -> wgpu::BindGroupLayout {
     let mut entries = vec![
         texture_entry(0, wgpu::TextureSampleType::Depth),
@@ -212,6 +215,7 @@ fn deferred_layout(gpu: &Gpu, emissive: bool, model_ids: bool) -> wgpu::BindGrou
             },
             count: None,
         },
+        uniform_entry(LIGHTING_BINDING, wgpu::ShaderStages::COMPUTE),
     ];
     if emissive {
         entries.push(texture_entry(3, TEXELS));

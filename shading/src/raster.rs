@@ -92,8 +92,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
     if let RasterPass::Forward(lists) = pass {
         shader = shader
             .module("package::strategy", lists.lookup.module)
-            .flag("spots", lists.options.spots)
-            .flag("sphere_test", lists.options.sphere_test);
+            .flag("spots", lists.options.spots);
     }
     shader
 }

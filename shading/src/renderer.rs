@@ -143,7 +143,8 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(Some(view.depth_clear()))),
             ..Default::default()
         };
-        self.record_raster("depth", view, &descriptor, &self.depth, None, passes);
+        let scene = self.scene.bind_group(false);
+        self.record_raster("depth", view, &descriptor, &self.depth, (None, scene), passes);
     }
 
     /// Records the pass `gbuffer`, after `depth`.
@@ -156,7 +157,8 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(None)),
             ..Default::default()
         };
-        self.record_raster("gbuffer", view, &descriptor, &self.gbuffer, None, passes);
+        let scene = self.scene.bind_group(false);
+        self.record_raster("gbuffer", view, &descriptor, &self.gbuffer, (None, scene), passes);
     }
 
     /// Records the pass `model-ids`, after `depth`: the model of each pixel.
@@ -166,21 +168,23 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(None)),
             ..Default::default()
         };
-        self.record_raster("model-ids", view, &descriptor, &self.model_ids, None, passes);
+        let scene = self.scene.bind_group(false);
+        self.record_raster("model-ids", view, &descriptor, &self.model_ids, (None, scene), passes);
     }
 
     /// Records the pass `clay`, after `depth`: the scene at the cost of no lights at all.
     pub fn record_clay(&self, view: &View, passes: &mut dyn Passes) {
-        self.record_radiance("clay", view, &self.clay, None, passes);
+        let groups = (None, self.scene.bind_group(false));
+        self.record_radiance("clay", view, &self.clay, groups, passes);
     }
 
-    /// A pass over the triangles into the radiance image.
+    /// A pass over the triangles into the radiance image, with the bind groups of lists and scene.
     pub(crate) fn record_radiance(
         &self,
         name: &str,
         view: &View,
         pipelines: &RasterPipelines,
-        lists: Option<&wgpu::BindGroup>,
+        groups: (Option<&wgpu::BindGroup>, &wgpu::BindGroup),
         passes: &mut dyn Passes,
     ) {
         let mut color = cleared(&self.targets.radiance);
@@ -190,7 +194,7 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(None)),
             ..Default::default()
         };
-        self.record_raster(name, view, &descriptor, pipelines, lists, passes);
+        self.record_raster(name, view, &descriptor, pipelines, groups, passes);
     }
 
     fn record_raster(
@@ -199,7 +203,7 @@ impl Renderer {
         view: &View,
         descriptor: &wgpu::RenderPassDescriptor<'_>,
         pipelines: &RasterPipelines,
-        lists: Option<&wgpu::BindGroup>,
+        (lists, scene): (Option<&wgpu::BindGroup>, &wgpu::BindGroup),
         passes: &mut dyn Passes,
     ) {
         let viewport = view.viewport;
@@ -217,6 +221,7 @@ impl Renderer {
             if let Some(lists) = lists {
                 pass.set_bind_group(1, lists, &[]);
             }
+            pass.set_bind_group(2, scene, &[]);
             self.scene.draw(pass, textures, |key| pipelines.get(key));
         });
     }

@@ -16,7 +16,6 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "clay",
         "write_model_ids",
         "model_ids",
-        "sphere_test",
         "mask",
         "emissive",
         "uv_transforms",

@@ -14,7 +14,7 @@ use shading::reference::{Surface, light_contribution};
 type Query = [[f32; 4]; 4];
 
 const EVALUATE: &str = "
-import package::brdf::Surface;
+import package::brdf::{Surface, see};
 import package::lighting::light_contribution;
 
 @group(2) @binding(0) var<storage, read> queries: array<array<vec4f, 4>>;
@@ -28,7 +28,8 @@ fn evaluate(@builtin(global_invocation_id) thread: vec3u) {
   let query = queries[thread.x];
   let surface = Surface(query[3].xyz, query[2].w, query[2].xyz, query[1].w);
   let light = bitcast<u32>(query[0].w);
-  answers[thread.x] = vec4f(light_contribution(light, query[0].xyz, surface, query[1].xyz), 1.0);
+  let seen = see(surface, query[1].xyz);
+  answers[thread.x] = vec4f(light_contribution(light, query[0].xyz, seen, 0.0), 1.0);
 }
 ";
 

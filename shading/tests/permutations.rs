@@ -137,7 +137,7 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        for flags in material_flags(Some("forward"), &["emissive", "spots", "sphere_test"]) {
+        for flags in material_flags(Some("forward"), &["emissive", "spots"]) {
             let slots = shaded_slots(&flags);
             check_geometry(&flags, Some(look_up), Some("fragment_forward"), slots);
         }
@@ -160,8 +160,8 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in subsets(&["emissive", "spots", "sphere_test", "model_ids"]) {
-            let mut images = vec![0, 1, 2, 4];
+        for flags in subsets(&["emissive", "spots", "model_ids"]) {
+            let mut images = vec![0, 1, 2, 4, 6];
             images.extend(flags.contains("emissive").then_some(3));
             images.extend(flags.contains("model_ids").then_some(5));
             images.sort_unstable();
