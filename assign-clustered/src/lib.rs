@@ -33,9 +33,9 @@
 //!
 //! Figures, ms, of
 //! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): DC-I/128x128x64 0.356 to
-//! cull and 0.269 to shade; DC-E/64x64x40 0.113 and 0.185; SC-I/48x48x40 0.129 and 0.215;
-//! SC-E/48x48x40 0.123 and 0.173, through the hierarchy 0.070 and 0.173.
+//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): DC-I/128x128x64 0.322 to
+//! assign and 0.183 to shade; DC-E/64x64x40 0.085 and 0.139; SC-I/48x48x40 0.107 and 0.154;
+//! SC-E/48x48x40 0.095 and 0.133, through the hierarchy 0.053 and 0.133.
 //!
 //! # Where it fails
 //!

@@ -102,3 +102,32 @@ fn faults_are_rejected() {
         assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::ALL);
     }
 }
+
+/// A frame's counters are its own, whatever the frames before held: none here, all there.
+#[test]
+fn counters_start_anew_even_where_nothing_is_in_view() {
+    let gpu = Gpu::open(None).unwrap();
+    let view = assign::View::look_at(glam::Vec3::ONE, glam::Vec3::ZERO, 1.0, 0.1, [64, 48]);
+    let light = assign::Light::point(glam::Vec3::ZERO, 50.0, glam::Vec3::ONE);
+    let lights = assign::LightBuffer::new(&gpu, &[light; 3]).unwrap();
+    let [wall, nothing] =
+        [0.05, view.depth_clear()].map(|depth| conformance::flat_depth(&gpu, [64, 48], depth));
+    for variant in [DC_E, SC_I, SC_E] {
+        let mut strategy = clustered(variant, "16x16x8", CullSettings::default())(&gpu).unwrap();
+        let mut draw = |depth: &wgpu::TextureView| {
+            let frame = assign::Frame::new(&view, &lights).with_depth(depth);
+            strategy.prepare(&gpu, &frame).unwrap();
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            strategy.record(&frame, &mut assign::EncoderPasses { encoder: &mut encoder });
+            gpu.queue.submit([encoder.finish()]);
+            strategy.lists().snapshot(&gpu).unwrap().counters
+        };
+        let walls = [&wall, &wall, &wall].map(&mut draw);
+        assert_eq!(walls[0].occupied_groups, 12, "{variant:?}: one slice of 4 x 3 tiles");
+        assert!(walls.iter().all(|counters| *counters == walls[0]), "{variant:?}: {walls:?}");
+        for _ in 0..3 {
+            assert_eq!(draw(&nothing), assign::Counters::default(), "{variant:?}");
+        }
+        assert_eq!(draw(&wall), walls[0], "{variant:?}");
+    }
+}

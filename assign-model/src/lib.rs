@@ -26,9 +26,9 @@
 //!
 //! Figures, ms, of
 //! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all,M/2 --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): M 0.582 to
-//! assign, of which 0.503 for the models of pixels, and 35.3 to shade lists of 3,858 lights a sample;
-//! M/2 0.662 and 0.463 with 55.0.
+//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): M 0.563 to
+//! assign, of which 0.503 for the models of pixels, and 19.7 to shade lists of 3,858 lights a sample;
+//! M/2 0.648 and 0.297 with 55.0.
 //!
 //! # Where it fails
 //!

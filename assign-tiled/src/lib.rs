@@ -23,8 +23,8 @@
 //!
 //! Figures, ms, of
 //! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): T-I/28x28 0.136 to
-//! cull and 1.10 to shade lists of 141 lights a sample; T-E/28x28 0.144 and 0.207 with 22.4.
+//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): T-I/28x28 0.115 to
+//! assign and 0.610 to shade lists of 141 lights a sample; T-E/28x28 0.127 and 0.152 with 22.4.
 //!
 //! # Where it fails
 //!

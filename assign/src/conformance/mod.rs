@@ -44,6 +44,7 @@
 mod cases;
 mod check;
 pub mod faulty;
+mod flat_depth;
 mod lights;
 mod rig;
 mod session;
@@ -55,6 +56,7 @@ use std::sync::OnceLock;
 
 pub use cases::{CASES, Case};
 use faulty::{Fault, Faulty};
+pub use flat_depth::flat_depth;
 use rig::Rig;
 pub use violation::{
     Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
