@@ -153,8 +153,7 @@ impl Culler {
     fn bind_source(&mut self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) {
         let mut entries = Vec::new();
         self.dispatch = match groups {
-            // One workgroup at least empties the next frame's counters.
-            Groups::All(count) => Dispatch::Workgroups(count.clamp(1, MAX_DISPATCH)),
+            Groups::All(count) => Dispatch::Workgroups(count.min(MAX_DISPATCH)),
             Groups::Live { live, .. } => {
                 entries.push(entry(0, live.buffer()));
                 Dispatch::Indirect(live.buffer().clone())
@@ -213,6 +212,7 @@ impl Culler {
         let Some(kernel) = &self.kernel else {
             return;
         };
+        self.lists.record_reset(passes.encoder());
         passes.compute("cull", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(LISTS_GROUP, self.cull.bind_group(), &[]);

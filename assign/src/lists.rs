@@ -75,10 +75,8 @@ pub struct CullUniform {
     pub pool_capacity: u32,
     /// 1 where the reserved entries could exceed 32 bits.
     pub guard_cursor: u32,
-    /// Which of the two sets of counters is this frame's.
-    pub turn: u32,
     /// Pads to 32 bytes.
-    pub padding: [u32; 2],
+    pub padding: [u32; 3],
 }
 
 /// Bytes of one set of counters.
@@ -96,10 +94,6 @@ pub struct LightLists {
     /// Upper limit set by the user; the device's limit applies as well.
     pool_limit: u32,
     counts: (u32, u32),
-    /// The set of counters of the frame: the kernel empties the other for the next one.
-    turn: u32,
-    /// Whether the set was filled since the last `prepare`.
-    is_filled: bool,
     readback: Readback<Counters>,
 }
 
@@ -134,14 +128,12 @@ impl LightLists {
         Ok(Self {
             lists: gpu.storage("light lists", 8)?,
             entries: gpu.storage("light entries", 4)?,
-            counters: gpu.storage("list counters", 2 * COUNTERS_BYTES)?,
+            counters: gpu.storage("list counters", COUNTERS_BYTES)?,
             uniform: gpu.uniform("cull", size_of::<CullUniform>() as u64),
             light_capacity: 0,
             pool_capacity: 0,
             pool_limit: u32::MAX,
             counts: (0, 0),
-            turn: 0,
-            is_filled: false,
             readback: Readback::new(gpu, "list counters"),
         })
     }
@@ -163,9 +155,6 @@ impl LightLists {
         group_count: u32,
     ) -> Result<bool, AssignError> {
         self.readback.poll(gpu);
-        if std::mem::take(&mut self.is_filled) {
-            self.turn = 1 - self.turn;
-        }
         let asked = self.readback.latest().map_or(0, |c| c.requested());
         let records = u64::from(group_count) + 1;
         let larger = if self.lists.size() < records * 8 {
@@ -189,8 +178,7 @@ impl LightLists {
             pool_first: self.light_capacity,
             pool_capacity: self.pool_capacity,
             guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
-            turn: self.turn,
-            padding: [0; 2],
+            padding: [0; 3],
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
         Ok(changed)
@@ -240,10 +228,15 @@ impl LightLists {
         Ok(true)
     }
 
+    /// Empties the counters; call before the pass that fills them, in the same encoder, so that
+    /// they are a frame's own whatever became of the frames before.
+    pub fn record_reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.counters, 0, None);
+    }
+
     /// Copies the counters for [`stats`](Self::stats); call between passes, after the last.
     pub fn record_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        self.readback.record(encoder, &self.counters, self.counters_offset());
-        self.is_filled = true;
+        self.readback.record(encoder, &self.counters);
     }
 
     /// The newest counters that have come back, which may be a few frames old.
@@ -254,9 +247,8 @@ impl LightLists {
     /// Reads everything back, blocking.
     pub fn snapshot(&self, gpu: &Gpu) -> Result<ListsSnapshot, AssignError> {
         let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
-        let both = gpu.read(&self.counters, self.counters.size())?;
-        let both: Vec<Counters> = pod_collect_to_vec(&both);
-        let counters = both.get(self.turn as usize).copied().unwrap_or_default();
+        let counters = gpu.read(&self.counters, COUNTERS_BYTES)?;
+        let counters: Counters = bytemuck::pod_read_unaligned(&counters);
         let used = self.light_capacity + counters.cursor.min(self.pool_capacity);
         let entries = gpu.read(&self.entries, u64::from(used) * 4)?;
         Ok(ListsSnapshot {
@@ -286,11 +278,7 @@ impl LightLists {
         &self.entries
     }
 
-    fn counters_offset(&self) -> u64 {
-        u64::from(self.turn) * COUNTERS_BYTES
-    }
-
-    /// Two sets of counters, `array<Counters, 2>`: a frame fills one and empties the other.
+    /// The counters: `struct Counters`.
     pub fn counters(&self) -> &wgpu::Buffer {
         &self.counters
     }

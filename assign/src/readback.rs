@@ -49,16 +49,11 @@ impl<T: Pod> Readback<T> {
         }
     }
 
-    /// Copies the value at `offset` of `source`; skipped while all slots are in flight.
-    pub(crate) fn record(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        source: &wgpu::Buffer,
-        offset: u64,
-    ) {
+    /// Copies the value; skipped while all slots are in flight.
+    pub(crate) fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer) {
         let free = self.slots.iter_mut().find(|(_, state)| matches!(state, State::Free));
         if let Some((buffer, state)) = free {
-            encoder.copy_buffer_to_buffer(source, offset, buffer, 0, size_of::<T>() as u64);
+            encoder.copy_buffer_to_buffer(source, 0, buffer, 0, size_of::<T>() as u64);
             self.recorded += 1;
             *state = State::Recorded(self.recorded);
         }
