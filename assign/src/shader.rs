@@ -65,8 +65,8 @@ impl<'a> Shader<'a> {
         compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
-    /// Links `root` and makes a shader module of it. Its loops must end by themselves: see
-    /// [`checks`].
+    /// Links `root` and makes a shader module of it. Its loops must end by themselves: indices are
+    /// checked at run time, loops are not.
     pub fn create(
         &self,
         device: &wgpu::Device,
