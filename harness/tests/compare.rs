@@ -68,8 +68,7 @@ fn all_methods_are_lossless_or_within_what_they_state() {
         let what = format!("{} {}", record.strategy, record.mode.name());
         assert!(record.is_lossless(), "{what}: {:?}", record.max_rel_diff);
         let is_raster = record.strategy == "RasterSphere";
-        let states = is_raster || record.strategy == "Sphere";
-        assert_eq!(record.tolerance.is_some(), states, "{what}");
+        assert_eq!(record.tolerance.is_some(), is_raster, "{what}");
         assert_eq!(record.missed_pairs, (!is_raster).then_some(0), "{what}");
     }
 }
