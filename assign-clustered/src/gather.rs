@@ -67,7 +67,12 @@ impl Gather {
         );
         let live_layout = bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
         let frame = FrameBindings::new(gpu);
-        let module = gather_shader(bounds, occupancy).create(&gpu.device, "package::gather")?;
+        // SAFETY: loops count up to a constant, to the length of a buffer by a step of at least one
+        // workgroup, or over slices, of which there are 1,024 at most.
+        #[allow(unsafe_code, reason = "its loops end")]
+        let module = unsafe {
+            gather_shader(bounds, occupancy).create_uncounted(&gpu.device, "package::gather")
+        }?;
         let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("gather"),
             bind_group_layouts: &[Some(frame.layout()), Some(&layout), Some(&live_layout)],

@@ -43,7 +43,10 @@ impl TileBounds {
             ],
         });
         let frame = FrameBindings::new(gpu);
-        let module = bounds_shader().create(&gpu.device, "package::tile_bounds")?;
+        // SAFETY: its one loop counts up to the pixels of a tile.
+        #[allow(unsafe_code, reason = "its loop ends")]
+        let module =
+            unsafe { bounds_shader().create_uncounted(&gpu.device, "package::tile_bounds") }?;
         let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("tile bounds"),
             bind_group_layouts: &[Some(frame.layout()), Some(&layout)],

@@ -21,7 +21,9 @@ pub trait Assignment {
     /// Records the passes that fill the lists: inside the clock.
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes);
 
-    /// How shading finds a sample's group. Constant over the strategy's life.
+    /// How shading finds a sample's group. Constant over the strategy's life. Every loop in its
+    /// module must end by itself: shaders made of it count no loops
+    /// ([`Shader::create_uncounted`](crate::Shader::create_uncounted)).
     fn lookup(&self) -> Lookup<'_>;
 
     /// The bind group of [`Lookup::layout`]. `prepare` may replace it.

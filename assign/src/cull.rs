@@ -181,8 +181,13 @@ impl Culler {
     }
 
     fn compile(&self, gpu: &Gpu, spots: bool) -> Result<Kernel, AssignError> {
-        let module =
-            kernel_shader(self.variant, self.module, spots).create(&gpu.device, "package::cull")?;
+        let shader = kernel_shader(self.variant, self.module, spots);
+        // SAFETY: the driver's loops count up to a number that does not change meanwhile, test the
+        // next of finitely many nodes, clear a bit of a word a round, or try to take what fits from
+        // a pool that only fills up: a swap fails because another lane's succeeded, or weakly, a
+        // few times at most. A strategy's module vouches for its own (`Assignment::lookup`).
+        #[allow(unsafe_code, reason = "its loops end")]
+        let module = unsafe { shader.create_uncounted(&gpu.device, "package::cull") }?;
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&self.label),
             bind_group_layouts: &[

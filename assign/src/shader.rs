@@ -65,24 +65,52 @@ impl<'a> Shader<'a> {
         compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
-    /// Links `root` and makes a shader module of it. Its loops must end by themselves: indices are
-    /// checked at run time, loops are not.
+    /// Links `root` and makes a shader module of it. Every index is checked on the GPU, and every
+    /// loop is counted, so that none is endless.
     pub fn create(
         &self,
         device: &wgpu::Device,
         root: &str,
     ) -> Result<wgpu::ShaderModule, AssignError> {
+        self.module_of(root, device, |descriptor| device.create_shader_module(descriptor))
+    }
+
+    /// As [`create`](Self::create), but loops are not counted. Counters keep a loop from being
+    /// unrolled: on an H200 they made the pass `bounds` of SC-E/48x48x40/bvh 27 %, `cull` 19 % and
+    /// `shade` 9 % slower.
+    ///
+    /// # Safety
+    ///
+    /// Every loop of `root`, and of whatever it imports, must end by itself, whatever its buffers
+    /// hold: a driver may answer an endless loop with anything.
+    #[allow(unsafe_code, reason = "the one way to a module without loop counters")]
+    pub unsafe fn create_uncounted(
+        &self,
+        device: &wgpu::Device,
+        root: &str,
+    ) -> Result<wgpu::ShaderModule, AssignError> {
+        let checks = wgpu::ShaderRuntimeChecks {
+            force_loop_bounding: false,
+            ..wgpu::ShaderRuntimeChecks::checked()
+        };
+        self.module_of(root, device, |descriptor| {
+            // SAFETY: loop counters alone are left out, and the caller vouches for the loops.
+            unsafe { device.create_shader_module_trusted(descriptor, checks) }
+        })
+    }
+
+    fn module_of(
+        &self,
+        root: &str,
+        device: &wgpu::Device,
+        make: impl FnOnce(wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule,
+    ) -> Result<wgpu::ShaderModule, AssignError> {
         let source = self.link(root)?;
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let descriptor = wgpu::ShaderModuleDescriptor {
+        let module = make(wgpu::ShaderModuleDescriptor {
             label: Some(root),
             source: wgpu::ShaderSource::Wgsl(source.into()),
-        };
-        // SAFETY: only the counters that end endless loops are left out, and every loop here ends:
-        // it counts up to a number that does not change meanwhile, clears a bit of a word a round,
-        // or tries to take what fits into a pool that only fills up.
-        #[allow(unsafe_code, reason = "the one way to a module without loop counters")]
-        let module = unsafe { device.create_shader_module_trusted(descriptor, checks()) };
+        });
         match pollster::block_on(scope.pop()) {
             None => Ok(module),
             Some(error) => {
@@ -90,13 +118,4 @@ impl<'a> Shader<'a> {
             }
         }
     }
-}
-
-/// What the compiler checks at run time: every index, and no loop.
-///
-/// By default it adds a counter to every loop, so that none is endless, which drivers may answer
-/// with anything. A counter keeps loops from being unrolled: on an H200 it made the pass `bounds`
-/// of SC-E/48x48x40/bvh 27 %, `cull` 19 % and `shade` 9 % slower.
-fn checks() -> wgpu::ShaderRuntimeChecks {
-    wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() }
 }

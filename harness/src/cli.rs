@@ -29,14 +29,16 @@ const ABOUT: &str = "Compare ways of assigning many lights to pixels";
 const LONG_ABOUT: &str = "\
 Compare ways of assigning many lights to pixels.
 
-Draws one scene with each strategy through the same pipeline, so that only the light lists \
-differ. Times every pass, checks every list and every image against no culling, and writes a \
+Draws one scene with each strategy through the same pipeline: only the light lists differ, and \
+None, the reference of all images, evaluates every light where the others leave out early what adds \
+nothing to a sample (Sphere is None that does). Times every pass, checks every list and every image against no culling, and writes a \
 report: DIR/index.html to look at, DIR/results.json to compute with.";
 
 const EXAMPLES: &str = "\
 Examples:
   lightbench
-      The embedded atrium with 1,000 lights: no culling against clusters, dense and sparse.
+      The embedded atrium with 1,000 lights: no culling, without and with an early exit, against
+      clusters, dense and sparse.
   lightbench --scene Sponza.gltf --lights 10000 --size 1920x1080 --mode both
       Your scene, its own lights and 10,000 more, deferred and forward.
   lightbench --strategies None,DC-I/128x128x64,DC-I/64x64x24,DC-I/32x32x32 --frames 32
@@ -119,11 +121,13 @@ pub struct CompareArgs {
     pub scene_scale: f64,
 
     /// Strategies, separated by commas, with their parameters; None is no culling, all is every one
-    #[arg(long, value_name = "A,B,C", default_value = "None,DC-I/64x64x24,SC-E/48x48x40/bvh")]
+    #[arg(long, value_name = "A,B,C", default_value = "None,Sphere,DC-I,SC-E/bvh")]
     pub strategies: Strategies,
 
-    /// Tests of lights against frusta, for strategies that name none: hs, sat-e, sat-n, sat-p and
-    /// sat-v, joined by + [default: hs+sat-n]
+    /// Tests of lights against frusta, for strategies that name none, joined by +: hs (behind one of
+    /// its planes), or an axis that parts the two along its edges (sat-e), towards its nearest corner
+    /// (sat-n), along its planes' normals (sat-p) or towards every corner (sat-v)
+    /// [default: hs+sat-n]
     #[arg(long, value_name = "UNION", value_parser = values::tests)]
     pub test: Option<FrustumTests>,
 

@@ -8,7 +8,7 @@ use shading::{EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
 
 use crate::{
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, TruthChoice},
+    cli::{CliError, CompareArgs, ModeChoice, TruthChoice},
     clock::clock_of,
     error::HarnessError,
     machine::machine,
@@ -40,6 +40,7 @@ const GPU_WARM_UP: Duration = Duration::from_millis(250);
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     let choices = choices(args)?;
+    check_modes(args, &choices)?;
     check_writable(&args.out)?;
     let gpu = Gpu::open(args.adapter.as_deref())?;
     end_on_device_error(&gpu);
@@ -72,6 +73,16 @@ fn end_on_device_error(gpu: &Gpu) {
         eprintln!("lightbench: device: {}", CliError::new(error.to_string()));
         std::process::exit(1);
     }));
+}
+
+/// An error where no choice can be measured in any of the modes.
+fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
+    let is_forward = args.mode == ModeChoice::Forward;
+    if is_forward && choices.iter().all(|choice| choice.family() == RASTER_SPHERE) {
+        let accepted = format!("deferred for {RASTER_SPHERE}, which has no forward mode");
+        return Err(CliError::out_of_range("--mode", "forward", &accepted));
+    }
+    Ok(())
 }
 
 /// The choices with their parameters checked and written alike, none twice.
@@ -217,10 +228,6 @@ impl Run<'_> {
         let total = modes.len() as u64 * (choices.len() as u64 * per_method + extra);
         let bar = progress_bar(total);
         for &mode in modes {
-            let mode = match mode {
-                crate::results::Mode::Deferred => Mode::Deferred,
-                crate::results::Mode::Forward => Mode::Forward,
-            };
             self.measure_mode(choices, mode, bvh.as_ref(), &bar)?;
         }
         bar.finish_and_clear();
@@ -341,10 +348,7 @@ impl Run<'_> {
             triangles: stage.scene.triangle_count(),
             strategy: choice.id().to_owned(),
             strategy_parameters: choice.parameters(),
-            mode: match mode {
-                Mode::Deferred => crate::results::Mode::Deferred,
-                Mode::Forward => crate::results::Mode::Forward,
-            },
+            mode,
             lights: u64::from(stage.lights.count()),
             light_kinds: stage
                 .light_kinds()

@@ -24,8 +24,9 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), HarnessError> {
-    let command: Vec<String> =
-        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    // Where the program lies on this machine is nobody's business.
+    let arguments = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    let command = std::iter::once("lightbench".to_owned()).chain(arguments).collect();
     let text = match cli::parse(std::env::args_os())? {
         Invocation::Show(text) => text,
         Invocation::List(Listing::Strategies) => strategies(),

@@ -135,7 +135,8 @@ impl<'a> Painter<'a> {
         let spots = stage.lights.has_spots();
         Ok(match method {
             Method::Lists { strategy, early_exit } => {
-                let options = LightingOptions { spots, early_exit: *early_exit };
+                let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
+                let options = LightingOptions { spots, exit_weight };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
             }

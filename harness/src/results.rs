@@ -20,6 +20,7 @@ mod stats;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+pub use shading::Mode;
 
 pub use file::{ResultsError, write_atomically};
 pub use passes::{PassKind, PassTimes, Passes};
@@ -129,26 +130,6 @@ pub struct RejectedLight {
     pub index: u64,
     /// The field at fault, and its value.
     pub reason: String,
-}
-
-/// How pixels are lit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Mode {
-    /// From a G-buffer, in a compute pass.
-    Deferred,
-    /// In the fragment shader that draws the surfaces.
-    Forward,
-}
-
-impl Mode {
-    /// As in `results.json`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Deferred => "deferred",
-            Self::Forward => "forward",
-        }
-    }
 }
 
 /// What took the times of a record.

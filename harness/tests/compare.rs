@@ -41,18 +41,18 @@ fn the_default_scene_is_lossless_in_both_modes() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("new/run");
     let results = compare(&out, &["--lights", "300", "--spots", "0.3", "--mode", "both"]);
-    assert_lossless(&results, 6);
-    let culled = &results.records[1];
+    assert_lossless(&results, 8);
+    let culled = &results.records[2];
     assert!(culled.checked_pairs > Some(1_000), "{:?} pairs", culled.checked_pairs);
     assert!(culled.listed_per_sample < Some(150.0), "{:?} listed", culled.listed_per_sample);
     assert_eq!(culled.light_kinds.values().sum::<u64>(), 300);
     assert!(culled.light_kinds["spot"] > 50);
     assert!(culled.passes.get("cull").is_some());
-    let sparse = &results.records[2];
+    let sparse = &results.records[3];
     assert!(sparse.passes.get("bounds").is_some());
     assert!(sparse.histogram.iter().sum::<u64>() > 20, "{:?}", sparse.histogram);
     assert!(sparse.listed_per_sample < culled.listed_per_sample);
-    for name in ["index.html", "deferred-None.png", "forward-DC-I-64x64x24.exr", HEAT_MAP] {
+    for name in ["index.html", "deferred-None.png", "forward-DC-I-128x128x64.exr", HEAT_MAP] {
         assert!(out.join(name).is_file(), "{name}");
     }
 }
@@ -105,7 +105,7 @@ fn real_scenes_with_their_own_lights_are_lossless() {
         let out = tempfile::tempdir().expect("a folder");
         let scene = path.to_str().expect("UTF-8");
         let results = compare(out.path(), &["--scene", scene, "--lights", lights]);
-        assert_lossless(&results, 3);
+        assert_lossless(&results, 4);
     }
 }
 
@@ -157,6 +157,10 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["--lights", "99999999", "--out", &out], vec!["--lights", "16,777,216"]),
         (vec!["--size", "0x10", "--out", &out], vec!["--size", "0x10"]),
         (vec!["--frames", "0", "--out", &out], vec!["--frames", "0"]),
+        (
+            vec!["--mode", "forward", "--strategies", "RasterSphere", "--out", &out],
+            vec!["--mode", "forward", "RasterSphere"],
+        ),
         (vec!["--mode", "sideways", "--out", &out], vec!["--mode", "sideways", "forward"]),
         (vec!["--out", &below_file], vec!["a-file"]),
         (vec!["--adapter", "no such adapter", "--out", &out], vec!["no such adapter"]),

@@ -162,7 +162,7 @@ fn a_heading_sorts() {
     let page = render_html(&typical(), &[]);
     let click = |times: usize| {
         let clicks =
-            "document.querySelectorAll('table.results thead button')[4].click();".repeat(times);
+            "document.querySelectorAll('table.results thead button')[5].click();".repeat(times);
         dump(&page.replace("</body>", &format!("<script>{clicks}</script></body>")), 1200)
     };
     let Some(ascending) = click(1) else { return };

@@ -59,15 +59,7 @@ pub struct SceneGpu {
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
     pub(crate) layout: wgpu::BindGroupLayout,
-    /// Whether lights that add nothing are left out: no, yes.
-    exits: [Exit; 2],
-}
-
-/// `LightingUniform` with one of its two values, and the bind group that holds it.
-#[derive(Debug)]
-struct Exit {
-    uniform: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
+    pub(crate) instances: wgpu::Buffer,
 }
 
 impl SceneGpu {
@@ -93,34 +85,20 @@ impl SceneGpu {
                 uniform_entry(LIGHTING_BINDING, wgpu::ShaderStages::FRAGMENT),
             ],
         });
-        let exits = [-1.0_f32, 0.0].map(|exit_weight| {
-            let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("lighting"),
-                contents: cast_slice(&[exit_weight, 0.0, 0.0, 0.0]),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
-            let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("scene"),
-                layout: &layout,
-                entries: &[
-                    entry(0, &instances),
-                    entry(1, &materials.factors),
-                    entry(LIGHTING_BINDING, &uniform),
-                ],
-            });
-            Exit { uniform, bind_group }
-        });
-        Ok(Self { vertices, indices, draws, materials, layout, exits })
+        Ok(Self { vertices, indices, draws, materials, layout, instances })
     }
 
-    /// Bind group 2, for lighting with or without an early exit.
-    pub(crate) fn bind_group(&self, early_exit: bool) -> &wgpu::BindGroup {
-        &self.exits[usize::from(early_exit)].bind_group
-    }
-
-    /// `LightingUniform` with or without an early exit.
-    pub(crate) fn lighting_uniform(&self, early_exit: bool) -> &wgpu::Buffer {
-        &self.exits[usize::from(early_exit)].uniform
+    /// Bind group 2, with `LightingUniform`.
+    pub(crate) fn bind_group(&self, gpu: &Gpu, lighting: &wgpu::Buffer) -> wgpu::BindGroup {
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("scene"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, &self.instances),
+                entry(1, &self.materials.factors),
+                entry(LIGHTING_BINDING, lighting),
+            ],
+        })
     }
 
     /// Whether any material emits.

@@ -12,24 +12,30 @@ use crate::{
 #[derive(Debug)]
 pub struct Lighting {
     kind: Kind,
-    options: LightingOptions,
+    spots: bool,
 }
 
 /// How the lights of a list are evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightingOptions {
     /// Whether any light is a spot.
     pub spots: bool,
-    /// Whether a light that adds nothing to a sample, out of its range (the survey's bounding
-    /// sphere, Watrous 2024), cone or horizon, is left out before its BRDF. The image is the same
-    /// in every bit: the shader is one, told by a uniform.
-    pub early_exit: bool,
+    /// A light is left out of a sample, before its BRDF, where its fall-off or the cosine of
+    /// incidence is at most this. 0 leaves out what adds nothing, out of range (the survey's
+    /// bounding sphere, Watrous 2024), cone or horizon, and changes no bit of the image, for the
+    /// shader is one, told by a uniform; [`EVALUATE_ALL`](Self::EVALUATE_ALL) leaves out nothing.
+    pub exit_weight: f32,
+}
+
+impl LightingOptions {
+    /// The [`exit_weight`](Self::exit_weight) with which every light of a list is evaluated.
+    pub const EVALUATE_ALL: f32 = -1.0;
 }
 
 #[derive(Debug)]
 enum Kind {
     Deferred(Deferred),
-    Forward(RasterPipelines),
+    Forward(RasterPipelines, wgpu::BindGroup),
 }
 
 impl Lighting {
@@ -42,17 +48,22 @@ impl Lighting {
     ) -> Result<Self, ShadingError> {
         let lists = Lists { lookup: strategy.lookup(), options };
         let model_ids = strategy.needs().models;
+        let gpu = &renderer.gpu;
+        let uniform = lighting_uniform(gpu, options.exit_weight);
         let kind = match mode {
-            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists, model_ids)?),
-            Mode::Forward => Kind::Forward(RasterPipelines::new(
-                &renderer.gpu,
-                &renderer.frame,
-                &renderer.scene,
-                renderer.depth_mapping,
-                RasterPass::Forward(lists),
-            )?),
+            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists, model_ids, uniform)?),
+            Mode::Forward => Kind::Forward(
+                RasterPipelines::new(
+                    gpu,
+                    &renderer.frame,
+                    &renderer.scene,
+                    renderer.depth_mapping,
+                    RasterPass::Forward(lists),
+                )?,
+                renderer.scene.bind_group(gpu, &uniform),
+            ),
         };
-        Ok(Self { kind, options })
+        Ok(Self { kind, spots: options.spots })
     }
 
     /// Records the pass `shade`, after the strategy's own. An error where the prepared lights
@@ -64,13 +75,12 @@ impl Lighting {
         strategy: &dyn Assignment,
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
-        if renderer.has_spots && !self.options.spots {
+        if renderer.has_spots && !self.spots {
             return Err(ShadingError::Spots);
         }
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
-            Kind::Forward(pipelines) => {
-                let scene = renderer.scene.bind_group(self.options.early_exit);
+            Kind::Forward(pipelines, scene) => {
                 let groups = (strategy.bind_group(), scene);
                 renderer.record_radiance("shade", view, pipelines, groups, passes);
             }
@@ -84,27 +94,35 @@ struct Deferred {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     model_ids: bool,
-    early_exit: bool,
+    uniform: wgpu::Buffer,
 }
 
 impl Deferred {
-    fn new(renderer: &Renderer, lists: Lists<'_>, model_ids: bool) -> Result<Self, ShadingError> {
+    fn new(
+        renderer: &Renderer,
+        lists: Lists<'_>,
+        model_ids: bool,
+        uniform: wgpu::Buffer,
+    ) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
         let layout = deferred_layout(gpu, emissive, model_ids);
-        let module = shaders::lighting(LISTS_GROUP)
+        let shader = shaders::lighting(LISTS_GROUP)
             .module("package::strategy", lists.lookup.module)
             .flag("spots", lists.options.spots)
             .flag("model_ids", model_ids)
-            .flag("emissive", emissive)
-            .create(&gpu.device, "package::deferred")?;
+            .flag("emissive", emissive);
+        // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once. The
+        // strategy's look-up vouches for its own loops (`Assignment::lookup`).
+        #[allow(unsafe_code, reason = "its loop ends")]
+        let module = unsafe { shader.create_uncounted(&gpu.device, "package::deferred") }?;
         let pipeline = compute_pipeline(
             gpu,
             &[renderer.frame.layout(), lists.lookup.layout, &layout],
             &module,
             "shade",
         );
-        Ok(Self { pipeline, layout, model_ids, early_exit: lists.options.early_exit })
+        Ok(Self { pipeline, layout, model_ids, uniform })
     }
 
     fn record(
@@ -120,7 +138,7 @@ impl Deferred {
             texture(1, &targets.base_color),
             texture(2, &targets.normal),
             texture(4, &targets.radiance),
-            entry(LIGHTING_BINDING, renderer.scene.lighting_uniform(self.early_exit)),
+            entry(LIGHTING_BINDING, &self.uniform),
         ];
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
         if self.model_ids {
@@ -143,6 +161,13 @@ impl Deferred {
             );
         });
     }
+}
+
+/// `LightingUniform`.
+pub(crate) fn lighting_uniform(gpu: &Gpu, exit_weight: f32) -> wgpu::Buffer {
+    let uniform = gpu.uniform("lighting", 16);
+    gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&[exit_weight, 0.0, 0.0, 0.0]));
+    uniform
 }
 
 /// A compute pipeline over bind groups 0, 1, ….

@@ -5,16 +5,19 @@ use assign::{
 };
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     ShadingError,
     geometry::SceneGpu,
+    lighting::lighting_uniform,
     raster::{RasterPass, RasterPipelines},
     targets::Targets,
 };
 
 /// How pixels are lit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Mode {
     /// A G-buffer, then one compute thread a pixel.
     Deferred,
@@ -38,6 +41,8 @@ pub struct Renderer {
     pub(crate) gpu: Gpu,
     pub(crate) frame: FrameBindings,
     pub(crate) scene: SceneGpu,
+    /// Bind group 2 of the passes that light nothing.
+    scene_group: wgpu::BindGroup,
     pub(crate) targets: Targets,
     pub(crate) depth_mapping: DepthMapping,
     /// Whether the prepared lights hold a spot.
@@ -75,6 +80,7 @@ impl Renderer {
             depth_mapping: view.depth,
             has_spots: false,
             frame,
+            scene_group: scene.bind_group(gpu, &lighting_uniform(gpu, 0.0)),
             scene,
             targets,
         })
@@ -143,7 +149,7 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(Some(view.depth_clear()))),
             ..Default::default()
         };
-        let scene = self.scene.bind_group(false);
+        let scene = &self.scene_group;
         self.record_raster("depth", view, &descriptor, &self.depth, (None, scene), passes);
     }
 
@@ -157,7 +163,7 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(None)),
             ..Default::default()
         };
-        let scene = self.scene.bind_group(false);
+        let scene = &self.scene_group;
         self.record_raster("gbuffer", view, &descriptor, &self.gbuffer, (None, scene), passes);
     }
 
@@ -168,13 +174,13 @@ impl Renderer {
             depth_stencil_attachment: Some(self.depth_attachment(None)),
             ..Default::default()
         };
-        let scene = self.scene.bind_group(false);
+        let scene = &self.scene_group;
         self.record_raster("model-ids", view, &descriptor, &self.model_ids, (None, scene), passes);
     }
 
     /// Records the pass `clay`, after `depth`: the scene at the cost of no lights at all.
     pub fn record_clay(&self, view: &View, passes: &mut dyn Passes) {
-        let groups = (None, self.scene.bind_group(false));
+        let groups = (None, &self.scene_group);
         self.record_radiance("clay", view, &self.clay, groups, passes);
     }
 

@@ -10,7 +10,8 @@ use assign::{
 use glam::{DVec3, Vec3};
 use shading::reference::{Surface, light_contribution};
 
-/// One evaluation: position and light, eye direction and roughness, normal and metallic, colour.
+/// One evaluation: position and light, eye direction and roughness, normal and metallic, colour and
+/// the weight at or under which the light is left out.
 type Query = [[f32; 4]; 4];
 
 const EVALUATE: &str = "
@@ -29,7 +30,7 @@ fn evaluate(@builtin(global_invocation_id) thread: vec3u) {
   let surface = Surface(query[3].xyz, query[2].w, query[2].xyz, query[1].w);
   let light = bitcast<u32>(query[0].w);
   let seen = see(surface, query[1].xyz);
-  answers[thread.x] = vec4f(light_contribution(light, query[0].xyz, seen, 0.0), 1.0);
+  answers[thread.x] = vec4f(light_contribution(light, query[0].xyz, seen, query[3].w), 1.0);
 }
 ";
 
@@ -89,6 +90,13 @@ fn direction(i: usize, count: usize) -> Vec3 {
     Vec3::new(r * angle.cos(), r * angle.sin(), z)
 }
 
+/// The same queries with lights left out at or under a weight.
+fn leaving_out(queries: &[Query], exit_weight: f32) -> Vec<Query> {
+    let mut queries = queries.to_vec();
+    queries.iter_mut().for_each(|query| query[3][3] = exit_weight);
+    queries
+}
+
 fn queries(lights: &[Light], count: usize) -> Vec<Query> {
     (0..count)
         .map(|i| {
@@ -145,6 +153,9 @@ fn shaders_agree_with_the_reference() {
             }
             lit += usize::from(expected.x > 1e-4);
         }
+        // Without an exit every bit is the same; a greater weight leaves out what adds something.
+        assert_eq!(evaluate(&gpu, &buffer, &leaving_out(&queries, -1.0)), answers, "{kinds}");
+        assert_ne!(evaluate(&gpu, &buffer, &leaving_out(&queries, 0.1)), answers, "{kinds}");
         assert!(lit > 2_000, "{kinds}: only {lit} of 20000 samples are lit");
     }
 }
@@ -173,7 +184,10 @@ fn lights_on_a_surface_and_out_of_range_give_numbers() {
             }
         }
     }
-    for (query, answer) in queries.iter().zip(evaluate(&gpu, &buffer, &queries)) {
+    let all = leaving_out(&queries, -1.0);
+    let answers = [evaluate(&gpu, &buffer, &queries), evaluate(&gpu, &buffer, &all)];
+    assert_eq!(answers[0], answers[1]);
+    for (query, answer) in queries.iter().zip(&answers[0]) {
         assert!(answer.iter().all(|v| v.is_finite() && *v >= 0.0), "{query:?}: {answer:?}");
     }
 }

@@ -25,7 +25,7 @@ pub enum Fault {
     RunawayList,
     /// Lists are made from lights of 0.9 times their range.
     ShrunkenBound,
-    /// Only the first frame is recorded.
+    /// Lists are made no more once the lights have moved.
     StaleLists,
     /// Every other frame lacks entries.
     Flicker,
@@ -88,6 +88,15 @@ impl Fault {
         }
     }
 
+    /// The first frame in which it may show: the first stage is drawn twice at least, before the
+    /// lights move.
+    pub fn shows_from_frame(self) -> u32 {
+        match self {
+            Self::StaleLists => 2,
+            _ => 0,
+        }
+    }
+
     /// Whether it is a fault only of strategies that cut samples into groups.
     pub fn needs_groups(self) -> bool {
         matches!(
@@ -144,6 +153,8 @@ pub struct Faulty {
     plant: wgpu::ComputePipeline,
     bind_group: Option<wgpu::BindGroup>,
     record_count: u32,
+    /// The lights of the first frame.
+    first_lights: Option<Vec<Light>>,
     /// What the look-up was bound to in the first frame.
     first_binding: Option<wgpu::BindGroup>,
 }
@@ -160,6 +171,7 @@ impl Faulty {
             plant: plant_pipeline(gpu)?,
             bind_group: None,
             record_count: 0,
+            first_lights: None,
             first_binding: None,
         })
     }
@@ -229,10 +241,11 @@ impl Assignment for Faulty {
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        let is_first = self.frame == 0;
         self.frame += 1;
+        let lights = frame.lights.lights();
+        let first_lights = self.first_lights.get_or_insert_with(|| lights.to_vec());
         match self.fault {
-            Fault::StaleLists if !is_first => return,
+            Fault::StaleLists if *first_lights != lights => return,
             Fault::Unrecorded => return,
             Fault::ShrunkenBound => {
                 let frame = Self::shrink(&self.shrunken, frame);

@@ -127,7 +127,10 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
         // A fault may change the look-up, which a rig compiles once.
         let outcome = one(&Rig::new(gpu), case, &faulty)?.outcome;
         let is_named = match &outcome {
-            Outcome::Failed(violations) => violations.iter().any(|v| v.breach == breach),
+            Outcome::Failed(violations) => {
+                let is_early = |v: &Violation| v.frame < fault.shows_from_frame();
+                violations.iter().any(|v| v.breach == breach) && !violations.iter().any(is_early)
+            }
             _ => false,
         };
         if !is_named {

@@ -34,7 +34,7 @@ fn the_definition_is_sound() {
 fn without_arguments_the_main_job_runs() {
     let args = compare("");
     assert_eq!(args.scene, "atrium");
-    assert_eq!(args.strategies.0, ["None", "DC-I/64x64x24", "SC-E/48x48x40/bvh"]);
+    assert_eq!(args.strategies.0, ["None", "Sphere", "DC-I", "SC-E/bvh"]);
     assert_eq!((args.lights, args.spots, args.seed), (1000, 0.0, 1));
     assert_eq!((args.scene_scale, args.radius_scale), (1.0, None));
     assert_eq!(args.size, Size { width: 640, height: 360 });

@@ -49,11 +49,21 @@ impl<'a> Comparison<'a> {
 
     /// How many times as fast as no culling, assigning and shading together.
     pub(super) fn speedup(&self, record: &Record) -> Option<f64> {
+        self.speedup_over(self.baseline()?, record)
+    }
+
+    /// How many times as fast as another record, assigning and shading together.
+    pub(super) fn speedup_over(&self, other: &Record, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
         }
-        let ratio = self.baseline()?.assign_and_shade_ms() / record.assign_and_shade_ms();
+        let ratio = other.assign_and_shade_ms() / record.assign_and_shade_ms();
         ratio.is_finite().then_some(ratio)
+    }
+
+    /// The record of a strategy.
+    pub(super) fn record_of(&self, strategy: &str) -> Option<&'a Record> {
+        self.records.iter().map(|(_, record)| *record).find(|record| record.strategy == strategy)
     }
 
     /// The time in which no culling, at its own rate, would evaluate only the lights that reach
@@ -64,7 +74,7 @@ impl<'a> Comparison<'a> {
         floor.is_finite().then_some(floor)
     }
 
-    /// The floor over assigning and shading: 1 cannot be beaten by culling alone.
+    /// The floor over assigning and shading.
     pub(super) fn efficiency(&self, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;

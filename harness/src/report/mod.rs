@@ -7,10 +7,12 @@ mod comparison;
 mod finding;
 mod format;
 mod html;
+mod markdown;
 mod metrics;
 mod page;
 mod table;
 
 pub use finding::{finding, notices};
 pub use html::{render_html, write_html};
+pub use markdown::render_markdown;
 pub use table::{TABLE_WIDTH, render_table};
