@@ -31,11 +31,10 @@
 //! a cluster, 24 more with explicit bounds (4 with sparse implicit ones), and 4 bytes a listed
 //! light.
 //!
-//! Figures, ms, of
-//! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): DC-I/128x128x64 0.322 to
-//! assign and 0.183 to shade; DC-E/64x64x40 0.085 and 0.139; SC-I/48x48x40 0.107 and 0.154;
-//! SC-E/48x48x40 0.095 and 0.133, through the hierarchy 0.053 and 0.133.
+//! Figures, ms, of 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
+//! `results/h200-all/sponza-1.6.json`, whose command is in `results/README.md`): DC-I/128x128x64
+//! 0.322 to assign and 0.182 to shade; DC-E/64x64x40 0.085 and 0.138; SC-I/48x48x40 0.107 and 0.153;
+//! SC-E/48x48x40 0.094 and 0.132, through the hierarchy 0.054 and 0.132.
 //!
 //! # Where it fails
 //!

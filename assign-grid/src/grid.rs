@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Frame,
-    Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, entry, uniform_entry,
+    Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule, entry,
+    uniform_entry,
 };
 use bytemuck::bytes_of;
 use glam::Vec3;
@@ -74,7 +75,9 @@ impl Grid {
                     shape: GroupShape::Box,
                     settings,
                     sparse: false,
-                    module: GRID_WESL,
+                    // SAFETY: it has no loop.
+                    #[allow(unsafe_code, reason = "it has no loop")]
+                    module: unsafe { StrategyModule::new(GRID_WESL) },
                     bindings: &[uniform_entry(FIRST_STRATEGY_BINDING, stages)],
                 },
             )?,

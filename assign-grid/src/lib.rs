@@ -20,10 +20,9 @@
 //! `cull` grows with cells times lights, and with neither pixels nor view. Memory is 8 bytes a
 //! cell and 4 bytes a listed light.
 //!
-//! Figures, ms, of
-//! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): G/20x20x20 0.172 to
-//! assign and 0.254 to shade lists of 49.8 lights a sample; through the hierarchy 0.047 to assign.
+//! Figures, ms, of 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
+//! `results/h200-all/sponza-1.6.json`, whose command is in `results/README.md`): G/20x20x20 0.171
+//! to assign and 0.257 to shade lists of 49.8 lights a sample; through the hierarchy 0.046 to assign.
 //!
 //! # Where it fails
 //!

@@ -24,11 +24,10 @@
 //! `cull` grows with parts times lights, and with neither pixels nor view. Memory is 8 bytes a
 //! part, 84 bytes a model and 4 bytes a listed light.
 //!
-//! Figures, ms, of
-//! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all,M/2 --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): M 0.563 to
-//! assign, of which 0.503 for the models of pixels, and 19.7 to shade lists of 3,858 lights a sample;
-//! M/2 0.648 and 0.297 with 55.0.
+//! Figures, ms, of 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
+//! `results/h200-all/sponza-1.6.json`, whose command is in `results/README.md`): M 0.562 to
+//! assign, of which 0.502 for the models of pixels, and 19.6 to shade lists of 3,858 lights a sample;
+//! M/2 0.647 and 0.297 with 55.0.
 //!
 //! # Where it fails
 //!

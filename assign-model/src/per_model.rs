@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Frame,
-    Gpu, GroupShape, Groups, LightLists, Lookup, ModelBox, Needs, Passes, SampleDomain, entry,
-    storage_entry,
+    Gpu, GroupShape, Groups, LightLists, Lookup, ModelBox, Needs, Passes, SampleDomain,
+    StrategyModule, entry, storage_entry,
 };
 use bytemuck::cast_slice;
 
@@ -55,7 +55,9 @@ impl PerModel {
                     shape: GroupShape::OrientedBox,
                     settings,
                     sparse: false,
-                    module: MODELS_WESL,
+                    // SAFETY: it has no loop.
+                    #[allow(unsafe_code, reason = "it has no loop")]
+                    module: unsafe { StrategyModule::new(MODELS_WESL) },
                     bindings: &[
                         storage_entry(FIRST_STRATEGY_BINDING, stages, true),
                         storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true),

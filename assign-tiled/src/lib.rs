@@ -21,10 +21,9 @@
 //! `cull` grows with tiles times lights, `bounds` with pixels. Memory is 8 bytes a tile (16 with
 //! T-E's depth range) and 4 bytes a listed light: the least of all strategies in screen space.
 //!
-//! Figures, ms, of
-//! `lightbench --scene Sponza.gltf --scene-scale 1.6 --lights 10000 --size 1920x1080 --strategies all --source both`
-//! (H200, 2026-11-24; `results/h200-all/sponza-1.6.json`): T-I/28x28 0.115 to
-//! assign and 0.610 to shade lists of 141 lights a sample; T-E/28x28 0.127 and 0.152 with 22.4.
+//! Figures, ms, of 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
+//! `results/h200-all/sponza-1.6.json`, whose command is in `results/README.md`): T-I/28x28 0.114
+//! to assign and 0.622 to shade lists of 141 lights a sample; T-E/28x28 0.126 and 0.154 with 22.4.
 //!
 //! # Where it fails
 //!

@@ -3,7 +3,7 @@
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
     FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
-    SampleDomain, entry, storage_entry, uniform_entry,
+    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -61,7 +61,9 @@ impl Tiled {
                     shape: GroupShape::Frustum,
                     settings,
                     sparse: false,
-                    module,
+                    // SAFETY: it has no loop.
+                    #[allow(unsafe_code, reason = "it has no loop")]
+                    module: unsafe { StrategyModule::new(module) },
                     bindings: &bindings,
                 },
             )?,

@@ -21,9 +21,7 @@ pub trait Assignment {
     /// Records the passes that fill the lists: inside the clock.
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes);
 
-    /// How shading finds a sample's group. Constant over the strategy's life. Every loop in its
-    /// module must end by itself: shaders made of it count no loops
-    /// ([`Shader::create_uncounted`](crate::Shader::create_uncounted)).
+    /// How shading finds a sample's group. Constant over the strategy's life.
     fn lookup(&self) -> Lookup<'_>;
 
     /// The bind group of [`Lookup::layout`]. `prepare` may replace it.
@@ -36,15 +34,35 @@ pub trait Assignment {
     fn lists_mut(&mut self) -> &mut LightLists;
 }
 
+/// A strategy's WESL, and its author's word that every loop in it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct StrategyModule(&'static str);
+
+impl StrategyModule {
+    /// # Safety
+    ///
+    /// Every loop must end by itself, whatever the buffers hold: the shaders that the module is
+    /// linked into count no loops ([`Shader::create_uncounted`](crate::Shader::create_uncounted)).
+    #[allow(unsafe_code, reason = "the author's word")]
+    pub const unsafe fn new(source: &'static str) -> Self {
+        Self(source)
+    }
+
+    /// The WESL.
+    pub const fn source(self) -> &'static str {
+        self.0
+    }
+}
+
 /// What a renderer splices into its own shading shader.
 ///
-/// Mount `module` as `package::strategy` (see [`Shader`](crate::Shader)) and call
+/// Mount the source of `module` as `package::strategy` (see [`Shader`](crate::Shader)) and call
 /// `list_of(group_of(sample))`; bind [`Assignment::bind_group`] at the group that the shader was
 /// made for.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {
     /// WESL that defines `fn group_of(sample: ViewSample) -> u32`.
-    pub module: &'static str,
+    pub module: StrategyModule,
     /// Layout of the lists and of what the module reads.
     pub layout: &'a wgpu::BindGroupLayout,
 }

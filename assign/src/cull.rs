@@ -5,7 +5,7 @@
 
 use crate::{
     AssignError, CullSettings, Frame, FrameBindings, Gpu, LightLists, LightSource, LiveGroups,
-    Lookup, Passes, Shader,
+    Lookup, Passes, Shader, StrategyModule,
     frame::{entry, storage_entry, uniform_entry},
 };
 
@@ -66,7 +66,7 @@ pub struct CullerDescriptor<'a> {
     /// Whether only [`Groups::Live`] get a list.
     pub sparse: bool,
     /// WESL with `group_bounds(group: u32) -> GroupBounds` and `group_of(sample: ViewSample) -> u32`.
-    pub module: &'static str,
+    pub module: StrategyModule,
     /// Layout of its resources, bindings from [`FIRST_STRATEGY_BINDING`], read-only.
     pub bindings: &'a [wgpu::BindGroupLayoutEntry],
 }
@@ -76,7 +76,7 @@ pub struct CullerDescriptor<'a> {
 pub struct Culler {
     label: String,
     variant: Variant,
-    module: &'static str,
+    module: StrategyModule,
     kernel: Option<Kernel>,
     frame: FrameBindings,
     cull: ListsBindings,
@@ -181,11 +181,12 @@ impl Culler {
     }
 
     fn compile(&self, gpu: &Gpu, spots: bool) -> Result<Kernel, AssignError> {
-        let shader = kernel_shader(self.variant, self.module, spots);
-        // SAFETY: the driver's loops count up to a number that does not change meanwhile, test the
-        // next of finitely many nodes, clear a bit of a word a round, or try to take what fits from
-        // a pool that only fills up: a swap fails because another lane's succeeded, or weakly, a
-        // few times at most. A strategy's module vouches for its own (`Assignment::lookup`).
+        let shader = kernel_shader(self.variant, self.module.source(), spots);
+        // SAFETY: the driver's loops count up, without wrapping, to a number that is no greater than
+        // the length of a buffer and does not change meanwhile, test the next of finitely many
+        // nodes, clear a bit of a word a round, or try to take what fits from a pool that only
+        // fills up: a swap fails because another lane's succeeded, or weakly, a few times at most.
+        // The strategy's author vouches for its module.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(&gpu.device, "package::cull") }?;
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

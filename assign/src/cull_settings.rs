@@ -42,8 +42,8 @@ impl FrustumTests {
 
 impl Default for FrustumTests {
     /// HS+SAT-N, the comparison paper's choice (Enhuber 2019, section 4.3.2), and the fastest on an
-    /// H200: T-E/28x28 culls and shades Sponza in 0.338 ms with it, 0.455 with HS, 0.358 with
-    /// HS+SAT-V and 0.373 with all but SAT-N (`results/h200-all/tests.json`).
+    /// H200: T-E/28x28 culls and shades Sponza in 0.280 ms with it, 0.334 with HS, 0.303 with
+    /// HS+SAT-V and 0.322 with all but SAT-N (`results/h200-all/tests.json`).
     fn default() -> Self {
         Self { hs: true, sat_n: true, ..Self::NONE }
     }

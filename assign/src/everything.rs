@@ -2,7 +2,7 @@
 //! the comparison.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, StrategyModule,
     cull::{ListsBindings, lookup_layout},
 };
 
@@ -42,7 +42,10 @@ impl Assignment for Everything {
     fn record(&mut self, _frame: &Frame<'_>, _passes: &mut dyn Passes) {}
 
     fn lookup(&self) -> Lookup<'_> {
-        Lookup { module: include_str!("shaders/everything.wesl"), layout: self.bindings.layout() }
+        // SAFETY: it has no loop.
+        #[allow(unsafe_code, reason = "it has no loop")]
+        let module = unsafe { StrategyModule::new(include_str!("shaders/everything.wesl")) };
+        Lookup { module, layout: self.bindings.layout() }
     }
 
     fn bind_group(&self) -> Option<&wgpu::BindGroup> {

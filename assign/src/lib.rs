@@ -44,7 +44,7 @@ mod readback;
 mod shader;
 mod view;
 
-pub use assignment::{Assignment, Lookup};
+pub use assignment::{Assignment, Lookup, StrategyModule};
 pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, GroupShape, Groups};
 pub use cull_settings::{Bounds, CullSettings, FrustumTests, LightSource};
 pub use error::AssignError;

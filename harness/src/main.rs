@@ -24,7 +24,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), HarnessError> {
-    // Where the program lies on this machine is nobody's business.
+    // Where the program lies on this machine says nothing to others.
     let arguments = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let command = std::iter::once("lightbench".to_owned()).chain(arguments).collect();
     let text = match cli::parse(std::env::args_os())? {

@@ -34,6 +34,9 @@ pub const SCHEMA_VERSION: u32 = 1;
 /// The id of the strategy without culling, which the others are compared with.
 pub const BASELINE: &str = "None";
 
+/// The id of no culling with the early exit that all methods but [`BASELINE`] have.
+pub const EARLY_EXIT: &str = "Sphere";
+
 /// The id of the control, which draws the surfaces without lights: a cost, not a competitor.
 pub const CONTROL: &str = "Clay";
 
@@ -329,6 +332,12 @@ impl Record {
     /// Whether this is the control without lights.
     pub fn is_control(&self) -> bool {
         self.strategy == CONTROL
+    }
+
+    /// Whether it leaves out lights before a sample is lit: neither no culling, with or without an
+    /// early exit, nor the control.
+    pub fn culls(&self) -> bool {
+        !self.is_baseline() && !self.is_control() && self.strategy != EARLY_EXIT
     }
 
     /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs by

@@ -1,6 +1,6 @@
 //! Lighting with one strategy's lists, in one mode.
 
-use assign::{Assignment, Gpu, Passes, View, entry, uniform_entry};
+use assign::{AssignError, Assignment, Gpu, Passes, View, entry, uniform_entry};
 
 use crate::{
     Mode, Renderer, ShadingError,
@@ -24,6 +24,7 @@ pub struct LightingOptions {
     /// incidence is at most this. 0 leaves out what adds nothing, out of range (the survey's
     /// bounding sphere, Watrous 2024), cone or horizon, and changes no bit of the image, for the
     /// shader is one, told by a uniform; [`EVALUATE_ALL`](Self::EVALUATE_ALL) leaves out nothing.
+    /// Anything above 0 loses light: per square metre of the fall-off, and as a cosine.
     pub exit_weight: f32,
 }
 
@@ -46,6 +47,14 @@ impl Lighting {
         mode: Mode,
         options: LightingOptions,
     ) -> Result<Self, ShadingError> {
+        if !options.exit_weight.is_finite() {
+            return Err(AssignError::Parameter {
+                field: "exit_weight".into(),
+                value: options.exit_weight.to_string(),
+                accepted: "a finite number: 0, or -1 to evaluate every light".into(),
+            }
+            .into());
+        }
         let lists = Lists { lookup: strategy.lookup(), options };
         let model_ids = strategy.needs().models;
         let gpu = &renderer.gpu;
@@ -108,12 +117,12 @@ impl Deferred {
         let emissive = renderer.scene.has_emissive();
         let layout = deferred_layout(gpu, emissive, model_ids);
         let shader = shaders::lighting(LISTS_GROUP)
-            .module("package::strategy", lists.lookup.module)
+            .module("package::strategy", lists.lookup.module.source())
             .flag("spots", lists.options.spots)
             .flag("model_ids", model_ids)
             .flag("emissive", emissive);
-        // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once. The
-        // strategy's look-up vouches for its own loops (`Assignment::lookup`).
+        // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.
+        // The strategy's author vouches for its look-up.
         #[allow(unsafe_code, reason = "its loop ends")]
         let module = unsafe { shader.create_uncounted(&gpu.device, "package::deferred") }?;
         let pipeline = compute_pipeline(

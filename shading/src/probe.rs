@@ -72,7 +72,7 @@ pub fn probe(
     });
     let lookup = strategy.lookup();
     let module = shaders::lighting(LISTS_GROUP)
-        .module("package::strategy", lookup.module)
+        .module("package::strategy", lookup.module.source())
         .flag("model_ids", model_ids)
         .create(&gpu.device, "package::probe")?;
     let pipeline =

@@ -91,7 +91,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
     }
     if let RasterPass::Forward(lists) = pass {
         shader = shader
-            .module("package::strategy", lists.lookup.module)
+            .module("package::strategy", lists.lookup.module.source())
             .flag("spots", lists.options.spots);
     }
     shader
@@ -105,8 +105,11 @@ fn pipeline(
     pass: RasterPass<'_>,
     key: DrawKey,
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
-    let module =
-        shader(pass, key, scene.has_emissive()).create(&gpu.device, "package::geometry")?;
+    let shader = shader(pass, key, scene.has_emissive());
+    // SAFETY: forward lighting's one loop counts up to the length of a list, which is a `u32` read
+    // once; the strategy's author vouches for its look-up. The other passes have no loop.
+    #[allow(unsafe_code, reason = "its loop ends")]
+    let module = unsafe { shader.create_uncounted(&gpu.device, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, scene.has_emissive());
     let lists = match pass {
         RasterPass::Forward(lists) => Some(lists.lookup.layout),

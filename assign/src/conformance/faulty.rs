@@ -5,7 +5,7 @@ use bytemuck::bytes_of;
 use super::violation::Breach;
 use crate::{
     AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, Lookup, Needs, Passes,
-    Shader, entry, storage_entry, uniform_entry,
+    Shader, StrategyModule, entry, storage_entry, uniform_entry,
 };
 
 /// A fault planted in a strategy that otherwise works.
@@ -88,11 +88,10 @@ impl Fault {
         }
     }
 
-    /// The first frame in which it may show: the first stage is drawn twice at least, before the
-    /// lights move.
-    pub fn shows_from_frame(self) -> u32 {
+    /// The first stage of its case in which it may show: lists are right until the lights move.
+    pub fn shows_from_stage(self) -> u32 {
         match self {
-            Self::StaleLists => 2,
+            Self::StaleLists => 1,
             _ => 0,
         }
     }
@@ -263,7 +262,12 @@ impl Assignment for Faulty {
     fn lookup(&self) -> Lookup<'_> {
         let inner = self.inner.lookup();
         match self.fault {
-            Fault::LostGroup => Lookup { module: LOST_GROUP_WESL, ..inner },
+            Fault::LostGroup => {
+                // SAFETY: it has no loop.
+                #[allow(unsafe_code, reason = "it has no loop")]
+                let module = unsafe { StrategyModule::new(LOST_GROUP_WESL) };
+                Lookup { module, ..inner }
+            }
             _ => inner,
         }
     }

@@ -128,7 +128,7 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
         let outcome = one(&Rig::new(gpu), case, &faulty)?.outcome;
         let is_named = match &outcome {
             Outcome::Failed(violations) => {
-                let is_early = |v: &Violation| v.frame < fault.shows_from_frame();
+                let is_early = |v: &Violation| v.stage < fault.shows_from_stage();
                 violations.iter().any(|v| v.breach == breach) && !violations.iter().any(is_early)
             }
             _ => false,
@@ -191,6 +191,7 @@ mod tests {
     fn a_violation_is_one_line_that_names_its_place() {
         let violation = Violation {
             case: "jitter",
+            stage: 0,
             frame: 1,
             breach: Breach::MissedPair,
             place: Place {

@@ -172,7 +172,7 @@ impl<'a> Rig<'a> {
         let lookup = strategy.lookup();
         let module = Shader::new(LISTS_GROUP)
             .module("package::probe", include_str!("probe.wesl"))
-            .module("package::strategy", lookup.module)
+            .module("package::strategy", lookup.module.source())
             .create(device, "package::probe")?;
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("probe"),

@@ -75,7 +75,8 @@ impl Run<'_, '_> {
     fn sequence(&mut self, stages: &[Lit]) -> Result<(), AssignError> {
         let mut session = Session::new(self.rig, self.make)?;
         let mut fresh = true;
-        for lit in stages {
+        for (stage, lit) in (0..).zip(stages) {
+            self.findings.stage = stage;
             session.set_up(self.rig, lit)?;
             let settled = self.settle(&mut session, lit, fresh)?;
             let again = self.frame(&mut session, lit, false, fresh)?;

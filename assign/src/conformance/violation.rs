@@ -89,6 +89,8 @@ pub struct SamplePlace {
 pub struct Violation {
     /// The case's name.
     pub case: &'static str,
+    /// The stage of the case, from 0: lights and camera stand still within one.
+    pub stage: u32,
     /// The frame of the case, from 0.
     pub frame: u32,
     /// The promise.
@@ -236,13 +238,14 @@ fn failures(report: &Report) -> String {
 #[derive(Debug)]
 pub(super) struct Findings {
     pub(super) case: &'static str,
+    pub(super) stage: u32,
     pub(super) frame: u32,
     pub(super) violations: Vec<Violation>,
 }
 
 impl Findings {
     pub(super) fn new(case: &'static str) -> Self {
-        Self { case, frame: 0, violations: Vec::new() }
+        Self { case, stage: 0, frame: 0, violations: Vec::new() }
     }
 
     pub(super) fn add(&mut self, breach: Breach, place: Place, detail: String) {
@@ -253,6 +256,7 @@ impl Findings {
         }
         self.violations.push(Violation {
             case: self.case,
+            stage: self.stage,
             frame: self.frame,
             breach,
             place,

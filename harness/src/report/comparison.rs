@@ -1,6 +1,6 @@
 //! Records that may be compared with one another.
 
-use crate::results::{Record, Results};
+use crate::results::{EARLY_EXIT, Record, Results};
 
 /// The records of one scene, camera size, set of lights and mode: only strategies differ.
 pub(super) struct Comparison<'a> {
@@ -61,6 +61,14 @@ impl<'a> Comparison<'a> {
         ratio.is_finite().then_some(ratio)
     }
 
+    /// How many times as fast as no culling with an early exit, for methods with lists.
+    pub(super) fn speedup_over_exit(&self, record: &Record) -> Option<f64> {
+        if !record.culls() || record.listed_per_sample.is_none() {
+            return None;
+        }
+        self.speedup_over(self.record_of(EARLY_EXIT)?, record)
+    }
+
     /// The record of a strategy.
     pub(super) fn record_of(&self, strategy: &str) -> Option<&'a Record> {
         self.records.iter().map(|(_, record)| *record).find(|record| record.strategy == strategy)
@@ -89,7 +97,7 @@ impl<'a> Comparison<'a> {
             self.records
                 .iter()
                 .map(|(_, record)| *record)
-                .filter(|record| !record.is_baseline() && !record.is_control())
+                .filter(|record| record.culls())
                 .filter(move |record| record.is_lossless() || !lossless)
                 .filter(|record| record.assign_and_shade_ms().is_finite())
                 .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))

@@ -70,8 +70,9 @@ fn sentence(comparison: &Comparison<'_>) -> String {
             format!("{name} takes as long as no culling to shade {lights}{}", image(fastest))
         }
         Some(speedup) if speedup > 1.0 => format!(
-            "{name} shades {lights} {}\u{d7} faster than no culling{}",
+            "{name} shades {lights} {}\u{d7} faster than no culling{}{}",
             factor(speedup),
+            over_exit(comparison, fastest),
             image(fastest)
         ),
         Some(speedup) => format!(
@@ -81,6 +82,13 @@ fn sentence(comparison: &Comparison<'_>) -> String {
         ),
         None => format!("{name} assigns and shades {lights} in {took} ms{}", image(fastest)),
     }
+}
+
+/// How it stands against no culling with the same early exit, where that was measured.
+fn over_exit(comparison: &Comparison<'_>, record: &Record) -> String {
+    comparison.speedup_over_exit(record).map_or_else(String::new, |speedup| {
+        format!(" ({}\u{d7} if that has the same early exit)", factor(speedup))
+    })
 }
 
 /// What is known of a record's image, to follow the sentence on its speed.

@@ -17,7 +17,7 @@ const COLUMNS: [&str; 9] = [
     "listed",
     "efficiency",
     "missed",
-    "max_diff",
+    "differing",
 ];
 
 /// The result tables of all comparisons as GitHub-flavoured Markdown, one after the other. The
@@ -30,7 +30,8 @@ fn table(comparison: &Comparison<'_>) -> String {
     let metrics = || COLUMNS.iter().flat_map(|id| METRICS.iter().find(|metric| metric.id == *id));
     let heads: String = metrics().map(|m| format!(" {} {} |", m.head, m.unit)).collect();
     let mut text = format!("| strategy |{heads}\n|---|{}\n", "---|".repeat(COLUMNS.len()));
-    for (_, record) in &comparison.records {
+    // The control assigns and shades nothing.
+    for (_, record) in comparison.records.iter().filter(|(_, record)| !record.is_control()) {
         let mut cells = String::new();
         for metric in metrics() {
             let _ = write!(cells, " {}", metric.text(comparison, record));

@@ -63,7 +63,7 @@ pub(super) static METRICS: &[Metric] = &[
         terminal: "",
         about: "How many times as fast as no culling with the same early exit: what lists alone give.",
         better: Better::More,
-        value: |c, r| c.speedup_over(c.record_of("Sphere")?, r),
+        value: |c, r| c.speedup_over_exit(r),
         show: format::factor,
     },
     Metric {
@@ -142,14 +142,23 @@ pub(super) static METRICS: &[Metric] = &[
         head: "largest difference",
         unit: "linear",
         terminal: "max diff",
-        about: "Largest difference of a channel to the image of no culling, linear HDR: 0 means \
-                the same in every bit.",
+        about: "Largest difference of a channel to the image of no culling, linear HDR.",
         better: Better::Zero,
         value: |_, r| match (r.max_abs_diff, r.differing_channels) {
             (None, Some(1..)) => Some(f64::INFINITY),
             (difference, _) => difference,
         },
         show: format::difference,
+    },
+    Metric {
+        id: "differing",
+        head: "differing",
+        unit: "channels",
+        terminal: "",
+        about: "Channels, three a pixel, of which any bit differs from the image of no culling.",
+        better: Better::Zero,
+        value: |_, r| r.differing_channels.map(|channels| channels as f64),
+        show: format::number,
     },
     Metric {
         id: "lists_bytes",

@@ -177,7 +177,7 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String
 
 /// Whether a record may be called the best: it culls, and nothing is known to be lost.
 fn competes(record: &Record) -> bool {
-    !record.is_baseline() && !record.is_control() && record.is_lossless()
+    record.culls() && record.is_lossless()
 }
 
 /// Whether no competitor has a better value, and at least one a worse.
