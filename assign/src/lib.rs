@@ -41,6 +41,7 @@ mod live_groups;
 mod models;
 mod passes;
 mod readback;
+mod reuse;
 mod shader;
 mod view;
 
@@ -65,5 +66,6 @@ pub use lists::{
 pub use live_groups::LiveGroups;
 pub use models::ModelBox;
 pub use passes::{EncoderPasses, Passes};
+pub use reuse::Reuse;
 pub use shader::Shader;
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};

@@ -75,8 +75,10 @@ pub struct CullUniform {
     pub pool_capacity: u32,
     /// 1 where the reserved entries could exceed 32 bits.
     pub guard_cursor: u32,
+    /// The most lights of a list: the ones behind are dropped.
+    pub list_cap: u32,
     /// Pads to 32 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// Bytes of one set of counters.
@@ -93,6 +95,7 @@ pub struct LightLists {
     pool_capacity: u32,
     /// Upper limit set by the user; the device's limit applies as well.
     pool_limit: u32,
+    list_cap: u32,
     counts: (u32, u32),
     readback: Readback<Counters>,
 }
@@ -133,6 +136,7 @@ impl LightLists {
             light_capacity: 0,
             pool_capacity: 0,
             pool_limit: u32::MAX,
+            list_cap: u32::MAX,
             counts: (0, 0),
             readback: Readback::new(gpu, "list counters"),
         })
@@ -144,6 +148,13 @@ impl LightLists {
         self.pool_capacity = self.pool_capacity.min(entries);
         // Forces the next `prepare` to lay the buffers out again.
         self.light_capacity = 0;
+    }
+
+    /// Keeps the first `lights` of each list alone. **Lossy**: it drops the others, as renderers
+    /// with lists of a fixed length do; [`u32::MAX`] drops none. A list that overflows the pool
+    /// still becomes all lights.
+    pub fn cap_lists(&mut self, lights: u32) {
+        self.list_cap = lights;
     }
 
     /// Sizes the buffers for a frame and grows the pool to what earlier frames asked for.
@@ -178,7 +189,8 @@ impl LightLists {
             pool_first: self.light_capacity,
             pool_capacity: self.pool_capacity,
             guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
-            padding: [0; 3],
+            list_cap: self.list_cap,
+            padding: [0; 2],
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
         Ok(changed)

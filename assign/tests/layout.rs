@@ -110,7 +110,7 @@ fn counters() {
 #[test]
 fn cull() {
     let fields = fields!(CullUniform: light_count, group_count, pool_first, pool_capacity,
-        guard_cursor);
+        guard_cursor, list_cap);
     // The fields that pad are not told in WESL; a uniform takes up a multiple of 16 bytes.
     let bytes = check("Cull", offset_of!(CullUniform, padding), &fields, None);
     assert_eq!(bytes.next_multiple_of(16), size_of::<CullUniform>());

@@ -15,11 +15,12 @@ use harness::{
     cli::{self, CompareArgs, Invocation},
     clock::PassClock,
     error::HarnessError,
-    measure::{Painter, pass_kind},
+    measure::pass_kind,
+    painter::Painter,
     results::PassKind,
     stage::Stage,
 };
-use shading::Mode;
+use shading::{Cut, Mode};
 
 fn setting(name: &str, default: &str) -> String {
     std::env::var(name).unwrap_or_else(|_| default.to_owned())
@@ -49,7 +50,7 @@ fn time_of(
     choice: &Choice,
 ) -> Result<Duration, HarnessError> {
     let mut method = choice.make(gpu)?;
-    let mut painter = Painter::new(stage, &mut method, Mode::Deferred)?;
+    let mut painter = Painter::new(stage, &mut method, Mode::Deferred, Cut::default())?;
     let mut clock = PassClock::new(gpu);
     // The pool grows to what the lists ask for before anything is timed.
     for _ in 0..3 {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use assign::{AssignError, FrustumTests, Gpu, LightSource};
+use assign::{AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
 use serde_json::Value;
 use shading::RASTER_SPHERE_TOLERANCE;
 
@@ -98,6 +98,8 @@ impl Choice {
                 Some(Axis::Box) => {
                     choice.spec.grid_box = segment.parse().map_err(|_| choice.refuse(&segment))?;
                 }
+                Some(Axis::Cap) => choice.spec.cap = number_of(&segment, CAP),
+                Some(Axis::Reuse) => choice.spec.reuse = number_of(&segment, REUSE),
                 None if !entry.parameters.is_empty() && !has_parameters && !segment.is_empty() => {
                     choice.spec.parameters = segment;
                     has_parameters = true;
@@ -127,13 +129,28 @@ impl Choice {
 
     /// Makes the method on a device.
     pub fn make(&self, gpu: &Gpu) -> Result<Method, AssignError> {
-        (self.entry.make)(gpu, &self.spec)
+        let method = (self.entry.make)(gpu, &self.spec)?;
+        Ok(match (method, self.spec.cap, self.spec.reuse) {
+            (method, None, None) => method,
+            (Method::Lists { mut strategy, early_exit }, cap, reuse) => {
+                strategy.lists_mut().cap_lists(cap.unwrap_or(u32::MAX));
+                let strategy: Box<dyn Assignment> = match reuse {
+                    Some(frames) => Box::new(Reuse::new(strategy, frames)?),
+                    None => strategy,
+                };
+                Method::Lists { strategy, early_exit }
+            }
+            (method, ..) => method,
+        })
     }
 
     /// Makes the method once, to check its parameters and take its id from the strategy.
     pub fn checked(mut self, gpu: &Gpu) -> Result<Self, AssignError> {
         self.id = match self.make(gpu)? {
-            Method::Lists { strategy, .. } if self.has_groups() => strategy.id(),
+            Method::Lists { strategy, .. } if self.has_groups() => {
+                let cap = self.spec.cap.map_or_else(String::new, |most| format!("/{CAP}{most}"));
+                strategy.id() + &cap
+            }
             _ => self.entry.family.to_owned(),
         };
         if !self.spec.parameters.is_empty() {
@@ -176,10 +193,19 @@ impl Choice {
                 }
                 Axis::Source => ("source", "linear".into()),
                 Axis::Box => ("box", format!("{:?}", self.spec.grid_box).to_lowercase()),
+                Axis::Cap | Axis::Reuse => continue,
             };
             all.insert(name.to_owned(), value.into());
         }
+        for (name, value) in [("list_cap", self.spec.cap), ("reuse_frames", self.spec.reuse)] {
+            all.extend(value.map(|value| (name.to_owned(), value.into())));
+        }
         all
+    }
+
+    /// Whether it may show another image than no culling: a knob says so.
+    pub fn is_lossy(&self) -> bool {
+        self.spec.cap.is_some() || self.spec.reuse.is_some_and(|frames| frames > 1)
     }
 
     /// Whether it cuts the samples into groups, and so has something to assign.
@@ -202,11 +228,23 @@ impl Choice {
     }
 }
 
+/// How a segment begins that says the most lights of a list.
+const CAP: &str = "cap";
+/// How a segment begins that says for how many frames lists are used.
+const REUSE: &str = "reuse";
+
+/// The number behind a word, from 1.
+fn number_of(segment: &str, word: &str) -> Option<u32> {
+    segment.strip_prefix(word)?.parse().ok().filter(|number| *number > 0)
+}
+
 /// The axis that a segment speaks of; `None` where it can only be parameters.
 fn axis_of(segment: &str) -> Option<Axis> {
     match segment {
         "linear" | "bvh" => Some(Axis::Source),
         "lights" | "surfaces" => Some(Axis::Box),
+        _ if number_of(segment, CAP).is_some() => Some(Axis::Cap),
+        _ if number_of(segment, REUSE).is_some() => Some(Axis::Reuse),
         _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
     }
 }
@@ -236,6 +274,8 @@ mod tests {
         assert_eq!(asked(&["--strategies", "t-i/BVH/28X28"]), ["T-I/28x28/bvh"]);
         assert_eq!(asked(&["--strategies", "m,M/2"]), ["M", "M/2"]);
         assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
+        let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
+        assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
     }
 
     #[test]
@@ -270,6 +310,7 @@ mod tests {
         assert!(error("None/3").contains("nothing behind"), "{}", error("None/3"));
         assert!(error("DC-E/hs").contains("linear or bvh"), "{}", error("DC-E/hs"));
         assert!(error("T-I/28x28/16x16").contains("16x16"), "{}", error("T-I/28x28/16x16"));
+        assert!(error("DC-E/cap0").contains("cap32"), "{}", error("DC-E/cap0"));
         assert!(error("T-I/surfaces").contains("hs"), "{}", error("T-I/surfaces"));
     }
 }

@@ -6,6 +6,7 @@
 
 mod error;
 mod names;
+mod study;
 mod values;
 
 use std::ffi::OsString;
@@ -14,10 +15,13 @@ use std::path::PathBuf;
 use assign::{FrustumTests, LightOrder};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use scenes::Radii;
+use shading::Cut;
 
 pub use error::{BAD_INPUT, CliError};
 pub use names::{did_you_mean, nearest};
-pub use values::{CameraPose, Size, Strategies};
+pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
+pub use values::{Camera, CameraPose, Size, Strategies};
 
 use crate::results::{Mode, TruthLevel};
 
@@ -60,6 +64,12 @@ Exit codes: 0 done, 1 failed, 2 bad input.";
 pub enum Invocation {
     /// Compare strategies.
     Compare(CompareArgs),
+    /// Run a study, or go on with it.
+    Study(StudyArgs),
+    /// Make a report again, or of the shards of a study.
+    Report(ReportArgs),
+    /// Search for the best strategy and parameters.
+    Advise(AdviseArgs),
     /// List what can be named on the command line.
     List(Listing),
     /// Print this text (help or version) and end well.
@@ -91,6 +101,13 @@ enum Command {
     /// Compare strategies on one scene (the default: `lightbench --scene X` is enough)
     #[command(long_about = LONG_ABOUT, after_long_help = EXAMPLES)]
     Compare(CompareArgs),
+    /// Run a study on your GPU: many comparisons, their charts and findings; goes on where it was
+    /// interrupted
+    Study(StudyArgs),
+    /// Make the report of a comparison or a study again, metrics included, or of a study's shards
+    Report(ReportArgs),
+    /// Search for the strategy and parameters to use on this scene and this GPU
+    Advise(AdviseArgs),
     /// List the strategies, scenes or adapters that can be named
     List {
         /// What to list
@@ -172,9 +189,31 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::warmup)]
     pub warmup: Option<u32>,
 
-    /// Where the camera is and a point that it looks at, in metres; else the scene's own view
+    /// Where the camera is and a point that it looks at, in metres, or path:F/N for frame F of N
+    /// along the scene's path; else the scene's own view
     #[arg(long, value_name = "X,Y,Z:X,Y,Z", allow_hyphen_values = true)]
-    pub camera: Option<CameraPose>,
+    pub camera: Option<Camera>,
+
+    /// Time each frame from another pose: the camera goes once along the scene's path
+    #[arg(long, conflicts_with = "camera")]
+    pub path: bool,
+
+    /// Distribution of the radii of scattered lights, of mean one metre each
+    #[arg(long, value_name = "NAME", default_value = "gamma")]
+    pub radii: RadiiChoice,
+
+    /// Give every light the range at which its intensity over squared distance falls to this,
+    /// 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
+    pub threshold: Option<f64>,
+
+    /// How fall-off ends at a light's range
+    #[arg(long, value_name = "HOW", default_value = "windowed")]
+    pub cut: CutChoice,
+
+    /// Compare images with that of lights without a range, too: the error of their ranges
+    #[arg(long)]
+    pub unbounded: bool,
 
     /// How pixels are lit
     #[arg(long, value_name = "MODE", default_value = "deferred")]
@@ -192,6 +231,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "DIR", default_value = "out/compare")]
     pub out: PathBuf,
 
+    /// Which pictures to keep
+    #[arg(long, value_name = "WHICH", default_value = "all")]
+    pub pictures: PicturesChoice,
+
     /// What to check against the CPU: every (light, pixel) pair, or nothing
     #[arg(long, value_name = "LEVEL", default_value = "full")]
     pub truth: TruthChoice,
@@ -204,6 +247,56 @@ pub enum LightBox {
     Core,
     /// The box of everything in the scene
     Bounds,
+    /// Seven upright cylinders in the box of the scene without far-off parts
+    Cylinders,
+}
+
+/// How the radii of scattered lights are distributed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RadiiChoice {
+    /// Gamma with mode 0.25, as in the comparison paper
+    Gamma,
+    /// All alike
+    Equal,
+    /// Many small, a few very large
+    LogNormal,
+}
+
+impl From<RadiiChoice> for Radii {
+    fn from(choice: RadiiChoice) -> Self {
+        match choice {
+            RadiiChoice::Gamma => Self::Gamma,
+            RadiiChoice::Equal => Self::Equal,
+            RadiiChoice::LogNormal => Self::LogNormal,
+        }
+    }
+}
+
+/// How fall-off ends at a light's range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CutChoice {
+    /// Smoothly
+    Windowed,
+    /// At once: inverse square up to the range
+    Hard,
+}
+
+impl From<CutChoice> for Cut {
+    fn from(choice: CutChoice) -> Self {
+        match choice {
+            CutChoice::Windowed => Self::Windowed,
+            CutChoice::Hard => Self::Hard,
+        }
+    }
+}
+
+/// Which pictures are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PicturesChoice {
+    /// Every method's image, as PNG and as linear EXR, its difference and its heat map
+    All,
+    /// None; images are compared all the same
+    None,
 }
 
 /// Where lights come from.
@@ -270,6 +363,9 @@ where
     match Cli::try_parse_from(arguments) {
         Ok(Cli { command: Some(Command::List { what }), .. }) => Ok(Invocation::List(what)),
         Ok(Cli { command: Some(Command::Compare(args)), .. }) => Ok(Invocation::Compare(args)),
+        Ok(Cli { command: Some(Command::Study(args)), .. }) => Ok(Invocation::Study(args)),
+        Ok(Cli { command: Some(Command::Report(args)), .. }) => Ok(Invocation::Report(args)),
+        Ok(Cli { command: Some(Command::Advise(args)), .. }) => Ok(Invocation::Advise(args)),
         Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
         Err(shown)
             if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>

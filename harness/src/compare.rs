@@ -1,22 +1,23 @@
 //! `lightbench compare`: the main job.
 
-use std::{collections::HashMap, path::Path, sync::Arc, time::Duration};
+use std::{path::Path, sync::Arc, time::Duration};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
-use shading::{EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
+use shading::{Cut, EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
 
 use crate::{
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, ModeChoice, TruthChoice},
-    clock::clock_of,
+    cli::{CliError, CompareArgs, ModeChoice, PicturesChoice, TruthChoice},
     error::HarnessError,
+    errors::{ImagePair, errors},
     machine::machine,
-    measure::{Frames, Measurement, measure},
+    measure::{Checked, Contest, Plan, unbounded_image},
+    record::{Seen, record},
     registry::Method,
     report,
     results::{
-        CONTROL, Clock, Images, Record, RejectedLight, Results, ResultsError, Truth,
+        BASELINE, CONTROL, Images, Machine, RejectedLight, Results, ResultsError, Truth,
         write_atomically,
     },
     stage::Stage,
@@ -24,6 +25,8 @@ use crate::{
 
 /// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
 const DEFAULT_FRAMES: [u32; 2] = [64, 3];
+/// The same along a path.
+const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames before the clock, likewise.
 const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 
@@ -36,37 +39,363 @@ const RASTER_SPHERE: &str = "RasterSphere";
 /// How long a GPU warms up at least; a software adapter has no clocks to raise.
 const GPU_WARM_UP: Duration = Duration::from_millis(250);
 
+/// Pictures of a report, PNG files, by name.
+pub type Pictures = Vec<(String, Vec<u8>)>;
+
+/// A device with the scene that was drawn last.
+pub struct Bench {
+    gpu: Gpu,
+    machine: Machine,
+    stage: Option<(String, Stage)>,
+}
+
 /// Runs a comparison, writes its report, and returns what to print. `command` is the command
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
-    let choices = choices(args)?;
-    check_modes(args, &choices)?;
+    // What is wrong with the words shows before a device is opened.
+    check_modes(args, &choices(args)?)?;
     check_writable(&args.out)?;
-    let gpu = Gpu::open(args.adapter.as_deref())?;
-    end_on_device_error(&gpu);
-    let machine = machine(&gpu);
-    eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
-    let choices = checked(choices, &gpu)?;
-    let stage = Stage::new(&gpu, args)?;
-    describe(&stage);
-    // What a strategy cannot serve shows before anything long begins.
-    let (choices, left_out) = served(choices, &gpu, &stage)?;
-    let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
-    let mut run = Run {
-        results: Results::new(machine, command, truth),
-        args,
-        clock: clock_of(&gpu),
-        frames: frames(&gpu, args),
-        gpu,
-        stage,
-        pictures: Vec::new(),
-    };
-    run.results.warnings.extend(left_out);
-    run.warn();
-    run.measure_all(&choices)?;
-    run.write()
+    let mut bench = Bench::open(args.adapter.as_deref())?;
+    let (results, pictures) = bench.compare(args, command)?;
+    write(&results, &pictures, &args.out)
 }
 
+/// Writes results and report; returns the table and where they are.
+fn write(
+    results: &Results,
+    pictures: &[(String, Vec<u8>)],
+    out: &Path,
+) -> Result<String, HarnessError> {
+    let data = out.join("results.json");
+    results.write(&data)?;
+    let page = report::write_html(results, pictures, out)?;
+    Ok(format!(
+        "{}\nreport   {}\ndata     {}\n",
+        report::render_table(results),
+        page.display(),
+        data.display()
+    ))
+}
+
+impl Bench {
+    /// Opens a device.
+    pub fn open(adapter: Option<&str>) -> Result<Self, HarnessError> {
+        let gpu = Gpu::open(adapter)?;
+        end_on_device_error(&gpu);
+        let machine = machine(&gpu);
+        eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
+        Ok(Self { gpu, machine, stage: None })
+    }
+
+    /// The machine that results come from.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// The stage that arguments ask for; the scene is opened once while it stays the same.
+    pub fn stage(&mut self, args: &CompareArgs) -> Result<&mut Stage, HarnessError> {
+        let key = format!("{} {}", args.scene, args.scene_scale);
+        let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
+            Some((key, mut stage)) => {
+                stage.set_up(&self.gpu, args)?;
+                self.stage.insert((key, stage))
+            }
+            None => {
+                let stage = Stage::new(&self.gpu, args)?;
+                describe(&stage);
+                self.stage.insert((key, stage))
+            }
+        };
+        Ok(stage)
+    }
+
+    /// Runs a comparison; returns its results and the pictures that they name.
+    pub fn compare(
+        &mut self,
+        args: &CompareArgs,
+        command: Vec<String>,
+    ) -> Result<(Results, Pictures), HarnessError> {
+        let choices = choices(args)?;
+        check_modes(args, &choices)?;
+        let gpu = self.gpu.clone();
+        let choices = checked(choices, &gpu)?;
+        let machine = machine(&gpu);
+        let stage = self.stage(args)?;
+        // What a strategy cannot serve shows before anything long begins.
+        let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
+        let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
+        let mut run = Run {
+            results: Results::new(machine, command, truth),
+            args,
+            plan: plan(&gpu, args),
+            gpu,
+            stage,
+            pictures: Vec::new(),
+        };
+        run.results.warnings.extend(left_out);
+        run.warn();
+        run.measure_all(&choices)?;
+        Ok((run.results, run.pictures))
+    }
+}
+
+/// The frames asked for, or the defaults of the kind of device.
+fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
+    let kind = usize::from(gpu.is_software());
+    let defaults = if args.path { DEFAULT_PATH_FRAMES } else { DEFAULT_FRAMES };
+    Plan {
+        warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
+        warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
+        timed: args.frames.unwrap_or(defaults[kind]),
+        along_path: args.path,
+        seed: args.seed,
+        cut: args.cut.into(),
+    }
+}
+
+/// A comparison on its way.
+struct Run<'a> {
+    results: Results,
+    args: &'a CompareArgs,
+    plan: Plan,
+    gpu: Gpu,
+    stage: &'a mut Stage,
+    pictures: Pictures,
+}
+
+/// What the images of one mode are compared with, and the exposure that all its pictures share.
+struct Reference {
+    image: HdrImage,
+    unbounded: Option<HdrImage>,
+    exposure: f32,
+    picture: Option<String>,
+}
+
+impl Run<'_> {
+    /// Notes what a reader of the figures has to know.
+    fn warn(&mut self) {
+        let name = &self.stage.scene.name;
+        self.results.warnings.extend(self.stage.scene.warnings.iter().cloned());
+        self.results.rejected_lights = self
+            .stage
+            .lights
+            .rejected()
+            .iter()
+            .map(|rejected| RejectedLight {
+                scene: name.clone(),
+                index: rejected.index as u64,
+                reason: rejected.fault.to_string(),
+            })
+            .collect();
+        if self.args.path && !self.stage.scene.path.moves() {
+            self.results
+                .warnings
+                .push(format!("{name} has no camera path: the camera stood still"));
+        }
+    }
+
+    fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
+        let lights = self.stage.lights.lights().to_vec();
+        let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
+        let modes = self.args.mode.modes();
+        let per_method = u64::from(self.plan.timed) + 1;
+        let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
+        for &mode in modes {
+            let mut served = choices.to_vec();
+            if mode == Mode::Forward {
+                served.retain(|choice| choice.family() != RASTER_SPHERE);
+                if served.len() < choices.len() {
+                    self.results.warnings.push(format!("{RASTER_SPHERE} has no forward mode"));
+                    bar.inc(per_method);
+                }
+            }
+            self.measure_mode(served, mode, bvh.as_ref(), &bar)?;
+        }
+        bar.finish_and_clear();
+        Ok(())
+    }
+
+    /// All methods in one mode: their images and lists first, no culling before the others, then
+    /// their times in turns.
+    fn measure_mode(
+        &mut self,
+        mut choices: Vec<Choice>,
+        mode: Mode,
+        bvh: Option<&LightBvh<'_>>,
+        bar: &ProgressBar,
+    ) -> Result<(), HarnessError> {
+        let timed: Vec<usize> = (0..choices.len()).collect();
+        let reference_ix = choices.iter().position(Choice::is_reference).unwrap_or_else(|| {
+            // Drawn for its image, and not timed.
+            choices.extend(Choice::parse(BASELINE));
+            choices.len() - 1
+        });
+        let unbounded = match self.args.unbounded {
+            true => Some(unbounded_image(&self.gpu, self.stage, mode)?),
+            false => None,
+        };
+        let mut methods = Vec::new();
+        for choice in &choices {
+            methods.push(choice.make(&self.gpu)?);
+        }
+        let mut contest = Contest::new(&self.gpu, self.stage, &mut methods, mode, self.plan)?;
+        bar.set_message(format!("images, {}", mode.name()));
+        let mut none = Some(contest.check(self.stage, reference_ix, bvh)?);
+        let image = none.as_ref().map(|checked| checked.image.clone()).unwrap_or_default();
+        let reference = self.reference(image, unbounded, mode)?;
+        let mut all_seen = Vec::new();
+        for &ix in &timed {
+            let checked = match none.take_if(|_| ix == reference_ix) {
+                Some(checked) => checked,
+                None => contest.check(self.stage, ix, bvh)?,
+            };
+            all_seen.push(self.see(&choices[ix], mode, checked, &reference)?);
+            bar.inc(1);
+        }
+        bar.set_message(format!("times, {}", mode.name()));
+        let exposure = reference.exposure;
+        let mut compared = |images: &[HdrImage], reference: &HdrImage| {
+            for (seen, image) in all_seen.iter_mut().zip(images) {
+                seen.compare(&ImagePair { image, reference, exposure })?;
+            }
+            Ok(())
+        };
+        let tick = &mut || bar.inc(1);
+        contest.time(self.stage, &timed, reference_ix, tick, &mut compared)?;
+        for ((&ix, seen), times) in timed.iter().zip(all_seen).zip(contest.finish()) {
+            let record = record(
+                self.args,
+                self.stage,
+                &self.plan,
+                &self.gpu,
+                &choices[ix],
+                mode,
+                seen,
+                times,
+            );
+            self.results.records.push(record);
+        }
+        if self.args.path {
+            self.stage.set_up(&self.gpu, self.args)?;
+        }
+        Ok(())
+    }
+
+    /// Keeps the images that others are compared with.
+    fn reference(
+        &mut self,
+        image: HdrImage,
+        unbounded: Option<HdrImage>,
+        mode: Mode,
+    ) -> Result<Reference, HarnessError> {
+        let exposure = image.auto_exposure();
+        let keeps = self.args.pictures == PicturesChoice::All;
+        let mut picture = None;
+        if keeps {
+            let name = format!("{}-None.png", mode.name());
+            self.picture(&name, image.to_png(exposure)?, Some(&image))?;
+            picture = Some(name);
+            if let Some(image) = &unbounded {
+                let name = format!("{}-unbounded.png", mode.name());
+                self.picture(&name, image.to_png(exposure)?, Some(image))?;
+            }
+        }
+        Ok(Reference { image, unbounded, exposure, picture })
+    }
+
+    /// Keeps a picture for the report, and writes it and its EXR.
+    fn picture(
+        &mut self,
+        name: &str,
+        png: Vec<u8>,
+        raw: Option<&HdrImage>,
+    ) -> Result<(), HarnessError> {
+        let path = self.args.out.join(name);
+        write_atomically(&path, &png)?;
+        if let Some(image) = raw {
+            image.write_exr(&path.with_extension("exr"))?;
+        }
+        self.pictures.push((name.to_owned(), png));
+        Ok(())
+    }
+
+    /// Compares a method's image with what it should be, and keeps its pictures.
+    fn see(
+        &mut self,
+        choice: &Choice,
+        mode: Mode,
+        checked: Checked,
+        reference: &Reference,
+    ) -> Result<Seen, HarnessError> {
+        let is_control = choice.family() == CONTROL;
+        let Checked { image, lists } = checked;
+        let pair =
+            ImagePair { image: &image, reference: &reference.image, exposure: reference.exposure };
+        let mut seen = Seen::new(lists.unwrap_or_default());
+        if !is_control {
+            seen.compare(&pair)?;
+            if let Some(unbounded) = &reference.unbounded {
+                let pair = ImagePair { reference: unbounded, ..pair };
+                seen.unbounded_errors =
+                    errors(&pair).into_iter().map(|(id, error)| (id.to_owned(), error)).collect();
+            }
+        }
+        if self.args.path {
+            // Along a path errors are means over the frames that are compared there.
+            seen.forget_errors();
+        }
+        let Some(baseline) = &reference.picture else { return Ok(seen) };
+        let raw = |picture: &str| Some(picture.replace(".png", ".exr"));
+        seen.images = Images {
+            baseline: Some(baseline.clone()),
+            raw_baseline: raw(baseline),
+            raw_unbounded: reference
+                .unbounded
+                .as_ref()
+                .map(|_| format!("{}-unbounded.exr", mode.name())),
+            exposure: Some(f64::from(reference.exposure)),
+            ..Images::default()
+        };
+        let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
+        let is_same = image.pixels == reference.image.pixels;
+        if choice.is_reference() || is_same {
+            // An image that is the same in every number is kept once.
+            (seen.images.image, seen.images.raw) = (Some(baseline.clone()), raw(baseline));
+        } else {
+            let name = format!("{stem}.png");
+            let exposure = if is_control { 1.0 } else { reference.exposure };
+            self.picture(&name, image.to_png(exposure)?, Some(&image))?;
+            seen.images.raw = raw(&name);
+            seen.images.image = Some(name);
+        }
+        if !is_same && !is_control {
+            let name = format!("{stem}-difference.png");
+            let gain = DIFFERENCE_GAIN * reference.exposure;
+            self.picture(&name, image.difference_png(&reference.image, gain)?, None)?;
+            seen.images.difference = Some(name);
+            seen.images.difference_amplification = Some(f64::from(gain));
+        }
+        let lengths = &seen.lists.lengths.per_pixel;
+        if !lengths.is_empty() {
+            let name = format!("{stem}-heat.png");
+            let png = heat_map_png(&reference.image, reference.exposure, lengths)?;
+            self.picture(&name, png, None)?;
+            seen.images.heat_map = Some(name);
+        }
+        Ok(seen)
+    }
+}
+
+fn progress_bar(total: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(total).with_style(style)
+}
 /// An error that no call returned is the device's: one line, exit code 1, no panic.
 fn end_on_device_error(gpu: &Gpu) {
     gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
@@ -111,6 +440,7 @@ fn served(
     choices: Vec<Choice>,
     gpu: &Gpu,
     stage: &Stage,
+    cut: Cut,
 ) -> Result<(Vec<Choice>, Vec<String>), HarnessError> {
     let mut served = Vec::new();
     let mut left_out = Vec::new();
@@ -119,6 +449,10 @@ fn served(
             match choice.make(gpu)? {
                 Method::Lists { mut strategy, .. } => {
                     strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
+                }
+                Method::RasterSphere if cut == Cut::Hard => {
+                    let accepted = format!("windowed for {RASTER_SPHERE}");
+                    return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
                 }
                 Method::RasterSphere => {
                     RasterSpheres::new(&stage.renderer, stage.lights.has_spots())?;
@@ -136,16 +470,6 @@ fn served(
         }
     }
     Ok((served, left_out))
-}
-
-/// The frames asked for, or the defaults of the kind of device.
-fn frames(gpu: &Gpu, args: &CompareArgs) -> Frames {
-    let kind = usize::from(gpu.is_software());
-    Frames {
-        warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
-        warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
-        timed: args.frames.unwrap_or(DEFAULT_FRAMES[kind]),
-    }
 }
 
 /// Makes the output folder and writes to it once, before anything long begins. An earlier run's
@@ -180,263 +504,4 @@ fn describe(stage: &Stage) {
     for rejected in stage.lights.rejected() {
         eprintln!("warning  light {} left out: {}", rejected.index, rejected.fault);
     }
-}
-
-/// A comparison on its way.
-struct Run<'a> {
-    results: Results,
-    args: &'a CompareArgs,
-    clock: Clock,
-    frames: Frames,
-    gpu: Gpu,
-    stage: Stage,
-    pictures: Vec<(String, Vec<u8>)>,
-}
-
-/// The image of no culling in one mode, and the exposure that all pictures of the mode share.
-struct Reference {
-    image: HdrImage,
-    exposure: f32,
-    picture: String,
-}
-
-impl Run<'_> {
-    /// Notes what a reader of the figures has to know.
-    fn warn(&mut self) {
-        let name = &self.stage.scene.name;
-        self.results.warnings.extend(self.stage.scene.warnings.iter().cloned());
-        self.results.rejected_lights = self
-            .stage
-            .lights
-            .rejected()
-            .iter()
-            .map(|rejected| RejectedLight {
-                scene: name.clone(),
-                index: rejected.index as u64,
-                reason: rejected.fault.to_string(),
-            })
-            .collect();
-    }
-
-    fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
-        let lights = self.stage.lights.lights().to_vec();
-        let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
-        let per_method = per_method(self.frames);
-        let modes = self.args.mode.modes();
-        let has_reference = choices.iter().any(Choice::is_reference);
-        let extra = if has_reference { 0 } else { 2 };
-        let total = modes.len() as u64 * (choices.len() as u64 * per_method + extra);
-        let bar = progress_bar(total);
-        for &mode in modes {
-            self.measure_mode(choices, mode, bvh.as_ref(), &bar)?;
-        }
-        bar.finish_and_clear();
-        Ok(())
-    }
-
-    /// All methods in one mode, no culling first: the others are compared with its image.
-    fn measure_mode(
-        &mut self,
-        choices: &[Choice],
-        mode: Mode,
-        bvh: Option<&LightBvh<'_>>,
-        bar: &ProgressBar,
-    ) -> Result<(), HarnessError> {
-        let mut measured: HashMap<usize, Measurement> = HashMap::new();
-        let reference = choices.iter().position(Choice::is_reference);
-        let image = match reference {
-            Some(ix) => {
-                let measurement = self.measure_one(&choices[ix], mode, self.frames, bvh, bar)?;
-                let image = measurement.image.clone();
-                measured.insert(ix, measurement);
-                image
-            }
-            None => {
-                let once = Frames { warmup: 0, timed: 1, ..self.frames };
-                let none = Choice::parse(crate::results::BASELINE)?;
-                self.measure_one(&none, mode, once, None, bar)?.image
-            }
-        };
-        let exposure = image.auto_exposure();
-        let picture = format!("{}-None.png", mode.name());
-        let reference = Reference { image, exposure, picture };
-        self.picture(&reference.picture, reference.image.to_png(exposure)?, &reference.image)?;
-        for (ix, choice) in choices.iter().enumerate() {
-            if mode == Mode::Forward && choice.family() == RASTER_SPHERE {
-                self.results.warnings.push(format!("{RASTER_SPHERE} has no forward mode"));
-                bar.inc(per_method(self.frames));
-                continue;
-            }
-            let measurement = match measured.remove(&ix) {
-                Some(measurement) => measurement,
-                None => self.measure_one(choice, mode, self.frames, bvh, bar)?,
-            };
-            let record = self.record(choice, mode, &measurement, &reference)?;
-            self.results.records.push(record);
-        }
-        Ok(())
-    }
-
-    fn measure_one(
-        &mut self,
-        choice: &Choice,
-        mode: Mode,
-        frames: Frames,
-        bvh: Option<&LightBvh<'_>>,
-        bar: &ProgressBar,
-    ) -> Result<Measurement, HarnessError> {
-        bar.set_message(format!("{} {}", choice.id(), mode.name()));
-        let mut method = choice.make(&self.gpu)?;
-        let tick = &mut || bar.inc(1);
-        measure(&self.gpu, &mut self.stage, &mut method, mode, frames, bvh, tick)
-    }
-
-    /// Keeps a picture for the report, and writes it and its EXR.
-    fn picture(&mut self, name: &str, png: Vec<u8>, image: &HdrImage) -> Result<(), HarnessError> {
-        let path = self.args.out.join(name);
-        write_atomically(&path, &png)?;
-        image.write_exr(&path.with_extension("exr"))?;
-        self.pictures.push((name.to_owned(), png));
-        Ok(())
-    }
-
-    fn record(
-        &mut self,
-        choice: &Choice,
-        mode: Mode,
-        measurement: &Measurement,
-        reference: &Reference,
-    ) -> Result<Record, HarnessError> {
-        let is_control = choice.family() == CONTROL;
-        let difference = measurement.image.difference(&reference.image)?;
-        let mut images = Images { baseline: Some(reference.picture.clone()), ..Images::default() };
-        if choice.is_reference() {
-            images.image = Some(reference.picture.clone());
-        } else {
-            let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
-            let name = format!("{stem}.png");
-            let png =
-                measurement.image.to_png(if is_control { 1.0 } else { reference.exposure })?;
-            self.picture(&name, png, &measurement.image)?;
-            images.image = Some(name);
-            if !is_control {
-                let name = format!("{stem}-difference.png");
-                let gain = DIFFERENCE_GAIN * reference.exposure;
-                let png = measurement.image.difference_png(&reference.image, gain)?;
-                write_atomically(&self.args.out.join(&name), &png)?;
-                self.pictures.push((name.clone(), png));
-                images.difference = Some(name);
-                images.difference_amplification = Some(f64::from(gain));
-            }
-        }
-        let lists = measurement.lists.clone().unwrap_or_default();
-        if !lists.lengths.per_pixel.is_empty() {
-            let name = format!("{}-{}-heat.png", mode.name(), choice.id().replace('/', "-"));
-            let lengths = &lists.lengths.per_pixel;
-            let png = heat_map_png(&reference.image, reference.exposure, lengths)?;
-            write_atomically(&self.args.out.join(&name), &png)?;
-            self.pictures.push((name.clone(), png));
-            images.heat_map = Some(name);
-        }
-        let truth = lists.truth;
-        let stage = &self.stage;
-        let compared = |value: f64| (!is_control && value.is_finite()).then_some(value);
-        let mut record = Record {
-            scene: stage.scene.name.clone(),
-            scene_hash: stage.scene_hash.clone(),
-            scene_scale: self.args.scene_scale,
-            triangles: stage.scene.triangle_count(),
-            strategy: choice.id().to_owned(),
-            strategy_parameters: choice.parameters(),
-            mode,
-            lights: u64::from(stage.lights.count()),
-            light_kinds: stage
-                .light_kinds()
-                .into_iter()
-                .filter(|(_, count)| *count > 0)
-                .map(|(kind, count)| (kind.to_owned(), count))
-                .collect(),
-            radius_scale: stage.radius_scale,
-            eye: stage.view.eye().to_array().map(f64::from),
-            forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
-            light_box: [stage.light_box.min, stage.light_box.max]
-                .map(|corner| corner.to_array().map(f64::from)),
-            own_lights: stage.own_lights as u64,
-            width: stage.view.viewport.width,
-            height: stage.view.viewport.height,
-            frames: self.frames.timed,
-            warmup_frames: self.frames.warmup,
-            seed: self.args.seed,
-            clock: self.clock,
-            passes: measurement.passes.clone(),
-            assign_ms: 0.0,
-            shade_ms: 0.0,
-            frame_ms: 0.0,
-            groups: lists.groups,
-            occupied_groups: u64::from(lists.counters.occupied_groups),
-            list_entries: if lists.groups == 0 && measurement.lists.is_some() {
-                u64::from(stage.lights.count())
-            } else {
-                lists.counters.requested()
-            },
-            longest_list: u64::from(lists.counters.longest),
-            listed_per_sample: truth.map(|t| t.listed_per_sample()),
-            contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
-            missed_pairs: truth.map(|t| t.missed),
-            checked_pairs: truth.map(|t| t.contributing),
-            samples: truth.map_or(0, |t| t.samples),
-            max_abs_diff: compared(difference.max_abs),
-            max_rel_diff: compared(difference.max_rel),
-            differing_channels: (!is_control).then_some(difference.differing_channels),
-            lists_bytes: lists.bytes,
-            histogram: lists.lengths.histogram.clone(),
-            light_order: Some(stage.lights.order().to_string()),
-            light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
-            tolerance: choice.tolerance(),
-            overflowed_groups: u64::from(lists.counters.overflowed_groups),
-            images,
-            note: self.note(mode, lists.overflowed_frames),
-        };
-        record.set_times();
-        Ok(record)
-    }
-
-    fn note(&self, mode: Mode, overflowed_frames: u32) -> Option<String> {
-        let mut notes = Vec::new();
-        let mut words = self.results.machine.adapter.split_whitespace();
-        if mode == Mode::Forward && words.any(|word| ["H100", "H200"].contains(&word)) {
-            notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
-        }
-        if overflowed_frames > 0 {
-            notes.push(format!(
-                "lists overflowed in {overflowed_frames} of the timed frames, which shaded all lights where they did"
-            ));
-        }
-        (!notes.is_empty()).then(|| notes.join("; "))
-    }
-
-    /// Writes the results and the report; returns the table and where they are.
-    fn write(&mut self) -> Result<String, HarnessError> {
-        let out = &self.args.out;
-        let data = out.join("results.json");
-        self.results.write(&data)?;
-        let page = report::write_html(&self.results, &self.pictures, out)?;
-        Ok(format!(
-            "{}\nreport   {}\ndata     {}\n",
-            report::render_table(&self.results),
-            page.display(),
-            data.display()
-        ))
-    }
-}
-
-/// Ticks of a method in one mode: its timed frames and the check of its lists.
-fn per_method(frames: Frames) -> u64 {
-    u64::from(frames.timed) + 1
-}
-
-fn progress_bar(total: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(total).with_style(style)
 }

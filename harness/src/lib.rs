@@ -1,14 +1,22 @@
 //! `lightbench` as a library: its command line, its measurements, its results and its report.
 
+pub mod advise;
+pub mod again;
+pub mod chart;
 pub mod choice;
 pub mod cli;
 pub mod clock;
 pub mod compare;
 pub mod error;
+pub mod errors;
 pub mod list_lengths;
 pub mod machine;
 pub mod measure;
+pub mod painter;
+pub mod record;
 pub mod registry;
 pub mod report;
 pub mod results;
+pub mod schedule;
 pub mod stage;
+pub mod study;

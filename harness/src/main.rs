@@ -6,10 +6,13 @@ use std::{
 };
 
 use harness::{
+    advise::advise,
+    again::again,
     cli::{self, CliError, Invocation, Listing},
     compare::compare,
     error::HarnessError,
     registry::{STRATEGIES, StrategyEntry},
+    study::study,
 };
 
 fn main() -> ExitCode {
@@ -33,6 +36,9 @@ fn run() -> Result<(), HarnessError> {
         Invocation::List(Listing::Scenes) => scenes(),
         Invocation::List(Listing::Adapters) => adapters()?,
         Invocation::Compare(args) => compare(&args, command)?,
+        Invocation::Study(args) => study(&args)?,
+        Invocation::Report(args) => again(&args)?,
+        Invocation::Advise(args) => advise(&args, command)?,
     };
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         // Whoever read has read enough.

@@ -1,31 +1,23 @@
-//! One method in one mode: its times, its lists and its image.
+//! All methods of a comparison in one mode: their lists and images, then their times, frame by
+//! frame in turns.
 
 use std::time::{Duration, Instant};
 
-use assign::{Assignment, Counters, EncoderPasses, Gpu, Passes};
-use shading::{
-    HdrImage, LightBvh, Lighting, LightingOptions, ListsTruth, Mode, RasterSpheres, probe,
-    record_before_lighting, record_for_probe,
+use assign::{
+    Assignment, Counters, EncoderPasses, Everything, Gpu, Light, LightBuffer, MAX_RANGE_M,
 };
+use shading::{Cut, HdrImage, LightBvh, ListsTruth, Mode, probe, record_for_probe};
 
 use crate::{
     clock::PassClock,
     error::HarnessError,
     list_lengths::ListLengths,
+    painter::Painter,
     registry::Method,
-    results::{PassKind, PassTimes},
+    results::{PassKind, PassTimes, Passes},
+    schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
 };
-
-/// What was measured.
-pub struct Measurement {
-    /// Times per pass.
-    pub passes: crate::results::Passes,
-    /// The last frame's radiance.
-    pub image: HdrImage,
-    /// The lists of the last frame; `None` for a method without lists.
-    pub lists: Option<ListsFigures>,
-}
 
 /// What was counted of the lists.
 #[derive(Clone, Debug, Default)]
@@ -40,143 +32,296 @@ pub struct ListsFigures {
     pub truth: Option<ListsTruth>,
     /// How long the lists are that samples read; empty where the truth was not asked for.
     pub lengths: ListLengths,
+}
+
+/// What a method showed before its times were taken.
+pub struct Checked {
+    /// Its radiance.
+    pub image: HdrImage,
+    /// Its lists; `None` for a method without.
+    pub lists: Option<ListsFigures>,
+}
+
+/// The times of a method.
+pub struct Timed {
+    /// Times per pass.
+    pub passes: Passes,
     /// Frames on the clock that followed one in which a group overflowed.
     pub overflowed_frames: u32,
 }
 
-/// How many frames to draw.
+/// Is handed the images of a frame, method by method, and that of no culling.
+pub type Compare<'a> = dyn FnMut(&[HdrImage], &HdrImage) -> Result<(), HarnessError> + 'a;
+
+/// Which frames to draw.
 #[derive(Clone, Copy, Debug)]
-pub struct Frames {
-    /// Before the clock starts; after it at least [`warm_up`](Self::warm_up) has passed too.
+pub struct Plan {
+    /// Frames of each method before the clock starts.
     pub warmup: u32,
     /// For how long to warm up at least: clocks fall while a device waits for the CPU.
     pub warm_up: Duration,
-    /// On the clock.
+    /// Frames of each method on the clock.
     pub timed: u32,
+    /// Whether the camera goes along its path, one pose a frame.
+    pub along_path: bool,
+    /// Decides the order of methods in each round.
+    pub seed: u64,
+    /// How fall-off ends.
+    pub cut: Cut,
 }
 
-/// Frames added to a warm-up while lists still overflow, at most.
+/// Frames in which the pool of a method may grow to what its lists ask for.
 const MAX_SETTLING: u32 = 8;
 
-impl Frames {
-    /// Whether frame number `drawn`, from 1, belongs on the clock. Without a warm-up all do.
-    fn is_warm(&self, drawn: u32, elapsed: Duration, settled: bool) -> bool {
-        if self.warmup == 0 {
-            return true;
-        }
-        let settled = settled || drawn > self.warmup + MAX_SETTLING;
-        drawn > self.warmup && elapsed >= self.warm_up && settled
-    }
+/// Frames along the path of which the images are compared.
+const PATH_CHECKS: u32 = 8;
+
+/// Poses along the path at which pools grow before the clock starts: on a GPU, and on a software
+/// adapter.
+const SETTLING_POSES: [u32; 2] = [24, 6];
+
+/// One method on its way.
+struct Contender<'a> {
+    painter: Painter<'a>,
+    samples: Vec<(String, PassKind, Vec<f64>)>,
+    frames: usize,
+    overflowed_frames: u32,
 }
 
-/// Draws the frames of one method and mode. `tick` is called after each that is timed, and once
-/// after the lists were checked.
-pub fn measure(
-    gpu: &Gpu,
-    stage: &mut Stage,
-    method: &mut Method,
+/// All methods of a comparison in one mode.
+pub struct Contest<'a> {
+    gpu: Gpu,
     mode: Mode,
-    frames: Frames,
-    truth: Option<&LightBvh<'_>>,
-    tick: &mut dyn FnMut(),
-) -> Result<Measurement, HarnessError> {
-    stage.renderer.prepare(&stage.view, &stage.lights)?;
-    let mut clock = PassClock::new(gpu);
-    let mut samples: Vec<(String, PassKind, Vec<f64>)> = Vec::new();
-    let mut painter = Painter::new(stage, method, mode)?;
-    let mut overflowed_frames = 0;
-    let mut drawn = 0;
-    let warm = Instant::now();
-    let mut timed = 0;
-    while timed < frames.timed {
-        let settled = painter.draw(gpu, stage, mode, &mut clock)?;
-        let times = clock.finish()?;
-        drawn += 1;
-        if frames.is_warm(drawn, warm.elapsed(), settled) {
-            collect(&mut samples, times);
-            overflowed_frames += u32::from(!settled);
-            timed += 1;
-            tick();
-        }
-    }
-    let image = HdrImage::read(gpu, stage.renderer.targets(), stage.view.viewport)?;
-    let lists = match painter {
-        Painter::Lists { strategy, .. } => {
-            Some(count(gpu, stage, strategy, mode, truth, overflowed_frames)?)
-        }
-        Painter::RasterSphere(_) | Painter::Clay => None,
-    };
-    tick();
-    let passes = samples
-        .into_iter()
-        .map(|(name, kind, samples)| (name, PassTimes::new(kind, samples)))
-        .collect();
-    Ok(Measurement { passes, image, lists })
+    plan: Plan,
+    clock: PassClock,
+    contenders: Vec<Contender<'a>>,
 }
 
-/// A method with the pipelines that draw with it.
-pub enum Painter<'a> {
-    /// Lists, and lighting by them.
-    Lists {
-        /// The strategy.
-        strategy: &'a mut dyn Assignment,
-        /// Lighting with its look-up.
-        lighting: Lighting,
-    },
-    /// Light volumes.
-    RasterSphere(RasterSpheres),
-    /// Surfaces alone.
-    Clay,
-}
-
-impl<'a> Painter<'a> {
-    /// Compiles what `method` needs in one mode.
-    pub fn new(stage: &Stage, method: &'a mut Method, mode: Mode) -> Result<Self, HarnessError> {
-        let spots = stage.lights.has_spots();
-        Ok(match method {
-            Method::Lists { strategy, early_exit } => {
-                let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
-                let options = LightingOptions { spots, exit_weight };
-                let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
-                Self::Lists { strategy: strategy.as_mut(), lighting }
-            }
-            Method::RasterSphere => Self::RasterSphere(RasterSpheres::new(&stage.renderer, spots)?),
-            Method::Clay => Self::Clay,
-        })
-    }
-
-    /// Records one frame: geometry, the strategy's passes, lighting. Returns whether no list of
-    /// the frame before overflowed.
-    pub fn draw(
-        &mut self,
+impl<'a> Contest<'a> {
+    /// Compiles what the methods need.
+    pub fn new(
         gpu: &Gpu,
-        stage: &Stage,
+        stage: &mut Stage,
+        methods: &'a mut [Method],
         mode: Mode,
-        passes: &mut dyn Passes,
-    ) -> Result<bool, HarnessError> {
-        let Stage { renderer, view, lights, .. } = stage;
-        match self {
-            Self::Lists { strategy, lighting } => {
-                let frame = renderer.frame(view, lights);
-                strategy.prepare(gpu, &frame)?;
-                record_before_lighting(renderer, mode, *strategy, &frame, passes);
-                lighting.record(renderer, view, *strategy, passes)?;
-                // The counters of the frame before: this one grew the pool to what it asked for.
-                Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
-            }
-            Self::RasterSphere(spheres) => {
-                renderer.record_depth(view, passes);
-                renderer.record_gbuffer(view, passes);
-                spheres.record(renderer, view, lights, passes)?;
-                Ok(true)
-            }
-            Self::Clay => {
-                renderer.record_depth(view, passes);
-                renderer.record_clay(view, passes);
-                Ok(true)
+        plan: Plan,
+    ) -> Result<Self, HarnessError> {
+        stage.prepare()?;
+        let mut contenders = Vec::new();
+        for method in methods {
+            contenders.push(Contender {
+                painter: Painter::new(stage, method, mode, plan.cut)?,
+                samples: Vec::new(),
+                frames: 0,
+                overflowed_frames: 0,
+            });
+        }
+        Ok(Self { gpu: gpu.clone(), mode, plan, clock: PassClock::new(gpu), contenders })
+    }
+
+    /// Draws one method until none of its lists overflows, reads its image back, and checks its
+    /// lists against `truth`.
+    pub fn check(
+        &mut self,
+        stage: &Stage,
+        method: usize,
+        truth: Option<&LightBvh<'_>>,
+    ) -> Result<Checked, HarnessError> {
+        for drawn in 0..=MAX_SETTLING {
+            if self.draw(stage, method)? && drawn > 0 {
+                break;
             }
         }
+        let image = read(&self.gpu, stage)?;
+        let lists = match &self.contenders[method].painter {
+            Painter::Lists { strategy, .. } => {
+                Some(count(&self.gpu, stage, *strategy, self.mode, truth)?)
+            }
+            Painter::RasterSphere(_) | Painter::Clay => None,
+        };
+        Ok(Checked { image, lists })
     }
+
+    /// Takes the times of some methods: round after round, each in turn. `tick` is called after each
+    /// frame. Along the path, `seen` gets the images of some frames: those of the timed methods, in
+    /// their order, and that of `reference`.
+    pub fn time(
+        &mut self,
+        stage: &mut Stage,
+        timed: &[usize],
+        reference: usize,
+        tick: &mut dyn FnMut(),
+        seen: &mut Compare<'_>,
+    ) -> Result<(), HarnessError> {
+        let mut orders = Orders::new(timed.len(), self.plan.seed);
+        if self.plan.along_path {
+            return self.time_along_path(stage, timed, reference, &mut orders, tick, seen);
+        }
+        self.warm_up(stage, timed)?;
+        let count = self.plan.timed;
+        let rounds = rounds(count);
+        for round in 0..rounds {
+            for place in orders.next_round() {
+                let method = timed[place];
+                if !self.gpu.is_software() {
+                    // The caches are another method's.
+                    self.draw(stage, method)?;
+                }
+                for _ in frames_of_round(round, rounds, count) {
+                    self.frame(stage, method)?;
+                    tick();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn time_along_path(
+        &mut self,
+        stage: &mut Stage,
+        timed: &[usize],
+        reference: usize,
+        orders: &mut Orders,
+        tick: &mut dyn FnMut(),
+        seen: &mut Compare<'_>,
+    ) -> Result<(), HarnessError> {
+        let count = self.plan.timed;
+        let poses = SETTLING_POSES[usize::from(self.gpu.is_software())].min(count);
+        for pose in 0..poses {
+            stage.go_to(pose * count / poses, count)?;
+            for &method in timed {
+                for _ in 0..2 {
+                    self.draw(stage, method)?;
+                }
+            }
+        }
+        stage.go_to(0, count)?;
+        self.warm_up(stage, timed)?;
+        let step = check_step(count);
+        for frame in 0..count {
+            stage.go_to(frame, count)?;
+            let is_checked = frame % step == 0 && frame / step < PATH_CHECKS;
+            let mut images: Vec<Option<HdrImage>> = vec![None; timed.len()];
+            for place in orders.next_round() {
+                self.frame(stage, timed[place])?;
+                if is_checked {
+                    images[place] = Some(read(&self.gpu, stage)?);
+                }
+                tick();
+            }
+            if is_checked {
+                self.draw(stage, reference)?;
+                let images: Vec<HdrImage> = images.into_iter().flatten().collect();
+                seen(&images, &read(&self.gpu, stage)?)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// One frame off the clock. Returns whether no list of the frame before overflowed.
+    fn draw(&mut self, stage: &Stage, method: usize) -> Result<bool, HarnessError> {
+        draw_unclocked(&self.gpu, stage, self.mode, &mut self.contenders[method].painter)
+    }
+
+    /// Draws all methods in turn until each was drawn often enough and the device is awake.
+    fn warm_up(&mut self, stage: &Stage, timed: &[usize]) -> Result<(), HarnessError> {
+        let began = Instant::now();
+        let mut drawn = 0;
+        while drawn < self.plan.warmup || (drawn > 0 && began.elapsed() < self.plan.warm_up) {
+            for &method in timed {
+                self.draw(stage, method)?;
+            }
+            drawn += 1;
+        }
+        Ok(())
+    }
+
+    /// One frame on the clock.
+    fn frame(&mut self, stage: &Stage, method: usize) -> Result<(), HarnessError> {
+        let contender = &mut self.contenders[method];
+        let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
+        let times = self.clock.finish()?;
+        contender.collect(times);
+        contender.overflowed_frames += u32::from(!settled);
+        Ok(())
+    }
+
+    /// The times, method by method.
+    pub fn finish(self) -> Vec<Timed> {
+        self.contenders
+            .into_iter()
+            .map(|contender| Timed {
+                overflowed_frames: contender.overflowed_frames,
+                passes: contender
+                    .samples
+                    .into_iter()
+                    .map(|(name, kind, samples)| (name, PassTimes::new(kind, samples)))
+                    .collect(),
+            })
+            .collect()
+    }
+}
+
+impl Contender<'_> {
+    /// Adds a frame's times; a pass that a frame did without took 0 ms.
+    fn collect(&mut self, times: Vec<(String, f64)>) {
+        for (name, ms) in times {
+            match self.samples.iter_mut().find(|(known, ..)| *known == name) {
+                Some((.., list)) => list.push(ms),
+                None => {
+                    let mut list = vec![0.0; self.frames];
+                    list.push(ms);
+                    let kind = pass_kind(&name);
+                    self.samples.push((name, kind, list));
+                }
+            }
+        }
+        self.frames += 1;
+        for (.., list) in &mut self.samples {
+            list.resize(self.frames, 0.0);
+        }
+    }
+}
+
+/// Frames between two of which the images are compared: odd, so that lists used for 2, 4 or 8
+/// frames are seen at every age.
+fn check_step(frames: u32) -> u32 {
+    (frames / PATH_CHECKS).saturating_sub(1).max(1) | 1
+}
+
+/// The radiance that a frame left in the targets.
+fn read(gpu: &Gpu, stage: &Stage) -> Result<HdrImage, HarnessError> {
+    Ok(HdrImage::read(gpu, stage.renderer.targets(), stage.view.viewport)?)
+}
+
+/// The image of lights that have no range: inverse square to any distance, without culling. Leaves
+/// the stage as it was, to be prepared again.
+pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrImage, HarnessError> {
+    let unbounded = |light: &Light| Light { range_m: MAX_RANGE_M, ..*light };
+    let lights: Vec<Light> = stage.lights.lights().iter().map(unbounded).collect();
+    let bounded = std::mem::replace(&mut stage.lights, LightBuffer::new(gpu, &lights)?);
+    let mut method = Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false };
+    let image = stage.prepare().and_then(|()| {
+        let mut painter = Painter::new(stage, &mut method, mode, Cut::Hard)?;
+        draw_unclocked(gpu, stage, mode, &mut painter)?;
+        read(gpu, stage)
+    });
+    stage.lights = bounded;
+    image
+}
+
+/// Draws one frame and waits for it. Returns whether no list of the frame before overflowed.
+fn draw_unclocked(
+    gpu: &Gpu,
+    stage: &Stage,
+    mode: Mode,
+    painter: &mut Painter<'_>,
+) -> Result<bool, HarnessError> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let settled = painter.draw(gpu, stage, mode, &mut EncoderPasses { encoder: &mut encoder })?;
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait()?;
+    Ok(settled)
 }
 
 /// Which bill a pass is on: what the pipeline does not know is a strategy's own.
@@ -188,18 +333,6 @@ pub fn pass_kind(name: &str) -> PassKind {
     }
 }
 
-fn collect(samples: &mut Vec<(String, PassKind, Vec<f64>)>, times: Vec<(String, f64)>) {
-    for (name, ms) in times {
-        match samples.iter_mut().find(|(known, ..)| *known == name) {
-            Some((.., list)) => list.push(ms),
-            None => {
-                let kind = pass_kind(&name);
-                samples.push((name, kind, vec![ms]));
-            }
-        }
-    }
-}
-
 /// Reads the lists of the last frame back and checks them.
 fn count(
     gpu: &Gpu,
@@ -207,7 +340,6 @@ fn count(
     strategy: &dyn Assignment,
     mode: Mode,
     truth: Option<&LightBvh<'_>>,
-    overflowed_frames: u32,
 ) -> Result<ListsFigures, HarnessError> {
     let snapshot = strategy.lists().snapshot(gpu)?;
     let mut lengths = ListLengths::default();
@@ -233,6 +365,22 @@ fn count(
         bytes: strategy.lists().bytes(),
         truth,
         lengths,
-        overflowed_frames,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reused_lists_are_seen_at_every_age() {
+        for frames in [60, 120, 240, 1_200] {
+            let step = check_step(frames);
+            assert!(step % 2 == 1 && step * (PATH_CHECKS - 1) < frames, "{frames}: {step}");
+            let ages: std::collections::BTreeSet<u32> =
+                (0..PATH_CHECKS).map(|check| check * step % 8).collect();
+            assert_eq!(ages.len(), 8, "{frames}");
+        }
+        assert_eq!(check_step(1), 1);
+    }
 }

@@ -44,6 +44,10 @@ pub enum Axis {
     Source,
     /// The box that is cut into cells: `lights` or `surfaces`.
     Box,
+    /// The most lights of a list, the others dropped: `cap32`. Lossy.
+    Cap,
+    /// Frames for which lists are used: `reuse4`. Lossy where groups or lights move.
+    Reuse,
 }
 
 impl Axis {
@@ -53,6 +57,8 @@ impl Axis {
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
             Self::Box => "lights or surfaces",
+            Self::Cap => "cap and the most lights of a list, such as cap32",
+            Self::Reuse => "reuse and the frames for which lists are used, such as reuse4",
         }
     }
 }
@@ -66,6 +72,10 @@ pub struct Spec {
     pub settings: CullSettings,
     /// The box of a grid.
     pub grid_box: GridBox,
+    /// The most lights of a list.
+    pub cap: Option<u32>,
+    /// Frames for which lists are used.
+    pub reuse: Option<u32>,
 }
 
 /// One row: a method, or a family of methods with parameters.
@@ -96,8 +106,8 @@ impl StrategyEntry {
 
 const CLUSTER: &[&str] = &["tile_width_px", "tile_height_px", "slices"];
 const TILE: &[&str] = &["tile_width_px", "tile_height_px"];
-const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source];
-const BOXES: &[Axis] = &[Axis::Source];
+const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source, Axis::Cap, Axis::Reuse];
+const BOXES: &[Axis] = &[Axis::Source, Axis::Cap, Axis::Reuse];
 
 /// All methods, at the comparison paper's parameters (Enhuber 2019, table 4.3).
 pub const STRATEGIES: &[StrategyEntry] = &[
@@ -205,7 +215,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "G",
         parameters: &["cells_x", "cells_y", "cells_z"],
         default: "20x20x20",
-        axes: &[Axis::Box, Axis::Source],
+        axes: &[Axis::Box, Axis::Source, Axis::Cap, Axis::Reuse],
         summary: "a grid of cells in world space, over the lights' box or the surfaces'",
         make: |gpu, spec| {
             let counts = spec.parameters.parse()?;

@@ -24,8 +24,9 @@ pub use shading::Mode;
 
 pub use file::{ResultsError, write_atomically};
 pub use passes::{PassKind, PassTimes, Passes};
-pub use stats::{median, percentile};
+pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 
+use crate::schedule::frames_of_round;
 use passes::nan_from_null;
 
 /// The version of `results.json` that this program writes and reads.
@@ -255,6 +256,35 @@ pub struct Record {
     /// on. Empty where lists were not checked.
     #[serde(default)]
     pub histogram: Vec<u64>,
+    /// Rounds in which the frames were drawn, each with all methods in turn; see
+    /// [`round_medians`](Self::round_medians). 0 where unknown.
+    #[serde(default)]
+    pub rounds: u32,
+    /// Whether each frame was drawn from another pose along the scene's path; times are then means.
+    #[serde(default)]
+    pub along_path: bool,
+    /// Distribution of the radii of scattered lights: `gamma`, `equal` or `log-normal`.
+    #[serde(default)]
+    pub radii: Option<String>,
+    /// What was scattered into: `core`, `bounds` or `cylinders`.
+    #[serde(default)]
+    pub light_places: Option<String>,
+    /// Intensity over squared distance at which the ranges of lights end, where one was given.
+    #[serde(default)]
+    pub threshold: Option<f64>,
+    /// How fall-off ends at a light's range: `windowed` or `hard`.
+    #[serde(default)]
+    pub cut: Option<String>,
+    /// Whether a knob of the method loses light on purpose.
+    #[serde(default)]
+    pub is_lossy: bool,
+    /// Errors against no culling with the same shader, by metric; means over the compared frames
+    /// along a path.
+    #[serde(default)]
+    pub errors: Errors,
+    /// Errors against lights without a range, by metric.
+    #[serde(default)]
+    pub unbounded_errors: Errors,
     /// Order of the lights in their buffer: `given`, `morton` or `bvh`.
     #[serde(default)]
     pub light_order: Option<String>,
@@ -276,12 +306,27 @@ pub struct Record {
     pub note: Option<String>,
 }
 
+/// Errors by metric; `null` where one is not finite.
+pub type Errors = BTreeMap<String, Option<f64>>;
+
 /// The pictures of a record: names of files beside `results.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Images {
     /// The tone-mapped image.
     #[serde(default)]
     pub image: Option<String>,
+    /// The linear image, an EXR file of 32-bit floats.
+    #[serde(default)]
+    pub raw: Option<String>,
+    /// The linear image of no culling.
+    #[serde(default)]
+    pub raw_baseline: Option<String>,
+    /// The linear image of lights without a range.
+    #[serde(default)]
+    pub raw_unbounded: Option<String>,
+    /// The factor before the tone curve that the pictures share.
+    #[serde(default)]
+    pub exposure: Option<f64>,
     /// The tone-mapped image of no culling; needed where the run has no record of it.
     #[serde(default)]
     pub baseline: Option<String>,
@@ -317,11 +362,43 @@ impl Record {
         self.assign_ms + self.shade_ms
     }
 
-    /// Sets the three times from the passes.
+    /// Sets the three times from the passes: medians, and means along a path.
     pub fn set_times(&mut self) {
-        self.assign_ms = self.passes.median_ms(Some(PassKind::Assign));
-        self.shade_ms = self.passes.median_ms(Some(PassKind::Shade));
-        self.frame_ms = self.passes.median_ms(None);
+        let along_path = self.along_path;
+        let passes = &self.passes;
+        let of = |kind: Option<PassKind>| match along_path {
+            true if passes.has(kind) => mean(&passes.per_frame_ms(kind)),
+            true => 0.0,
+            false => passes.median_ms(kind),
+        };
+        [self.assign_ms, self.shade_ms, self.frame_ms] =
+            [of(Some(PassKind::Assign)), of(Some(PassKind::Shade)), of(None)];
+    }
+
+    /// Assigning and lighting together, frame by frame, ms.
+    pub fn frames_ms(&self) -> Vec<f64> {
+        let [assign, shade] =
+            [PassKind::Assign, PassKind::Shade].map(|kind| self.passes.per_frame_ms(Some(kind)));
+        let at = |list: &[f64], frame: usize| list.get(frame).copied().unwrap_or(0.0);
+        (0..assign.len().max(shade.len())).map(|f| at(&assign, f) + at(&shade, f)).collect()
+    }
+
+    /// The median of each round's frames, assigning and lighting together, ms: what intervals and
+    /// comparisons of methods are computed from, for frames of one round are not independent.
+    pub fn round_medians(&self) -> Vec<f64> {
+        let frames = self.frames_ms();
+        let rounds = self.rounds.clamp(1, u32::try_from(frames.len()).unwrap_or(1).max(1));
+        (0..rounds)
+            .map(|round| {
+                let range = frames_of_round(round, rounds, frames.len() as u32);
+                median(frames.get(range.start as usize..range.end as usize).unwrap_or(&[]))
+            })
+            .collect()
+    }
+
+    /// Where the median of [`assign_and_shade_ms`](Self::assign_and_shade_ms) lies, from its rounds.
+    pub fn interval_ms(&self) -> Option<Interval> {
+        if self.along_path { None } else { median_interval(&self.round_medians()) }
     }
 
     /// Whether this is the strategy without culling.

@@ -1,12 +1,12 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, LightBuffer, LightKind, Projection, View};
+use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, Projection, View};
 use glam::{Vec2, Vec3};
-use scenes::{Aabb, Lens, LightSpec, Pose, Scene, scatter_lights};
+use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, scatter_lights};
 use shading::Renderer;
 
 use crate::{
-    cli::{CompareArgs, LightBox},
+    cli::{Camera, CompareArgs, LightBox},
     error::HarnessError,
 };
 
@@ -34,45 +34,118 @@ pub struct Stage {
     pub view: View,
     /// The pipeline.
     pub renderer: Renderer,
+    lens: Option<Lens>,
+    /// The diagonal of the scene's core before it was scaled, metres.
+    unscaled_m: f32,
+}
+
+/// What arguments make of a scene.
+struct Set {
+    lens: Option<Lens>,
+    view: View,
+    radius_scale: f64,
+    lit: Lit,
+}
+
+impl Set {
+    fn new(scene: &Scene, unscaled_m: f32, args: &CompareArgs) -> Result<Self, HarnessError> {
+        let is_posed = matches!(args.camera, Some(Camera::Pose(_)));
+        let lens = scene.cameras.first().map(|camera| camera.lens).filter(|_| !is_posed);
+        let view = view_of(scene, pose_of(scene, args), lens, [args.size.width, args.size.height]);
+        let radius_scale = args.radius_scale.unwrap_or_else(|| radius_scale_of(unscaled_m));
+        let lit = Lit::new(scene, radius_scale, args)?;
+        Ok(Self { lens, view, radius_scale, lit })
+    }
 }
 
 impl Stage {
     /// Opens the scene, scatters the lights and uploads both.
     pub fn new(gpu: &Gpu, args: &CompareArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
-        let radius_scale =
-            args.radius_scale.unwrap_or_else(|| radius_scale_of(scene.core_bounds.diagonal()));
+        let unscaled_m = scene.core_bounds.diagonal();
         let scene = scene.scaled(args.scene_scale as f32)?;
-        let light_box = match args.light_box {
-            LightBox::Core => scene.core_bounds,
-            LightBox::Bounds => scene.bounds,
-        };
-        let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
-        let own_lights = lights.len();
-        lights.extend(scatter_lights(&LightSpec {
-            count: args.lights,
-            seed: args.seed,
-            radius_scale: radius_scale as f32,
-            bounds: light_box,
-            spot_share: args.spots as f32,
-        })?);
-        let view = view_of(&scene, args);
+        let Set { lens, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
         Ok(Self {
             scene_hash: scene.hash(),
             radius_scale,
-            light_box,
-            own_lights,
-            lights: LightBuffer::ordered(gpu, &lights, args.light_order)?,
+            light_box: lit.bounds,
+            own_lights: lit.own,
+            lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
+            lens,
+            unscaled_m,
         })
+    }
+
+    /// The same scene under the lights and from the camera of other arguments, which must name the
+    /// same scene at the same scale.
+    pub fn set_up(&mut self, gpu: &Gpu, args: &CompareArgs) -> Result<(), HarnessError> {
+        let Set { lens, view, radius_scale, lit } = Set::new(&self.scene, self.unscaled_m, args)?;
+        self.radius_scale = radius_scale;
+        self.light_box = lit.bounds;
+        self.own_lights = lit.own;
+        self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
+        self.view = view;
+        self.lens = lens;
+        Ok(())
+    }
+
+    /// Uploads camera and lights: outside the clock.
+    pub fn prepare(&mut self) -> Result<(), HarnessError> {
+        Ok(self.renderer.prepare(&self.view, &self.lights)?)
+    }
+
+    /// Moves the camera to frame `frame` of `count` along the scene's path, and uploads it.
+    pub fn go_to(&mut self, frame: u32, count: u32) -> Result<(), HarnessError> {
+        let size = [self.view.viewport.width, self.view.viewport.height];
+        self.view = view_of(&self.scene, self.scene.path.pose(frame, count), self.lens, size);
+        self.prepare()
     }
 
     /// Lights of each kind, by name.
     pub fn light_kinds(&self) -> [(&'static str, u64); 2] {
         let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
         [("point", count(LightKind::Point)), ("spot", count(LightKind::Spot))]
+    }
+}
+
+/// The lights of a stage.
+struct Lit {
+    lights: Vec<Light>,
+    bounds: Aabb,
+    own: usize,
+}
+
+impl Lit {
+    /// The scene's own lights and those that are scattered, with the range that a threshold gives.
+    fn new(scene: &Scene, radius_scale: f64, args: &CompareArgs) -> Result<Self, HarnessError> {
+        let bounds = match args.light_box {
+            LightBox::Core | LightBox::Cylinders => scene.core_bounds,
+            LightBox::Bounds => scene.bounds,
+        };
+        let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
+        let own = lights.len();
+        lights.extend(scatter_lights(&LightSpec {
+            count: args.lights,
+            seed: args.seed,
+            radius_scale: radius_scale as f32,
+            radii: args.radii.into(),
+            bounds,
+            places: match args.light_box {
+                LightBox::Cylinders => Places::Cylinders,
+                LightBox::Core | LightBox::Bounds => Places::Box,
+            },
+            spot_share: args.spots as f32,
+        })?);
+        if let Some(threshold) = args.threshold {
+            for light in &mut lights {
+                light.range_m = Light::range_from_threshold(light.intensity, threshold as f32)
+                    .clamp(MIN_RANGE_M, MAX_RANGE_M);
+            }
+        }
+        Ok(Self { lights, bounds, own })
     }
 }
 
@@ -83,19 +156,22 @@ fn radius_scale_of(diagonal_m: f32) -> f64 {
     (diagonal_m / diagonal_m.clamp(10.0, 60.0)).clamp(1e-6, 1e6)
 }
 
-/// The camera asked for, or the scene's: its path's first pose through its first camera's lens.
-fn view_of(scene: &Scene, args: &CompareArgs) -> View {
-    let pose = args.camera.map_or_else(
-        || scene.path.pose(0, 1),
-        |camera| Pose::new(Vec3::from(camera.eye), Vec3::from(camera.target)),
-    );
-    let lens = scene.cameras.first().map(|camera| camera.lens).filter(|_| args.camera.is_none());
+/// The pose asked for, or the first of the scene's path.
+fn pose_of(scene: &Scene, args: &CompareArgs) -> Pose {
+    match args.camera {
+        None => scene.path.pose(0, 1),
+        Some(Camera::OnPath { frame, count }) => scene.path.pose(frame, count),
+        Some(Camera::Pose(pose)) => Pose::new(Vec3::from(pose.eye), Vec3::from(pose.target)),
+    }
+}
+
+/// A view from a pose through a lens.
+fn view_of(scene: &Scene, pose: Pose, lens: Option<Lens>, size: [u32; 2]) -> View {
     let fov_y = match lens {
         Some(Lens::Perspective { fov_y }) => fov_y,
         _ => FOV_Y,
     };
     let near = (scene.core_bounds.diagonal() * NEAR_SHARE).max(1e-6);
-    let size = [args.size.width, args.size.height];
     let mut view = View {
         world_to_view: pose.world_to_view(),
         ..View::look_at(pose.eye, pose.target, fov_y, near, size)

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use assign::{Light, LightShape};
 use glam::Vec3;
 use rand::{Rng, RngExt, SeedableRng};
-use rand_distr::{Distribution, Gamma};
+use rand_distr::{Distribution, Gamma, LogNormal};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
@@ -31,6 +31,107 @@ const SPOT_OUTER_DEGREES: (f64, f64) = (15.0, 60.0);
 /// Inner angle of spots as a share of the outer.
 const SPOT_INNER_SHARE: (f64, f64) = (0.5, 0.95);
 
+/// Standard deviation of the logarithm of [`Radii::LogNormal`].
+const LOG_SPREAD: f64 = 1.0;
+
+/// How the radii of scattered lights are distributed; their mean is one metre, scaled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Radii {
+    /// Gamma with mode 0.25 (Enhuber 2019, equation 4.3).
+    #[default]
+    Gamma,
+    /// All alike.
+    Equal,
+    /// Log-normal with a standard deviation of the logarithm of 1: many small, a few very large.
+    LogNormal,
+}
+
+impl Radii {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Gamma, Self::Equal, Self::LogNormal];
+
+    /// `gamma`, `equal` or `log-normal`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gamma => "gamma",
+            Self::Equal => "equal",
+            Self::LogNormal => "log-normal",
+        }
+    }
+}
+
+/// How scattered lights fill their box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Places {
+    /// Uniformly (Enhuber 2019, section 4.2).
+    #[default]
+    Box,
+    /// In seven upright cylinders, one in the middle and six around it, as high as the box (after
+    /// Watrous 2024, whose seven lie where its scene has room).
+    Cylinders,
+}
+
+/// Cylinders of [`Places::Cylinders`].
+const CYLINDERS: usize = 7;
+
+/// Their radius, and the distance of the outer ones from the middle, as shares of the box's sides.
+const CYLINDER_SHARES: (f64, f64) = (0.09, 0.36);
+
+impl Places {
+    /// A point in the box: each coordinate a share of its side.
+    fn sample(self, rng: &mut impl Rng) -> [f64; 3] {
+        let [x, y, z] = std::array::from_fn(|_| rng.random::<f64>());
+        if self == Self::Box {
+            return [x, y, z];
+        }
+        let cylinder = rng.random_range(0..CYLINDERS);
+        let (radius, away) = CYLINDER_SHARES;
+        let around = TAU * cylinder as f64 / (CYLINDERS - 1) as f64;
+        let away = if cylinder == CYLINDERS - 1 { 0.0 } else { away };
+        let (sin, cos) = (TAU * x).sin_cos();
+        let out = radius * z.sqrt();
+        [0.5 + away * around.cos() + out * cos, y, 0.5 + away * around.sin() + out * sin]
+    }
+}
+
+/// A distribution, ready to draw from.
+enum RadiusSource {
+    Gamma(Gamma<f64>),
+    Equal,
+    LogNormal(LogNormal<f64>),
+}
+
+impl RadiusSource {
+    fn new(radii: Radii) -> Result<Self, SceneError> {
+        let fail = |value: String| SceneError::OutOfRange {
+            field: "distribution of radii",
+            value,
+            accepted: "positive",
+        };
+        Ok(match radii {
+            Radii::Gamma => {
+                let gamma = Gamma::new(GAMMA.0, GAMMA.1);
+                Self::Gamma(gamma.map_err(|_| fail(format!("{GAMMA:?}")))?)
+            }
+            Radii::Equal => Self::Equal,
+            Radii::LogNormal => {
+                let mean_of_log = -0.5 * LOG_SPREAD * LOG_SPREAD;
+                let spread = LogNormal::new(mean_of_log, LOG_SPREAD);
+                Self::LogNormal(spread.map_err(|_| fail(LOG_SPREAD.to_string()))?)
+            }
+        })
+    }
+
+    /// A radius, metres.
+    fn sample(&self, rng: &mut impl Rng) -> f64 {
+        match self {
+            Self::Gamma(gamma) => gamma.sample(rng),
+            Self::Equal => 1.0,
+            Self::LogNormal(spread) => spread.sample(rng),
+        }
+    }
+}
+
 /// What [`scatter_lights`] is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSpec {
@@ -40,8 +141,12 @@ pub struct LightSpec {
     pub seed: u64,
     /// Factor on the radii, `> 0`; at 1 their mean is one metre.
     pub radius_scale: f32,
+    /// How the radii are distributed.
+    pub radii: Radii,
     /// Where the lights are.
     pub bounds: Aabb,
+    /// How they fill the box.
+    pub places: Places,
     /// Share of spots among them, 0..=1; the rest are points.
     pub spot_share: f32,
 }
@@ -49,7 +154,15 @@ pub struct LightSpec {
 impl LightSpec {
     /// `count` point lights in `bounds`, seed 1, radii of mean one metre.
     pub fn new(count: u32, bounds: Aabb) -> Self {
-        Self { count, seed: 1, radius_scale: 1.0, bounds, spot_share: 0.0 }
+        Self {
+            count,
+            seed: 1,
+            radius_scale: 1.0,
+            radii: Radii::Gamma,
+            bounds,
+            places: Places::Box,
+            spot_share: 0.0,
+        }
     }
 
     fn check(&self) -> Result<(), SceneError> {
@@ -86,21 +199,18 @@ impl LightSpec {
 /// [`SceneError::OutOfRange`] for a field outside its range.
 pub fn scatter_lights(spec: &LightSpec) -> Result<Vec<Light>, SceneError> {
     spec.check()?;
-    let radii = Gamma::new(GAMMA.0, GAMMA.1).map_err(|_| SceneError::OutOfRange {
-        field: "gamma distribution",
-        value: format!("{GAMMA:?}"),
-        accepted: "positive",
-    })?;
+    let radii = RadiusSource::new(spec.radii)?;
     let lights = (0..spec.count).into_par_iter();
     Ok(lights.map(|ix| scatter_one(spec, &radii, ix)).collect())
 }
 
-fn scatter_one(spec: &LightSpec, radii: &Gamma<f64>, ix: u32) -> Light {
+fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
     // The gamma draw takes a varying number of values and so comes last.
     let mut rng = Pcg64Mcg::seed_from_u64(stream(spec.seed, ix));
+    let shares = spec.places.sample(&mut rng);
     let position = Vec3::from_array(std::array::from_fn(|axis| {
         let (min, max) = (spec.bounds.min[axis], spec.bounds.max[axis]);
-        let at = f64::from(min) + rng.random::<f64>() * (f64::from(max) - f64::from(min));
+        let at = f64::from(min) + shares[axis] * (f64::from(max) - f64::from(min));
         (at as f32).clamp(min, max)
     }));
     let color = random_color(&mut rng);
@@ -203,6 +313,33 @@ mod tests {
         let center = lights.iter().map(|l| l.position.as_dvec3()).sum::<glam::DVec3>() / n;
         let off = center - spec(0).bounds.center().as_dvec3();
         assert!(off.abs().max_element() < 0.032, "middle {center}");
+    }
+
+    #[test]
+    fn other_distributions_keep_the_mean_and_the_places() {
+        let gamma = scatter_lights(&spec(100_000)).expect("valid");
+        for radii in [Radii::Equal, Radii::LogNormal] {
+            let lights = scatter_lights(&LightSpec { radii, ..spec(100_000) }).expect("valid");
+            let mean = lights.iter().map(|l| f64::from(l.range_m)).sum::<f64>() / 1e5;
+            // Four standard errors of a log-normal of variance e - 1.
+            assert!((mean - 1.0).abs() < 0.0166, "{}: mean {mean}", radii.name());
+            assert!(lights.iter().zip(&gamma).all(|(a, b)| a.position == b.position));
+            let largest = lights.iter().map(|l| l.range_m).fold(0.0, f32::max);
+            assert_eq!(largest > 10.0, radii == Radii::LogNormal, "{largest}");
+        }
+    }
+
+    #[test]
+    fn cylinders_hold_all_lights_and_leave_room_between() {
+        let bounds = Aabb::new(Vec3::ZERO, Vec3::new(10.0, 4.0, 10.0));
+        let places = Places::Cylinders;
+        let lights = scatter_lights(&LightSpec { places, ..LightSpec::new(7_000, bounds) });
+        let lights = lights.expect("valid");
+        let from_middle = |l: &Light| (l.position.with_y(0.0) - Vec3::new(5.0, 0.0, 5.0)).length();
+        let inner = lights.iter().filter(|l| from_middle(l) <= 0.9001).count();
+        assert!((900..1_100).contains(&inner), "{inner} in the middle");
+        assert!(lights.iter().all(|l| !(0.91..2.69).contains(&from_middle(l))));
+        assert!(lights.iter().all(|l| bounds.contains(l.position)));
     }
 
     #[test]

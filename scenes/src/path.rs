@@ -73,6 +73,11 @@ impl CameraPath {
         Self(Way::Animated(Box::new(node), 1.0))
     }
 
+    /// Whether it leads anywhere.
+    pub fn moves(&self) -> bool {
+        !matches!(self.0, Way::Still(_))
+    }
+
     /// Whether it comes from an animation of the scene's file.
     pub fn is_animation(&self) -> bool {
         matches!(self.0, Way::Animated(..))

@@ -44,6 +44,14 @@ pub enum ShadingError {
     /// A lighting pass meets a kind of light that its shader was not made for.
     #[error("the lighting pass was made without spots, and the lights hold one: make it anew")]
     Spots,
+    /// A file could not be read.
+    #[error("{path}: cannot be read: {reason}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// A file could not be written.
     #[error("{path}: cannot be written: {reason}")]
     Write {

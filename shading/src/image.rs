@@ -8,7 +8,7 @@ use image::{ImageFormat, RgbImage};
 use crate::{ShadingError, Targets, mips::linear_to_srgb};
 
 /// A linear HDR image, single precision.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct HdrImage {
     /// Pixels a row.
     pub width: u32,
@@ -131,6 +131,23 @@ impl HdrImage {
         encode_png(self.width, self.height, bytes)
     }
 
+    /// Reads an EXR file that [`write_exr`](Self::write_exr) wrote, or another with R, G and B.
+    pub fn read_exr(path: &Path) -> Result<Self, ShadingError> {
+        let read = exr::prelude::read_first_rgba_layer_from_file(
+            path,
+            |size, _| (size.width(), vec![[0.0_f32; 3]; size.width() * size.height()]),
+            |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
+                if let Some(pixel) = pixels.get_mut(at.y() * *width + at.x()) {
+                    *pixel = [r, g, b];
+                }
+            },
+        )
+        .map_err(|e| ShadingError::Read { path: path.to_owned(), reason: e.to_string() })?;
+        let size = read.layer_data.size;
+        let (_, pixels) = read.layer_data.channel_data.pixels;
+        Ok(Self { width: size.width() as u32, height: size.height() as u32, pixels })
+    }
+
     /// Writes linear radiance as OpenEXR, single precision.
     pub fn write_exr(&self, path: &Path) -> Result<(), ShadingError> {
         let width = self.width as usize;
@@ -205,15 +222,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         grey(0.123_456_79).write_exr(&path).unwrap();
-        let read = exr::prelude::read_first_rgba_layer_from_file(
-            &path,
-            |size, _| (size.width(), vec![[0.0_f32; 3]; size.width() * size.height()]),
-            |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
-                pixels[at.y() * *width + at.x()] = [r, g, b];
-            },
-        )
-        .unwrap();
-        assert_eq!(read.layer_data.channel_data.pixels.1, grey(0.123_456_79).pixels);
+        assert_eq!(HdrImage::read_exr(&path).unwrap(), grey(0.123_456_79));
+        assert!(HdrImage::read_exr(Path::new("/nowhere/a.exr")).is_err());
         assert!(grey(1.0).write_exr(Path::new("/nowhere/a.exr")).is_err());
     }
 }

@@ -38,7 +38,7 @@ pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
 pub use image::{HdrImage, ImageDifference, luminance};
-pub use lighting::{Lighting, LightingOptions};
+pub use lighting::{Cut, Lighting, LightingOptions};
 pub use materials::MaterialRecord;
 pub use probe::{Samples, probe, record_for_probe};
 pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};

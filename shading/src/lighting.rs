@@ -1,6 +1,7 @@
 //! Lighting with one strategy's lists, in one mode.
 
 use assign::{AssignError, Assignment, Gpu, Passes, View, entry, uniform_entry};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     Mode, Renderer, ShadingError,
@@ -26,6 +27,29 @@ pub struct LightingOptions {
     /// shader is one, told by a uniform; [`EVALUATE_ALL`](Self::EVALUATE_ALL) leaves out nothing.
     /// Anything above 0 loses light: per square metre of the fall-off, and as a cosine.
     pub exit_weight: f32,
+    /// How the fall-off ends at a light's range.
+    pub cut: Cut,
+}
+
+/// How a light's fall-off ends at its range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cut {
+    /// Smoothly: times `(1 - (d / range)^4)^2`.
+    #[default]
+    Windowed,
+    /// At once: inverse square up to the range, 0 beyond.
+    Hard,
+}
+
+impl Cut {
+    /// As in results: `windowed` or `hard`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Windowed => "windowed",
+            Self::Hard => "hard",
+        }
+    }
 }
 
 impl LightingOptions {
@@ -119,6 +143,7 @@ impl Deferred {
         let shader = shaders::lighting(LISTS_GROUP)
             .module("package::strategy", lists.lookup.module.source())
             .flag("spots", lists.options.spots)
+            .flag("hard_cut", lists.options.cut == Cut::Hard)
             .flag("model_ids", model_ids)
             .flag("emissive", emissive);
         // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.

@@ -7,7 +7,7 @@ use assign::{DepthMapping, FrameBindings, Gpu, Shader};
 use crate::{
     ShadingError,
     geometry::{DrawKey, SceneGpu},
-    lighting::LightingOptions,
+    lighting::{Cut, LightingOptions},
     materials::TEXTURE_FLAGS,
     shaders,
     targets::{
@@ -92,7 +92,8 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
     if let RasterPass::Forward(lists) = pass {
         shader = shader
             .module("package::strategy", lists.lookup.module.source())
-            .flag("spots", lists.options.spots);
+            .flag("spots", lists.options.spots)
+            .flag("hard_cut", lists.options.cut == Cut::Hard);
     }
     shader
 }

@@ -16,6 +16,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "clay",
         "write_model_ids",
         "model_ids",
+        "hard_cut",
         "mask",
         "emissive",
         "uv_transforms",

@@ -68,7 +68,8 @@ fn everything(
 ) -> HdrImage {
     renderer.prepare(view, lights).unwrap();
     let mut strategy = Everything::new(gpu).unwrap();
-    let options = LightingOptions { spots: lights.has_spots(), exit_weight };
+    let options =
+        LightingOptions { spots: lights.has_spots(), exit_weight, ..LightingOptions::default() };
     let lighting = Lighting::new(renderer, &strategy, mode, options).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -143,7 +144,7 @@ fn both_modes_find_the_models_of_their_pixels() {
     for mode in [Mode::Deferred, Mode::Forward] {
         let reference = everything(&gpu, &mut renderer, &view, &lights, mode, EVALUATE_ALL);
         let mut strategy = PerModel::new(&gpu, Some(0.7), CullSettings::default()).unwrap();
-        let options = LightingOptions { spots: lights.has_spots(), exit_weight: 0.0 };
+        let options = LightingOptions { spots: lights.has_spots(), ..LightingOptions::default() };
         let lighting = Lighting::new(&renderer, &strategy, mode, options).unwrap();
         let frame = renderer.frame(&view, &lights);
         strategy.prepare(&gpu, &frame).unwrap();

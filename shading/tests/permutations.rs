@@ -160,7 +160,7 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in subsets(&["emissive", "spots", "model_ids"]) {
+        for flags in subsets(&["emissive", "spots", "model_ids", "hard_cut"]) {
             let mut images = vec![0, 1, 2, 4, 6];
             images.extend(flags.contains("emissive").then_some(3));
             images.extend(flags.contains("model_ids").then_some(5));

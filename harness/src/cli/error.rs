@@ -81,11 +81,13 @@ impl CliError {
             )),
             ErrorKind::InvalidSubcommand => {
                 let name = text(ContextKind::InvalidSubcommand).unwrap_or_default();
-                Self::unknown("command", &name, &["compare", "list"])
+                Self::unknown("command", &name, &["compare", "study", "report", "advise", "list"])
             }
-            ErrorKind::MissingRequiredArgument => {
-                Self::new("list needs what to list: strategies, scenes or adapters")
-            }
+            ErrorKind::MissingRequiredArgument => Self::new(match option {
+                "<DIR>..." => "report needs a folder: of a comparison or a study",
+                "<STUDY>" => "study needs which one: comparison or culling",
+                _ => "list needs what to list: strategies, scenes or adapters",
+            }),
             ErrorKind::ArgumentConflict => Self::new(conflict(error, option)),
             ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues => {
                 Self::new(format!("{option} takes one value"))

@@ -53,8 +53,10 @@ fn compare_is_the_command_where_none_is_named() {
                 --no-own-lights --adapter llvm --out x --seed 18446744073709551615";
     let args = compare(line);
     assert_eq!(args, compare(&format!("compare {line}")));
-    let camera = args.camera.expect("a pose");
-    assert_eq!((camera.eye, camera.target), ([-1.0, 2.0, 3.5], [0.0, -1.0, 0.0]));
+    let pose = CameraPose { eye: [-1.0, 2.0, 3.5], target: [0.0, -1.0, 0.0] };
+    assert_eq!(args.camera, Some(Camera::Pose(pose)));
+    let on_path = compare("--camera path:3/12").camera;
+    assert_eq!(on_path, Some(Camera::OnPath { frame: 3, count: 12 }));
     assert_eq!(args.mode.modes(), [Mode::Deferred, Mode::Forward]);
     assert_eq!(TruthLevel::from(args.truth), TruthLevel::None);
 }

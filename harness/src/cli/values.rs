@@ -64,6 +64,40 @@ impl FromStr for CameraPose {
     }
 }
 
+/// Where the camera stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Camera {
+    /// At a pose of one's own: `0,2,10:0,1,0`.
+    Pose(CameraPose),
+    /// At a frame of the scene's path: `path:300/1200`.
+    OnPath {
+        /// The frame, from 0.
+        frame: u32,
+        /// Frames of the whole path.
+        count: u32,
+    },
+}
+
+impl FromStr for Camera {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Some(place) = text.strip_prefix("path:") else {
+            return text
+                .parse()
+                .map(Self::Pose)
+                .map_err(|accepted: String| format!("{accepted}, or path:FRAME/COUNT"));
+        };
+        let frame = |text: &str| text.parse::<u32>().ok();
+        place
+            .split_once('/')
+            .and_then(|(at, count)| Some((frame(at)?, frame(count)?)))
+            .filter(|(at, count)| at < count && *count <= MAX_FRAMES)
+            .map(|(frame, count)| Self::OnPath { frame, count })
+            .ok_or_else(|| "path:FRAME/COUNT, the frame below the count of at most 100,000".into())
+    }
+}
+
 /// Ids of strategies, none empty, none twice, in the order given: `None,DC-I/64x64x24`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies(pub Vec<String>);
@@ -84,6 +118,10 @@ impl FromStr for Strategies {
 
 pub(super) fn scale(text: &str) -> Result<f64, String> {
     number(text, SCALES.0, SCALES.1).ok_or_else(|| "a number from 1e-6 to 1e6".to_owned())
+}
+
+pub(super) fn threshold(text: &str) -> Result<f64, String> {
+    number(text, 1e-9, 1e9).ok_or_else(|| "a number from 1e-9 to 1e9".to_owned())
 }
 
 pub(super) fn share(text: &str) -> Result<f64, String> {

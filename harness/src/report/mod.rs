@@ -10,9 +10,11 @@ mod html;
 mod markdown;
 mod metrics;
 mod page;
+mod study;
 mod table;
 
 pub use finding::{finding, notices};
 pub use html::{render_html, write_html};
 pub use markdown::render_markdown;
+pub use study::write_study;
 pub use table::{TABLE_WIDTH, render_table};

@@ -86,13 +86,14 @@ impl Passes {
             .collect()
     }
 
+    /// Whether there is a pass of a kind (any pass: `None`).
+    pub fn has(&self, kind: Option<PassKind>) -> bool {
+        self.0.iter().any(|(_, times)| kind.is_none_or(|kind| times.kind == kind))
+    }
+
     /// Median over frames of [`per_frame_ms`](Self::per_frame_ms); 0 where there is no such pass.
     pub fn median_ms(&self, kind: Option<PassKind>) -> f64 {
-        let present = |times: &PassTimes| kind.is_none_or(|kind| times.kind == kind);
-        if !self.0.iter().any(|(_, times)| present(times)) {
-            return 0.0;
-        }
-        median(&self.per_frame_ms(kind))
+        if self.has(kind) { median(&self.per_frame_ms(kind)) } else { 0.0 }
     }
 }
 

@@ -28,6 +28,72 @@ pub fn percentile(samples: &[f64], share: f64) -> f64 {
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
+/// The mean. NaN without samples.
+pub fn mean(samples: &[f64]) -> f64 {
+    samples.iter().sum::<f64>() / samples.len() as f64
+}
+
+/// The standard deviation of the samples. NaN without samples.
+pub fn standard_deviation(samples: &[f64]) -> f64 {
+    let mean = mean(samples);
+    (samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / samples.len() as f64)
+        .sqrt()
+}
+
+/// Where a median lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+    /// The probability that the interval holds the median, whatever the samples' distribution:
+    /// 0.95 at least where there are enough samples, else less.
+    pub coverage: f64,
+}
+
+/// The least probability with which an interval is to hold the median.
+const COVERAGE: f64 = 0.95;
+
+/// A confidence interval of the median of whatever independent samples come from, from order
+/// statistics: the k-th smallest and k-th largest sample hold it unless fewer than k of n fair coins
+/// fall on one side, so the coverage is `1 - 2 P(B(n, 1/2) < k)`. The largest k with a coverage of
+/// 0.95 is taken; below six samples that is none, and the range of all stands in. `None` below two.
+///
+/// ```
+/// let times_ms: Vec<f64> = (1..=16).map(f64::from).collect();
+/// let interval = harness::results::median_interval(&times_ms).unwrap();
+/// assert_eq!((interval.low, interval.high), (4.0, 13.0));
+/// assert!((interval.coverage - 0.979).abs() < 1e-3);
+/// ```
+pub fn median_interval(samples: &[f64]) -> Option<Interval> {
+    let sorted = sorted(samples);
+    let count = sorted.len();
+    if count < 2 {
+        return None;
+    }
+    if count > 200 {
+        // The normal approximation of the binomial; the sum below would underflow.
+        let k = ((count as f64 - 1.96 * (count as f64).sqrt()) / 2.0) as usize;
+        let (low, high) = (sorted[k.max(1) - 1], sorted[count - k.max(1)]);
+        return Some(Interval { low, high, coverage: COVERAGE });
+    }
+    let mut interval = None;
+    // P(B(n, 1/2) = 0), then the sum up to k - 1.
+    let mut term = 0.5_f64.powi(count as i32);
+    let mut below = 0.0;
+    for k in 1..=count / 2 {
+        below += term;
+        term *= (count - k + 1) as f64 / k as f64;
+        let coverage = 1.0 - 2.0 * below;
+        if k > 1 && coverage < COVERAGE {
+            break;
+        }
+        interval = Some(Interval { low: sorted[k - 1], high: sorted[count - k], coverage });
+    }
+    interval
+}
+
 fn sorted(samples: &[f64]) -> Vec<f64> {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -57,6 +123,35 @@ mod tests {
         assert_eq!(percentile(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 9.0], 0.95), 9.0);
         assert_eq!(percentile(&[5.0], 0.95), 5.0);
         assert!(percentile(&[], 0.95).is_nan());
+    }
+
+    #[test]
+    fn intervals_hold_the_median_as_often_as_they_say() {
+        // Known ranks (any table of order-statistic intervals).
+        let ranks = |n: i32| {
+            let samples: Vec<f64> = (1..=n).map(f64::from).collect();
+            median_interval(&samples).map(|i| (i.low, i.high))
+        };
+        assert_eq!(ranks(6), Some((1.0, 6.0)));
+        assert_eq!(ranks(9), Some((2.0, 8.0)));
+        assert_eq!(ranks(20), Some((6.0, 15.0)));
+        assert_eq!(ranks(1), None);
+        let few = median_interval(&[3.0, 1.0, 2.0]).unwrap();
+        assert_eq!((few.low, few.high, few.coverage), (1.0, 3.0, 0.75));
+        // 2,000 draws of 16 uniform numbers: the share that holds 0.5 is the coverage.
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let held = (0..2_000).filter(|_| {
+            let samples: Vec<f64> = (0..16).map(|_| uniform()).collect();
+            median_interval(&samples).is_some_and(|i| i.low <= 0.5 && 0.5 <= i.high)
+        });
+        let share = held.count() as f64 / 2_000.0;
+        assert!((share - 0.979).abs() < 0.013, "{share}");
     }
 
     #[test]

@@ -97,6 +97,15 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         lists_bytes: if is_none { 4_016 } else { 1_310_720 },
         overflowed_groups: 0,
         histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
+        rounds: frames,
+        along_path: false,
+        radii: Some("gamma".to_owned()),
+        light_places: Some("core".to_owned()),
+        threshold: None,
+        cut: Some("windowed".to_owned()),
+        is_lossy: false,
+        errors: BTreeMap::from([("rel_mse".to_owned(), Some(0.0))]),
+        unbounded_errors: BTreeMap::new(),
         light_order: Some("bvh".to_owned()),
         light_build_ms: Some(0.4),
         tolerance: None,
@@ -106,6 +115,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             difference: (!is_none).then(|| format!("{stem}-difference.png")),
             heat_map: (!is_none).then(|| format!("{stem}-heat.png")),
             difference_amplification: (!is_none).then_some(64.0),
+            ..Images::default()
         },
         note: None,
     };

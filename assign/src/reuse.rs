@@ -1,0 +1,92 @@
+//! Lists that are used for several frames: the `update` axis.
+
+use crate::{AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, SampleDomain};
+
+/// A strategy whose lists are made every `frames` frames and read in between.
+///
+/// Lossy where the groups move with the camera, or lights or models move: a sample then reads the
+/// list that its group had. Lossless where neither does, as with the cells of a grid under lights
+/// that stand still.
+pub struct Reuse {
+    inner: Box<dyn Assignment>,
+    frames: u32,
+    /// Frames since the lists were made; `None` where they must be made anew.
+    age: Option<u32>,
+    /// What the lists were made into, and for how many lights, groups and look-ups.
+    made: Option<Made>,
+}
+
+#[derive(PartialEq)]
+struct Made {
+    lists: wgpu::Buffer,
+    entries: wgpu::Buffer,
+    light_count: u32,
+    group_count: u32,
+    samples: SampleDomain,
+}
+
+impl Reuse {
+    /// Wraps a strategy; 1 frame is every frame.
+    pub fn new(inner: Box<dyn Assignment>, frames: u32) -> Result<Self, AssignError> {
+        if frames == 0 {
+            return Err(AssignError::Parameter {
+                field: "frames of a list".into(),
+                value: "0".into(),
+                accepted: "1 or more".into(),
+            });
+        }
+        Ok(Self { inner, frames, age: None, made: None })
+    }
+}
+
+impl Assignment for Reuse {
+    fn id(&self) -> String {
+        format!("{}/reuse{}", self.inner.id(), self.frames)
+    }
+
+    fn needs(&self) -> Needs {
+        self.inner.needs()
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        self.inner.prepare(gpu, frame)?;
+        let lists = self.inner.lists();
+        let now = Made {
+            lists: lists.lists().clone(),
+            entries: lists.entries().clone(),
+            light_count: frame.lights.count(),
+            group_count: lists.group_count(),
+            samples: frame.samples,
+        };
+        // A buffer that was made anew holds no lists.
+        if self.made.as_ref() != Some(&now) {
+            self.made = Some(now);
+            self.age = None;
+        }
+        Ok(())
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        let age = self.age.map_or(0, |age| (age + 1) % self.frames);
+        if age == 0 {
+            self.inner.record(frame, passes);
+        }
+        self.age = Some(age);
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        self.inner.lookup()
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.inner.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.inner.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.inner.lists_mut()
+    }
+}

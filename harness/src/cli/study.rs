@@ -1,0 +1,186 @@
+//! The options of `study`, `report` and `advise`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+
+use super::values::{self, Size};
+
+/// A study by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StudyName {
+    /// The comparison paper, more lights, other radii, and speed against accuracy
+    Comparison,
+    /// The culling survey: 0 to 1,500 lights in spawn cylinders, along a path, in both modes
+    Culling,
+}
+
+impl StudyName {
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Comparison => "comparison",
+            Self::Culling => "culling",
+        }
+    }
+}
+
+/// Which jobs of a study to run: every n-th.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Which of them, from 1.
+    pub part: u32,
+    /// How many there are.
+    pub parts: u32,
+}
+
+impl Shard {
+    /// Whether it runs the job of an index.
+    pub fn holds(self, job: usize) -> bool {
+        job % self.parts as usize == self.part as usize - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.split_once('/')
+            .and_then(|(part, parts)| {
+                Some(Self { part: part.parse().ok()?, parts: parts.parse().ok()? })
+            })
+            .filter(|shard| (1..=shard.parts).contains(&shard.part) && shard.parts <= 10_000)
+            .ok_or_else(|| "K/N, K from 1 to N, N at most 10,000".to_owned())
+    }
+}
+
+/// The options of `lightbench study`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct StudyArgs {
+    /// Which study
+    pub study: StudyName,
+
+    /// A scene's name or a .gltf or .glb file; given again for each further scene
+    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
+    pub scene: Vec<String>,
+
+    /// Factor on the size of a scene, 1e-6 to 1e6, in the order of the scenes [default: 1]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale)]
+    pub scene_scale: Vec<f64>,
+
+    /// A small study, minutes on a software adapter
+    #[arg(long)]
+    pub quick: bool,
+
+    /// Image size in pixels [default: the study's, 1920x1080 or 1280x720; 192x108 where quick]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
+    pub size: Option<Size>,
+
+    /// Seed of the scattered lights and of the order of methods
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
+    pub seed: u64,
+
+    /// Run every N-th job alone, from the K-th; `lightbench report` puts the parts together
+    #[arg(long, value_name = "K/N", default_value = "1/1", allow_hyphen_values = true)]
+    pub shard: Shard,
+
+    /// Part of the adapter's name, where there are several
+    #[arg(long, value_name = "NAME", value_parser = values::text)]
+    pub adapter: Option<String>,
+
+    /// Folder for jobs and report; where an interrupted study is, it goes on
+    #[arg(long, value_name = "DIR", default_value = "out/study")]
+    pub out: PathBuf,
+}
+
+impl StudyArgs {
+    /// What decides the jobs: the command without its folder, its shard and its adapter.
+    pub fn identity(&self) -> Vec<String> {
+        let mut words =
+            vec!["lightbench".to_owned(), "study".to_owned(), self.study.name().to_owned()];
+        let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
+        for scene in &self.scene {
+            option("--scene", scene.clone());
+        }
+        for scale in &self.scene_scale {
+            option("--scene-scale", scale.to_string());
+        }
+        if let Some(Size { width, height }) = self.size {
+            option("--size", format!("{width}x{height}"));
+        }
+        option("--seed", self.seed.to_string());
+        if self.quick {
+            words.push("--quick".to_owned());
+        }
+        words
+    }
+}
+
+/// The options of `lightbench report`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct ReportArgs {
+    /// Folder of a comparison or a study; those of all its shards where it was split
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+
+    /// Folder for the report [default: the first folder]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// The options of `lightbench advise`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct AdviseArgs {
+    /// A scene's name or a .gltf or .glb file
+    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
+    pub scene: String,
+
+    /// Factor on the scene's size and its own lights, 1e-6 to 1e6
+    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
+    pub scene_scale: f64,
+
+    /// Lights to scatter in addition to the scene's own, or a .gltf or .glb file that holds them
+    #[arg(long, value_name = "N|FILE", default_value = "1000", allow_hyphen_values = true, value_parser = values::text)]
+    pub lights: String,
+
+    /// The greatest relMSE against no culling that is acceptable, 0 to 1; 0 asks for every bit
+    #[arg(long, value_name = "X", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
+    pub error_budget: f64,
+
+    /// Image size in pixels, each side 1 to 16,384
+    #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
+    pub size: Size,
+
+    /// How pixels are lit
+    #[arg(long, value_name = "MODE", default_value = "deferred")]
+    pub mode: super::ModeChoice,
+
+    /// Seed of the scattered lights
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
+    pub seed: u64,
+
+    /// Part of the adapter's name, where there are several
+    #[arg(long, value_name = "NAME", value_parser = values::text)]
+    pub adapter: Option<String>,
+
+    /// Folder for what was measured and its report
+    #[arg(long, value_name = "DIR", default_value = "out/advise")]
+    pub out: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_hold_every_job_once() {
+        let shards: Vec<Shard> = (1..=3).map(|part| format!("{part}/3").parse().unwrap()).collect();
+        for job in 0..20 {
+            assert_eq!(shards.iter().filter(|shard| shard.holds(job)).count(), 1);
+        }
+        for bad in ["0/3", "4/3", "1", "a/b", "1/0", "-1/2"] {
+            assert!(bad.parse::<Shard>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! How far an image is from another: one row per metric, computed from linear radiance.
+//!
+//! Except FLIP, errors are of linear HDR values, before exposure; FLIP sees what the eye does,
+//! after one exposure and tone curve for both images.
+
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool};
+use shading::{HdrImage, luminance};
+
+/// Side of the tiles over which [`tile`](ErrorMetric) sums, pixels.
+const TILE_PX: usize = 16;
+
+/// A pixel counts as off where it differs by more than this share of its value and a hundredth of
+/// the mean.
+const OFF: f64 = 0.05;
+
+/// An image beside the one it should be, both of one size.
+#[derive(Clone, Copy)]
+pub struct ImagePair<'a> {
+    /// The image.
+    pub image: &'a HdrImage,
+    /// What it should be.
+    pub reference: &'a HdrImage,
+    /// The factor before the tone curve, for FLIP.
+    pub exposure: f32,
+}
+
+/// A metric of error: less is better, 0 is none.
+pub struct ErrorMetric {
+    /// Names it in `results.json`.
+    pub id: &'static str,
+    /// Its name in tables and charts.
+    pub head: &'static str,
+    /// Its unit; empty for a plain number.
+    pub unit: &'static str,
+    /// What it means, one sentence.
+    pub about: &'static str,
+    value: fn(&Sums, &ImagePair<'_>) -> f64,
+}
+
+/// All metrics of error, in order.
+pub static ERROR_METRICS: &[ErrorMetric] = &[
+    ErrorMetric {
+        id: "missing_energy",
+        head: "missing energy",
+        unit: "",
+        about: "Luminance that is lacking, summed where the image is darker than it should be, over \
+                the luminance there should be.",
+        value: |sums, _| share(sums.darker, sums.reference),
+    },
+    ErrorMetric {
+        id: "rel_mse",
+        head: "relMSE",
+        unit: "",
+        about: "Mean over channels of the squared difference over the squared value, to which the \
+                squared tenth of the mean is added.",
+        value: |sums, pair| rel_mse(sums, pair),
+    },
+    ErrorMetric {
+        id: "bias",
+        head: "bias",
+        unit: "",
+        about: "Luminance of the whole image, off by this share, without its sign: negative bias is \
+                missing energy.",
+        value: |sums, _| share((sums.image - sums.reference).abs(), sums.reference),
+    },
+    ErrorMetric {
+        id: "tile",
+        head: "worst tile",
+        unit: "",
+        about: "Greatest error of the mean luminance of a tile of 16 x 16 pixels, over that of the \
+                whole image.",
+        value: |sums, pair| worst_tile(sums, pair),
+    },
+    ErrorMetric {
+        id: "pixels_off",
+        head: "pixels off",
+        unit: "",
+        about: "Share of pixels whose luminance is off by more than a twentieth of it and a \
+                hundredth of the mean.",
+        value: |sums, pair| pixels_off(sums, pair),
+    },
+    ErrorMetric {
+        id: "flip",
+        head: "FLIP",
+        unit: "",
+        about: "Mean FLIP after exposure and tone curve, at 67 pixels per degree (Andersson et al. \
+                2020): what an eye sees when it flips between the two.",
+        value: |_, pair| flip(pair),
+    },
+];
+
+/// Errors by metric, in the order of [`ERROR_METRICS`]. Not finite where a pixel is not.
+pub fn errors(pair: &ImagePair<'_>) -> Vec<(&'static str, f64)> {
+    if pair.image.pixels == pair.reference.pixels {
+        return ERROR_METRICS.iter().map(|metric| (metric.id, 0.0)).collect();
+    }
+    let sums = Sums::of(pair);
+    ERROR_METRICS.iter().map(|metric| (metric.id, (metric.value)(&sums, pair))).collect()
+}
+
+/// Sums of luminance over the pixels.
+struct Sums {
+    pixels: f64,
+    image: f64,
+    reference: f64,
+    /// Of what lacks where the image is darker.
+    darker: f64,
+}
+
+impl Sums {
+    fn of(pair: &ImagePair<'_>) -> Self {
+        let mut sums = Self { pixels: 0.0, image: 0.0, reference: 0.0, darker: 0.0 };
+        for (a, b) in luminances(pair) {
+            sums.pixels += 1.0;
+            sums.image += a;
+            sums.reference += b;
+            sums.darker += (b - a).max(0.0);
+        }
+        sums
+    }
+
+    fn mean(&self) -> f64 {
+        self.reference / self.pixels.max(1.0)
+    }
+}
+
+/// Luminance of the image and of what it should be, pixel by pixel.
+fn luminances<'a>(pair: &ImagePair<'a>) -> impl Iterator<Item = (f64, f64)> + 'a {
+    let pixels = pair.image.pixels.iter().zip(&pair.reference.pixels);
+    pixels.map(|(a, b)| (luminance(a), luminance(b)))
+}
+
+/// `part` over `whole`; 0 of nothing is 0.
+fn share(part: f64, whole: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part / whole }
+}
+
+fn rel_mse(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
+    let floor = (0.1 * sums.mean()).powi(2).max(f64::MIN_POSITIVE);
+    let channels = pair.image.pixels.iter().flatten().zip(pair.reference.pixels.iter().flatten());
+    let sum: f64 = channels
+        .map(|(&a, &b)| {
+            let (a, b) = (f64::from(a), f64::from(b));
+            (a - b).powi(2) / (b.powi(2) + floor)
+        })
+        .sum();
+    sum / (3.0 * sums.pixels.max(1.0))
+}
+
+fn worst_tile(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
+    let columns = (pair.image.width as usize).div_ceil(TILE_PX).max(1);
+    let width = (pair.image.width as usize).max(1);
+    let mut tiles: Vec<(f64, f64)> = Vec::new();
+    for (ix, (a, b)) in luminances(pair).enumerate() {
+        let tile = ix / width / TILE_PX * columns + ix % width / TILE_PX;
+        if tiles.len() <= tile {
+            tiles.resize(tile + 1, (0.0, 0.0));
+        }
+        tiles[tile].0 += a - b;
+        tiles[tile].1 += 1.0;
+    }
+    let worst = tiles.iter().map(|(off, pixels)| (off / pixels).abs()).fold(0.0, f64::max);
+    share(worst, sums.mean())
+}
+
+fn pixels_off(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
+    let mean = sums.mean();
+    let off = luminances(pair).filter(|(a, b)| (a - b).abs() > OFF * b + 0.01 * mean).count();
+    off as f64 / sums.pixels.max(1.0)
+}
+
+fn flip(pair: &ImagePair<'_>) -> f64 {
+    let HdrImage { width, height, .. } = *pair.image;
+    let [image, reference] =
+        [pair.image, pair.reference].map(|image| image.tone_mapped(pair.exposure));
+    let reference = FlipImageRgb8::with_data(width, height, &reference);
+    let image = FlipImageRgb8::with_data(width, height, &image);
+    let map = nv_flip::flip(reference, image, DEFAULT_PIXELS_PER_DEGREE);
+    f64::from(FlipPool::from_image(&map).mean())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(values: impl Fn(usize) -> f32) -> HdrImage {
+        HdrImage { width: 64, height: 32, pixels: (0..64 * 32).map(|ix| [values(ix); 3]).collect() }
+    }
+
+    fn of(image: &HdrImage, reference: &HdrImage, id: &str) -> f64 {
+        let all = errors(&ImagePair { image, reference, exposure: 1.0 });
+        all.into_iter().find(|(known, _)| *known == id).map(|(_, value)| value).unwrap()
+    }
+
+    #[test]
+    fn the_same_image_has_no_error() {
+        let grey = image(|ix| 0.1 + ix as f32 * 1e-4);
+        for metric in ERROR_METRICS {
+            assert_eq!(of(&grey, &grey, metric.id), 0.0, "{}", metric.id);
+        }
+        // One bit is enough for the sums to be taken.
+        let mut other = grey.clone();
+        other.pixels[77][0] += 1e-3;
+        for metric in ERROR_METRICS.iter().filter(|m| m.id != "pixels_off") {
+            let error = of(&other, &grey, metric.id);
+            let is_brighter = metric.id == "missing_energy";
+            assert!((error > 0.0) != is_brighter && error < 1e-2, "{}: {error}", metric.id);
+        }
+    }
+
+    #[test]
+    fn errors_of_made_up_images_are_known() {
+        let reference = image(|_| 1.0);
+        // Every fourth pixel is half as bright.
+        let darker = image(|ix| if ix % 4 == 0 { 0.5 } else { 1.0 });
+        assert!((of(&darker, &reference, "missing_energy") - 0.125).abs() < 1e-12);
+        assert!((of(&darker, &reference, "bias") - 0.125).abs() < 1e-12);
+        assert!((of(&darker, &reference, "pixels_off") - 0.25).abs() < 1e-12);
+        assert!((of(&darker, &reference, "rel_mse") - 0.25 * 0.25 / 1.01).abs() < 1e-12);
+        assert!((of(&darker, &reference, "tile") - 0.125).abs() < 1e-12);
+        // Brighter by as much elsewhere: no bias, and energy still lacks.
+        let both = image(|ix| [0.5, 1.5, 1.0, 1.0][ix % 4]);
+        assert!(of(&both, &reference, "bias") < 1e-12);
+        assert!((of(&both, &reference, "missing_energy") - 0.125).abs() < 1e-12);
+        // One dark tile of eight.
+        let tile = image(|ix| if ix % 64 < 16 && ix / 64 < 16 { 0.0 } else { 1.0 });
+        assert!((of(&tile, &reference, "tile") - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn flip_grows_with_what_the_eye_sees() {
+        let reference = image(|ix| if ix % 64 < 32 { 0.2 } else { 0.6 });
+        let at = |gain: f32| {
+            let pixels = reference.pixels.iter().map(|p| p.map(|v| v * gain)).collect();
+            of(&HdrImage { pixels, ..reference.clone() }, &reference, "flip")
+        };
+        assert!(at(1.05) > 0.005 && at(1.5) > 2.0 * at(1.05) && at(3.0) < 1.0);
+    }
+
+    #[test]
+    fn odd_images_give_no_panic() {
+        let black = image(|_| 0.0);
+        let lit = image(|_| 1.0);
+        let nan = image(|_| f32::NAN);
+        for pair in [(&lit, &black), (&nan, &lit), (&lit, &nan)] {
+            for metric in ERROR_METRICS {
+                let _ = of(pair.0, pair.1, metric.id);
+            }
+        }
+        assert_eq!(of(&lit, &black, "missing_energy"), 0.0);
+        assert!(!of(&lit, &black, "bias").is_finite());
+        let empty = HdrImage { width: 0, height: 0, pixels: Vec::new() };
+        assert!(errors(&ImagePair { image: &empty, reference: &empty, exposure: 1.0 }).len() > 5);
+    }
+}

@@ -1,0 +1,174 @@
+//! The record of one method in one mode, from what was seen and timed of it.
+
+use assign::Gpu;
+use shading::Mode;
+
+use crate::{
+    choice::Choice,
+    cli::{CompareArgs, LightBox},
+    clock::clock_of,
+    error::HarnessError,
+    errors::{ImagePair, errors},
+    measure::{ListsFigures, Plan, Timed},
+    results::{Errors, Images, Record, mean},
+    schedule::rounds,
+    stage::Stage,
+};
+
+/// What was seen of a method: its lists, and how far its images are from what they should be.
+#[derive(Default)]
+pub struct Seen {
+    /// Its lists.
+    pub lists: ListsFigures,
+    /// Its pictures.
+    pub images: Images,
+    /// Errors against lights without a range.
+    pub unbounded_errors: Vec<(String, f64)>,
+    /// Whether any image was compared.
+    compared: bool,
+    max_abs: f64,
+    max_rel: f64,
+    differing_channels: u64,
+    /// Errors against no culling, of each image that was compared.
+    errors: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl Seen {
+    /// Lists whose images were not compared yet.
+    pub fn new(lists: ListsFigures) -> Self {
+        Self { lists, ..Self::default() }
+    }
+
+    /// Compares an image with that of no culling.
+    pub fn compare(&mut self, pair: &ImagePair<'_>) -> Result<(), HarnessError> {
+        let difference = pair.image.difference(pair.reference)?;
+        self.compared = true;
+        self.max_abs = self.max_abs.max(difference.max_abs);
+        self.max_rel = self.max_rel.max(difference.max_rel);
+        self.differing_channels += difference.differing_channels;
+        for (id, error) in errors(pair) {
+            match self.errors.iter_mut().find(|(known, _)| *known == id) {
+                Some((_, all)) => all.push(error),
+                None => self.errors.push((id, vec![error])),
+            }
+        }
+        Ok(())
+    }
+
+    /// Forgets the errors so far, not the differences.
+    pub fn forget_errors(&mut self) {
+        self.errors.clear();
+    }
+}
+
+/// The record of one method in one mode.
+#[allow(clippy::too_many_arguments, reason = "everything that a record holds comes together here")]
+pub fn record(
+    args: &CompareArgs,
+    stage: &Stage,
+    plan: &Plan,
+    gpu: &Gpu,
+    choice: &Choice,
+    mode: Mode,
+    seen: Seen,
+    timed: Timed,
+) -> Record {
+    let Seen { lists, images, unbounded_errors, errors, .. } = seen;
+    let truth = lists.truth;
+    let known = |value: f64| (seen.compared && value.is_finite()).then_some(value);
+    let finite = |error: f64| error.is_finite().then_some(error);
+    let count = u64::from(stage.lights.count());
+    let has_lists = lists.bytes > 0;
+    let mut record = Record {
+        scene: stage.scene.name.clone(),
+        scene_hash: stage.scene_hash.clone(),
+        scene_scale: args.scene_scale,
+        triangles: stage.scene.triangle_count(),
+        strategy: choice.id().to_owned(),
+        strategy_parameters: choice.parameters(),
+        mode,
+        lights: count,
+        light_kinds: stage
+            .light_kinds()
+            .into_iter()
+            .filter(|(_, count)| *count > 0)
+            .map(|(kind, count)| (kind.to_owned(), count))
+            .collect(),
+        radius_scale: stage.radius_scale,
+        eye: stage.view.eye().to_array().map(f64::from),
+        forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
+        light_box: [stage.light_box.min, stage.light_box.max]
+            .map(|corner| corner.to_array().map(f64::from)),
+        own_lights: stage.own_lights as u64,
+        width: stage.view.viewport.width,
+        height: stage.view.viewport.height,
+        frames: plan.timed,
+        warmup_frames: plan.warmup,
+        rounds: if args.path { plan.timed } else { rounds(plan.timed) },
+        along_path: args.path,
+        radii: Some(scenes::Radii::from(args.radii).name().to_owned()),
+        light_places: Some(places(args.light_box).to_owned()),
+        threshold: args.threshold,
+        cut: Some(plan.cut.name().to_owned()),
+        is_lossy: choice.is_lossy(),
+        errors: errors.into_iter().map(|(id, all)| (id.to_owned(), finite(mean(&all)))).collect(),
+        unbounded_errors: unbounded_errors
+            .into_iter()
+            .map(|(id, error)| (id, finite(error)))
+            .collect::<Errors>(),
+        seed: args.seed,
+        clock: clock_of(gpu),
+        passes: timed.passes,
+        assign_ms: 0.0,
+        shade_ms: 0.0,
+        frame_ms: 0.0,
+        groups: lists.groups,
+        occupied_groups: u64::from(lists.counters.occupied_groups),
+        list_entries: match lists.groups {
+            0 if has_lists => count,
+            _ => lists.counters.requested(),
+        },
+        longest_list: u64::from(lists.counters.longest),
+        listed_per_sample: truth.map(|t| t.listed_per_sample()),
+        contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
+        missed_pairs: truth.map(|t| t.missed),
+        checked_pairs: truth.map(|t| t.contributing),
+        samples: truth.map_or(0, |t| t.samples),
+        max_abs_diff: known(seen.max_abs),
+        max_rel_diff: known(seen.max_rel),
+        differing_channels: seen.compared.then_some(seen.differing_channels),
+        lists_bytes: lists.bytes,
+        histogram: lists.lengths.histogram,
+        light_order: Some(stage.lights.order().to_string()),
+        light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
+        tolerance: choice.tolerance(),
+        overflowed_groups: u64::from(lists.counters.overflowed_groups),
+        images,
+        note: note(gpu, mode, timed.overflowed_frames),
+    };
+    record.set_times();
+    record
+}
+
+fn places(light_box: LightBox) -> &'static str {
+    match light_box {
+        LightBox::Core => "core",
+        LightBox::Bounds => "bounds",
+        LightBox::Cylinders => "cylinders",
+    }
+}
+
+/// What a reader of the record has to know.
+fn note(gpu: &Gpu, mode: Mode, overflowed_frames: u32) -> Option<String> {
+    let mut notes = Vec::new();
+    let mut words = gpu.info.name.split_whitespace();
+    if mode == Mode::Forward && words.any(|word| ["H100", "H200"].contains(&word)) {
+        notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
+    }
+    if overflowed_frames > 0 {
+        notes.push(format!(
+            "lists overflowed in {overflowed_frames} of the timed frames, which shaded all lights where they did"
+        ));
+    }
+    (!notes.is_empty()).then(|| notes.join("; "))
+}

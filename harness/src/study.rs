@@ -1,0 +1,133 @@
+//! Studies: lists of comparisons, each a job of its own, so that a study goes on where it was
+//! interrupted and can be split over machines.
+//!
+//! A job is a `lightbench compare` command. Its folder, `jobs/NAME`, holds what that command writes;
+//! a job whose `results.json` is there is done. `study.json` beside `jobs` lists all jobs, those of
+//! other shards too.
+
+mod comparison;
+mod culling;
+mod manifest;
+mod scene;
+mod views;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::{
+    cli::{self, CliError, CompareArgs, Invocation, StudyArgs, StudyName},
+    compare::Bench,
+    error::HarnessError,
+    report,
+    results::{Results, write_atomically},
+};
+
+pub use manifest::{Done, Job, Manifest};
+pub use scene::StudyScene;
+
+/// Runs a study, or a share of it, and writes its report; returns what to print.
+pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
+    let scenes = StudyScene::all(args)?;
+    write_atomically(&args.out.join(".lightbench"), b"")?;
+    let _ = std::fs::remove_file(args.out.join(".lightbench"));
+    let mut bench = Bench::open(args.adapter.as_deref())?;
+    let wanted = args.identity();
+    let manifest = match Manifest::find(&args.out)? {
+        Some(known) if known.identity == wanted => known,
+        Some(known) => {
+            let value = args.out.display().to_string();
+            let accepted = format!(
+                "a folder without a study, or with this one: it holds `{}`",
+                known.identity.join(" ")
+            );
+            return Err(CliError::out_of_range("--out", &value, &accepted).into());
+        }
+        None => {
+            let mut jobs = Vec::new();
+            for scene in &scenes {
+                jobs.extend(match args.study {
+                    StudyName::Comparison => comparison::jobs(&mut bench, args, scene)?,
+                    StudyName::Culling => culling::jobs(args, scene),
+                });
+            }
+            let manifest = Manifest { identity: wanted, study: args.study.name().into(), jobs };
+            manifest.write(&args.out)?;
+            manifest
+        }
+    };
+    run(&mut bench, args, &manifest)?;
+    let done = Done::read(std::slice::from_ref(&args.out))?;
+    report::write_study(&done, &args.out)
+}
+
+/// Runs the jobs of this shard that are not done.
+fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), HarnessError> {
+    let began = Instant::now();
+    let mine: Vec<&Job> = manifest
+        .jobs
+        .iter()
+        .enumerate()
+        .filter(|(ix, _)| args.shard.holds(*ix))
+        .map(|(_, job)| job)
+        .collect();
+    for (ix, job) in mine.iter().enumerate() {
+        let folder = job.folder(&args.out);
+        if is_done(bench, job, &folder)? {
+            continue;
+        }
+        eprintln!(
+            "job      {} of {}, {} s so far: {}",
+            ix + 1,
+            mine.len(),
+            began.elapsed().as_secs(),
+            job.name
+        );
+        let compare = job.arguments(&folder)?;
+        // What an interrupted run left there is not this one's.
+        if folder.is_dir() {
+            std::fs::remove_dir_all(&folder).map_err(|source| {
+                crate::results::ResultsError::Write { path: folder.clone(), source }
+            })?;
+        }
+        let (results, _) = bench.compare(&compare, job.command.clone())?;
+        results.write(&folder.join("results.json"))?;
+    }
+    Ok(())
+}
+
+/// Whether a job was done, by this commit on this adapter: an error where by another.
+fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError> {
+    let path = folder.join("results.json");
+    if !path.is_file() {
+        return Ok(false);
+    }
+    let results = Results::read(&path)?;
+    let (then, now) = (&results.machine, bench.machine());
+    if (&then.adapter, &then.driver, &then.commit) == (&now.adapter, &now.driver, &now.commit) {
+        return Ok(results.command == job.command);
+    }
+    Err(CliError::new(format!(
+        "{}: measured on {} by commit {}, this is {} and commit {}: --out must be another folder",
+        path.display(),
+        then.adapter,
+        then.commit,
+        now.adapter,
+        now.commit,
+    ))
+    .into())
+}
+
+impl Job {
+    /// The job's folder in that of its study.
+    pub fn folder(&self, out: &Path) -> PathBuf {
+        out.join("jobs").join(&self.name)
+    }
+
+    /// The comparison that it asks for, written to `folder`.
+    fn arguments(&self, folder: &Path) -> Result<CompareArgs, CliError> {
+        match cli::parse(&self.command)? {
+            Invocation::Compare(args) => Ok(CompareArgs { out: folder.to_owned(), ..args }),
+            _ => Err(CliError::new(format!("job {}: its command compares nothing", self.name))),
+        }
+    }
+}

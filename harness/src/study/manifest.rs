@@ -1,0 +1,130 @@
+//! What a study consists of, and what of it is done.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::results::{Results, ResultsError, write_atomically};
+
+/// The file that lists a study's jobs.
+const FILE: &str = "study.json";
+
+/// One comparison of a study.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Job {
+    /// Its name, that of its folder: `sponza-main-10000`.
+    pub name: String,
+    /// The scene that it draws, as the report calls it.
+    pub scene: String,
+    /// The part of the report that it belongs to.
+    pub section: String,
+    /// The command that it is, program name first, without `--out`.
+    pub command: Vec<String>,
+}
+
+/// All jobs of a study: `study.json`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// The command that was asked for, without its folder and its shard.
+    pub identity: Vec<String>,
+    /// The study's name.
+    pub study: String,
+    /// Its jobs, in the order in which they run.
+    pub jobs: Vec<Job>,
+}
+
+impl Manifest {
+    /// The manifest in a folder; `None` where there is none.
+    pub fn find(folder: &Path) -> Result<Option<Self>, ResultsError> {
+        let path = folder.join(FILE);
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let text = std::fs::read_to_string(&path)
+            .map_err(|source| ResultsError::Read { path: path.clone(), source })?;
+        serde_json::from_str(&text)
+            .map(Some)
+            .map_err(|error| ResultsError::Parse { path, reason: error.to_string() })
+    }
+
+    /// Writes it into a folder.
+    pub fn write(&self, folder: &Path) -> Result<(), ResultsError> {
+        let text = serde_json::to_string_pretty(self).unwrap_or_default() + "\n";
+        write_atomically(&folder.join(FILE), text.as_bytes())
+    }
+}
+
+/// A study with the results of the jobs that are done.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// All jobs.
+    pub manifest: Manifest,
+    /// Results by the name of their job.
+    pub results: BTreeMap<String, Results>,
+    /// The folder of each job that is done.
+    pub folders: BTreeMap<String, PathBuf>,
+}
+
+impl Done {
+    /// Reads a study from the folders of its shards.
+    ///
+    /// # Errors
+    ///
+    /// Where a folder holds no study, or another than the first.
+    pub fn read(folders: &[PathBuf]) -> Result<Self, ResultsError> {
+        let mut done: Option<Self> = None;
+        for folder in folders {
+            let path = folder.join(FILE);
+            let fail =
+                |reason: &str| ResultsError::Parse { path: path.clone(), reason: reason.into() };
+            let manifest = Manifest::find(folder)?.ok_or_else(|| fail("no study is there"))?;
+            let done = done.get_or_insert_with(|| Self {
+                manifest: manifest.clone(),
+                results: BTreeMap::new(),
+                folders: BTreeMap::new(),
+            });
+            if done.manifest != manifest {
+                return Err(fail("another study than in the first folder"));
+            }
+            for job in &manifest.jobs {
+                let path = job.folder(folder).join("results.json");
+                if path.is_file() && !done.results.contains_key(&job.name) {
+                    done.results.insert(job.name.clone(), Results::read(&path)?);
+                    done.folders.insert(job.name.clone(), job.folder(folder));
+                }
+            }
+        }
+        done.ok_or_else(|| ResultsError::Parse { path: PathBuf::new(), reason: "no folder".into() })
+    }
+
+    /// Names of the jobs that are not done.
+    pub fn missing(&self) -> Vec<&str> {
+        let jobs = self.manifest.jobs.iter().map(|job| job.name.as_str());
+        jobs.filter(|name| !self.results.contains_key(*name)).collect()
+    }
+
+    /// The jobs of a scene that are done, with their results, of one section.
+    pub fn of<'a>(
+        &'a self,
+        scene: &'a str,
+        section: &'a str,
+    ) -> impl Iterator<Item = (&'a Job, &'a Results)> {
+        self.manifest
+            .jobs
+            .iter()
+            .filter(move |job| job.scene == scene && job.section == section)
+            .filter_map(|job| Some((job, self.results.get(&job.name)?)))
+    }
+
+    /// The scenes, in the order of their jobs.
+    pub fn scenes(&self) -> Vec<&str> {
+        let mut scenes: Vec<&str> = Vec::new();
+        for job in &self.manifest.jobs {
+            if !scenes.contains(&job.scene.as_str()) {
+                scenes.push(&job.scene);
+            }
+        }
+        scenes
+    }
+}

@@ -1,0 +1,47 @@
+//! The scenes of a study.
+
+use std::path::Path;
+
+use crate::cli::{CliError, StudyArgs};
+
+/// A scene with its scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyScene {
+    /// The name or file.
+    pub scene: String,
+    /// What jobs and report call it: unique within the study.
+    pub name: String,
+    /// Factor on its size.
+    pub scale: f64,
+}
+
+impl StudyScene {
+    /// The scenes that a study is asked for.
+    pub fn all(args: &StudyArgs) -> Result<Vec<Self>, CliError> {
+        if args.scene_scale.len() > args.scene.len() {
+            let value = args.scene_scale.len().to_string();
+            let accepted = "given once for each --scene at most";
+            return Err(CliError::out_of_range("--scene-scale", &value, accepted));
+        }
+        let mut all: Vec<Self> = Vec::new();
+        for (ix, scene) in args.scene.iter().enumerate() {
+            let path = Path::new(scene);
+            let stem = path.file_stem().map_or_else(|| scene.into(), |stem| stem.to_string_lossy());
+            // Many files are called scene.gltf: their folder tells them apart.
+            let folder = path.parent().and_then(Path::file_name).map(|name| name.to_string_lossy());
+            let name = match folder {
+                Some(folder) if stem == "scene" => folder.into_owned(),
+                _ => stem.into_owned(),
+            };
+            let plain =
+                |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+            let mut name: String = name.chars().map(plain).collect();
+            if all.iter().any(|known| known.name == name) {
+                name += &format!("-{}", ix + 1);
+            }
+            let scale = args.scene_scale.get(ix).copied().unwrap_or(1.0);
+            all.push(Self { scene: scene.clone(), name, scale });
+        }
+        Ok(all)
+    }
+}
