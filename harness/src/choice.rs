@@ -98,8 +98,15 @@ impl Choice {
                 Some(Axis::Box) => {
                     choice.spec.grid_box = segment.parse().map_err(|_| choice.refuse(&segment))?;
                 }
-                Some(Axis::Cap) => choice.spec.cap = number_of(&segment, CAP),
-                Some(Axis::Reuse) => choice.spec.reuse = number_of(&segment, REUSE),
+                Some(Axis::Cap) => {
+                    let cap = number_of(&segment, CAP).ok_or_else(|| choice.refuse(&segment))?;
+                    choice.spec.cap = Some(cap);
+                }
+                Some(Axis::Reuse) => {
+                    let frames =
+                        number_of(&segment, REUSE).ok_or_else(|| choice.refuse(&segment))?;
+                    choice.spec.reuse = Some(frames);
+                }
                 None if !entry.parameters.is_empty() && !has_parameters && !segment.is_empty() => {
                     choice.spec.parameters = segment;
                     has_parameters = true;
@@ -243,8 +250,8 @@ fn axis_of(segment: &str) -> Option<Axis> {
     match segment {
         "linear" | "bvh" => Some(Axis::Source),
         "lights" | "surfaces" => Some(Axis::Box),
-        _ if number_of(segment, CAP).is_some() => Some(Axis::Cap),
-        _ if number_of(segment, REUSE).is_some() => Some(Axis::Reuse),
+        _ if segment.starts_with(CAP) => Some(Axis::Cap),
+        _ if segment.starts_with(REUSE) => Some(Axis::Reuse),
         _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
     }
 }

@@ -44,6 +44,9 @@ function differenceFigure(record) {
   const factor = record.images.difference_amplification;
   const times = isNumber(factor) && factor !== 1 ? ` \u00d7\u00a0${tickText(Number(factor.toPrecision(3)))}` : "";
   const source = uri(record.images.difference);
+  if (!source && record.differing_channels === 0) {
+    return h("figure", { class: "difference" }, h("figcaption", {}, h("b", {}, "Difference. "), verdict(record)));
+  }
   return h("figure", { class: "difference" },
     h("div", { style: `aspect-ratio:${record.width}/${record.height}` },
       picture(source, `Difference of ${record.strategy} to no culling: ${verdict(record)}`)),
