@@ -160,6 +160,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
     pub lights: u32,
 
+    /// Add the lights that another .gltf or .glb file holds
+    #[arg(long, value_name = "FILE", value_parser = values::text)]
+    pub lights_from: Option<String>,
+
     /// Leave out the lights that the scene's file holds
     #[arg(long)]
     pub no_own_lights: bool,

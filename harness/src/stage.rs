@@ -6,7 +6,7 @@ use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, scatter_lights};
 use shading::Renderer;
 
 use crate::{
-    cli::{Camera, CompareArgs, LightBox},
+    cli::{Camera, CliError, CompareArgs, LightBox},
     error::HarnessError,
 };
 
@@ -126,6 +126,14 @@ impl Lit {
             LightBox::Bounds => scene.bounds,
         };
         let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
+        if let Some(file) = &args.lights_from {
+            let other = scenes::open(file)?.scaled(args.scene_scale as f32)?;
+            if other.lights.is_empty() {
+                let accepted = "a file that holds lights (KHR_lights_punctual)";
+                return Err(CliError::out_of_range("--lights-from", file, accepted).into());
+            }
+            lights.extend(other.lights);
+        }
         let own = lights.len();
         lights.extend(scatter_lights(&LightSpec {
             count: args.lights,

@@ -6,7 +6,7 @@ pub(super) const ABSENT: &str = "\u{2013}";
 const MIB: f64 = 1_048_576.0;
 
 /// Three significant digits: `0.0361`, `14.0`, `1,230`.
-pub(super) fn significant(value: f64) -> String {
+pub fn significant(value: f64) -> String {
     let size = value.abs();
     if !size.is_finite() {
         "not finite".to_owned()

@@ -14,6 +14,7 @@ mod study;
 mod table;
 
 pub use finding::{finding, notices};
+pub use format::significant;
 pub use html::{render_html, write_html};
 pub use markdown::render_markdown;
 pub use study::write_study;
