@@ -64,17 +64,13 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let mut finals = search.round("final", &ids, &["--truth", "full"], frames[1])?;
     finals.command = command;
     let text = answer(&finals, args.error_budget);
+    let table = report::render_table(&finals);
     let first_line = text.lines().next().unwrap_or_default().to_owned();
     finals.warnings.insert(0, first_line);
     finals.write(&args.out.join("results.json"))?;
     let pictures = crate::again::pictures(&finals, &args.out.join("final"));
     let page = report::write_html(&finals, &pictures, &args.out)?;
-    Ok(format!(
-        "{}\n{text}\nreport   {}\nrounds   {}\n",
-        report::render_table(&finals),
-        page.display(),
-        args.out.display()
-    ))
+    Ok(format!("{table}\n{text}\nreport   {}\nrounds   {}\n", page.display(), args.out.display()))
 }
 
 /// Lights that a list keeps, where the budget allows an error.
@@ -220,14 +216,14 @@ fn why(best: &Record, next: Option<&Record>, results: &Results) -> String {
         ));
     }
     if let Some(next) = next.filter(|next| next.culls()) {
-        let (assign, shade) = (next.assign_ms - best.assign_ms, next.shade_ms - best.shade_ms);
-        let part =
-            if assign.abs() > shade.abs() { ("assigning", assign) } else { ("shading", shade) };
-        let gain = if part.1 > 0.0 { "saves" } else { "costs" };
+        let part = |name: &str, ms: f64| {
+            let gain = if ms < 0.0 { "costs" } else { "saves" };
+            format!("{name} {gain} {} ms", report::significant(ms.abs()))
+        };
         reasons.push(format!(
-            "against the runner-up {} {gain} {} ms",
-            part.0,
-            report::significant(part.1.abs())
+            "against the runner-up {} and {}",
+            part("assigning", next.assign_ms - best.assign_ms),
+            part("shading", next.shade_ms - best.shade_ms)
         ));
     }
     let none = results.records.iter().find(|record| record.is_baseline());

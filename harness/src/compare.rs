@@ -4,6 +4,7 @@ use std::{path::Path, sync::Arc, time::Duration};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
 use shading::{Cut, EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
 
 use crate::{
@@ -172,6 +173,8 @@ struct Run<'a> {
 struct Reference {
     image: HdrImage,
     unbounded: Option<HdrImage>,
+    /// Errors of no culling against lights without a range.
+    unbounded_errors: Vec<(&'static str, f64)>,
     exposure: f32,
     picture: Option<String>,
 }
@@ -248,22 +251,26 @@ impl Run<'_> {
         let mut none = Some(contest.check(self.stage, reference_ix, bvh)?);
         let image = none.as_ref().map(|checked| checked.image.clone()).unwrap_or_default();
         let reference = self.reference(image, unbounded, mode)?;
-        let mut all_seen = Vec::new();
+        let mut all_checked = Vec::new();
         for &ix in &timed {
             let checked = match none.take_if(|_| ix == reference_ix) {
                 Some(checked) => checked,
                 None => contest.check(self.stage, ix, bvh)?,
             };
-            all_seen.push(self.see(&choices[ix], mode, checked, &reference)?);
+            all_checked.push((&choices[ix], checked));
             bar.inc(1);
         }
+        let args = self.args;
+        let see = |(choice, checked)| see(args, choice, mode, checked, &reference);
+        let all: Result<Vec<_>, _> = all_checked.into_par_iter().map(see).collect();
+        let (mut all_seen, pictures): (Vec<Seen>, Vec<Pictures>) = all?.into_iter().unzip();
+        self.pictures.extend(pictures.into_iter().flatten());
         bar.set_message(format!("times, {}", mode.name()));
         let exposure = reference.exposure;
         let mut compared = |images: &[HdrImage], reference: &HdrImage| {
-            for (seen, image) in all_seen.iter_mut().zip(images) {
-                seen.compare(&ImagePair { image, reference, exposure })?;
-            }
-            Ok(())
+            all_seen.par_iter_mut().zip(images).try_for_each(|(seen, image)| {
+                seen.compare(&ImagePair { image, reference, exposure })
+            })
         };
         let tick = &mut || bar.inc(1);
         contest.time(self.stage, &timed, reference_ix, tick, &mut compared)?;
@@ -294,101 +301,106 @@ impl Run<'_> {
         mode: Mode,
     ) -> Result<Reference, HarnessError> {
         let exposure = image.auto_exposure();
-        let keeps = self.args.pictures == PicturesChoice::All;
         let mut picture = None;
-        if keeps {
+        if self.args.pictures == PicturesChoice::All {
+            let out = &self.args.out;
             let name = format!("{}-None.png", mode.name());
-            self.picture(&name, image.to_png(exposure)?, Some(&image))?;
+            self.pictures.push(keep(out, &name, image.to_png(exposure)?, Some(&image))?);
             picture = Some(name);
             if let Some(image) = &unbounded {
                 let name = format!("{}-unbounded.png", mode.name());
-                self.picture(&name, image.to_png(exposure)?, Some(image))?;
+                self.pictures.push(keep(out, &name, image.to_png(exposure)?, Some(image))?);
             }
         }
-        Ok(Reference { image, unbounded, exposure, picture })
+        let unbounded_errors = unbounded
+            .as_ref()
+            .map(|reference| errors(&ImagePair { image: &image, reference, exposure }))
+            .unwrap_or_default();
+        Ok(Reference { image, unbounded, unbounded_errors, exposure, picture })
     }
+}
 
-    /// Keeps a picture for the report, and writes it and its EXR.
-    fn picture(
-        &mut self,
-        name: &str,
-        png: Vec<u8>,
-        raw: Option<&HdrImage>,
-    ) -> Result<(), HarnessError> {
-        let path = self.args.out.join(name);
-        write_atomically(&path, &png)?;
-        if let Some(image) = raw {
-            image.write_exr(&path.with_extension("exr"))?;
-        }
-        self.pictures.push((name.to_owned(), png));
-        Ok(())
+/// Writes a picture, and the linear image that it shows; returns it for the report.
+fn keep(
+    out: &Path,
+    name: &str,
+    png: Vec<u8>,
+    raw: Option<&HdrImage>,
+) -> Result<(String, Vec<u8>), HarnessError> {
+    let path = out.join(name);
+    write_atomically(&path, &png)?;
+    if let Some(image) = raw {
+        image.write_exr(&path.with_extension("exr"))?;
     }
+    Ok((name.to_owned(), png))
+}
 
-    /// Compares a method's image with what it should be, and keeps its pictures.
-    fn see(
-        &mut self,
-        choice: &Choice,
-        mode: Mode,
-        checked: Checked,
-        reference: &Reference,
-    ) -> Result<Seen, HarnessError> {
-        let is_control = choice.family() == CONTROL;
-        let Checked { image, lists } = checked;
-        let pair =
-            ImagePair { image: &image, reference: &reference.image, exposure: reference.exposure };
-        let mut seen = Seen::new(lists.unwrap_or_default());
-        if !is_control {
-            seen.compare(&pair)?;
-            if let Some(unbounded) = &reference.unbounded {
-                let pair = ImagePair { reference: unbounded, ..pair };
-                seen.unbounded_errors =
-                    errors(&pair).into_iter().map(|(id, error)| (id.to_owned(), error)).collect();
-            }
-        }
-        if self.args.path {
-            // Along a path errors are means over the frames that are compared there.
-            seen.forget_errors();
-        }
-        let Some(baseline) = &reference.picture else { return Ok(seen) };
-        let raw = |picture: &str| Some(picture.replace(".png", ".exr"));
-        seen.images = Images {
-            baseline: Some(baseline.clone()),
-            raw_baseline: raw(baseline),
-            raw_unbounded: reference
-                .unbounded
-                .as_ref()
-                .map(|_| format!("{}-unbounded.exr", mode.name())),
-            exposure: Some(f64::from(reference.exposure)),
-            ..Images::default()
+/// Compares a method's image with what it should be, and keeps its pictures.
+fn see(
+    args: &CompareArgs,
+    choice: &Choice,
+    mode: Mode,
+    checked: Checked,
+    reference: &Reference,
+) -> Result<(Seen, Pictures), HarnessError> {
+    let is_control = choice.family() == CONTROL;
+    let Checked { image, lists } = checked;
+    let is_same = image.pixels == reference.image.pixels;
+    let exposure = reference.exposure;
+    let pair = ImagePair { image: &image, reference: &reference.image, exposure };
+    let mut seen = Seen::new(lists.unwrap_or_default());
+    if !is_control {
+        seen.compare(&pair)?;
+        seen.unbounded_errors = match &reference.unbounded {
+            Some(unbounded) if !is_same => errors(&ImagePair { reference: unbounded, ..pair }),
+            _ => reference.unbounded_errors.clone(),
         };
-        let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
-        let is_same = image.pixels == reference.image.pixels;
-        if choice.is_reference() || is_same {
-            // An image that is the same in every number is kept once.
-            (seen.images.image, seen.images.raw) = (Some(baseline.clone()), raw(baseline));
-        } else {
-            let name = format!("{stem}.png");
-            let exposure = if is_control { 1.0 } else { reference.exposure };
-            self.picture(&name, image.to_png(exposure)?, Some(&image))?;
-            seen.images.raw = raw(&name);
-            seen.images.image = Some(name);
-        }
-        if !is_same && !is_control {
-            let name = format!("{stem}-difference.png");
-            let gain = DIFFERENCE_GAIN * reference.exposure;
-            self.picture(&name, image.difference_png(&reference.image, gain)?, None)?;
-            seen.images.difference = Some(name);
-            seen.images.difference_amplification = Some(f64::from(gain));
-        }
-        let lengths = &seen.lists.lengths.per_pixel;
-        if !lengths.is_empty() {
-            let name = format!("{stem}-heat.png");
-            let png = heat_map_png(&reference.image, reference.exposure, lengths)?;
-            self.picture(&name, png, None)?;
-            seen.images.heat_map = Some(name);
-        }
-        Ok(seen)
     }
+    if args.path {
+        // Along a path errors are means over the frames that are compared there.
+        seen.forget_errors();
+    }
+    let mut pictures = Pictures::new();
+    let Some(baseline) = &reference.picture else { return Ok((seen, pictures)) };
+    let raw = |picture: &str| Some(picture.replace(".png", ".exr"));
+    let mut images = Images {
+        baseline: Some(baseline.clone()),
+        raw_baseline: raw(baseline),
+        raw_unbounded: reference
+            .unbounded
+            .as_ref()
+            .map(|_| format!("{}-unbounded.exr", mode.name())),
+        exposure: Some(f64::from(exposure)),
+        ..Images::default()
+    };
+    let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
+    if is_same {
+        // An image that is the same in every number is kept once.
+        (images.image, images.raw) = (Some(baseline.clone()), raw(baseline));
+    } else {
+        let name = format!("{stem}.png");
+        let exposure = if is_control { 1.0 } else { exposure };
+        pictures.push(keep(&args.out, &name, image.to_png(exposure)?, Some(&image))?);
+        images.raw = raw(&name);
+        images.image = Some(name);
+    }
+    if !is_same && !is_control {
+        let name = format!("{stem}-difference.png");
+        let gain = DIFFERENCE_GAIN * exposure;
+        let png = image.difference_png(&reference.image, gain)?;
+        pictures.push(keep(&args.out, &name, png, None)?);
+        images.difference = Some(name);
+        images.difference_amplification = Some(f64::from(gain));
+    }
+    let lengths = &seen.lists.lengths.per_pixel;
+    if !lengths.is_empty() {
+        let name = format!("{stem}-heat.png");
+        let png = heat_map_png(&reference.image, exposure, lengths)?;
+        pictures.push(keep(&args.out, &name, png, None)?);
+        images.heat_map = Some(name);
+    }
+    seen.images = images;
+    Ok((seen, pictures))
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

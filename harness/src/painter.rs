@@ -45,6 +45,14 @@ impl<'a> Painter<'a> {
         })
     }
 
+    /// Whether lists are made, whose pool may have to grow.
+    pub fn has_groups(&self) -> bool {
+        match self {
+            Self::Lists { strategy, .. } => strategy.lists().group_count() > 0,
+            Self::RasterSphere(_) | Self::Clay => false,
+        }
+    }
+
     /// Records one frame: geometry, the strategy's passes, lighting. Returns whether no list of
     /// the frame before overflowed.
     pub fn draw(

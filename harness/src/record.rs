@@ -23,7 +23,7 @@ pub struct Seen {
     /// Its pictures.
     pub images: Images,
     /// Errors against lights without a range.
-    pub unbounded_errors: Vec<(String, f64)>,
+    pub unbounded_errors: Vec<(&'static str, f64)>,
     /// Whether any image was compared.
     compared: bool,
     max_abs: f64,
@@ -114,7 +114,7 @@ pub fn record(
         errors: errors.into_iter().map(|(id, all)| (id.to_owned(), finite(mean(&all)))).collect(),
         unbounded_errors: unbounded_errors
             .into_iter()
-            .map(|(id, error)| (id, finite(error)))
+            .map(|(id, error)| (id.to_owned(), finite(error)))
             .collect::<Errors>(),
         seed: args.seed,
         clock: clock_of(gpu),
