@@ -10,7 +10,7 @@ const STRATEGIES: &str = "Clay,None,Sphere,RasterSphere,DC-I,SC-E/bvh";
 /// The jobs of one scene: a mode and a number of lights each.
 pub(super) fn jobs(args: &StudyArgs, scene: &StudyScene) -> Vec<Job> {
     let (counts, frames, size): (&[u32], u32, Size) = if args.quick {
-        (&[0, 100, 300], 12, Size { width: 192, height: 108 })
+        (&[0, 100, 300], 8, Size { width: 192, height: 108 })
     } else {
         (&[0, 250, 500, 750, 1_000, 1_250, 1_500], 1_000, Size { width: 1280, height: 720 })
     };

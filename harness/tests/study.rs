@@ -1,0 +1,158 @@
+//! Studies as a user runs them: interrupted, split, and put together again.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use harness::{
+    results::{Record, Results},
+    study::{Done, Manifest},
+};
+
+fn start(arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_lightbench"))
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts")
+}
+
+/// Runs the program to its end; returns what it printed.
+fn run(arguments: &[&str]) -> String {
+    let output = start(arguments).wait_with_output().expect("ends");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// The arguments of a small study into a folder.
+fn study<'a>(out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    let out = out.to_str().expect("UTF-8");
+    let small = ["study", "culling", "--quick", "--size", "32x18", "--out", out];
+    [&small[..], more].concat()
+}
+
+/// What of a record does not depend on the clock.
+fn timeless(record: &Record) -> Record {
+    let nothing = harness::results::Passes::default();
+    let names = record.passes.iter().map(|(name, times)| (name.to_owned(), times.samples.len()));
+    let mut record = Record {
+        note: Some(format!("{:?}", names.collect::<Vec<_>>())),
+        light_build_ms: None,
+        ..record.clone()
+    };
+    record.passes = nothing;
+    record.set_times();
+    (record.assign_ms, record.shade_ms, record.frame_ms) = (0.0, 0.0, 0.0);
+    record
+}
+
+/// All records of a study by job, without their times.
+fn records(folders: &[PathBuf]) -> BTreeMap<String, Vec<Record>> {
+    let done = Done::read(folders).expect("a study");
+    assert!(done.missing().is_empty(), "missing: {:?}", done.missing());
+    let of = |results: &Results| results.records.iter().map(timeless).collect();
+    done.results.iter().map(|(job, results)| (job.clone(), of(results))).collect()
+}
+
+fn results_in(out: &Path) -> usize {
+    let jobs = std::fs::read_dir(out.join("jobs")).into_iter().flatten().flatten();
+    jobs.filter(|job| job.path().join("results.json").is_file()).count()
+}
+
+#[test]
+fn an_interrupted_study_and_two_shards_equal_one_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let whole = at("whole");
+    let printed = run(&study(&whole, &[]));
+    assert!(printed.contains("6 of 6 jobs"), "{printed}");
+    let expected = records(std::slice::from_ref(&whole));
+    assert_eq!(expected.len(), 6);
+    assert!(expected.values().all(|records| records.len() >= 5));
+
+    // Killed once two jobs are done, in the midst of a third.
+    let cut = at("cut");
+    let mut child = start(&study(&cut, &[]));
+    let began = Instant::now();
+    while results_in(&cut) < 2 {
+        assert!(began.elapsed() < Duration::from_secs(300), "no job ends");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().expect("is killed");
+    child.wait().expect("ends");
+    let before = results_in(&cut);
+    assert!((2..6).contains(&before), "{before} jobs before it was killed");
+    run(&study(&cut, &[]));
+    assert_eq!(records(std::slice::from_ref(&cut)), expected);
+
+    // Another study does not go into its folder, nor the same under another seed.
+    let output = start(&study(&cut, &["--seed", "2"])).wait_with_output().expect("ends");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--out"), "{output:?}");
+
+    let (one, two) = (at("one"), at("two"));
+    run(&study(&one, &["--shard", "1/2"]));
+    assert_eq!(results_in(&one), 3);
+    run(&study(&two, &["--shard", "2/2"]));
+    let merged = at("merged");
+    let [a, b, out] = [&one, &two, &merged].map(|path| path.to_str().expect("UTF-8"));
+    run(&["report", a, b, "--out", out]);
+    assert!(merged.join("index.html").is_file());
+    assert_eq!(records(&[one.clone(), two]), expected);
+    // Half of it is half of it.
+    assert_eq!(Done::read(&[one]).expect("a study").missing().len(), 3);
+}
+
+#[test]
+fn a_damaged_study_is_refused_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("study.json"), "{").expect("writes");
+    let error = Manifest::find(folder.path()).expect_err("damaged").to_string();
+    assert!(error.contains("study.json"), "{error}");
+    let out = folder.path().to_str().expect("UTF-8");
+    let output = start(&["report", out]).wait_with_output().expect("ends");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("study.json"));
+}
+
+#[test]
+fn metrics_are_computed_again_from_the_stored_images() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    run(&[
+        "compare",
+        "--size",
+        "96x54",
+        "--frames",
+        "1",
+        "--warmup",
+        "0",
+        "--lights",
+        "400",
+        "--radius-scale",
+        "2",
+        "--strategies",
+        "None,SC-E/cap4",
+        "--truth",
+        "none",
+        "--out",
+        out,
+    ]);
+    let path = folder.path().join("results.json");
+    let mut results = Results::read(&path).expect("results");
+    let record = &results.records[1];
+    assert!(record.is_lossy && !record.is_lossless());
+    let errors = record.errors.clone();
+    assert!(errors["rel_mse"] > Some(1e-4), "{errors:?}");
+    assert!(errors["missing_energy"] > Some(0.0));
+    // As if they had never been computed.
+    results.records[1].errors.clear();
+    results.write(&path).expect("writes");
+    run(&["report", out]);
+    assert_eq!(Results::read(&path).expect("results").records[1].errors, errors);
+}
