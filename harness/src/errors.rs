@@ -24,7 +24,7 @@ pub struct ImagePair<'a> {
     pub exposure: f32,
 }
 
-/// A metric of error: less is better, 0 is none.
+/// A metric of error: nearer to 0 is better, 0 is none. Bias alone has a sign.
 pub struct ErrorMetric {
     /// Names it in `results.json`.
     pub id: &'static str,
@@ -59,9 +59,9 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
         id: "bias",
         head: "bias",
         unit: "",
-        about: "Luminance of the whole image, off by this share, without its sign: negative bias is \
-                missing energy.",
-        value: |sums, _| share((sums.image - sums.reference).abs(), sums.reference),
+        about: "Luminance of the whole image less what it should be, as a share of it: negative is \
+                darker.",
+        value: |sums, _| share(sums.image - sums.reference, sums.reference),
     },
     ErrorMetric {
         id: "tile",
@@ -214,13 +214,13 @@ mod tests {
         // Every fourth pixel is half as bright.
         let darker = image(|ix| if ix % 4 == 0 { 0.5 } else { 1.0 });
         assert!((of(&darker, &reference, "missing_energy") - 0.125).abs() < 1e-12);
-        assert!((of(&darker, &reference, "bias") - 0.125).abs() < 1e-12);
+        assert!((of(&darker, &reference, "bias") + 0.125).abs() < 1e-12);
         assert!((of(&darker, &reference, "pixels_off") - 0.25).abs() < 1e-12);
         assert!((of(&darker, &reference, "rel_mse") - 0.25 * 0.25 / 1.01).abs() < 1e-12);
         assert!((of(&darker, &reference, "tile") - 0.125).abs() < 1e-12);
         // Brighter by as much elsewhere: no bias, and energy still lacks.
         let both = image(|ix| [0.5, 1.5, 1.0, 1.0][ix % 4]);
-        assert!(of(&both, &reference, "bias") < 1e-12);
+        assert!(of(&both, &reference, "bias").abs() < 1e-12);
         assert!((of(&both, &reference, "missing_energy") - 0.125).abs() < 1e-12);
         // One dark tile of eight.
         let tile = image(|ix| if ix % 64 < 16 && ix / 64 < 16 { 0.0 } else { 1.0 });
