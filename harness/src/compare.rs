@@ -305,12 +305,17 @@ impl Run<'_> {
         if self.args.pictures == PicturesChoice::All {
             let out = &self.args.out;
             let name = format!("{}-None.png", mode.name());
-            self.pictures.push(keep(out, &name, image.to_png(exposure)?, Some(&image))?);
+            let images = [
+                Some((name.clone(), &image)),
+                unbounded.as_ref().map(|image| (format!("{}-unbounded.png", mode.name()), image)),
+            ];
+            let keep = |(name, image): (String, &HdrImage)| -> Result<_, HarnessError> {
+                keep(out, &name, image.to_png(exposure)?, Some(image))
+            };
+            let kept: Result<Pictures, _> =
+                images.into_par_iter().flatten_iter().map(keep).collect();
+            self.pictures.extend(kept?);
             picture = Some(name);
-            if let Some(image) = &unbounded {
-                let name = format!("{}-unbounded.png", mode.name());
-                self.pictures.push(keep(out, &name, image.to_png(exposure)?, Some(image))?);
-            }
         }
         let unbounded_errors = unbounded
             .as_ref()
