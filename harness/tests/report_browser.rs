@@ -1,81 +1,12 @@
 //! The page in a real browser: headless Chromium, where one is installed.
 
+mod browser;
 mod report_data;
 
-use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
-
+use browser::{USE_EVERYTHING, body, dump, html_tag};
 use harness::report::render_html;
 use harness::results::{Mode, Results};
 use report_data::{empty, pictures, record, spoil, typical};
-
-const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
-const PATIENCE: Duration = Duration::from_secs(90);
-
-/// Does what a reader can do: every button twice, every slider, pointer and focus everywhere.
-const USE_EVERYTHING: &str = "<script>
-for (let round = 0; round < 2; round += 1) {
-  document.querySelectorAll('button').forEach((button) => button.click());
-  document.querySelectorAll('input').forEach((input) => { input.value = '20'; input.dispatchEvent(new Event('input')); });
-  document.querySelectorAll('[tabindex], .segment, .point').forEach((element) => {
-    element.dispatchEvent(new PointerEvent('pointerover', { bubbles: true }));
-    element.dispatchEvent(new PointerEvent('pointermove', { bubbles: true }));
-    element.focus?.();
-    element.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }));
-  });
-}
-document.documentElement.dataset.used = '1';
-</script></body>";
-
-fn browser() -> Option<&'static str> {
-    let runs = |name: &&str| {
-        let mut version = Command::new(name);
-        version.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
-        version.status().is_ok_and(|status| status.success())
-    };
-    BROWSERS.iter().copied().find(runs)
-}
-
-/// The document after all scripts have run; `None` where no browser is installed.
-fn dump(page: &str, width_px: u32) -> Option<String> {
-    let Some(browser) = browser() else {
-        eprintln!("skipped: none of {} is installed", BROWSERS.join(", "));
-        return None;
-    };
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("index.html");
-    std::fs::write(&path, page).expect("writes");
-    let out = folder.path().join("dom");
-    let mut child = Command::new(browser)
-        .args("--headless --no-sandbox --disable-gpu --disable-quic --no-first-run".split(' '))
-        .args(
-            "--disable-background-networking --disable-component-update --disable-sync".split(' '),
-        )
-        .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
-        .arg(format!("--window-size={width_px},900"))
-        .args(["--virtual-time-budget=5000", "--dump-dom"])
-        .arg(format!("file://{}", path.display()))
-        .stdout(std::fs::File::create(&out).expect("a file"))
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the browser starts");
-    let start = Instant::now();
-    while child.try_wait().expect("a status").is_none() {
-        if start.elapsed() > PATIENCE {
-            child.kill().expect("kills");
-            child.wait().expect("waits");
-            panic!("{browser} did not end within {PATIENCE:?}");
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
-    Some(std::fs::read_to_string(Path::new(&out)).expect("reads"))
-}
-
-fn html_tag(dom: &str) -> &str {
-    let start = dom.find("<html").expect("a document");
-    &dom[start..start + dom[start..].find('>').expect("a tag")]
-}
 
 /// Renders, opens, and asserts that no script failed, before use and after.
 fn check(what: &str, results: &Results, images: &[(String, Vec<u8>)]) -> Option<String> {
@@ -137,11 +68,6 @@ fn the_table_shows_the_data() {
     assert_eq!(dom.matches("type=\"range\"").count(), 2, "one slider per comparison");
 }
 
-/// The document without its style sheet.
-fn body(dom: &str) -> &str {
-    dom.split_once("<body").expect("a body").1
-}
-
 /// The names in the first table, from top to bottom.
 fn order(dom: &str) -> Vec<String> {
     let table = dom.split("<tbody>").nth(1).expect("a table");
@@ -162,7 +88,7 @@ fn a_heading_sorts() {
     let page = render_html(&typical(), &[]);
     let click = |times: usize| {
         let clicks =
-            "document.querySelectorAll('table.results thead button')[5].click();".repeat(times);
+            "document.querySelectorAll('table.results thead button')[6].click();".repeat(times);
         dump(&page.replace("</body>", &format!("<script>{clicks}</script></body>")), 1200)
     };
     let Some(ascending) = click(1) else { return };

@@ -90,6 +90,9 @@ pub struct Series {
     pub marks: Marks,
     /// Whether it steps back behind the others.
     pub faded: bool,
+    /// Which of the shapes its points have, where not the next that is free. Series of one shape
+    /// and class belong together: they share a row in the lane of exact zeros.
+    pub shape: Option<usize>,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
 }

@@ -229,3 +229,17 @@ fn files_bring_their_colours() {
     assert!(file.starts_with("<?xml") && file.contains("prefers-color-scheme: dark"));
     assert!(!file.contains("var(") && file.contains("<title>T</title>"));
 }
+
+#[test]
+fn series_of_one_shape_and_class_share_a_row_of_zeros() {
+    let height = |shapes: [Option<usize>; 2]| {
+        let mut chart = chart(Scale::Log, Marks::Points, vec![at(1.0, 0.0), at(2.0, 1.0)]);
+        let first = chart.series.pop().expect("a series");
+        chart.series = shapes.map(|shape| Series { shape, ..first.clone() }).to_vec();
+        let svg = chart.to_svg();
+        let size = svg.split("viewBox=\"").nth(1).and_then(|rest| rest.split('"').next());
+        size.and_then(|size| size.split(' ').nth(3)?.parse::<f64>().ok()).expect("a height")
+    };
+    assert_eq!(height([None, None]), height([Some(0), Some(1)]));
+    assert!(height([Some(0), Some(0)]) < height([Some(0), Some(1)]));
+}

@@ -6,7 +6,7 @@ use super::direct::{self, Naming};
 use super::domain::{Domain, Misfit, Track, check};
 use super::legend::{self, Entry, Sample};
 use super::marks::{self, Placed, RADIUS};
-use super::model::{Marks, Point, XyChart};
+use super::model::{Marks, Point, Series, XyChart};
 use super::occupancy::{Area, Occupancy};
 use super::text::count_of;
 
@@ -55,13 +55,23 @@ impl XyChart {
     /// The row of each series in the lane of exact zeros: apart from each other, as all of them
     /// are equal.
     fn rows_in_lane(&self) -> Vec<Option<usize>> {
-        let mut rows = 0..;
+        // The series that have a row, each with those of its shape and class.
+        let mut rows: Vec<&Series> = Vec::new();
         self.series
             .iter()
             .map(|series| {
                 let zero = |point: &Point| point.y == 0.0 && self.misfit(point).is_none();
-                let own = series.marks != Marks::Steps && series.points.iter().any(zero);
-                if own { rows.next() } else { None }
+                if series.marks == Marks::Steps || !series.points.iter().any(zero) {
+                    return None;
+                }
+                let same = |known: &&Series| {
+                    series.shape.is_some()
+                        && (known.shape, &known.class) == (series.shape, &series.class)
+                };
+                Some(rows.iter().position(same).unwrap_or_else(|| {
+                    rows.push(series);
+                    rows.len() - 1
+                }))
             })
             .collect()
     }
@@ -124,7 +134,11 @@ impl XyChart {
                     Some(row) => y.floor() + 6.0 + ROW * (row as f64 + 0.5),
                     None => plot.bottom,
                 };
-                let shape = if series.marks.has_shapes() { shapes.next().unwrap_or(0) } else { 0 };
+                let shape = match series.shape {
+                    Some(shape) => shape,
+                    None if series.marks.has_shapes() => shapes.next().unwrap_or(0),
+                    None => 0,
+                };
                 Placed::new(series, shape, [&x, &y], y.zero().map(|_| zero))
             })
             .collect();

@@ -1,5 +1,6 @@
 //! Records that may be compared with one another.
 
+use super::rank::{Ranked, ranks};
 use crate::results::{EARLY_EXIT, Record, Results};
 
 /// The records of one scene, camera size, set of lights and mode: only strategies differ.
@@ -67,6 +68,18 @@ impl<'a> Comparison<'a> {
             return None;
         }
         self.speedup_over(self.record_of(EARLY_EXIT)?, record)
+    }
+
+    /// The place of a record by assigning and shading together: see [`ranks`].
+    pub(super) fn rank(&self, record: &Record) -> Option<f64> {
+        let ranked = self.ranks();
+        let place = ranked.iter().find(|ranked| std::ptr::eq(ranked.record, record));
+        place.map(|ranked| f64::from(ranked.rank))
+    }
+
+    /// The records that cull without a loss, by rank.
+    pub(super) fn ranks(&self) -> Vec<Ranked<'a>> {
+        ranks(self.records.iter().map(|(_, record)| *record))
     }
 
     /// The record of a strategy.

@@ -2,6 +2,7 @@
 
 use super::comparison::{Comparison, comparisons};
 use super::format::{difference, factor, number, short_adapter, significant};
+use super::rank::tie;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
 /// Ratios nearer to 1 are called equal: no more is known from a handful of samples.
@@ -132,7 +133,7 @@ fn checked(record: &Record) -> String {
         .map_or_else(|| "an unknown number of".to_owned(), |pairs| number(pairs as f64))
 }
 
-fn lights(count: u64) -> String {
+pub(super) fn lights(count: u64) -> String {
     match count {
         1 => "1 light".to_owned(),
         _ => format!("{} lights", number(count as f64)),
@@ -144,6 +145,13 @@ fn lights(count: u64) -> String {
 pub fn notices(results: &Results) -> Vec<String> {
     let mut notices = Vec::new();
     notices.extend(clock_notice(results));
+    for comparison in comparisons(results) {
+        if let Some(tie) = tie(&comparison.ranks()) {
+            let first = comparison.first();
+            let lights = lights(first.lights);
+            notices.push(format!("{}, {}, {lights}: {tie}.", first.scene, first.mode.name()));
+        }
+    }
     for record in &results.records {
         if let Some(loss) = loss(record) {
             let mode = record.mode.name();
@@ -191,7 +199,7 @@ pub fn notices(results: &Results) -> Vec<String> {
     notices
 }
 
-fn clock_notice(results: &Results) -> Option<String> {
+pub(super) fn clock_notice(results: &Results) -> Option<String> {
     let wall_clock = results.records.iter().any(|record| record.clock == Clock::WallClock);
     let adapter = short_adapter(&results.machine.adapter);
     if results.machine.device_type == DeviceType::Cpu {

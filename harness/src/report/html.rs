@@ -12,8 +12,8 @@ use super::page;
 use super::{finding, notices};
 use crate::results::{Results, ResultsError, write_atomically};
 
-const PAGE: &str = include_str!("report.html");
-const STYLE: &str = include_str!("report.css");
+pub(super) const PAGE: &str = include_str!("report.html");
+pub(super) const STYLE: &str = include_str!("report.css");
 
 /// The page's programs, in the order in which they are read.
 const SCRIPTS: [&str; 5] = [
@@ -58,6 +58,9 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
             ("notices", &page::notices(&notices(results))),
             ("comparisons", &page::comparisons_html(results)),
             ("columns", &page::columns()),
+            ("reading", ""),
+            ("file", "results.json"),
+            ("link", "#from"),
             ("provenance", &page::provenance(results)),
             ("data", &in_script(&results.to_json())),
             ("view", &in_script(&view(results, images).to_string())),
@@ -111,12 +114,12 @@ fn view(results: &Results, images: &[(String, Vec<u8>)]) -> serde_json::Value {
 }
 
 /// JSON that no HTML parser takes for the end of its script element. `<` stands only in strings.
-fn in_script(json: &str) -> String {
+pub(super) fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
 /// Replaces each `{{name}}` of a template; what is put in is not looked at again.
-fn fill(template: &str, values: &[(&str, &str)]) -> String {
+pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
     let mut filled = String::new();
     let mut parts = template.split("{{");
     filled.push_str(parts.next().unwrap_or_default());

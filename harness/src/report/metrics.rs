@@ -36,11 +36,26 @@ pub(super) struct Metric {
 /// All columns, in order.
 pub(super) static METRICS: &[Metric] = &[
     Metric {
+        id: "rank",
+        head: "rank",
+        unit: "",
+        terminal: "rank",
+        about: "Place by assign + shade among those that cull without a loss. Those that cannot be \
+                told apart share it: where the interval of the ratio of their times, round by \
+                round, holds 1, or its median is within 0.5 % of 1.",
+        better: Better::Neither,
+        value: |c, r| c.rank(r),
+        show: format::number,
+    },
+    Metric {
         id: "both_ms",
         head: "assign + shade",
         unit: "ms",
         terminal: "both",
-        about: "Assigning and shading together, median: compare strategies by it.",
+        about: "Assigning and shading together, median: compare strategies by it. The small figures \
+                below it are the interval in which the median lies, from order statistics of the \
+                rounds: with a probability of at least 95 % from six rounds on, with fewer as their \
+                tip says.",
         better: Better::Less,
         value: |_, r| finite(r.assign_and_shade_ms()),
         show: format::significant,

@@ -5,11 +5,13 @@
 
 mod comparison;
 mod finding;
+mod fit;
 mod format;
 mod html;
 mod markdown;
 mod metrics;
 mod page;
+mod rank;
 mod study;
 mod table;
 

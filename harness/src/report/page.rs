@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::comparison::{Comparison, comparisons};
-use super::format::{escape, number};
+use super::format::{escape, number, significant};
 use super::metrics::{Better, METRICS, Metric};
+use super::rank::competes;
 use crate::results::{Clock, DeviceType, PassKind, Record, Results, TruthLevel};
 
 /// Colours that the style sheet has for strategies other than no culling.
@@ -104,7 +105,7 @@ pub(super) fn comparisons_html(results: &Results) -> String {
     html
 }
 
-fn setting(record: &Record) -> String {
+pub(super) fn setting(record: &Record) -> String {
     let kinds: Vec<_> = record
         .light_kinds
         .iter()
@@ -128,7 +129,11 @@ fn setting(record: &Record) -> String {
     parts.join(" \u{b7} ")
 }
 
-fn table(caption: &str, comparison: &Comparison<'_>, classes: &BTreeMap<&str, String>) -> String {
+pub(super) fn table(
+    caption: &str,
+    comparison: &Comparison<'_>,
+    classes: &BTreeMap<&str, String>,
+) -> String {
     let mut heads = String::new();
     for metric in METRICS {
         let _ = write!(
@@ -171,13 +176,24 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String
         _ => "",
     };
     let sort = value.map_or_else(String::new, |value| value.to_string());
-    let text = metric.text(comparison, record);
+    let mut text = metric.text(comparison, record);
+    if metric.id == "both_ms" {
+        text += &interval(record);
+    }
     format!("<td data-metric=\"{}\" data-value=\"{sort}\"{class}>{text}</td>", metric.id)
 }
 
-/// Whether a record may be called the best: it culls, and nothing is known to be lost.
-fn competes(record: &Record) -> bool {
-    record.culls() && record.is_lossless()
+/// Where the median of assigning and shading lies, in small; its tip says how surely.
+pub(super) fn interval(record: &Record) -> String {
+    record.interval_ms().map_or_else(String::new, |interval| {
+        format!(
+            "<small class=\"interval\" title=\"{} % of such intervals hold the median\">\
+             {}\u{2013}{}</small>",
+            significant(interval.coverage * 100.0),
+            significant(interval.low),
+            significant(interval.high)
+        )
+    })
 }
 
 /// Whether no competitor has a better value, and at least one a worse.
@@ -272,7 +288,7 @@ fn truth(results: &Results) -> String {
 }
 
 /// A command line that a POSIX shell splits into the same words.
-fn shell_words(words: &[String]) -> String {
+pub(super) fn shell_words(words: &[String]) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
     let quoted: Vec<_> = words
         .iter()

@@ -141,8 +141,11 @@ function themeSwitch() {
 }
 
 function actions() {
-  const file = new Blob([JSON.stringify(results, null, 2), "\n"], { type: "application/json" });
-  document.getElementById("download").href = URL.createObjectURL(file);
+  // Data too large for the page lies beside it, where the link leads already.
+  if (results) {
+    const file = new Blob([JSON.stringify(results, null, 2), "\n"], { type: "application/json" });
+    document.getElementById("download").href = URL.createObjectURL(file);
+  }
   const copy = document.getElementById("copy");
   if (!navigator.clipboard) {
     copy.hidden = true;

@@ -1,0 +1,101 @@
+//! Straight lines through points, by least squares.
+
+/// A line through points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fit {
+    /// By how much `y` grows where `x` grows by one.
+    pub(super) slope: f64,
+    /// `y` where `x` is zero.
+    pub(super) offset: f64,
+    /// The share of the variance of `y` that the line explains; 1 where all points lie on it.
+    pub(super) r2: f64,
+    /// Root of the mean squared distance of the points from the line, along `y`.
+    pub(super) residual: f64,
+    /// Points that it was laid through.
+    pub(super) points: usize,
+}
+
+impl Fit {
+    /// The line through points with the least sum of squared distances along `y`. Points that are
+    /// not finite are left out. `None` where fewer than two differ in `x`.
+    pub(super) fn through(points: &[(f64, f64)]) -> Option<Self> {
+        let points: Vec<(f64, f64)> =
+            points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        let count = points.len() as f64;
+        let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+        let (mean_x, mean_y) = (mean(|p| p.0), mean(|p| p.1));
+        let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+            points.iter().map(|(x, y)| of(x - mean_x, y - mean_y)).sum()
+        };
+        let (xx, xy, yy) = (sum(&|x, _| x * x), sum(&|x, y| x * y), sum(&|_, y| y * y));
+        if points.len() < 2 || xx <= 0.0 || !xx.is_finite() {
+            return None;
+        }
+        let slope = xy / xx;
+        let squares = sum(&|x, y| (y - slope * x).powi(2));
+        // Points on a level line are explained by it, whatever rounding left of their variance.
+        let r2 = if squares <= 1e-18 * count * mean_y.powi(2) { 1.0 } else { 1.0 - squares / yy };
+        let residual = (squares / count).sqrt();
+        Some(Self { slope, offset: mean_y - slope * mean_x, r2, residual, points: points.len() })
+    }
+
+    /// The line's `y`.
+    pub(super) fn at(&self, x: f64) -> f64 {
+        self.offset + self.slope * x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Fit;
+
+    #[test]
+    fn a_line_is_found_again() {
+        let points: Vec<(f64, f64)> =
+            (0..9).map(|x| (f64::from(x) * 100.0, 3.0 + 0.25 * f64::from(x) * 100.0)).collect();
+        let fit = Fit::through(&points).unwrap();
+        assert!((fit.slope - 0.25).abs() < 1e-12 && (fit.offset - 3.0).abs() < 1e-9, "{fit:?}");
+        assert!((fit.r2 - 1.0).abs() < 1e-12 && fit.residual < 1e-9 && fit.points == 9);
+        assert!((fit.at(1_000.0) - 253.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn anscombes_first_set_has_its_known_line() {
+        // Anscombe 1973: y = 3.00 + 0.500 x, R2 = 0.667 in all four sets.
+        let points = [
+            (10.0, 8.04),
+            (8.0, 6.95),
+            (13.0, 7.58),
+            (9.0, 8.81),
+            (11.0, 8.33),
+            (14.0, 9.96),
+            (6.0, 7.24),
+            (4.0, 4.26),
+            (12.0, 10.84),
+            (7.0, 4.82),
+            (5.0, 5.68),
+        ];
+        let fit = Fit::through(&points).unwrap();
+        assert!((fit.slope - 0.5001).abs() < 1e-4 && (fit.offset - 3.0001).abs() < 1e-4);
+        assert!((fit.r2 - 0.6665).abs() < 1e-4, "{fit:?}");
+        // The residual sum of squares is 13.763.
+        assert!((fit.residual - (13.763_f64 / 11.0).sqrt()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_square_is_no_line() {
+        let points: Vec<(f64, f64)> =
+            (0..20).map(f64::from).map(|x| (x, (x - 9.5).powi(2))).collect();
+        assert!(Fit::through(&points).unwrap().r2 < 0.01);
+    }
+
+    #[test]
+    fn too_little_or_not_finite_is_no_line() {
+        assert_eq!(Fit::through(&[]), None);
+        assert_eq!(Fit::through(&[(1.0, 2.0)]), None);
+        assert_eq!(Fit::through(&[(1.0, 2.0), (1.0, 3.0)]), None);
+        assert_eq!(Fit::through(&[(1.0, f64::NAN), (2.0, 3.0)]), None);
+        let level = Fit::through(&[(1.0, 0.1), (2.0, 0.1), (3.0, 0.1)]).unwrap();
+        assert_eq!((level.r2, level.slope.abs() < 1e-12), (1.0, true));
+    }
+}

@@ -1,0 +1,221 @@
+//! Which of the records of a comparison are faster than which, as far as their rounds tell.
+//!
+//! Every round draws frames of all methods in turn, so what drifts hits all alike: the ratio of the
+//! medians of two methods *of one round* is free of it. Two records are told apart where the
+//! interval of the median of these ratios leaves out 1, and its middle is not within half a per
+//! cent of it.
+
+use super::format::significant;
+use crate::results::{Record, median, median_interval};
+
+/// Nearer to 1, a ratio is of no interest, however sure it is.
+const ALIKE: f64 = 0.005;
+
+/// The times of one record over those of another, paired by round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ratio {
+    /// The median over rounds.
+    pub(super) median: f64,
+    /// Where the median lies.
+    pub(super) low: f64,
+    /// Where the median lies.
+    pub(super) high: f64,
+    /// The probability that it lies there.
+    pub(super) coverage: f64,
+}
+
+impl Ratio {
+    /// Of `record` over `other`. `None` where they have fewer than two rounds in common, and along
+    /// a path, whose frames are not repetitions.
+    pub(super) fn of(record: &Record, other: &Record) -> Option<Self> {
+        if record.along_path || other.along_path || record.rounds != other.rounds {
+            return None;
+        }
+        let (times, others) = (record.round_medians(), other.round_medians());
+        let ratios = times.iter().zip(&others).map(|(time, other)| time / other);
+        let ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
+        let interval = median_interval(&ratios)?;
+        let (low, high, coverage) = (interval.low, interval.high, interval.coverage);
+        Some(Self { median: median(&ratios), low, high, coverage })
+    }
+
+    /// Whether the two cannot be told apart.
+    pub(super) fn is_tie(&self) -> bool {
+        (self.low..=self.high).contains(&1.0) || (self.median - 1.0).abs() <= ALIKE
+    }
+}
+
+/// A record with its place among others.
+pub(super) struct Ranked<'a> {
+    /// The record.
+    pub(super) record: &'a Record,
+    /// 1 for the fastest and for all that cannot be told from it.
+    pub(super) rank: u32,
+}
+
+/// Whether a record may be called the best: it culls, and nothing is known to be lost.
+pub(super) fn competes(record: &Record) -> bool {
+    record.culls() && record.is_lossless()
+}
+
+/// Ranks the records that cull without a loss, by assigning and shading together: the fastest leads
+/// the first rank, and all that cannot be told from it share that; the fastest of the others leads
+/// the next. Where there are no rounds to pair, the time alone decides.
+pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
+    let mut left: Vec<&Record> = records
+        .into_iter()
+        .filter(|record| competes(record) && record.assign_and_shade_ms().is_finite())
+        .collect();
+    left.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
+    let mut ranked = Vec::new();
+    for rank in 1.. {
+        let Some(&leader) = left.first() else { break };
+        let shares = |record: &Record| {
+            std::ptr::eq(record, leader)
+                || Ratio::of(record, leader).is_some_and(|ratio| ratio.is_tie())
+        };
+        let (same, others) = left.into_iter().partition::<Vec<&Record>, _>(|r| shares(r));
+        ranked.extend(same.into_iter().map(|record| Ranked { record, rank }));
+        left = others;
+    }
+    ranked
+}
+
+/// Those that share the first rank, fastest first.
+pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
+    ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
+}
+
+/// Says that the first rank is shared: `A and B cannot be told apart: ...`. `None` where it is not.
+pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
+    let first = first(ranked);
+    let (leader, others) = first.split_first()?;
+    let widest = others
+        .iter()
+        .filter_map(|record| Ratio::of(record, leader))
+        .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
+    let names: Vec<&str> = first.iter().map(|record| record.strategy.as_str()).collect();
+    let times: Vec<String> =
+        first.iter().map(|record| significant(record.assign_and_shade_ms())).collect();
+    let ratio = match others.len() {
+        1 => "their ratio, round by round, lies".to_owned(),
+        _ => format!("their ratios to {}, round by round, lie at most", leader.strategy),
+    };
+    Some(format!(
+        "{} cannot be told apart: {} ms, and {ratio} from {} to {} (coverage {} %)",
+        listed(&names),
+        listed(&times),
+        significant(widest.low),
+        significant(widest.high),
+        significant(widest.coverage * 100.0),
+    ))
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(super) fn listed<T: AsRef<str>>(words: &[T]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.as_ref().to_owned(),
+        [first @ .., last] => {
+            let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", first.join(", "), last.as_ref())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{PassKind, PassTimes, Results};
+
+    /// A record with these times to shade, one a round.
+    fn record(strategy: &str, times_ms: &[f64]) -> Record {
+        let example: Results =
+            serde_json::from_str(include_str!("../results/example.json")).expect("the example");
+        let mut record = example.records[0].clone();
+        record.strategy = strategy.to_owned();
+        record.passes = Default::default();
+        record.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
+        record.frames = times_ms.len() as u32;
+        record.rounds = record.frames;
+        record.along_path = false;
+        (record.missed_pairs, record.max_abs_diff, record.differing_channels) =
+            (Some(0), Some(0.0), Some(0));
+        record.set_times();
+        record
+    }
+
+    /// Uniform from -0.5 to 0.5.
+    fn noise(seed: u64) -> impl Fn(u32) -> f64 {
+        move |round| {
+            let mut state = seed * 1_000 + u64::from(round);
+            for _ in 0..3 {
+                state =
+                    (state ^ (state >> 29)).wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            }
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        }
+    }
+
+    fn of(strategy: &str, time: impl Fn(u32) -> f64) -> Record {
+        record(strategy, &(0..16).map(time).collect::<Vec<_>>())
+    }
+
+    fn places(records: &[Record]) -> Vec<(String, u32)> {
+        ranks(records).iter().map(|r| (r.record.strategy.clone(), r.rank)).collect()
+    }
+
+    fn place(name: &str, rank: u32) -> (String, u32) {
+        (name.to_owned(), rank)
+    }
+
+    #[test]
+    fn drift_that_both_share_cancels() {
+        // 2 % apart, while the clock drifts by 50 %.
+        let drift = |round: u32| 1.0 + f64::from(round) / 32.0;
+        let (a, b) = (of("A", |r| 10.0 * drift(r)), of("B", |r| 10.2 * drift(r)));
+        assert_eq!(places(&[b, a]), [place("A", 1), place("B", 2)]);
+    }
+
+    #[test]
+    fn noise_hides_a_small_difference_and_not_a_large_one() {
+        let (x, y) = (noise(1), noise(2));
+        let a = of("A", |r| 10.0 * (1.0 + 0.3 * x(r)));
+        let b = of("B", |r| 10.2 * (1.0 + 0.3 * y(r)));
+        let c = of("C", |r| 16.0 * (1.0 + 0.3 * y(r + 5)));
+        let records = [a, b, c];
+        let ranked = ranks(&records);
+        let ranks: Vec<u32> = ranked.iter().map(|r| r.rank).collect();
+        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::of(&records[1], &records[0]));
+        let text = tie(&ranked).expect("two share the first rank");
+        assert!(text.contains(" and ") && text.contains("cannot be told apart"), "{text}");
+        assert!(!text.contains('C'), "{text}");
+    }
+
+    #[test]
+    fn a_sure_difference_of_less_than_half_a_per_cent_is_a_tie() {
+        assert_eq!(
+            places(&[of("A", |_| 10.0), of("B", |_| 10.03)]),
+            [place("A", 1), place("B", 1)]
+        );
+        assert_eq!(places(&[of("A", |_| 10.0), of("B", |_| 10.1)]), [place("A", 1), place("B", 2)]);
+    }
+
+    #[test]
+    fn without_rounds_the_time_alone_decides_and_nothing_is_said() {
+        let records = [record("A", &[10.0]), record("B", &[10.0001]), record("C", &[9.0])];
+        assert_eq!(places(&records), [place("C", 1), place("A", 2), place("B", 3)]);
+        assert_eq!(tie(&ranks(&records)), None);
+        assert_eq!(Ratio::of(&records[0], &records[1]), None);
+    }
+
+    #[test]
+    fn what_loses_or_does_not_cull_has_no_rank() {
+        let mut lossy = of("A", |_| 1.0);
+        lossy.missed_pairs = Some(3);
+        let nan = of("E", |_| f64::NAN);
+        let records = [lossy, of("None", |_| 1.0), of("Clay", |_| 1.0), of("B", |_| 5.0), nan];
+        assert_eq!(places(&records), [place("B", 1)]);
+        assert!(ranks([]).is_empty() && tie(&[]).is_none());
+    }
+}

@@ -1,0 +1,132 @@
+//! The culling survey: times along a path against 0 to 1,500 lights, in both modes.
+
+use super::super::finding::lights;
+use super::super::format::{number, significant};
+use super::super::rank::listed;
+use super::data::{Entry, counts, entries, lines};
+use super::figure::{Charts, name, part, table};
+use super::scaling::{fit, points};
+use crate::chart::{Axis, Marks, Scale, XyChart};
+use crate::results::Record;
+use crate::study::Done;
+
+/// The sections of the study: how pixels are lit.
+const MODES: [&str; 2] = ["deferred", "forward"];
+
+fn frame(record: &Record) -> f64 {
+    record.frame_ms
+}
+
+/// A chart, the fits and the times of each mode.
+pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> String {
+    MODES
+        .iter()
+        .map(|mode| {
+            let all = entries(done, scene, mode);
+            if all.is_empty() {
+                return String::new();
+            }
+            let chart = XyChart {
+                title: format!("Frame time against lights, {mode}"),
+                x: Axis { label: "Lights".to_owned(), unit: String::new(), scale: Scale::LinearFromZero },
+                y: Axis {
+                    label: "Frame, mean along the path".to_owned(),
+                    unit: "ms".to_owned(),
+                    scale: Scale::LinearFromZero,
+                },
+                series: lines(&all)
+                    .iter()
+                    .map(|(id, records)| points(id, records, frame, Marks::LineAndPoints))
+                    .collect(),
+                note: String::new(),
+            };
+            let body = charts.xy(&format!("{scene}-{mode}"), &chart) + &times(&all);
+            part(
+                scene,
+                mode,
+                &format!("Times, {mode}"),
+                "The whole frame, mean over the frames of the path; slope and offset of the straight line \
+                 through these times.",
+                &body,
+            )
+        })
+        .collect()
+}
+
+fn times(entries: &[Entry<'_>]) -> String {
+    let counts = counts(entries);
+    let rows: Vec<Vec<String>> = lines(entries)
+        .into_iter()
+        .map(|(id, records)| {
+            let mut row = vec![name(id)];
+            row.extend(counts.iter().map(|count| {
+                let found = records.iter().find(|record| record.lights == *count);
+                found.map_or_else(|| "\u{2013}".to_owned(), |record| significant(frame(record)))
+            }));
+            row.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
+                Some(fit) => [
+                    significant(fit.slope * 1e6),
+                    significant(fit.offset),
+                    format!("{:.3}", fit.r2),
+                ],
+                None => ["\u{2013}"; 3].map(str::to_owned),
+            });
+            row
+        })
+        .collect();
+    let mut heads = vec!["method".to_owned()];
+    let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
+    heads.extend(counts.iter().map(|count| unit(&number(*count as f64), "ms")));
+    heads.extend([
+        unit("slope", "\u{b5}s per 1,000 lights"),
+        unit("offset", "ms"),
+        "R\u{b2}".to_owned(),
+    ]);
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    table("Frame times by lights", &heads, &rows)
+}
+
+/// The methods of a mode at the most lights, fastest first; the control is none.
+fn by_time<'a>(done: &'a Done, scene: &'a str, mode: &'a str) -> Vec<&'a Record> {
+    let all = entries(done, scene, mode);
+    let most = counts(&all).last().copied();
+    let mut records: Vec<&Record> = all
+        .iter()
+        .map(|entry| entry.record)
+        .filter(|r| Some(r.lights) == most && !r.is_control() && r.frame_ms.is_finite())
+        .collect();
+    records.sort_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms));
+    records
+}
+
+/// All methods at the most lights, in each mode.
+pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
+    let sentence = |mode: &&str| {
+        let records = by_time(done, scene, mode);
+        let times: Vec<String> = records
+            .iter()
+            .map(|record| format!("{} {} ms", record.strategy, significant(record.frame_ms)))
+            .collect();
+        Some(format!(
+            "In {scene} at {}, {mode}, a frame takes, mean along the path: {}.",
+            lights(records.first()?.lights),
+            listed(&times)
+        ))
+    };
+    MODES.iter().filter_map(sentence).collect()
+}
+
+/// The fastest in each mode, in the first scene that has figures.
+pub(super) fn headline(done: &Done) -> Option<String> {
+    done.scenes().into_iter().find_map(|scene| {
+        let fastest = |mode: &&str| {
+            let records = by_time(done, scene, mode);
+            let first = records.first()?;
+            Some((format!("{} {mode}", first.strategy), first.lights))
+        };
+        let all: Vec<(String, u64)> = MODES.iter().filter_map(fastest).collect();
+        let most = all.first()?.1;
+        let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+        Some(format!("Fastest in {scene} at {}: {}.", lights(most), listed(&names)))
+    })
+}

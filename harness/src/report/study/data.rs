@@ -1,0 +1,151 @@
+//! What the parts of the page ask of a study's records.
+
+use crate::registry::STRATEGIES;
+use crate::results::{Record, Results};
+use crate::study::{Done, Job};
+
+/// A record with the job that it comes from.
+#[derive(Clone, Copy)]
+pub(super) struct Entry<'a> {
+    pub(super) job: &'a Job,
+    pub(super) record: &'a Record,
+}
+
+/// All records of a section that are there, in the order of its jobs.
+pub(super) fn entries<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> Vec<Entry<'a>> {
+    let of_job = |(job, results): (&'a Job, &'a Results)| {
+        results.records.iter().map(move |record| Entry { job, record })
+    };
+    done.of(scene, section).flat_map(of_job).collect()
+}
+
+/// The records of one strategy, with its id, in the order of their lights.
+pub(super) type Line<'a> = (&'a str, Vec<&'a Record>);
+
+/// The records of each strategy, in the order in which strategies first appear.
+pub(super) fn lines<'a>(entries: &[Entry<'a>]) -> Vec<Line<'a>> {
+    let mut lines: Vec<Line<'a>> = Vec::new();
+    for Entry { record, .. } in entries {
+        match lines.iter_mut().find(|(id, _)| *id == record.strategy) {
+            Some((_, records)) => records.push(record),
+            None => lines.push((&record.strategy, vec![record])),
+        }
+    }
+    for (_, records) in &mut lines {
+        records.sort_by_key(|record| record.lights);
+    }
+    lines
+}
+
+/// The counts of lights of records, ascending, each once.
+pub(super) fn counts(entries: &[Entry<'_>]) -> Vec<u64> {
+    let mut counts: Vec<u64> = entries.iter().map(|entry| entry.record.lights).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+/// The count that a claim speaks of, where it was measured; else the nearest that was, by factor.
+pub(super) fn nearest_count(counts: &[u64], wanted: u64) -> Option<u64> {
+    let factor = |count: &u64| ((*count).max(1) as f64 / wanted as f64).ln().abs();
+    counts.iter().copied().min_by(|a, b| factor(a).total_cmp(&factor(b)))
+}
+
+/// The id without parameters: `SC-E`.
+pub(super) fn family(id: &str) -> &str {
+    id.split('/').next().unwrap_or(id)
+}
+
+/// The parameters of an id: `48x48x40`; empty where it has none.
+pub(super) fn parameters(id: &str) -> &str {
+    let second = id.split('/').nth(1).unwrap_or_default();
+    if second.starts_with(|c: char| c.is_ascii_digit()) { second } else { "" }
+}
+
+/// The family, and for models the size of their parts: what tells strategies apart that have
+/// their default parameters.
+pub(super) fn short(id: &str) -> String {
+    match (family(id), parameters(id)) {
+        ("M", size) if !size.is_empty() => format!("M/{size}"),
+        (family, _) => family.to_owned(),
+    }
+}
+
+/// Whether it finds lights through the hierarchy.
+pub(super) fn is_bvh(id: &str) -> bool {
+    id.split('/').any(|segment| segment == "bvh")
+}
+
+/// The lossy knob of an id: `cap8`, `reuse4`.
+pub(super) fn knob(id: &str) -> Option<&str> {
+    let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let is_knob = |segment: &&str| {
+        ["cap", "reuse"].iter().any(|knob| segment.strip_prefix(knob).is_some_and(number))
+    };
+    id.split('/').skip(1).find(is_knob)
+}
+
+/// The intersection tests of a record, where it has any.
+pub(super) fn tests(record: &Record) -> Option<&str> {
+    record.strategy_parameters.get("tests").and_then(|tests| tests.as_str())
+}
+
+/// The class that colours a strategy: the same for a family in every chart of a study.
+pub(super) fn class(id: &str) -> String {
+    let family = family(id);
+    let cutting = || STRATEGIES.iter().filter(|entry| !entry.axes.is_empty());
+    match cutting().position(|entry| entry.family == family) {
+        Some(ix) => format!("strategy-{}", ix % 8),
+        // These have no groups: None and Clay are grey, as in every chart.
+        None => match family {
+            "Sphere" => "strategy-6",
+            "RasterSphere" => "strategy-7",
+            _ => "strategy-none",
+        }
+        .to_owned(),
+    }
+}
+
+/// Whether the comparison paper has a strategy: those that cut samples into groups.
+pub(super) fn is_of_the_paper(record: &Record) -> bool {
+    let family = family(&record.strategy);
+    STRATEGIES.iter().any(|entry| entry.family == family && !entry.axes.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_taken_apart() {
+        assert_eq!(family("SC-E/48x48x40/bvh/cap8"), "SC-E");
+        assert_eq!(parameters("SC-E/48x48x40/bvh"), "48x48x40");
+        assert_eq!((parameters("M/bvh"), parameters("M/2/bvh")), ("", "2"));
+        assert_eq!(
+            (short("M/2/bvh"), short("M/bvh"), short("T-E/28x28")),
+            ("M/2".into(), "M".into(), "T-E".into())
+        );
+        assert_eq!(knob("T-E/28x28/bvh/cap16"), Some("cap16"));
+        assert_eq!(knob("T-E/28x28/reuse2"), Some("reuse2"));
+        assert_eq!(knob("T-E/28x28/bvh"), None);
+        assert!(is_bvh("M/bvh") && !is_bvh("M/2"));
+    }
+
+    #[test]
+    fn every_family_with_groups_has_a_colour_of_its_own() {
+        let families = STRATEGIES.iter().filter(|entry| !entry.axes.is_empty());
+        let mut classes: Vec<String> = families.map(|entry| class(entry.family)).collect();
+        let count = classes.len();
+        classes.sort();
+        classes.dedup();
+        assert_eq!(classes.len(), count);
+        assert_eq!(class("None"), "strategy-none");
+    }
+
+    #[test]
+    fn the_nearest_count_is_so_by_factor() {
+        assert_eq!(nearest_count(&[100, 500], 10_000), Some(500));
+        assert_eq!(nearest_count(&[0, 10, 1_000], 100), Some(10));
+        assert_eq!(nearest_count(&[], 100), None);
+    }
+}

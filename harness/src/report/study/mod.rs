@@ -1,0 +1,58 @@
+//! The report of a study: one page, each chart as a file beside it, and the data.
+//!
+//! A study may be half done, or one shard of several: what lacks is named, and what was not
+//! measured is left out. The parts of the page, in the order in which a reader sees them: findings
+//! and notices, the [claims] of the comparison paper, then per scene [speed against
+//! accuracy](accuracy), [scaling], the [path], two [views], the [sizes] of groups, and [all
+//! strategies](overview); for the culling survey, [times against lights](culling).
+
+mod accuracy;
+mod checks;
+mod claims;
+mod culling;
+mod data;
+mod figure;
+mod html;
+mod overview;
+mod path;
+mod scaling;
+mod shots;
+mod sizes;
+mod views;
+
+use std::path::Path;
+
+use super::table::push_wrapped;
+use crate::error::HarnessError;
+use crate::results::write_atomically;
+use crate::study::Done;
+
+/// Writes the report of a study into a folder, `index.html`, `charts/*.svg` and
+/// `study-data.json`; returns what to print: what was found, what the comparison paper's claims
+/// come to, what lacks, and where the report is.
+///
+/// # Errors
+///
+/// Names the path that refused.
+pub fn write_study(done: &Done, out: &Path) -> Result<String, HarnessError> {
+    let page = html::page(done);
+    let charts = out.join("charts");
+    for (name, svg) in &page.charts.files {
+        write_atomically(&charts.join(name), svg.as_bytes())?;
+    }
+    let data = out.join(html::DATA);
+    write_atomically(&data, page.data.as_bytes())?;
+    let index = out.join("index.html");
+    write_atomically(&index, page.html.as_bytes())?;
+    let mut text = String::new();
+    for words in &page.words {
+        push_wrapped(&mut text, words);
+    }
+    text += &format!(
+        "report   {}\ncharts   {}\ndata     {}\n",
+        index.display(),
+        charts.display(),
+        data.display()
+    );
+    Ok(text)
+}

@@ -1,0 +1,260 @@
+//! Times against the number of lights, with straight lines through them.
+
+use super::super::fit::Fit;
+use super::super::format::{number, significant};
+use super::data::{Entry, Line, class, counts, entries, is_bvh, lines, short};
+use super::figure::{Charts, name, panels, part, table};
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::results::Record;
+use crate::study::Done;
+
+/// Points along a fitted line; on logarithmic axes it is a curve.
+const STEPS: u32 = 40;
+
+/// A time of a record, ms.
+pub(super) type Time = fn(&Record) -> f64;
+
+/// The straight line through the times of a strategy.
+pub(super) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
+    let points: Vec<(f64, f64)> =
+        records.iter().map(|record| (record.lights as f64, time(record))).collect();
+    Fit::through(&points)
+}
+
+/// Scaling with lights: fits, growing and constant density, radii.
+pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> String {
+    let scaling = entries(done, scene, "scaling");
+    let mut html = by_source(&scaling, |source, entries| {
+        let slug = format!("{scene}-scaling-{source}");
+        let title = "Time against lights, and the straight lines through them".to_owned();
+        charts.xy(&slug, &fitted_chart(title, &lines(entries), Record::assign_and_shade_ms))
+            + &fits_table(entries)
+    });
+    html = part(
+        scene,
+        "scaling",
+        "Scaling",
+        "Points are medians, whiskers their intervals, dashes a least-squares line through each \
+         strategy\u{2019}s times: straight on linear axes, bent on these.",
+        &html,
+    );
+    html + &part(
+        scene,
+        "density",
+        "Many more lights",
+        "Growing density: more lights in the same box. Constant density: the scene grows with the cube \
+         root of their number, and lights keep their size. All through the hierarchy.",
+        &density(done, scene, charts),
+    ) + &part(
+        scene,
+        "radii",
+        "Other radii",
+        "The same mean radius, distributed otherwise; in brackets the time over that with the gamma \
+         distribution.",
+        &radii(done, scene),
+    )
+}
+
+/// A panel per source of lights: strategies without one, such as None, are in both.
+fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> String) -> String {
+    let mut shown = Vec::new();
+    for (source, text, bvh) in
+        [("linear", "From the list of all lights", false), ("bvh", "Through the hierarchy", true)]
+    {
+        let has_source = |entry: &&Entry<'_>| entry.record.culls();
+        let own: Vec<Entry<'_>> = all
+            .iter()
+            .filter(|entry| !has_source(entry) || is_bvh(&entry.record.strategy) == bvh)
+            .copied()
+            .collect();
+        if own.iter().any(|entry| entry.record.culls()) {
+            shown.push((text.to_owned(), body(source, &own)));
+        }
+    }
+    panels("Where strategies look for lights", &shown)
+}
+
+/// A chart of times against lights, logarithmic, with the fit of each strategy.
+pub(super) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyChart {
+    let mut series = Vec::new();
+    for (id, records) in lines {
+        let class = class(id);
+        let line = fit(records, time).filter(|fit| fit.points > 2);
+        let ends = (records.first(), records.last());
+        if let (Some(line), (Some(first), Some(last))) = (line, ends) {
+            let (low, high) = (first.lights.max(1) as f64, last.lights.max(1) as f64);
+            let at = |step: u32| low * (high / low).powf(f64::from(step) / f64::from(STEPS));
+            let points = (0..=STEPS)
+                .map(at)
+                .filter(|x| line.at(*x) > 0.0)
+                .map(|x| Point { x, y: line.at(x), ..Point::default() })
+                .collect();
+            let marks = Marks::Dashed;
+            series.push(Series {
+                name: short(id),
+                class: class.clone(),
+                marks,
+                points,
+                ..Series::default()
+            });
+        }
+        series.push(points(id, records, time, Marks::Points));
+    }
+    XyChart {
+        title,
+        x: lights_axis(Scale::Log),
+        y: time_axis(Scale::Log),
+        series,
+        note: String::new(),
+    }
+}
+
+fn lights_axis(scale: Scale) -> Axis {
+    Axis { label: "Lights".to_owned(), unit: String::new(), scale }
+}
+
+fn time_axis(scale: Scale) -> Axis {
+    Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale }
+}
+
+/// A strategy's times against its lights.
+pub(super) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) -> Series {
+    let point = |record: &&Record| {
+        let y = time(record);
+        let lights = number(record.lights as f64);
+        Point {
+            x: record.lights as f64,
+            y,
+            y_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
+            tip: format!("{id}\n{lights} lights\n{} ms", significant(y)),
+            ..Point::default()
+        }
+    };
+    let points = records.iter().map(point).collect();
+    Series { name: short(id), class: class(id), marks, points, ..Series::default() }
+}
+
+/// Slope, offset and goodness of the line through each strategy's times; slopes of its passes.
+fn fits_table(entries: &[Entry<'_>]) -> String {
+    let mut rows = Vec::new();
+    for (id, records) in lines(entries) {
+        let Some(both) = fit(&records, Record::assign_and_shade_ms) else { continue };
+        let mut row = vec![name(id)];
+        row.extend([
+            significant(both.slope * 1e6),
+            significant(both.offset),
+            r2(&both),
+            significant(both.residual),
+        ]);
+        let parts: [Time; 2] = [|record| record.assign_ms, |record| record.shade_ms];
+        for time in parts {
+            let is_there = records.iter().any(|record| time(record) != 0.0);
+            let fit = fit(&records, time).filter(|_| is_there);
+            row.extend([
+                fit.map_or_else(String::new, |fit| significant(fit.slope * 1e6)),
+                fit.map_or_else(String::new, |fit| significant(fit.offset)),
+                fit.map_or_else(String::new, |fit| r2(&fit)),
+            ]);
+        }
+        rows.push(row);
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
+    let slope = |head: &str| unit(head, "\u{b5}s per 1,000 lights");
+    let heads = [
+        "strategy".to_owned(),
+        slope("slope"),
+        unit("offset", "ms"),
+        "R\u{b2}".to_owned(),
+        unit("residual", "ms"),
+        slope("assign: slope"),
+        unit("offset", "ms"),
+        "R\u{b2}".to_owned(),
+        slope("shade: slope"),
+        unit("offset", "ms"),
+        "R\u{b2}".to_owned(),
+    ];
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    table("Straight lines through times against lights", &heads, &rows)
+}
+
+/// Two points always lie on a line: nothing is said of it.
+fn r2(fit: &Fit) -> String {
+    if fit.points > 2 { format!("{:.3}", fit.r2) } else { "\u{2013}".to_owned() }
+}
+
+fn density(done: &Done, scene: &str, charts: &mut Charts) -> String {
+    let scaling = entries(done, scene, "scaling");
+    let main = entries(done, scene, "main");
+    let bvh = |entry: &&Entry<'_>| is_bvh(&entry.record.strategy);
+    let most = counts(&main).last().copied();
+    let mut html = String::new();
+    for (section, title, base) in [
+        ("growing", "More lights in the same box", &scaling),
+        ("constant", "More lights in a larger scene, as dense as before", &main),
+    ] {
+        let own = entries(done, scene, section);
+        if own.is_empty() {
+            continue;
+        }
+        let from = |entry: &&Entry<'_>| section == "growing" || Some(entry.record.lights) == most;
+        let known = |entry: &&Entry<'_>| {
+            own.iter().any(|other| other.record.strategy == entry.record.strategy)
+        };
+        let mut all: Vec<Entry<'_>> =
+            base.iter().filter(bvh).filter(from).filter(known).copied().collect();
+        all.extend(&own);
+        let time: Time = Record::assign_and_shade_ms;
+        let series = lines(&all)
+            .iter()
+            .map(|(id, records)| points(id, records, time, Marks::LineAndPoints))
+            .collect();
+        let chart = XyChart {
+            title: title.to_owned(),
+            x: lights_axis(Scale::Log),
+            y: time_axis(Scale::Log),
+            series,
+            note: String::new(),
+        };
+        html += &charts.xy(&format!("{scene}-{section}"), &chart);
+    }
+    if html.is_empty() { html } else { format!("<div class=\"pair\">{html}</div>") }
+}
+
+fn radii(done: &Done, scene: &str) -> String {
+    let all = entries(done, scene, "radii");
+    let mut kinds: Vec<&str> = Vec::new();
+    for entry in &all {
+        let kind = entry.record.radii.as_deref().unwrap_or("unknown");
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    let rows: Vec<Vec<String>> = lines(&all)
+        .into_iter()
+        .map(|(id, records)| {
+            let of = |kind: &str| {
+                let found = records.iter().find(|record| record.radii.as_deref() == Some(kind));
+                found.map(|record| record.assign_and_shade_ms())
+            };
+            let cell = |kind: &&str| match (of(kind), of("gamma")) {
+                (Some(time), Some(gamma)) if *kind != "gamma" && gamma > 0.0 => {
+                    format!("{} (\u{d7} {})", significant(time), significant(time / gamma))
+                }
+                (Some(time), _) => significant(time),
+                (None, _) => "\u{2013}".to_owned(),
+            };
+            std::iter::once(name(id)).chain(kinds.iter().map(cell)).collect()
+        })
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let heads: Vec<String> =
+        kinds.iter().map(|kind| format!("{kind} <span class=\"unit\">ms</span>")).collect();
+    let heads: Vec<&str> =
+        std::iter::once("strategy").chain(heads.iter().map(String::as_str)).collect();
+    table("Times by the distribution of radii", &heads, &rows)
+}

@@ -1,0 +1,133 @@
+//! The views with the least and the most depth discontinuity: heat maps and lengths of lists.
+
+use super::super::format::{escape, number, significant};
+use super::data::{Entry, class, entries, short};
+use super::figure::{Charts, panels, part};
+use super::shots::Shots;
+use crate::chart::Histogram;
+use crate::results::Record;
+use crate::study::Done;
+
+/// Those that a reader sees first.
+const FIRST: [&str; 4] = ["T-E", "SC-E", "G", "M/2"];
+
+/// Both views of each strategy.
+pub(super) fn views(
+    done: &Done,
+    scene: &str,
+    charts: &mut Charts,
+    shots: &mut Shots<'_>,
+) -> String {
+    let all = entries(done, scene, "views");
+    let mut ids: Vec<&str> = Vec::new();
+    for entry in all.iter().filter(|entry| entry.record.culls()) {
+        if !ids.contains(&entry.record.strategy.as_str()) {
+            ids.push(&entry.record.strategy);
+        }
+    }
+    ids.sort_by_key(|id| FIRST.iter().position(|first| *first == short(id)).unwrap_or(usize::MAX));
+    let of = |ids: &[&str], view: Option<bool>| -> Vec<Entry<'_>> {
+        let own = |entry: &&Entry<'_>| ids.contains(&entry.record.strategy.as_str());
+        let seen = |entry: &&Entry<'_>| view.is_none_or(|low| is_low(entry) == low);
+        let mut own: Vec<Entry<'_>> = all.iter().filter(own).filter(seen).copied().collect();
+        own.sort_by_key(|entry| ids.iter().position(|id| *id == entry.record.strategy));
+        own
+    };
+    let first: Vec<&str> =
+        ids.iter().filter(|id| FIRST.contains(&short(id).as_str())).copied().collect();
+    let mut shown: Vec<(String, String)> = Vec::new();
+    if first.len() > 1 {
+        let (mut maps, mut drawn) = (String::new(), String::new());
+        for low in [true, false] {
+            let entries = of(&first, Some(low));
+            let Some(view) = entries.first().map(view) else { continue };
+            maps += &heat_maps(&entries, "views four", shots);
+            let title = format!("Lists by length, {view}: groups that some pixel reads");
+            drawn += &histograms(&format!("{scene}-views-{view}"), &title, &entries, charts);
+        }
+        let names: Vec<String> = first.iter().map(|id| short(id)).collect();
+        shown.push((names.join(", "), format!("{maps}<div class=\"pair\">{drawn}</div>\n")));
+    }
+    for id in &ids {
+        let entries = of(&[*id], None);
+        let title = format!("Lists by length, {id}: groups that some pixel reads");
+        let slug = format!("{scene}-views-{}", short(id));
+        let mut body = heat_maps(&entries, "views", shots);
+        body += &histograms(&slug, &title, &entries, charts);
+        shown.push((short(id), body));
+    }
+    part(
+        scene,
+        "views",
+        "Views of low and high depth discontinuity",
+        "Of the views along the path, the one in which the fewest neighbouring pixels are a tenth apart \
+         in depth, and the one in which the most are. Heat maps show the lights in the list of each \
+         pixel: blue at none, red at 150, green above.",
+        &panels("Strategy", &shown),
+    )
+}
+
+/// The heat maps of records, each with what its lists come to.
+fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> String {
+    let mut figures = String::new();
+    for entry in entries {
+        let record = entry.record;
+        let heat = record.images.heat_map.as_deref();
+        let Some(picture) = heat.and_then(|heat| shots.file(&entry.job.name, heat)) else {
+            continue;
+        };
+        let listed = record
+            .listed_per_sample
+            .map_or_else(String::new, |listed| format!("; {} lights a pixel", significant(listed)));
+        figures += &format!(
+            "<figure><img data-picture=\"{0}\" alt=\"Lights per pixel, {1}, {2}\" width=\"{3}\" height=\"{4}\">\
+             <figcaption><b>{1}, {2}</b>{listed}; assign {5} ms, shade {6} ms.</figcaption></figure>\n",
+            escape(&picture),
+            escape(&short(&record.strategy)),
+            view(entry),
+            record.width,
+            record.height,
+            significant(record.assign_ms),
+            significant(record.shade_ms),
+        );
+    }
+    match figures.as_str() {
+        "" => figures,
+        _ => format!("<div class=\"{class}\">{figures}</div>\n"),
+    }
+}
+
+/// The lengths of the lists of records, side by side.
+fn histograms(slug: &str, title: &str, entries: &[Entry<'_>], charts: &mut Charts) -> String {
+    let all: Vec<Histogram> = entries
+        .iter()
+        .filter(|entry| entry.record.histogram.iter().any(|groups| *groups > 0))
+        .map(|entry| histogram(entry.record, view(entry)))
+        .collect();
+    if all.is_empty() { String::new() } else { charts.histograms(slug, title, &all) }
+}
+
+fn is_low(entry: &Entry<'_>) -> bool {
+    entry.job.name.ends_with("low")
+}
+
+fn view(entry: &Entry<'_>) -> &'static str {
+    if is_low(entry) { "low discontinuity" } else { "high discontinuity" }
+}
+
+fn histogram(record: &Record, view: &str) -> Histogram {
+    let bin = |bin: usize| match bin {
+        0 | 1 => bin.to_string(),
+        _ => {
+            let first = 1_u64 << (bin - 1).min(62);
+            format!("{}\u{2013}{}", number(first as f64), number((first * 2 - 1) as f64))
+        }
+    };
+    Histogram {
+        title: format!("{}, {view}", short(&record.strategy)),
+        x_label: "Lights in a list".to_owned(),
+        bins: record.histogram.iter().enumerate().map(|(ix, n)| (bin(ix), *n)).collect(),
+        class: class(&record.strategy),
+        note: String::new(),
+    }
+}
