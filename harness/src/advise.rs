@@ -16,7 +16,7 @@ use crate::{
     compare::Bench,
     error::HarnessError,
     report,
-    results::{Record, Results, indistinguishable},
+    results::{Record, Results},
 };
 
 /// The strategies of the first round.
@@ -186,7 +186,7 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
     };
     if let Some(next) = next {
         let ratio = next.assign_and_shade_ms() / best.assign_and_shade_ms();
-        let told = if indistinguishable(best, next) == Some(true) {
+        let told = if report::indistinguishable(best, next) == Some(true) {
             "which cannot be told apart from it".to_owned()
         } else {
             format!("{:.1} % slower", (ratio - 1.0) * 100.0)

@@ -13,7 +13,6 @@
 #![doc = include_str!("results/example.json")]
 //! ```
 
-mod distinct;
 mod file;
 mod passes;
 mod stats;
@@ -23,7 +22,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 pub use shading::Mode;
 
-pub use distinct::{indistinguishable, ratio_interval};
 pub use file::{ResultsError, write_atomically};
 pub use passes::{PassKind, PassTimes, Passes};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};

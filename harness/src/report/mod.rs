@@ -19,5 +19,6 @@ pub use finding::{finding, notices};
 pub use format::significant;
 pub use html::{render_html, write_html};
 pub use markdown::render_markdown;
+pub use rank::indistinguishable;
 pub use study::write_study;
 pub use table::{TABLE_WIDTH, render_table};

@@ -45,6 +45,11 @@ impl Ratio {
     }
 }
 
+/// Whether two records cannot be told apart. `None` where they were not timed in the same rounds.
+pub fn indistinguishable(record: &Record, other: &Record) -> Option<bool> {
+    Ratio::of(record, other).map(|ratio| ratio.is_tie())
+}
+
 /// A record with its place among others.
 pub(super) struct Ranked<'a> {
     /// The record.

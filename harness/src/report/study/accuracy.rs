@@ -125,7 +125,9 @@ impl Plot<'_> {
     }
 
     fn error(&self, record: &Record, metric: &ErrorMetric) -> Option<f64> {
-        (self.errors)(record).get(metric.id).copied().flatten().filter(|error| error.is_finite())
+        // Bias alone has a sign.
+        let error = (self.errors)(record).get(metric.id).copied().flatten().map(f64::abs);
+        error.filter(|error| error.is_finite())
     }
 
     fn chart(&self, metric: &ErrorMetric, keys: &[Option<String>]) -> XyChart {
