@@ -96,6 +96,7 @@ pub struct LightLists {
     /// Upper limit set by the user; the device's limit applies as well.
     pool_limit: u32,
     list_cap: u32,
+    generation: u32,
     counts: (u32, u32),
     readback: Readback<Counters>,
 }
@@ -137,6 +138,7 @@ impl LightLists {
             pool_capacity: 0,
             pool_limit: u32::MAX,
             list_cap: u32::MAX,
+            generation: 0,
             counts: (0, 0),
             readback: Readback::new(gpu, "list counters"),
         })
@@ -155,6 +157,17 @@ impl LightLists {
     /// still becomes all lights.
     pub fn cap_lists(&mut self, lights: u32) {
         self.list_cap = lights;
+    }
+
+    /// Says that what the lists hold is of no use any more: whoever keeps them over frames
+    /// ([`Reuse`](crate::Reuse)) makes them anew.
+    pub fn expire(&mut self) {
+        self.generation = self.generation.wrapping_add(1);
+    }
+
+    /// How often the lists have [expired](Self::expire).
+    pub fn generation(&self) -> u32 {
+        self.generation
     }
 
     /// Sizes the buffers for a frame and grows the pool to what earlier frames asked for.

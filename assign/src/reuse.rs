@@ -23,6 +23,7 @@ struct Made {
     light_count: u32,
     group_count: u32,
     samples: SampleDomain,
+    generation: u32,
 }
 
 impl Reuse {
@@ -57,6 +58,7 @@ impl Assignment for Reuse {
             light_count: frame.lights.count(),
             group_count: lists.group_count(),
             samples: frame.samples,
+            generation: lists.generation(),
         };
         // A buffer that was made anew holds no lists.
         if self.made.as_ref() != Some(&now) {

@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 use crate::{
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
-    compare::Bench,
+    compare::{Bench, check_writable},
     error::HarnessError,
     report,
     results::{Record, Results},
@@ -37,6 +37,15 @@ const METRIC: &str = "rel_mse";
 
 /// Searches, writes what was measured, and says what to use.
 pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, HarnessError> {
+    if args.mode.modes().len() != 1 {
+        return Err(CliError::out_of_range("--mode", "both", "deferred or forward").into());
+    }
+    let is_file = [".gltf", ".glb"].iter().any(|end| args.lights.to_lowercase().ends_with(end));
+    if !is_file && args.lights.parse::<u32>().is_err() {
+        let accepted = "a whole number from 0 to 16,777,216, or a .gltf or .glb file";
+        return Err(CliError::out_of_range("--lights", &args.lights, accepted).into());
+    }
+    check_writable(&args.out)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let frames = FRAMES[usize::from(bench.gpu().is_software())];
     let mut search = Search { args, bench: &mut bench };
@@ -45,10 +54,13 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let best = fastest_by_family(&families);
     let finalists: Vec<String> =
         best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
+    if finalists.is_empty() {
+        return Err(CliError::new("advise: no strategy showed the image of no culling").into());
+    }
     let parameters = search.round("parameters", &finalists.join(","), &[], frames[0])?;
 
     let mut candidates: Vec<&Record> = families.records.iter().chain(&parameters.records).collect();
-    candidates.retain(|record| record.is_lossless());
+    candidates.retain(|record| record.is_lossless() && !record.is_lossy);
     candidates.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
     let mut last: Vec<String> = Vec::new();
     for record in candidates {
@@ -181,8 +193,14 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
         let _ = write!(text, ", median within {} to {}", ms(interval.low), ms(interval.high));
     }
     let _ = match error(best) {
+        Some(0.0) if best.is_lossy => {
+            writeln!(
+                text,
+                ", the image of no culling in this view: elsewhere its lists may lose lights."
+            )
+        }
         Some(0.0) => writeln!(text, ", the image of no culling bit for bit."),
-        error => writeln!(text, ", relMSE {:.1e}.", error.unwrap_or(f64::NAN)),
+        error => writeln!(text, ", relMSE {:.1e} in this view.", error.unwrap_or(f64::NAN)),
     };
     if let Some(next) = next {
         let ratio = next.assign_and_shade_ms() / best.assign_and_shade_ms();

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use shading::HdrImage;
 
 use crate::{
-    cli::ReportArgs,
+    cli::{CliError, ReportArgs},
     compare::Pictures,
     error::HarnessError,
     errors::{ImagePair, errors},
     report,
-    results::{Errors, Record, Results},
+    results::{Errors, Record, Results, ResultsError},
     study::{Done, Manifest},
 };
 
@@ -26,10 +26,17 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
         for (job, results) in &mut done.results {
             if let Some(folder) = done.folders.get(job) {
                 refresh(results, folder)?;
-                results.write(&folder.join("results.json"))?;
+                if args.out.is_none() {
+                    results.write(&folder.join("results.json"))?;
+                }
             }
         }
         return report::write_study(&done, out);
+    }
+    if args.out.is_some() && args.folders.len() > 1 {
+        let value = out.display().to_string();
+        let accepted = "left out where several comparisons are given: each keeps its own report";
+        return Err(CliError::out_of_range("--out", &value, accepted).into());
     }
     let mut text = String::new();
     for folder in &args.folders {
@@ -68,6 +75,22 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
         record.set_times();
         let Some(image) = store.image(record.images.raw.as_ref())? else { continue };
         let exposure = record.images.exposure.unwrap_or(1.0) as f32;
+        for other in [&record.images.raw_baseline, &record.images.raw_unbounded] {
+            if let Some(reference) = store.image(other.as_ref())?
+                && (reference.width, reference.height) != (image.width, image.height)
+            {
+                let path = folder.join(other.as_deref().unwrap_or_default());
+                let reason = format!(
+                    "{}x{} pixels: it must be as large as {}, {}x{}",
+                    reference.width,
+                    reference.height,
+                    record.images.raw.as_deref().unwrap_or_default(),
+                    image.width,
+                    image.height
+                );
+                return Err(ResultsError::Parse { path, reason }.into());
+            }
+        }
         let pair = |reference: &HdrImage| {
             let pair = ImagePair { image: &image, reference, exposure };
             let finite = |error: f64| error.is_finite().then_some(error);
@@ -130,7 +153,6 @@ impl From<Vec<PathBuf>> for ReportArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::ResultsError;
 
     #[test]
     fn names_that_lead_elsewhere_are_not_read() {

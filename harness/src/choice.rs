@@ -210,9 +210,19 @@ impl Choice {
         all
     }
 
-    /// Whether it may show another image than no culling: a knob says so.
-    pub fn is_lossy(&self) -> bool {
-        self.spec.cap.is_some() || self.spec.reuse.is_some_and(|frames| frames > 1)
+    /// Whether it may show another image than no culling of that many lights: a knob says so.
+    pub fn is_lossy(&self, lights: u64) -> bool {
+        self.spec.cap.is_some_and(|most| u64::from(most) < lights) || self.is_reused()
+    }
+
+    /// The most lights of a list.
+    pub fn cap(&self) -> u32 {
+        self.spec.cap.unwrap_or(u32::MAX)
+    }
+
+    /// Whether lists are used for several frames.
+    pub fn is_reused(&self) -> bool {
+        self.spec.reuse.is_some_and(|frames| frames > 1)
     }
 
     /// Whether it cuts the samples into groups, and so has something to assign.

@@ -353,7 +353,7 @@ fn see(
     let is_same = image.pixels == reference.image.pixels;
     let exposure = reference.exposure;
     let pair = ImagePair { image: &image, reference: &reference.image, exposure };
-    let mut seen = Seen::new(lists.unwrap_or_default());
+    let mut seen = Seen::new(lists.unwrap_or_default(), is_control);
     if !is_control {
         seen.compare(&pair)?;
         seen.unbounded_errors = match &reference.unbounded {
@@ -424,6 +424,11 @@ fn end_on_device_error(gpu: &Gpu) {
 /// An error where no choice can be measured in any of the modes.
 fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
     let is_forward = args.mode == ModeChoice::Forward;
+    if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
+        let accepted =
+            "given with --path: from a still camera lists are right however old they are";
+        return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
+    }
     if is_forward && choices.iter().all(|choice| choice.family() == RASTER_SPHERE) {
         let accepted = format!("deferred for {RASTER_SPHERE}, which has no forward mode");
         return Err(CliError::out_of_range("--mode", "forward", &accepted));
@@ -491,7 +496,7 @@ fn served(
 
 /// Makes the output folder and writes to it once, before anything long begins. An earlier run's
 /// report goes: it would stand beside this run's pictures if this one is interrupted.
-fn check_writable(out: &Path) -> Result<(), ResultsError> {
+pub fn check_writable(out: &Path) -> Result<(), ResultsError> {
     let probe = out.join(".lightbench");
     write_atomically(&probe, b"")?;
     for stale in ["index.html", "results.json"].map(|name| out.join(name)) {

@@ -199,6 +199,10 @@ impl<'a> Contest<'a> {
         }
         stage.go_to(0, count)?;
         self.warm_up(stage, timed)?;
+        // Lists that are used for several frames begin with the path, on every run alike.
+        for contender in &mut self.contenders {
+            contender.painter.expire();
+        }
         let step = check_step(count);
         for frame in 0..count {
             stage.go_to(frame, count)?;

@@ -53,6 +53,13 @@ impl<'a> Painter<'a> {
         }
     }
 
+    /// Has lists that are kept over frames made anew.
+    pub fn expire(&mut self) {
+        if let Self::Lists { strategy, .. } = self {
+            strategy.lists_mut().expire();
+        }
+    }
+
     /// Records one frame: geometry, the strategy's passes, lighting. Returns whether no list of
     /// the frame before overflowed.
     pub fn draw(

@@ -103,7 +103,10 @@ fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError
     }
     let results = Results::read(&path)?;
     let (then, now) = (&results.machine, bench.machine());
-    if (&then.adapter, &then.driver, &then.commit) == (&now.adapter, &now.driver, &now.commit) {
+    let key = |m: &crate::results::Machine| {
+        [&m.adapter, &m.driver, &m.backend, &m.commit].map(String::clone)
+    };
+    if key(then) == key(now) {
         return Ok(results.command == job.command);
     }
     Err(CliError::new(format!(

@@ -70,7 +70,8 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
     let at = |name: &str| folder.path().join(name);
     let whole = at("whole");
     let printed = run(&study(&whole, &[]));
-    assert!(printed.contains("6 of 6 jobs"), "{printed}");
+    assert!(printed.contains("index.html"), "{printed}");
+    assert!(!printed.contains("it states no loss"), "{printed}");
     let expected = records(std::slice::from_ref(&whole));
     assert_eq!(expected.len(), 6);
     assert!(expected.values().all(|records| records.len() >= 5));
@@ -105,7 +106,25 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
     assert!(merged.join("index.html").is_file());
     assert_eq!(records(&[one.clone(), two]), expected);
     // Half of it is half of it.
-    assert_eq!(Done::read(&[one]).expect("a study").missing().len(), 3);
+    assert_eq!(Done::read(std::slice::from_ref(&one)).expect("a study").missing().len(), 3);
+
+    // Results of another machine or another command are no part of it.
+    let job = Manifest::find(&one).expect("reads").expect("is there").jobs.swap_remove(0);
+    let path = job.folder(&one).join("results.json");
+    let sound = Results::read(&path).expect("results");
+    let refused = |results: &Results| {
+        results.write(&path).expect("writes");
+        Done::read(std::slice::from_ref(&one)).expect_err("refused").to_string()
+    };
+    let mut other = sound.clone();
+    other.machine.adapter = "another".into();
+    assert!(refused(&other).contains("machine.adapter"));
+    let mut other = sound.clone();
+    other.command.push("--spots".into());
+    assert!(refused(&other).contains("--spots"));
+    let mut other = sound.clone();
+    other.records[0].scene_hash = "0".into();
+    assert!(refused(&other).contains("scene_hash"));
 }
 
 #[test]
@@ -118,6 +137,14 @@ fn a_damaged_study_is_refused_by_name() {
     let output = start(&["report", out]).wait_with_output().expect("ends");
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("study.json"));
+    // A job's name is the name of a folder that may be deleted.
+    for name in ["../victim", "..", "", "/tmp/x", "a/b"] {
+        let job = format!(r#"{{"name":"{name}","scene":"a","section":"b","command":[]}}"#);
+        let text = format!(r#"{{"identity":[],"study":"culling","jobs":[{job}]}}"#);
+        std::fs::write(folder.path().join("study.json"), text).expect("writes");
+        let error = Manifest::find(folder.path()).expect_err("refused").to_string();
+        assert!(error.contains("jobs[0].name"), "{error}");
+    }
 }
 
 #[test]
@@ -155,4 +182,11 @@ fn metrics_are_computed_again_from_the_stored_images() {
     results.write(&path).expect("writes");
     run(&["report", out]);
     assert_eq!(Results::read(&path).expect("results").records[1].errors, errors);
+    // An image of another size is named.
+    let small = shading::HdrImage { width: 2, height: 1, pixels: vec![[1.0; 3]; 2] };
+    small.write_exr(&folder.path().join("deferred-None.exr")).expect("writes");
+    let output = start(&["report", out]).wait_with_output().expect("ends");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("deferred-None.exr") && stderr.contains("2x1"), "{stderr}");
 }

@@ -110,7 +110,7 @@ impl<'a> Comparison<'a> {
             self.records
                 .iter()
                 .map(|(_, record)| *record)
-                .filter(|record| record.culls())
+                .filter(|record| record.culls() && !record.is_lossy)
                 .filter(move |record| record.is_lossless() || !lossless)
                 .filter(|record| record.assign_and_shade_ms().is_finite())
                 .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))

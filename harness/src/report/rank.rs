@@ -11,6 +11,9 @@ use crate::results::{Record, median, median_interval};
 /// Nearer to 1, a ratio is of no interest, however sure it is.
 const ALIKE: f64 = 0.005;
 
+/// The least coverage of an interval that tells two apart: of six rounds or more.
+const SURE: f64 = 0.95;
+
 /// The times of one record over those of another, paired by round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ratio {
@@ -41,7 +44,9 @@ impl Ratio {
 
     /// Whether the two cannot be told apart.
     pub(super) fn is_tie(&self) -> bool {
-        (self.low..=self.high).contains(&1.0) || (self.median - 1.0).abs() <= ALIKE
+        // Few rounds tell nothing: their range leaves out 1 by chance.
+        let is_sure = self.coverage >= SURE;
+        !is_sure || (self.low..=self.high).contains(&1.0) || (self.median - 1.0).abs() <= ALIKE
     }
 }
 
@@ -60,7 +65,7 @@ pub(super) struct Ranked<'a> {
 
 /// Whether a record may be called the best: it culls, and nothing is known to be lost.
 pub(super) fn competes(record: &Record) -> bool {
-    record.culls() && record.is_lossless()
+    record.culls() && !record.is_lossy && record.is_lossless()
 }
 
 /// Ranks the records that cull without a loss, by assigning and shading together: the fastest leads

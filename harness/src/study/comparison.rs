@@ -67,7 +67,7 @@ const QUICK: Extent = Extent {
     counts: &[100, 500],
     most: 500,
     scaling: &[100, 300, 1_000],
-    frames: 3,
+    frames: 6,
     path_frames: 12,
     tiles: &[16, 32],
     cluster_tiles: &[16, 32],
@@ -156,7 +156,7 @@ impl Plan<'_> {
 
     /// Group sizes and intersection tests (the paper's sections 4.3.1 and 4.3.2).
     fn searches(&mut self) {
-        let frames = (self.extent.frames / 4).max(2).to_string();
+        let frames = (self.extent.frames / 4).max(6).to_string();
         let lossless = ["--truth", "none", "--pictures", "none", "--frames", &frames];
         let each = |family: &str, sizes: &[String]| {
             sizes.iter().map(|size| format!("{family}/{size}")).collect::<Vec<_>>().join(",")
@@ -218,7 +218,7 @@ impl Plan<'_> {
 
     /// Times against the number of lights (section 4.4.2).
     fn scaling(&mut self, quick: bool) {
-        let frames = (self.extent.frames / 4).max(2).to_string();
+        let frames = (self.extent.frames / 4).max(6).to_string();
         let strategies = format!("None,{CUT}");
         for &count in self.extent.scaling {
             let source = if quick { "linear" } else { "both" };
@@ -230,7 +230,7 @@ impl Plan<'_> {
 
     /// Many more lights, at growing and at constant density, and other radii.
     fn beyond(&mut self, quick: bool) {
-        let frames = (self.extent.frames / 4).max(2).to_string();
+        let frames = (self.extent.frames / 4).max(6).to_string();
         let options = ["--strategies", CUT, "--source", "bvh", "--frames", &frames];
         let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
         let many: &[u32] = if quick { &[2_000] } else { &[100_000, 300_000] };
@@ -251,7 +251,7 @@ impl Plan<'_> {
     /// The lossy knobs: capped lists, lists used for several frames, and the threshold at which
     /// lights end.
     fn accuracy(&mut self) {
-        let frames = (self.extent.frames / 4).max(2).to_string();
+        let frames = (self.extent.frames / 4).max(6).to_string();
         let most = self.extent.most;
         let knobs = |families: &[&str], knob: &str, values: &[u32]| {
             let lossless = families.iter().map(|family| format!("{family}/bvh"));

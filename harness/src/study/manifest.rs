@@ -43,9 +43,27 @@ impl Manifest {
         }
         let text = std::fs::read_to_string(&path)
             .map_err(|source| ResultsError::Read { path: path.clone(), source })?;
-        serde_json::from_str(&text)
-            .map(Some)
-            .map_err(|error| ResultsError::Parse { path, reason: error.to_string() })
+        let fail = |reason: String| ResultsError::Parse { path: path.clone(), reason };
+        let manifest: Self =
+            serde_json::from_str(&text).map_err(|error| fail(error.to_string()))?;
+        manifest.check().map_err(fail)?;
+        Ok(Some(manifest))
+    }
+
+    /// Names of jobs are names of folders: the file may come from anywhere.
+    fn check(&self) -> Result<(), String> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        for (ix, job) in self.jobs.iter().enumerate() {
+            let name = &job.name;
+            let is_plain = !name.is_empty() && !name.starts_with('.') && name.chars().all(plain);
+            if !is_plain || self.jobs.iter().take(ix).any(|other| other.name == *name) {
+                return Err(format!(
+                    "jobs[{ix}].name is {name:?}: it must be unique, of letters, digits, '-', '_' and '.', \
+                     the first no '.'"
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Writes it into a folder.
@@ -90,12 +108,51 @@ impl Done {
             for job in &manifest.jobs {
                 let path = job.folder(folder).join("results.json");
                 if path.is_file() && !done.results.contains_key(&job.name) {
-                    done.results.insert(job.name.clone(), Results::read(&path)?);
+                    let results = Results::read(&path)?;
+                    done.check(job, &results)
+                        .map_err(|reason| ResultsError::Parse { path, reason })?;
+                    done.results.insert(job.name.clone(), results);
                     done.folders.insert(job.name.clone(), job.folder(folder));
                 }
             }
         }
         done.ok_or_else(|| ResultsError::Parse { path: PathBuf::new(), reason: "no folder".into() })
+    }
+
+    /// Whether results are a job's own, and may be compared with those that are known.
+    fn check(&self, job: &Job, results: &Results) -> Result<(), String> {
+        if results.command != job.command {
+            return Err(format!(
+                "command is `{}`: it must be the job's, `{}`",
+                results.command.join(" "),
+                job.command.join(" ")
+            ));
+        }
+        let Some(first) = self.results.values().next() else { return Ok(()) };
+        let (first, machine) = (&first.machine, &results.machine);
+        for (field, known, own) in [
+            ("adapter", &first.adapter, &machine.adapter),
+            ("driver", &first.driver, &machine.driver),
+            ("backend", &first.backend, &machine.backend),
+            ("commit", &first.commit, &machine.commit),
+        ] {
+            if known != own {
+                return Err(format!(
+                    "machine.{field} is {own}: it must be that of the other jobs, {known}"
+                ));
+            }
+        }
+        let hash = |results: &Results| results.records.first().map(|r| r.scene_hash.clone());
+        let same =
+            |known: &&Job| known.scene == job.scene && command_scale(known) == command_scale(job);
+        let other = self.manifest.jobs.iter().filter(same);
+        let known = other.filter_map(|known| hash(self.results.get(&known.name)?)).next();
+        match (known, hash(results)) {
+            (Some(known), Some(own)) if known != own => Err(format!(
+                "scene_hash is {own}: it must be that of the scene in the other jobs, {known}"
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Names of the jobs that are not done.
@@ -127,4 +184,10 @@ impl Done {
         }
         scenes
     }
+}
+
+/// The scale of a job's scene, as its command has it.
+fn command_scale(job: &Job) -> Option<&String> {
+    let at = job.command.iter().position(|word| word == "--scene-scale")?;
+    job.command.get(at + 1)
 }

@@ -36,7 +36,7 @@ impl StudyScene {
             let plain =
                 |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
             let mut name: String = name.chars().map(plain).collect();
-            if all.iter().any(|known| known.name == name) {
+            while all.iter().any(|known| known.name == name) {
                 name += &format!("-{}", ix + 1);
             }
             let scale = args.scene_scale.get(ix).copied().unwrap_or(1.0);

@@ -1,6 +1,7 @@
 //! Speed against accuracy: what each lossy knob gains in time and costs in error.
 
 use super::super::format::{difference, escape, significant};
+use super::super::rank::Ratio;
 use super::data::{Entry, class, entries, family, knob, lines};
 use super::figure::{Charts, panels, part};
 use super::shots::{Shots, Wanted};
@@ -261,14 +262,19 @@ pub(super) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
             .filter(|record| record.assign_and_shade_ms().is_finite())
             .filter(|record| {
                 let error = record.errors.get(FIRST).copied().flatten();
-                error.is_some_and(|error| if lossy { error <= bound } else { error == 0.0 })
+                error.is_some_and(|error| match lossy {
+                    true => error > 0.0 && error <= bound,
+                    false => error == 0.0,
+                })
             })
             .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))
     };
     let (lossy, lossless) = (fastest(true)?, fastest(false)?);
     let [time, exact] = [lossy, lossless].map(Record::assign_and_shade_ms);
     let error = difference(lossy.errors.get(FIRST).copied().flatten().unwrap_or(0.0));
-    Some(if time < exact {
+    let is_faster =
+        Ratio::of(lossy, lossless).is_some_and(|ratio| ratio.median < 1.0 && !ratio.is_tie());
+    Some(if is_faster {
         format!(
             "A relMSE of {error} buys {} % of the time: {} takes {} ms, {}, the fastest exact one \
              of the same run, {} ms.",
@@ -280,8 +286,8 @@ pub(super) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
         )
     } else {
         format!(
-            "No cap with a relMSE of at most {bound} is faster than the fastest exact one, {} with \
-             {} ms.",
+            "No cap with a relMSE of at most {bound} is certainly faster than the fastest exact one, {} \
+             with {} ms.",
             lossless.strategy,
             significant(exact)
         )

@@ -2,10 +2,10 @@
 
 use super::super::fit::Fit;
 use super::super::format::{number, percent, significant};
-use super::super::rank::{first, ranks};
+use super::super::rank::{Ratio, first, ranks};
 use super::claims::{Answer, Verdict};
 use super::data::{
-    Entry, counts, entries, family, is_bvh, is_of_the_paper, lines, nearest_count, short,
+    Entry, counts, entries, family, is_bvh, is_near, is_of_the_paper, lines, nearest_count, short,
     tests as tests_of,
 };
 use super::path::Spread;
@@ -16,18 +16,33 @@ use crate::study::Done;
 /// From this share of the variance explained on, growth is called linear.
 const LINEAR: f64 = 0.98;
 
+/// Up to this root mean square of the points' relative distances from the line, too: the greatest
+/// counts alone decide the variance.
+const ASTRAY: f64 = 0.25;
+
 /// A strategy with the line through its times, of three counts of lights at least.
-fn fits<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a str, Fit, usize)> {
+fn fits<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a str, Fit, f64)> {
     let scaling: Vec<Entry<'_>> = entries(done, scene, "scaling")
         .into_iter()
         .filter(|entry| is_of_the_paper(entry.record))
         .collect();
     lines(&scaling)
         .into_iter()
-        .filter_map(|(id, records)| Some((id, fit(&records, Record::assign_and_shade_ms)?)))
-        .map(|(id, fit)| (id, fit, fit.points))
-        .filter(|(_, _, points)| *points > 2)
+        .filter_map(|(id, records)| {
+            let fit = fit(&records, Record::assign_and_shade_ms)?;
+            Some((id, fit, astray(&fit, &records)))
+        })
+        .filter(|(_, fit, _)| fit.points > 2)
         .collect()
+}
+
+/// Root mean square of the points' distances from the line, each over its own time.
+fn astray(fit: &Fit, records: &[&Record]) -> f64 {
+    let off = |record: &&Record| {
+        let time = record.assign_and_shade_ms();
+        (fit.at(record.lights as f64) / time - 1.0).powi(2)
+    };
+    (records.iter().map(off).sum::<f64>() / records.len().max(1) as f64).sqrt()
 }
 
 /// Linear where the line through each strategy's times explains nearly all of their variance.
@@ -37,15 +52,19 @@ pub(super) fn linear(done: &Done, scene: &str) -> Answer {
     let Some((id, worst, _)) = worst else {
         return Answer::unknown("scaling over three counts of lights");
     };
-    let good = fits.iter().filter(|(_, fit, _)| fit.r2 >= LINEAR).count();
+    let is_straight = |fit: &Fit, astray: f64| fit.r2 >= LINEAR && astray <= ASTRAY;
+    let good = fits.iter().filter(|(_, fit, astray)| is_straight(fit, *astray)).count();
+    let far = fits.iter().map(|(.., astray)| *astray).fold(0.0, f64::max);
     let counts = counts(&entries(done, scene, "scaling"));
     let ends = [counts.first(), counts.last()].map(|end| end.map_or(0.0, |end| *end as f64));
     let figure = format!(
-        "R\u{b2} at least {LINEAR} in {good} of {} strategies, {} to {} lights; least {id}: {:.3}",
+        "straight in {good} of {} strategies, {} to {} lights; least R\u{b2} {id}: {:.3}; points off \
+         their line by {} % at most, root mean square",
         fits.len(),
         number(ends[0]),
         number(ends[1]),
-        worst.r2
+        worst.r2,
+        percent(far)
     );
     Answer { figure, verdict: Verdict::of_parts(good, fits.len(), "strategies") }
 }
@@ -92,6 +111,9 @@ fn best_at(done: &Done, scene: &str, wanted: u64, families: &[&str]) -> Answer {
     let Some(count) = nearest_count(&counts(&main), wanted) else {
         return Answer::unknown("the main comparison");
     };
+    if !is_near(count, wanted) {
+        return Answer::unknown(&format!("measured at {} lights only", number(count as f64)));
+    }
     let at_count = main.iter().map(|entry| entry.record).filter(|record| record.lights == count);
     let ranked = ranks(at_count);
     let best = first(&ranked);
@@ -182,6 +204,9 @@ pub(super) fn steadiness(done: &Done, scene: &str) -> Answer {
     let Some(count) = nearest_count(&counts(&path), 10_000) else {
         return Answer::unknown("frames along the path");
     };
+    if !is_near(count, 10_000) {
+        return Answer::unknown(&format!("measured at {} lights only", number(count as f64)));
+    }
     let spreads: Vec<(&str, Spread)> = path
         .iter()
         .filter(|entry| entry.record.lights == count)
@@ -236,7 +261,9 @@ pub(super) fn models(done: &Done, scene: &str) -> Answer {
         significant(whole.shade_ms),
         significant(parts.shade_ms)
     );
-    let verdict = match (listed < long, times[1] < times[0]) {
+    let is_faster =
+        Ratio::of(parts, whole).is_some_and(|ratio| ratio.median < 1.0 && !ratio.is_tie());
+    let verdict = match (listed < long, is_faster) {
         (true, true) => Verdict::Holds,
         (true, false) => Verdict::Differs("lists are shorter, but the whole takes longer".into()),
         (false, true) => Verdict::Differs("the whole is faster, but lists are no shorter".into()),

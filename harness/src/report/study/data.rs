@@ -51,6 +51,11 @@ pub(super) fn nearest_count(counts: &[u64], wanted: u64) -> Option<u64> {
     counts.iter().copied().min_by(|a, b| factor(a).total_cmp(&factor(b)))
 }
 
+/// Whether a count may speak for another: no more than twice or half as many.
+pub(super) fn is_near(count: u64, wanted: u64) -> bool {
+    count <= 2 * wanted && wanted <= 2 * count
+}
+
 /// The id without parameters: `SC-E`.
 pub(super) fn family(id: &str) -> &str {
     id.split('/').next().unwrap_or(id)
@@ -106,10 +111,13 @@ pub(super) fn class(id: &str) -> String {
     }
 }
 
-/// Whether the comparison paper has a strategy: those that cut samples into groups.
+/// Whether the comparison paper has a strategy: those that cut samples into groups, from the list of
+/// all lights, and models whole.
 pub(super) fn is_of_the_paper(record: &Record) -> bool {
-    let family = family(&record.strategy);
-    STRATEGIES.iter().any(|entry| entry.family == family && !entry.axes.is_empty())
+    let id = record.strategy.as_str();
+    let is_parted = family(id) == "M" && !parameters(id).is_empty();
+    let is_plain = !is_bvh(id) && !is_parted && !record.is_lossy;
+    is_plain && STRATEGIES.iter().any(|entry| entry.family == family(id) && !entry.axes.is_empty())
 }
 
 #[cfg(test)]

@@ -73,7 +73,8 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "tests",
         "Intersection tests",
         "Unions of tests of a light\u{2019}s bounds against a group\u{2019}s frustum: half-spaces (HS), and \
-         separating axes from edges (SAT-E), the normal (SAT-N), the points (SAT-P) and the view (SAT-V). \
+         separating axes along its edges (SAT-E), towards its nearest corner (SAT-N), along its planes' normals \
+         (SAT-P) and towards every corner (SAT-V). \
          Assign + shade in ms; the fastest of each family, and whatever cannot be told from it, stands out.",
         &tests_table(done, scene),
     )
