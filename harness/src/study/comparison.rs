@@ -15,9 +15,23 @@ const CUT: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2";
 /// One of each kind, for the lossy knobs, through the hierarchy.
 const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
 
+/// Every strategy from both sources.
+const BOTH: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2,\
+     T-I/bvh,T-E/bvh,DC-I/bvh,DC-E/bvh,SC-I/bvh,SC-E/bvh,G/bvh,M/bvh,M/2/bvh";
+/// Every strategy, and one of each kind through the hierarchy.
+const SOME: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2,T-E/bvh,SC-E/bvh,G/bvh";
+
 /// How much a study looks at.
 struct Extent {
     size: Size,
+    /// Frames of each method before the clock starts.
+    warmup: &'static str,
+    /// Strategies of the main comparison, from both sources.
+    main: &'static str,
+    /// Strategies of the views.
+    views: &'static str,
+    /// Strategies under many lights and under other radii.
+    many: &'static str,
     counts: &'static [u32],
     /// The most lights of the path, the views and the searches.
     most: u32,
@@ -37,6 +51,10 @@ struct Extent {
 
 const FULL: Extent = Extent {
     size: Size { width: 1920, height: 1080 },
+    warmup: "4",
+    main: BOTH,
+    views: ALL,
+    many: CUT,
     counts: &[100, 1_000, 10_000],
     most: 10_000,
     scaling: &[100, 1_000, 3_000, 10_000, 30_000],
@@ -64,6 +82,10 @@ const FULL: Extent = Extent {
 
 const QUICK: Extent = Extent {
     size: Size { width: 192, height: 108 },
+    warmup: "1",
+    main: SOME,
+    views: "T-E,SC-E,G,M/2",
+    many: "T-E,DC-E,SC-E,G",
     counts: &[100, 500],
     most: 500,
     scaling: &[100, 300, 1_000],
@@ -77,7 +99,7 @@ const QUICK: Extent = Extent {
     tests: &["hs", "hs+sat-n", "hs+sat-e+sat-p+sat-v"],
     caps: &[4, 16],
     thresholds: &["0.01", "0.1"],
-    reuse: &[2, 8],
+    reuse: &[4],
 };
 
 /// Builds the jobs of one scene.
@@ -127,7 +149,7 @@ impl Plan<'_> {
             (lights.to_string(), format!("{width}x{height}"), self.seed.to_string());
         let mut command = vec!["lightbench", "compare", "--scene", self.scene.scene.as_str()];
         command.extend(["--scene-scale", scale, "--lights", &lights, "--size", &size]);
-        command.extend(["--seed", &seed, "--warmup", "4"]);
+        command.extend(["--seed", &seed, "--warmup", self.extent.warmup]);
         command.extend(options);
         let name = [self.scene.name.as_str(), section, variant]
             .into_iter()
@@ -145,10 +167,10 @@ impl Plan<'_> {
     /// Every strategy from both sources at the paper's counts of lights.
     fn comparison(&mut self) {
         let frames = self.extent.frames.to_string();
-        let strategies = format!("None,Sphere,RasterSphere,Clay,{ALL}");
+        let strategies = format!("None,Sphere,RasterSphere,Clay,{}", self.extent.main);
         for &count in self.extent.counts {
             let pictures = if count == self.extent.most { "all" } else { "none" };
-            let options = ["--strategies", &strategies, "--source", "both", "--frames", &frames];
+            let options = ["--strategies", &strategies, "--frames", &frames];
             let options = [&options[..], &["--pictures", pictures]].concat();
             self.add("main", &count.to_string(), count, &options);
         }
@@ -198,7 +220,7 @@ impl Plan<'_> {
         let gpu = bench.gpu().clone();
         let views = Views::find(&gpu, bench.stage(&args)?)?;
         let frames = self.extent.frames.to_string();
-        let strategies = format!("None,{ALL}");
+        let strategies = format!("None,{}", self.extent.views);
         for (name, frame) in [("low", views.low), ("high", views.high)] {
             let camera = format!("path:{frame}/{}", views.count);
             let options = ["--strategies", &strategies, "--camera", &camera, "--frames", &frames];
@@ -231,7 +253,7 @@ impl Plan<'_> {
     /// Many more lights, at growing and at constant density, and other radii.
     fn beyond(&mut self, quick: bool) {
         let frames = (self.extent.frames / 4).max(6).to_string();
-        let options = ["--strategies", CUT, "--source", "bvh", "--frames", &frames];
+        let options = ["--strategies", self.extent.many, "--source", "bvh", "--frames", &frames];
         let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
         let many: &[u32] = if quick { &[2_000] } else { &[100_000, 300_000] };
         for &count in many {
