@@ -1,7 +1,8 @@
 //! G keeps the contract, and the suite would notice if it did not.
 
 use assign::{
-    AssignError, Assignment, CullSettings, Frame, Gpu, Light, LightBuffer, LightSource, View,
+    AssignError, Assignment, CullSettings, Frame, Gpu, Light, LightBuffer, LightSource, Reuse,
+    View,
     conformance::{self, faulty::Fault},
 };
 use assign_grid::{Grid, GridBox};
@@ -38,6 +39,25 @@ fn all_conform_through_the_hierarchy() {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
     conforms("8x8x8", GridBox::Lights, settings);
     conforms("8x8x8", GridBox::Surfaces, settings);
+}
+
+/// A grid whose lists are used for some frames.
+fn reused(frames: u32) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    let make = grid("8x8x8", GridBox::Surfaces, CullSettings::default());
+    move |gpu| Ok(Box::new(Reuse::new(make(gpu)?, frames)?))
+}
+
+#[test]
+fn lists_of_one_frame_conform_and_kept_ones_miss_lights_that_move() {
+    conformance::run(&reused(1)).expect("conforms");
+    for case in ["33-lights", "overflow", "light-at-tile-corner"] {
+        conformance::run_case(case, &reused(3)).expect(case);
+    }
+    let error = conformance::run_case("lights-move", &reused(3)).expect_err("stale lists");
+    assert!(error.to_string().contains("missed pair"), "{error}");
+    let gpu = Gpu::open(None).unwrap();
+    assert!(Reuse::new(reused(1)(&gpu).unwrap(), 0).is_err());
+    assert_eq!(reused(4)(&gpu).unwrap().id(), "G/8x8x8/surfaces/reuse4");
 }
 
 #[test]
