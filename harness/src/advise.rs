@@ -16,7 +16,7 @@ use crate::{
     compare::{Bench, check_writable},
     error::HarnessError,
     report,
-    results::{Record, Results},
+    results::{DeviceType, Record, Results},
 };
 
 /// The strategies of the first round.
@@ -217,6 +217,9 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
         );
     }
     let _ = writeln!(text, "Why: {}.", why(best, next.copied(), results));
+    if results.machine.device_type == DeviceType::Cpu {
+        let _ = writeln!(text, "These are figures of a software adapter, not a GPU's.");
+    }
     text
 }
 

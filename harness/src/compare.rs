@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc, time::Duration};
 
-use assign::Gpu;
+use assign::{AssignError, Gpu};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use shading::{Cut, EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
@@ -140,6 +140,7 @@ impl Bench {
         };
         run.results.warnings.extend(left_out);
         run.warn();
+        remove_stale(&args.out)?;
         run.measure_all(&choices)?;
         Ok((run.results, run.pictures))
     }
@@ -440,7 +441,13 @@ fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
 fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError> {
     let mut checked: Vec<Choice> = Vec::new();
     for choice in choices {
-        let choice = choice.checked(gpu)?;
+        let asked = choice.id().to_owned();
+        let choice = choice.checked(gpu).map_err(|error| match error {
+            AssignError::Parameter { .. } => {
+                HarnessError::Cli(CliError::new(format!("--strategies {asked}: {error}")))
+            }
+            other => other.into(),
+        })?;
         let id = choice.id();
         if checked.iter().any(|known| known.id() == id) {
             if !choice.is_named {
@@ -494,19 +501,24 @@ fn served(
     Ok((served, left_out))
 }
 
-/// Makes the output folder and writes to it once, before anything long begins. An earlier run's
-/// report goes: it would stand beside this run's pictures if this one is interrupted.
+/// Makes the output folder and writes to it once, before anything long begins.
 pub fn check_writable(out: &Path) -> Result<(), ResultsError> {
     let probe = out.join(".lightbench");
     write_atomically(&probe, b"")?;
+    std::fs::remove_file(&probe)
+        .map_err(|source| ResultsError::Write { path: probe.clone(), source })
+}
+
+/// Removes an earlier run's report: it would stand beside this run's pictures if this one is
+/// interrupted.
+fn remove_stale(out: &Path) -> Result<(), ResultsError> {
     for stale in ["index.html", "results.json"].map(|name| out.join(name)) {
         if stale.is_file() {
             std::fs::remove_file(&stale)
                 .map_err(|source| ResultsError::Write { path: stale, source })?;
         }
     }
-    std::fs::remove_file(&probe)
-        .map_err(|source| ResultsError::Write { path: probe.clone(), source })
+    Ok(())
 }
 
 fn describe(stage: &Stage) {

@@ -28,16 +28,17 @@ pub use scene::StudyScene;
 /// Runs a study, or a share of it, and writes its report; returns what to print.
 pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
     let scenes = StudyScene::all(args)?;
-    write_atomically(&args.out.join(".lightbench"), b"")?;
-    let _ = std::fs::remove_file(args.out.join(".lightbench"));
+    let out = &args.folder();
+    write_atomically(&out.join(".lightbench"), b"")?;
+    let _ = std::fs::remove_file(out.join(".lightbench"));
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let wanted = args.identity();
-    let manifest = match Manifest::find(&args.out)? {
+    let manifest = match Manifest::find(out)? {
         Some(known) if known.identity == wanted => known,
         Some(known) => {
-            let value = args.out.display().to_string();
+            let value = out.display().to_string();
             let accepted = format!(
-                "a folder without a study, or with this one: it holds `{}`",
+                "a folder without a study, or with this one; it holds `{}`: give another --out",
                 known.identity.join(" ")
             );
             return Err(CliError::out_of_range("--out", &value, &accepted).into());
@@ -51,13 +52,13 @@ pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
                 });
             }
             let manifest = Manifest { identity: wanted, study: args.study.name().into(), jobs };
-            manifest.write(&args.out)?;
+            manifest.write(out)?;
             manifest
         }
     };
     run(&mut bench, args, &manifest)?;
-    let done = Done::read(std::slice::from_ref(&args.out))?;
-    report::write_study(&done, &args.out)
+    let done = Done::read(std::slice::from_ref(out))?;
+    report::write_study(&done, out)
 }
 
 /// Runs the jobs of this shard that are not done.
@@ -71,7 +72,7 @@ fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), H
         .map(|(_, job)| job)
         .collect();
     for (ix, job) in mine.iter().enumerate() {
-        let folder = job.folder(&args.out);
+        let folder = job.folder(&args.folder());
         if is_done(bench, job, &folder)? {
             continue;
         }

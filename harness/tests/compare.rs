@@ -33,6 +33,23 @@ fn assert_lossless(results: &Results, records: usize) {
     }
 }
 
+#[test]
+fn a_mistake_leaves_an_earlier_report_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    compare(folder.path(), &["--lights", "1", "--strategies", "None", "--truth", "none"]);
+    let out = folder.path().to_str().expect("UTF-8");
+    for (option, value, wanted) in [
+        ("--scene", "gone.gltf", "gone.gltf"),
+        ("--strategies", "M/-1", "--strategies M/-1: "),
+        ("--strategies", "T-I/hs+foo", "--strategies T-I/hs+foo: "),
+    ] {
+        assert_refused(&[option, value, "--out", out], &[wanted]);
+        for name in ["index.html", "results.json"] {
+            assert!(folder.path().join(name).is_file(), "{option} {value} removed {name}");
+        }
+    }
+}
+
 /// The heat map of the default run's last strategy.
 const HEAT_MAP: &str = "forward-SC-E-48x48x40-bvh-heat.png";
 

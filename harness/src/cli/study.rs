@@ -90,11 +90,20 @@ pub struct StudyArgs {
     pub adapter: Option<String>,
 
     /// Folder for jobs and report; where an interrupted study is, it goes on
-    #[arg(long, value_name = "DIR", default_value = "out/study")]
-    pub out: PathBuf,
+    /// [default: out/study-NAME, and -quick]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 impl StudyArgs {
+    /// The folder for jobs and report.
+    pub fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            let quick = if self.quick { "-quick" } else { "" };
+            PathBuf::from(format!("out/study-{}{quick}", self.study.name()))
+        })
+    }
+
     /// What decides the jobs: the command without its folder, its shard and its adapter.
     pub fn identity(&self) -> Vec<String> {
         let mut words =

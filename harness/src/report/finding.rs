@@ -71,7 +71,7 @@ fn sentence(comparison: &Comparison<'_>) -> String {
             format!("{name} takes as long as no culling to shade {lights}{}", image(fastest))
         }
         Some(speedup) if speedup > 1.0 => format!(
-            "{name} shades {lights} {}\u{d7} faster than no culling{}{}",
+            "{name} shades {lights} {}\u{d7} as fast as no culling{}{}",
             factor(speedup),
             over_exit(comparison, fastest),
             image(fastest)

@@ -104,6 +104,13 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
         .iter()
         .filter_map(|record| Ratio::of(record, leader))
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
+    if widest.coverage < SURE {
+        return Some(format!(
+            "six rounds tell methods apart, and there are {}: {} share rank 1 (--frames 6 or more ranks them)",
+            leader.rounds,
+            listed(&first.iter().map(|record| record.strategy.as_str()).collect::<Vec<_>>())
+        ));
+    }
     let names: Vec<&str> = first.iter().map(|record| record.strategy.as_str()).collect();
     let times: Vec<String> =
         first.iter().map(|record| significant(record.assign_and_shade_ms())).collect();
