@@ -12,8 +12,9 @@
 use std::fmt::Write;
 
 use crate::{
+    checks::check_writable,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
-    compare::{Bench, check_writable},
+    compare::Bench,
     error::HarnessError,
     report,
     results::{DeviceType, Record, Results},
@@ -32,7 +33,7 @@ const LAST: usize = 5;
 /// adapter.
 const FRAMES: [[u32; 2]; 2] = [[16, 48], [2, 6]];
 
-/// The greatest error that a lossless answer may have: none.
+/// The metric that the budget is a bound of.
 const METRIC: &str = "rel_mse";
 
 /// Searches, writes what was measured, and says what to use.
@@ -60,7 +61,7 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let parameters = search.round("parameters", &finalists.join(","), &[], frames[0])?;
 
     let mut candidates: Vec<&Record> = families.records.iter().chain(&parameters.records).collect();
-    candidates.retain(|record| record.is_lossless() && !record.is_lossy);
+    candidates.retain(|record| record.is_exact());
     candidates.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
     let mut last: Vec<String> = Vec::new();
     for record in candidates {

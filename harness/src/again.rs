@@ -2,16 +2,17 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use shading::HdrImage;
 
 use crate::{
     cli::{CliError, ReportArgs},
-    compare::Pictures,
     error::HarnessError,
-    errors::{ImagePair, errors},
+    errors::{ImagePair, errors, stored},
+    pictures::Pictures,
     report,
-    results::{Errors, Record, Results, ResultsError},
+    results::{Record, Results, ResultsError},
     study::{Done, Manifest},
 };
 
@@ -75,11 +76,10 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
         record.set_times();
         let Some(image) = store.image(record.images.raw.as_ref())? else { continue };
         let exposure = record.images.exposure.unwrap_or(1.0) as f32;
-        for other in [&record.images.raw_baseline, &record.images.raw_unbounded] {
-            if let Some(reference) = store.image(other.as_ref())?
-                && (reference.width, reference.height) != (image.width, image.height)
-            {
-                let path = folder.join(other.as_deref().unwrap_or_default());
+        let mut reference = |name: &Option<String>| -> Result<_, HarnessError> {
+            let Some(reference) = store.image(name.as_ref())? else { return Ok(None) };
+            if (reference.width, reference.height) != (image.width, image.height) {
+                let path = folder.join(name.as_deref().unwrap_or_default());
                 let reason = format!(
                     "{}x{} pixels: it must be as large as {}, {}x{}",
                     reference.width,
@@ -90,22 +90,18 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
                 );
                 return Err(ResultsError::Parse { path, reason }.into());
             }
-        }
-        let pair = |reference: &HdrImage| {
-            let pair = ImagePair { image: &image, reference, exposure };
-            let finite = |error: f64| error.is_finite().then_some(error);
-            errors(&pair)
-                .into_iter()
-                .map(|(id, error)| (id.to_owned(), finite(error)))
-                .collect::<Errors>()
+            Ok(Some(reference))
         };
-        if !keeps_errors(record)
-            && let Some(baseline) = store.image(record.images.raw_baseline.as_ref())?
-        {
-            record.errors = pair(&baseline);
+        let baseline = reference(&record.images.raw_baseline)?;
+        let unbounded = reference(&record.images.raw_unbounded)?;
+        let against = |reference: &HdrImage| {
+            stored(errors(&ImagePair { image: &image, reference, exposure }))
+        };
+        if let Some(baseline) = baseline.filter(|_| !keeps_errors(record)) {
+            record.errors = against(&baseline);
         }
-        if let Some(unbounded) = store.image(record.images.raw_unbounded.as_ref())? {
-            record.unbounded_errors = pair(&unbounded);
+        if let Some(unbounded) = unbounded {
+            record.unbounded_errors = against(&unbounded);
         }
     }
     Ok(())
@@ -119,19 +115,19 @@ fn keeps_errors(record: &Record) -> bool {
 /// Linear images of a folder, each read once.
 struct Store<'a> {
     folder: &'a Path,
-    images: HashMap<String, Option<HdrImage>>,
+    images: HashMap<String, Option<Rc<HdrImage>>>,
 }
 
 impl Store<'_> {
     /// The image of a name; `None` where none is named or there.
-    fn image(&mut self, name: Option<&String>) -> Result<Option<HdrImage>, HarnessError> {
+    fn image(&mut self, name: Option<&String>) -> Result<Option<Rc<HdrImage>>, HarnessError> {
         let Some(name) = name.filter(|name| is_plain(name)) else { return Ok(None) };
         if let Some(known) = self.images.get(name) {
             return Ok(known.clone());
         }
         let path: PathBuf = self.folder.join(name);
         let image = match path.is_file() {
-            true => Some(HdrImage::read_exr(&path)?),
+            true => Some(Rc::new(HdrImage::read_exr(&path)?)),
             false => None,
         };
         self.images.insert(name.clone(), image.clone());
@@ -144,15 +140,13 @@ fn is_plain(name: &str) -> bool {
     Path::new(name).file_name().is_some_and(|file| file == name)
 }
 
-impl From<Vec<PathBuf>> for ReportArgs {
-    fn from(folders: Vec<PathBuf>) -> Self {
-        Self { folders, out: None }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn of(folder: &Path) -> ReportArgs {
+        ReportArgs { folders: vec![folder.to_owned()], out: None }
+    }
 
     #[test]
     fn names_that_lead_elsewhere_are_not_read() {
@@ -165,11 +159,11 @@ mod tests {
     #[test]
     fn a_folder_without_results_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let error = again(&vec![folder.path().to_owned()].into()).unwrap_err().to_string();
+        let error = again(&of(folder.path())).unwrap_err().to_string();
         assert!(error.contains("results.json"), "{error}");
         let is_read = |error: &HarnessError| {
             matches!(error, HarnessError::Results(ResultsError::Read { .. }))
         };
-        assert!(is_read(&again(&vec![folder.path().join("gone")].into()).unwrap_err()));
+        assert!(is_read(&again(&of(&folder.path().join("gone"))).unwrap_err()));
     }
 }

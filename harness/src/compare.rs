@@ -2,25 +2,23 @@
 
 use std::{path::Path, sync::Arc, time::Duration};
 
-use assign::{AssignError, Gpu};
+use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use shading::{Cut, EDGE, HdrImage, LightBvh, Mode, RasterSpheres, heat_map_png};
+use shading::{EDGE, HdrImage, LightBvh, Mode};
 
 use crate::{
+    checks::{RASTER_SPHERE, check_modes, check_writable, checked, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, ModeChoice, PicturesChoice, TruthChoice},
+    cli::{CliError, CompareArgs, TruthChoice},
     error::HarnessError,
-    errors::{ImagePair, errors},
+    errors::ImagePair,
     machine::machine,
-    measure::{Checked, Contest, Plan, unbounded_image},
+    measure::{Contest, Plan, unbounded_image},
+    pictures::{Pictures, Reference, see},
     record::{Seen, record},
-    registry::Method,
     report,
-    results::{
-        BASELINE, CONTROL, Images, Machine, RejectedLight, Results, ResultsError, Truth,
-        write_atomically,
-    },
+    results::{BASELINE, Machine, RejectedLight, Results, Truth},
     stage::Stage,
 };
 
@@ -31,17 +29,8 @@ const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames before the clock, likewise.
 const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 
-/// Gain of difference images: a difference of 1/64 shows as white.
-const DIFFERENCE_GAIN: f32 = 64.0;
-
-/// The method that has no forward mode.
-const RASTER_SPHERE: &str = "RasterSphere";
-
 /// How long a GPU warms up at least; a software adapter has no clocks to raise.
 const GPU_WARM_UP: Duration = Duration::from_millis(250);
-
-/// Pictures of a report, PNG files, by name.
-pub type Pictures = Vec<(String, Vec<u8>)>;
 
 /// A device with the scene that was drawn last.
 pub struct Bench {
@@ -170,16 +159,6 @@ struct Run<'a> {
     pictures: Pictures,
 }
 
-/// What the images of one mode are compared with, and the exposure that all its pictures share.
-struct Reference {
-    image: HdrImage,
-    unbounded: Option<HdrImage>,
-    /// Errors of no culling against lights without a range.
-    unbounded_errors: Vec<(&'static str, f64)>,
-    exposure: f32,
-    picture: Option<String>,
-}
-
 impl Run<'_> {
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self) {
@@ -251,7 +230,8 @@ impl Run<'_> {
         bar.set_message(format!("images, {}", mode.name()));
         let mut none = Some(contest.check(self.stage, reference_ix, bvh)?);
         let image = none.as_ref().map(|checked| checked.image.clone()).unwrap_or_default();
-        let reference = self.reference(image, unbounded, mode)?;
+        let (reference, pictures) = Reference::new(self.args, image, unbounded, mode)?;
+        self.pictures.extend(pictures);
         let mut all_checked = Vec::new();
         for &ix in &timed {
             let checked = match none.take_if(|_| ix == reference_ix) {
@@ -293,120 +273,6 @@ impl Run<'_> {
         }
         Ok(())
     }
-
-    /// Keeps the images that others are compared with.
-    fn reference(
-        &mut self,
-        image: HdrImage,
-        unbounded: Option<HdrImage>,
-        mode: Mode,
-    ) -> Result<Reference, HarnessError> {
-        let exposure = image.auto_exposure();
-        let mut picture = None;
-        if self.args.pictures == PicturesChoice::All {
-            let out = &self.args.out;
-            let name = format!("{}-None.png", mode.name());
-            let images = [
-                Some((name.clone(), &image)),
-                unbounded.as_ref().map(|image| (format!("{}-unbounded.png", mode.name()), image)),
-            ];
-            let keep = |(name, image): (String, &HdrImage)| -> Result<_, HarnessError> {
-                keep(out, &name, image.to_png(exposure)?, Some(image))
-            };
-            let kept: Result<Pictures, _> =
-                images.into_par_iter().flatten_iter().map(keep).collect();
-            self.pictures.extend(kept?);
-            picture = Some(name);
-        }
-        let unbounded_errors = unbounded
-            .as_ref()
-            .map(|reference| errors(&ImagePair { image: &image, reference, exposure }))
-            .unwrap_or_default();
-        Ok(Reference { image, unbounded, unbounded_errors, exposure, picture })
-    }
-}
-
-/// Writes a picture, and the linear image that it shows; returns it for the report.
-fn keep(
-    out: &Path,
-    name: &str,
-    png: Vec<u8>,
-    raw: Option<&HdrImage>,
-) -> Result<(String, Vec<u8>), HarnessError> {
-    let path = out.join(name);
-    write_atomically(&path, &png)?;
-    if let Some(image) = raw {
-        image.write_exr(&path.with_extension("exr"))?;
-    }
-    Ok((name.to_owned(), png))
-}
-
-/// Compares a method's image with what it should be, and keeps its pictures.
-fn see(
-    args: &CompareArgs,
-    choice: &Choice,
-    mode: Mode,
-    checked: Checked,
-    reference: &Reference,
-) -> Result<(Seen, Pictures), HarnessError> {
-    let is_control = choice.family() == CONTROL;
-    let Checked { image, lists } = checked;
-    let is_same = image.pixels == reference.image.pixels;
-    let exposure = reference.exposure;
-    let pair = ImagePair { image: &image, reference: &reference.image, exposure };
-    let mut seen = Seen::new(lists.unwrap_or_default(), is_control);
-    if !is_control {
-        seen.compare(&pair)?;
-        seen.unbounded_errors = match &reference.unbounded {
-            Some(unbounded) if !is_same => errors(&ImagePair { reference: unbounded, ..pair }),
-            _ => reference.unbounded_errors.clone(),
-        };
-    }
-    if args.path {
-        // Along a path errors are means over the frames that are compared there.
-        seen.forget_errors();
-    }
-    let mut pictures = Pictures::new();
-    let Some(baseline) = &reference.picture else { return Ok((seen, pictures)) };
-    let raw = |picture: &str| Some(picture.replace(".png", ".exr"));
-    let mut images = Images {
-        baseline: Some(baseline.clone()),
-        raw_baseline: raw(baseline),
-        raw_unbounded: reference
-            .unbounded
-            .as_ref()
-            .map(|_| format!("{}-unbounded.exr", mode.name())),
-        exposure: Some(f64::from(exposure)),
-        ..Images::default()
-    };
-    let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
-    if is_same {
-        // An image that is the same in every number is kept once.
-        (images.image, images.raw) = (Some(baseline.clone()), raw(baseline));
-    } else {
-        let name = format!("{stem}.png");
-        let exposure = if is_control { 1.0 } else { exposure };
-        pictures.push(keep(&args.out, &name, image.to_png(exposure)?, Some(&image))?);
-        images.raw = raw(&name);
-        images.image = Some(name);
-    }
-    if !is_same && !is_control {
-        let name = format!("{stem}-difference.png");
-        let gain = DIFFERENCE_GAIN * exposure;
-        let png = image.difference_png(&reference.image, gain)?;
-        pictures.push(keep(&args.out, &name, png, None)?);
-        images.difference = Some(name);
-        images.difference_amplification = Some(f64::from(gain));
-    }
-    let lengths = &seen.lists.lengths.per_pixel;
-    if !lengths.is_empty() {
-        let name = format!("{stem}-heat.png");
-        let png = heat_map_png(&reference.image, exposure, lengths)?;
-        pictures.push(keep(&args.out, &name, png, None)?);
-        images.heat_map = Some(name);
-    }
-    seen.images = images;
-    Ok((seen, pictures))
 }
 
 fn progress_bar(total: u64) -> ProgressBar {
@@ -414,111 +280,13 @@ fn progress_bar(total: u64) -> ProgressBar {
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
 }
+
 /// An error that no call returned is the device's: one line, exit code 1, no panic.
 fn end_on_device_error(gpu: &Gpu) {
     gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
         eprintln!("lightbench: device: {}", CliError::new(error.to_string()));
         std::process::exit(1);
     }));
-}
-
-/// An error where no choice can be measured in any of the modes.
-fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
-    let is_forward = args.mode == ModeChoice::Forward;
-    if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
-        let accepted =
-            "given with --path: from a still camera lists are right however old they are";
-        return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
-    }
-    if is_forward && choices.iter().all(|choice| choice.family() == RASTER_SPHERE) {
-        let accepted = format!("deferred for {RASTER_SPHERE}, which has no forward mode");
-        return Err(CliError::out_of_range("--mode", "forward", &accepted));
-    }
-    Ok(())
-}
-
-/// The choices with their parameters checked and written alike, none twice.
-fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError> {
-    let mut checked: Vec<Choice> = Vec::new();
-    for choice in choices {
-        let asked = choice.id().to_owned();
-        let choice = choice.checked(gpu).map_err(|error| match error {
-            AssignError::Parameter { .. } => {
-                HarnessError::Cli(CliError::new(format!("--strategies {asked}: {error}")))
-            }
-            other => other.into(),
-        })?;
-        let id = choice.id();
-        if checked.iter().any(|known| known.id() == id) {
-            if !choice.is_named {
-                continue;
-            }
-            let accepted = "given once each";
-            return Err(
-                CliError::out_of_range("--strategies", &format!("{id} twice"), accepted).into()
-            );
-        }
-        checked.push(choice);
-    }
-    Ok(checked)
-}
-
-/// The choices that can serve the scene on this device, and what to say of those that cannot: an
-/// error where one was named.
-fn served(
-    choices: Vec<Choice>,
-    gpu: &Gpu,
-    stage: &Stage,
-    cut: Cut,
-) -> Result<(Vec<Choice>, Vec<String>), HarnessError> {
-    let mut served = Vec::new();
-    let mut left_out = Vec::new();
-    for choice in choices {
-        let check = || -> Result<(), HarnessError> {
-            match choice.make(gpu)? {
-                Method::Lists { mut strategy, .. } => {
-                    strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
-                }
-                Method::RasterSphere if cut == Cut::Hard => {
-                    let accepted = format!("windowed for {RASTER_SPHERE}");
-                    return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
-                }
-                Method::RasterSphere => {
-                    RasterSpheres::new(&stage.renderer, stage.lights.has_spots())?;
-                }
-                Method::Clay => {}
-            }
-            Ok(())
-        };
-        match check() {
-            Ok(()) => served.push(choice),
-            Err(error) if !choice.is_named => {
-                left_out.push(format!("{} was left out: {error}", choice.id()));
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    Ok((served, left_out))
-}
-
-/// Makes the output folder and writes to it once, before anything long begins.
-pub fn check_writable(out: &Path) -> Result<(), ResultsError> {
-    let probe = out.join(".lightbench");
-    write_atomically(&probe, b"")?;
-    std::fs::remove_file(&probe)
-        .map_err(|source| ResultsError::Write { path: probe.clone(), source })
-}
-
-/// Removes an earlier run's report: it would stand beside this run's pictures if this one is
-/// interrupted.
-fn remove_stale(out: &Path) -> Result<(), ResultsError> {
-    for stale in ["index.html", "results.json"].map(|name| out.join(name)) {
-        if stale.is_file() {
-            std::fs::remove_file(&stale)
-                .map_err(|source| ResultsError::Write { path: stale, source })?;
-        }
-    }
-    Ok(())
 }
 
 fn describe(stage: &Stage) {

@@ -6,6 +6,8 @@
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool};
 use shading::{HdrImage, luminance};
 
+use crate::results::Errors;
+
 /// Side of the tiles over which [`tile`](ErrorMetric) sums, pixels.
 const TILE_PX: usize = 16;
 
@@ -96,6 +98,12 @@ pub fn errors(pair: &ImagePair<'_>) -> Vec<(&'static str, f64)> {
     }
     let sums = Sums::of(pair);
     ERROR_METRICS.iter().map(|metric| (metric.id, (metric.value)(&sums, pair))).collect()
+}
+
+/// Errors as results hold them: those that are not finite are absent.
+pub fn stored(errors: impl IntoIterator<Item = (&'static str, f64)>) -> Errors {
+    let finite = |error: f64| error.is_finite().then_some(error);
+    errors.into_iter().map(|(id, error)| (id.to_owned(), finite(error))).collect()
 }
 
 /// Sums of luminance over the pixels.

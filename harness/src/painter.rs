@@ -3,7 +3,9 @@
 use assign::{Assignment, Gpu, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
-use crate::{cli::CliError, error::HarnessError, registry::Method, stage::Stage};
+use crate::{
+    checks::RASTER_SPHERE, cli::CliError, error::HarnessError, registry::Method, stage::Stage,
+};
 
 /// A method with the pipelines that draw with it.
 pub enum Painter<'a> {
@@ -36,11 +38,7 @@ impl<'a> Painter<'a> {
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
             }
-            Method::RasterSphere if cut == Cut::Hard => {
-                let accepted = "windowed for RasterSphere";
-                return Err(CliError::out_of_range("--cut", cut.name(), accepted).into());
-            }
-            Method::RasterSphere => Self::RasterSphere(RasterSpheres::new(&stage.renderer, spots)?),
+            Method::RasterSphere => Self::RasterSphere(raster_spheres(stage, cut)?),
             Method::Clay => Self::Clay,
         })
     }
@@ -92,4 +90,13 @@ impl<'a> Painter<'a> {
             }
         }
     }
+}
+
+/// Light volumes, whose shader knows no hard cut.
+pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, HarnessError> {
+    if cut == Cut::Hard {
+        let accepted = format!("windowed for {RASTER_SPHERE}");
+        return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
+    }
+    Ok(RasterSpheres::new(&stage.renderer, stage.lights.has_spots())?)
 }

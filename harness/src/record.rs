@@ -8,9 +8,9 @@ use crate::{
     cli::{CompareArgs, LightBox},
     clock::clock_of,
     error::HarnessError,
-    errors::{ImagePair, errors},
+    errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
-    results::{Errors, Images, Record, mean},
+    results::{Images, Record, mean},
     schedule::rounds,
     stage::Stage,
 };
@@ -81,7 +81,6 @@ pub fn record(
     let Seen { lists, images, unbounded_errors, errors, .. } = seen;
     let truth = lists.truth;
     let known = |value: f64| (seen.compared && value.is_finite()).then_some(value);
-    let finite = |error: f64| error.is_finite().then_some(error);
     let count = u64::from(stage.lights.count());
     let has_lists = lists.bytes > 0;
     let mut record = Record {
@@ -116,11 +115,8 @@ pub fn record(
         threshold: args.threshold,
         cut: Some(plan.cut.name().to_owned()),
         is_lossy: choice.is_lossy(count),
-        errors: errors.into_iter().map(|(id, all)| (id.to_owned(), finite(mean(&all)))).collect(),
-        unbounded_errors: unbounded_errors
-            .into_iter()
-            .map(|(id, error)| (id.to_owned(), finite(error)))
-            .collect::<Errors>(),
+        errors: stored(errors.into_iter().map(|(id, all)| (id, mean(&all)))),
+        unbounded_errors: stored(unbounded_errors),
         seed: args.seed,
         clock: clock_of(gpu),
         passes: timed.passes,

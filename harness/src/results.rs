@@ -86,6 +86,18 @@ pub struct Machine {
     pub rustc: Option<String>,
 }
 
+impl Machine {
+    /// What must be the same where times are put side by side: fields and their values.
+    pub fn identity(&self) -> [(&'static str, &str); 4] {
+        [
+            ("adapter", &self.adapter),
+            ("driver", &self.driver),
+            ("backend", &self.backend),
+            ("commit", &self.commit),
+        ]
+    }
+}
+
 /// What kind of processor an adapter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -415,6 +427,11 @@ impl Record {
     /// early exit, nor the control.
     pub fn culls(&self) -> bool {
         !self.is_baseline() && !self.is_control() && self.strategy != EARLY_EXIT
+    }
+
+    /// Whether it may be called exact: no knob loses light, and nothing is known to be lost.
+    pub fn is_exact(&self) -> bool {
+        !self.is_lossy && self.is_lossless()
     }
 
     /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs by

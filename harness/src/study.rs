@@ -15,11 +15,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::{
+    checks::check_writable,
     cli::{self, CliError, CompareArgs, Invocation, StudyArgs, StudyName},
     compare::Bench,
     error::HarnessError,
     report,
-    results::{Results, write_atomically},
+    results::{Results, ResultsError},
 };
 
 pub use manifest::{Done, Job, Manifest};
@@ -29,8 +30,7 @@ pub use scene::StudyScene;
 pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
     let scenes = StudyScene::all(args)?;
     let out = &args.folder();
-    write_atomically(&out.join(".lightbench"), b"")?;
-    let _ = std::fs::remove_file(out.join(".lightbench"));
+    check_writable(out)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let wanted = args.identity();
     let manifest = match Manifest::find(out)? {
@@ -86,9 +86,8 @@ fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), H
         let compare = job.arguments(&folder)?;
         // What an interrupted run left there is not this one's.
         if folder.is_dir() {
-            std::fs::remove_dir_all(&folder).map_err(|source| {
-                crate::results::ResultsError::Write { path: folder.clone(), source }
-            })?;
+            std::fs::remove_dir_all(&folder)
+                .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
         }
         let (results, _) = bench.compare(&compare, job.command.clone())?;
         results.write(&folder.join("results.json"))?;
@@ -104,10 +103,7 @@ fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError
     }
     let results = Results::read(&path)?;
     let (then, now) = (&results.machine, bench.machine());
-    let key = |m: &crate::results::Machine| {
-        [&m.adapter, &m.driver, &m.backend, &m.commit].map(String::clone)
-    };
-    if key(then) == key(now) {
+    if then.identity() == now.identity() {
         return Ok(results.command == job.command);
     }
     Err(CliError::new(format!(

@@ -1,5 +1,7 @@
 //! Numbers as the charts write them.
 
+pub(super) use crate::digits::grouped;
+
 /// A tick's number with no more digits than it needs: `0.01`, `1,000`, `1e-7`.
 pub(super) fn plain(value: f64) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
@@ -30,20 +32,6 @@ pub(super) fn significant(value: f64) -> String {
         let decimals = usize::try_from(3 - before).unwrap_or(0);
         grouped(&format!("{rounded:.decimals$}"))
     }
-}
-
-/// `1000` as `1,000`; what follows a decimal point is left alone.
-pub(super) fn grouped(digits: &str) -> String {
-    let (whole, rest) = digits.split_at(digits.find('.').unwrap_or(digits.len()));
-    let (sign, whole) = whole.split_at(usize::from(whole.starts_with('-')));
-    let mut text = sign.to_owned();
-    for (ix, digit) in whole.chars().enumerate() {
-        if ix > 0 && (whole.len() - ix).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text + rest
 }
 
 /// A length in the drawing, to a tenth: `12`, `12.3`.

@@ -1,5 +1,7 @@
 //! Numbers and text as the views show them.
 
+use crate::digits::grouped;
+
 /// What stands for a metric that was not measured.
 pub(super) const ABSENT: &str = "\u{2013}";
 
@@ -49,20 +51,6 @@ pub(super) fn factor(value: f64) -> String {
 /// A share in per cent, without its sign: `27.9`.
 pub(super) fn percent(share: f64) -> String {
     significant(share * 100.0)
-}
-
-/// `1000` as `1,000`; what follows a decimal point is left alone.
-fn grouped(digits: &str) -> String {
-    let (whole, rest) = digits.split_at(digits.find('.').unwrap_or(digits.len()));
-    let (sign, whole) = whole.split_at(usize::from(whole.starts_with('-')));
-    let mut text = sign.to_owned();
-    for (ix, digit) in whole.chars().enumerate() {
-        if ix > 0 && (whole.len() - ix) % 3 == 0 {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text + rest
 }
 
 /// An adapter's name without what stands in brackets behind it.

@@ -42,6 +42,11 @@ impl Ratio {
         Some(Self { median: median(&ratios), low, high, coverage })
     }
 
+    /// Whether the record is faster than the other, beyond chance.
+    pub(super) fn is_faster(&self) -> bool {
+        self.median < 1.0 && !self.is_tie()
+    }
+
     /// Whether the two cannot be told apart.
     pub(super) fn is_tie(&self) -> bool {
         // Few rounds tell nothing: their range leaves out 1 by chance.
@@ -65,7 +70,7 @@ pub(super) struct Ranked<'a> {
 
 /// Whether a record may be called the best: it culls, and nothing is known to be lost.
 pub(super) fn competes(record: &Record) -> bool {
-    record.culls() && !record.is_lossy && record.is_lossless()
+    record.culls() && record.is_exact()
 }
 
 /// Ranks the records that cull without a loss, by assigning and shading together: the fastest leads

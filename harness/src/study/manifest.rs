@@ -129,13 +129,8 @@ impl Done {
             ));
         }
         let Some(first) = self.results.values().next() else { return Ok(()) };
-        let (first, machine) = (&first.machine, &results.machine);
-        for (field, known, own) in [
-            ("adapter", &first.adapter, &machine.adapter),
-            ("driver", &first.driver, &machine.driver),
-            ("backend", &first.backend, &machine.backend),
-            ("commit", &first.commit, &machine.commit),
-        ] {
+        let machines = first.machine.identity().into_iter().zip(results.machine.identity());
+        for ((field, known), (_, own)) in machines {
             if known != own {
                 return Err(format!(
                     "machine.{field} is {own}: it must be that of the other jobs, {known}"

@@ -261,8 +261,7 @@ pub(super) fn models(done: &Done, scene: &str) -> Answer {
         significant(whole.shade_ms),
         significant(parts.shade_ms)
     );
-    let is_faster =
-        Ratio::of(parts, whole).is_some_and(|ratio| ratio.median < 1.0 && !ratio.is_tie());
+    let is_faster = Ratio::of(parts, whole).is_some_and(|ratio| ratio.is_faster());
     let verdict = match (listed < long, is_faster) {
         (true, true) => Verdict::Holds,
         (true, false) => Verdict::Differs("lists are shorter, but the whole takes longer".into()),

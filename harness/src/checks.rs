@@ -1,0 +1,114 @@
+//! What is checked before anything long begins.
+
+use std::path::Path;
+
+use assign::{AssignError, Gpu};
+use shading::Cut;
+
+use crate::{
+    choice::Choice,
+    cli::{CliError, CompareArgs, ModeChoice},
+    error::HarnessError,
+    painter::raster_spheres,
+    registry::Method,
+    results::{ResultsError, write_atomically},
+    stage::Stage,
+};
+
+/// The method that has no forward mode.
+pub(crate) const RASTER_SPHERE: &str = "RasterSphere";
+
+/// An error where no choice can be measured in any of the modes.
+pub(crate) fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
+    let is_forward = args.mode == ModeChoice::Forward;
+    if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
+        let accepted =
+            "given with --path: from a still camera lists are right however old they are";
+        return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
+    }
+    if is_forward && choices.iter().all(|choice| choice.family() == RASTER_SPHERE) {
+        let accepted = format!("deferred for {RASTER_SPHERE}, which has no forward mode");
+        return Err(CliError::out_of_range("--mode", "forward", &accepted));
+    }
+    Ok(())
+}
+
+/// The choices with their parameters checked and written alike, none twice.
+pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError> {
+    let mut checked: Vec<Choice> = Vec::new();
+    for choice in choices {
+        let asked = choice.id().to_owned();
+        let choice = choice.checked(gpu).map_err(|error| match error {
+            AssignError::Parameter { .. } => {
+                HarnessError::Cli(CliError::new(format!("--strategies {asked}: {error}")))
+            }
+            other => other.into(),
+        })?;
+        let id = choice.id();
+        if checked.iter().any(|known| known.id() == id) {
+            if !choice.is_named {
+                continue;
+            }
+            let accepted = "given once each";
+            return Err(
+                CliError::out_of_range("--strategies", &format!("{id} twice"), accepted).into()
+            );
+        }
+        checked.push(choice);
+    }
+    Ok(checked)
+}
+
+/// The choices that can serve the scene on this device, and what to say of those that cannot: an
+/// error where one was named.
+pub(crate) fn served(
+    choices: Vec<Choice>,
+    gpu: &Gpu,
+    stage: &Stage,
+    cut: Cut,
+) -> Result<(Vec<Choice>, Vec<String>), HarnessError> {
+    let mut served = Vec::new();
+    let mut left_out = Vec::new();
+    for choice in choices {
+        let check = || -> Result<(), HarnessError> {
+            match choice.make(gpu)? {
+                Method::Lists { mut strategy, .. } => {
+                    strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
+                }
+                Method::RasterSphere => {
+                    raster_spheres(stage, cut)?;
+                }
+                Method::Clay => {}
+            }
+            Ok(())
+        };
+        match check() {
+            Ok(()) => served.push(choice),
+            Err(error) if !choice.is_named => {
+                left_out.push(format!("{} was left out: {error}", choice.id()));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((served, left_out))
+}
+
+/// Makes the output folder and writes to it once, before anything long begins.
+pub(crate) fn check_writable(out: &Path) -> Result<(), ResultsError> {
+    let probe = out.join(".lightbench");
+    write_atomically(&probe, b"")?;
+    std::fs::remove_file(&probe)
+        .map_err(|source| ResultsError::Write { path: probe.clone(), source })
+}
+
+/// Removes an earlier run's report: it would stand beside this run's pictures if this one is
+/// interrupted.
+pub(crate) fn remove_stale(out: &Path) -> Result<(), ResultsError> {
+    for stale in ["index.html", "results.json"].map(|name| out.join(name)) {
+        if stale.is_file() {
+            std::fs::remove_file(&stale)
+                .map_err(|source| ResultsError::Write { path: stale, source })?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,149 @@
+//! The images of a comparison: what they are compared with, and the pictures that are kept.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use shading::{HdrImage, Mode, heat_map_png};
+
+use crate::{
+    choice::Choice,
+    cli::{CompareArgs, PicturesChoice},
+    error::HarnessError,
+    errors::{ImagePair, errors},
+    measure::Checked,
+    record::Seen,
+    results::{CONTROL, Images, write_atomically},
+};
+
+/// Pictures of a report, PNG files, by name.
+pub type Pictures = Vec<(String, Vec<u8>)>;
+
+/// Gain of difference images: a difference of 1/64 shows as white.
+const DIFFERENCE_GAIN: f32 = 64.0;
+
+/// What the images of one mode are compared with, and the exposure that all its pictures share.
+pub(crate) struct Reference {
+    image: HdrImage,
+    unbounded: Option<HdrImage>,
+    /// Errors of no culling against lights without a range.
+    unbounded_errors: Vec<(&'static str, f64)>,
+    pub(crate) exposure: f32,
+    picture: Option<String>,
+}
+
+impl Reference {
+    /// Keeps the images that others are compared with; returns the pictures for the report.
+    pub(crate) fn new(
+        args: &CompareArgs,
+        image: HdrImage,
+        unbounded: Option<HdrImage>,
+        mode: Mode,
+    ) -> Result<(Self, Pictures), HarnessError> {
+        let exposure = image.auto_exposure();
+        let mut picture = None;
+        let mut pictures = Pictures::new();
+        if args.pictures == PicturesChoice::All {
+            let out = &args.out;
+            let name = format!("{}-None.png", mode.name());
+            let images = [
+                Some((name.clone(), &image)),
+                unbounded.as_ref().map(|image| (format!("{}-unbounded.png", mode.name()), image)),
+            ];
+            let keep = |(name, image): (String, &HdrImage)| -> Result<_, HarnessError> {
+                keep(out, &name, image.to_png(exposure)?, Some(image))
+            };
+            let kept: Result<Pictures, _> =
+                images.into_par_iter().flatten_iter().map(keep).collect();
+            pictures = kept?;
+            picture = Some(name);
+        }
+        let unbounded_errors = unbounded
+            .as_ref()
+            .map(|reference| errors(&ImagePair { image: &image, reference, exposure }))
+            .unwrap_or_default();
+        Ok((Self { image, unbounded, unbounded_errors, exposure, picture }, pictures))
+    }
+}
+
+/// Writes a picture, and the linear image that it shows; returns it for the report.
+fn keep(
+    out: &Path,
+    name: &str,
+    png: Vec<u8>,
+    raw: Option<&HdrImage>,
+) -> Result<(String, Vec<u8>), HarnessError> {
+    let path = out.join(name);
+    write_atomically(&path, &png)?;
+    if let Some(image) = raw {
+        image.write_exr(&path.with_extension("exr"))?;
+    }
+    Ok((name.to_owned(), png))
+}
+
+/// Compares a method's image with what it should be, and keeps its pictures.
+pub(crate) fn see(
+    args: &CompareArgs,
+    choice: &Choice,
+    mode: Mode,
+    checked: Checked,
+    reference: &Reference,
+) -> Result<(Seen, Pictures), HarnessError> {
+    let is_control = choice.family() == CONTROL;
+    let Checked { image, lists } = checked;
+    let is_same = image.pixels == reference.image.pixels;
+    let exposure = reference.exposure;
+    let pair = ImagePair { image: &image, reference: &reference.image, exposure };
+    let mut seen = Seen::new(lists.unwrap_or_default(), is_control);
+    if !is_control {
+        seen.compare(&pair)?;
+        seen.unbounded_errors = match &reference.unbounded {
+            Some(unbounded) if !is_same => errors(&ImagePair { reference: unbounded, ..pair }),
+            _ => reference.unbounded_errors.clone(),
+        };
+    }
+    if args.path {
+        // Along a path errors are means over the frames that are compared there.
+        seen.forget_errors();
+    }
+    let mut pictures = Pictures::new();
+    let Some(baseline) = &reference.picture else { return Ok((seen, pictures)) };
+    let raw = |picture: &str| Some(picture.replace(".png", ".exr"));
+    let mut images = Images {
+        baseline: Some(baseline.clone()),
+        raw_baseline: raw(baseline),
+        raw_unbounded: reference
+            .unbounded
+            .as_ref()
+            .map(|_| format!("{}-unbounded.exr", mode.name())),
+        exposure: Some(f64::from(exposure)),
+        ..Images::default()
+    };
+    let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
+    if is_same {
+        // An image that is the same in every number is kept once.
+        (images.image, images.raw) = (Some(baseline.clone()), raw(baseline));
+    } else {
+        let name = format!("{stem}.png");
+        let exposure = if is_control { 1.0 } else { exposure };
+        pictures.push(keep(&args.out, &name, image.to_png(exposure)?, Some(&image))?);
+        images.raw = raw(&name);
+        images.image = Some(name);
+    }
+    if !is_same && !is_control {
+        let name = format!("{stem}-difference.png");
+        let gain = DIFFERENCE_GAIN * exposure;
+        let png = image.difference_png(&reference.image, gain)?;
+        pictures.push(keep(&args.out, &name, png, None)?);
+        images.difference = Some(name);
+        images.difference_amplification = Some(f64::from(gain));
+    }
+    let lengths = &seen.lists.lengths.per_pixel;
+    if !lengths.is_empty() {
+        let name = format!("{stem}-heat.png");
+        let png = heat_map_png(&reference.image, exposure, lengths)?;
+        pictures.push(keep(&args.out, &name, png, None)?);
+        images.heat_map = Some(name);
+    }
+    seen.images = images;
+    Ok((seen, pictures))
+}
