@@ -232,11 +232,25 @@ mod tests {
     }
 
     #[test]
+    fn few_rounds_tell_nothing_apart_and_say_so() {
+        let records =
+            |rounds: usize| [record("A", &vec![1.0; rounds]), record("B", &vec![2.0; rounds])];
+        assert_eq!(places(&records(6)), [place("A", 1), place("B", 2)]);
+        let few = records(5);
+        assert_eq!(places(&few), [place("A", 1), place("B", 1)]);
+        assert!(tie(&ranks(&few)).is_some_and(|said| said.contains("there are 5")));
+    }
+
+    #[test]
     fn what_loses_or_does_not_cull_has_no_rank() {
         let mut lossy = of("A", |_| 1.0);
         lossy.missed_pairs = Some(3);
         let nan = of("E", |_| f64::NAN);
-        let records = [lossy, of("None", |_| 1.0), of("Clay", |_| 1.0), of("B", |_| 5.0), nan];
+        // A knob that lost nothing in this view.
+        let mut capped = of("B/cap9", |_| 1.0);
+        capped.is_lossy = true;
+        let none = of("None", |_| 1.0);
+        let records = [lossy, none, of("Clay", |_| 1.0), of("B", |_| 5.0), nan, capped];
         assert_eq!(places(&records), [place("B", 1)]);
         assert!(ranks([]).is_empty() && tie(&[]).is_none());
     }
