@@ -37,7 +37,7 @@ fn shade(@builtin(global_invocation_id) thread: vec3u) {
   var brightness = 0.0;
   for (var i = 0u; i < list.count; i++) {
     let sphere = light_spheres[entries[list.first + i] & ENTRY_LIGHT];
-    brightness += max(0.0, 1.0 - distance(sphere.position_world, position) / sphere.range_m);
+    brightness += max(0.0, 1.0 - distance(sphere.position_world, position) / sphere.radius_m);
   }
   image[thread.x + thread.y * u32(view.viewport_size.x)] = vec4f(brightness, f32(list.count), 0.0, 1.0);
 }

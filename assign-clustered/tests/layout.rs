@@ -5,7 +5,7 @@
 
 use std::mem::offset_of;
 
-use assign::{Bounds, CullSettings, Culler, GroupShape, LightSource};
+use assign::{Bounds, CullSettings, Culler, GroupShape, LightKinds, LightSource};
 use assign_clustered::{ClustersUniform, EXPLICIT_WESL, IMPLICIT_WESL, Occupancy, gather_source};
 
 fn validated(what: &str, source: &str) -> naga::Module {
@@ -22,14 +22,14 @@ fn validated(what: &str, source: &str) -> naga::Module {
 }
 
 /// The culling kernel around a module of clusters, validated.
-fn kernel(bounds: Bounds, sparse: bool, source: LightSource, spots: bool) -> naga::Module {
+fn kernel(bounds: Bounds, sparse: bool, source: LightSource, kinds: LightKinds) -> naga::Module {
     let (shape, module) = match bounds {
         Bounds::Implicit => (GroupShape::Frustum, IMPLICIT_WESL),
         Bounds::Explicit => (GroupShape::Box, EXPLICIT_WESL),
     };
-    let what = format!("{bounds:?}, sparse {sparse}, {source:?}, spots {spots}");
+    let what = format!("{bounds:?}, sparse {sparse}, {source:?}, {kinds:?}");
     let settings = CullSettings { source, ..CullSettings::default() };
-    let source = Culler::kernel_source(shape, settings, sparse, module, spots)
+    let source = Culler::kernel_source(shape, settings, sparse, module, kinds)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
     validated(&what, &source)
 }
@@ -38,8 +38,9 @@ fn kernel(bounds: Bounds, sparse: bool, source: LightSource, spots: bool) -> nag
 fn kernels_validate() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
         for source in [LightSource::Linear, LightSource::Hierarchy] {
-            for (sparse, spots) in [(false, false), (false, true), (true, false), (true, true)] {
-                kernel(bounds, sparse, source, spots);
+            for kinds in LightKinds::ALL {
+                kernel(bounds, false, source, kinds);
+                kernel(bounds, true, source, kinds);
             }
         }
     }
@@ -64,7 +65,7 @@ macro_rules! fields {
 
 #[test]
 fn clusters() {
-    let module = kernel(Bounds::Implicit, false, LightSource::Linear, false);
+    let module = kernel(Bounds::Implicit, false, LightSource::Linear, LightKinds::default());
     let variable = module
         .global_variables
         .iter()

@@ -5,14 +5,14 @@
 
 use std::mem::offset_of;
 
-use assign::{CullSettings, Culler, GroupShape, LightSource};
+use assign::{CullSettings, Culler, GroupShape, LightKinds, LightSource};
 use assign_grid::{CellsUniform, GRID_WESL};
 
 /// The culling kernel around the module of cells, validated.
-fn kernel(source: LightSource, spots: bool) -> naga::Module {
-    let what = format!("{source:?}, spots {spots}");
+fn kernel(source: LightSource, kinds: LightKinds) -> naga::Module {
+    let what = format!("{source:?}, {kinds:?}");
     let settings = CullSettings { source, ..CullSettings::default() };
-    let source = Culler::kernel_source(GroupShape::Box, settings, false, GRID_WESL, spots)
+    let source = Culler::kernel_source(GroupShape::Box, settings, false, GRID_WESL, kinds)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
     let module = naga::front::wgsl::parse_str(&source)
         .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
@@ -29,8 +29,8 @@ fn kernel(source: LightSource, spots: bool) -> naga::Module {
 #[test]
 fn kernels_validate() {
     for source in [LightSource::Linear, LightSource::Hierarchy] {
-        for spots in [false, true] {
-            kernel(source, spots);
+        for kinds in LightKinds::ALL {
+            kernel(source, kinds);
         }
     }
 }
@@ -44,7 +44,7 @@ macro_rules! fields {
 
 #[test]
 fn cells() {
-    let module = kernel(LightSource::Linear, false);
+    let module = kernel(LightSource::Linear, LightKinds::default());
     let variable = module
         .global_variables
         .iter()

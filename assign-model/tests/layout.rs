@@ -5,7 +5,7 @@
 
 use std::mem::offset_of;
 
-use assign::{CullSettings, Culler, GroupShape, LightSource};
+use assign::{CullSettings, Culler, GroupShape, LightKinds, LightSource};
 use assign_model::{MODELS_WESL, ModelRecord};
 
 fn validated(what: &str, source: &str) -> naga::Module {
@@ -44,10 +44,10 @@ macro_rules! fields {
 #[test]
 fn models() {
     for source in [LightSource::Linear, LightSource::Hierarchy] {
-        for spots in [false, true] {
+        for kinds in LightKinds::ALL {
             let settings = CullSettings { source, ..CullSettings::default() };
             let shape = GroupShape::OrientedBox;
-            let source = Culler::kernel_source(shape, settings, false, MODELS_WESL, spots);
+            let source = Culler::kernel_source(shape, settings, false, MODELS_WESL, kinds);
             let module = validated("cull", &source.unwrap());
             let (fields, bytes) = layout(&module, "Model");
             let rust = fields!(ModelRecord: center_world, first_group, axis_x, parts_x, axis_y,

@@ -5,7 +5,7 @@
 
 use std::mem::offset_of;
 
-use assign::{Bounds, CullSettings, Culler, GroupShape, LightSource};
+use assign::{Bounds, CullSettings, Culler, GroupShape, LightKinds, LightSource};
 use assign_tiled::{EXPLICIT_WESL, IMPLICIT_WESL, TilesUniform, bounds_source};
 
 fn validated(what: &str, source: &str) -> naga::Module {
@@ -22,13 +22,13 @@ fn validated(what: &str, source: &str) -> naga::Module {
 }
 
 /// The culling kernel around a module of tiles, validated.
-fn kernel(bounds: Bounds, settings: CullSettings, spots: bool) -> naga::Module {
+fn kernel(bounds: Bounds, settings: CullSettings, kinds: LightKinds) -> naga::Module {
     let module = match bounds {
         Bounds::Implicit => IMPLICIT_WESL,
         Bounds::Explicit => EXPLICIT_WESL,
     };
-    let what = format!("{bounds:?}, {settings:?}, spots {spots}");
-    let source = Culler::kernel_source(GroupShape::Frustum, settings, false, module, spots)
+    let what = format!("{bounds:?}, {settings:?}, {kinds:?}");
+    let source = Culler::kernel_source(GroupShape::Frustum, settings, false, module, kinds)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
     validated(&what, &source)
 }
@@ -38,9 +38,9 @@ fn kernels_validate() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
         for source in [LightSource::Linear, LightSource::Hierarchy] {
             for union in ["hs+sat-n", "hs", "sat-e+sat-p+sat-v"] {
-                for spots in [false, true] {
+                for kinds in LightKinds::ALL {
                     let settings = CullSettings { tests: union.parse().unwrap(), source };
-                    kernel(bounds, settings, spots);
+                    kernel(bounds, settings, kinds);
                 }
             }
         }
@@ -79,7 +79,7 @@ fn is_first(at: naga::ResourceBinding) -> bool {
 #[test]
 fn tiles() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
-        check_tiles(&kernel(bounds, CullSettings::default(), false));
+        check_tiles(&kernel(bounds, CullSettings::default(), LightKinds::default()));
     }
 }
 

@@ -4,8 +4,8 @@
 //! resources it reads. The driver supplies the kernel (`cull.wesl`), the tests and the lists.
 
 use crate::{
-    AssignError, CullSettings, Frame, FrameBindings, Gpu, LightLists, LightSource, LiveGroups,
-    Lookup, Passes, Shader, StrategyModule,
+    AssignError, CullSettings, Frame, FrameBindings, Gpu, LightKinds, LightLists, LightSource,
+    LiveGroups, Lookup, Passes, Shader, StrategyModule,
     frame::{entry, storage_entry, uniform_entry},
 };
 
@@ -98,7 +98,7 @@ struct Variant {
 #[derive(Debug)]
 struct Kernel {
     pipeline: wgpu::ComputePipeline,
-    spots: bool,
+    kinds: LightKinds,
 }
 
 #[derive(Debug)]
@@ -143,9 +143,9 @@ impl Culler {
         self.cull.bind(gpu, &self.lists, &kernel_entries);
         self.look_up.bind(gpu, &self.lists, resources);
         self.bind_source(gpu, frame, groups);
-        let spots = frame.lights.has_spots();
-        if self.kernel.as_ref().is_none_or(|kernel| kernel.spots != spots) {
-            self.kernel = Some(self.compile(gpu, spots)?);
+        let kinds = frame.lights.kinds();
+        if self.kernel.as_ref().is_none_or(|kernel| kernel.kinds != kinds) {
+            self.kernel = Some(self.compile(gpu, kinds)?);
         }
         Ok(())
     }
@@ -169,19 +169,19 @@ impl Culler {
         }));
     }
 
-    /// The linked WGSL of the kernel, for a scene with or without spots.
+    /// The linked WGSL of the kernel, for a scene with lights of these kinds.
     pub fn kernel_source(
         shape: GroupShape,
         settings: CullSettings,
         sparse: bool,
         module: &str,
-        spots: bool,
+        kinds: LightKinds,
     ) -> Result<String, AssignError> {
-        kernel_shader(Variant { shape, settings, sparse }, module, spots).link("package::cull")
+        kernel_shader(Variant { shape, settings, sparse }, module, kinds).link("package::cull")
     }
 
-    fn compile(&self, gpu: &Gpu, spots: bool) -> Result<Kernel, AssignError> {
-        let shader = kernel_shader(self.variant, self.module.source(), spots);
+    fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
+        let shader = kernel_shader(self.variant, self.module.source(), kinds);
         // SAFETY: the driver's loops count up, without wrapping, to a number that is no greater than
         // the length of a buffer and does not change meanwhile, test the next of finitely many
         // nodes, clear a bit of a word a round, or try to take what fits from a pool that only
@@ -210,7 +210,7 @@ impl Culler {
             },
             cache: None,
         });
-        Ok(Kernel { pipeline, spots })
+        Ok(Kernel { pipeline, kinds })
     }
 
     /// Records the pass `cull`: inside the clock, after [`prepare`](Self::prepare).
@@ -253,7 +253,7 @@ impl Culler {
     }
 }
 
-fn kernel_shader<'a>(variant: Variant, module: &'a str, spots: bool) -> Shader<'a> {
+fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Shader<'a> {
     let bounds = match variant.shape {
         GroupShape::Frustum => include_str!("shaders/bounds_frustum.wesl"),
         GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
@@ -271,7 +271,7 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, spots: bool) -> Shader<'
         .flag("sat_v", tests.sat_v)
         .flag("hierarchy", variant.settings.source == LightSource::Hierarchy)
         .flag("sparse", variant.sparse)
-        .flag("spots", spots)
+        .light_kinds(kinds)
 }
 
 /// Layout of what is culled: live groups where sparse, light nodes where there is a hierarchy.

@@ -27,6 +27,7 @@ mod assignment;
 pub mod conformance;
 mod cull;
 mod cull_settings;
+mod emitter;
 mod error;
 mod everything;
 mod frame;
@@ -48,13 +49,14 @@ mod view;
 pub use assignment::{Assignment, Lookup, StrategyModule};
 pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, GroupShape, Groups};
 pub use cull_settings::{Bounds, CullSettings, FrustumTests, LightSource};
+pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
 pub use gpu::Gpu;
 pub use light::{
-    Light, LightEmission, LightFault, LightKind, LightShape, LightSphere, MAX_INTENSITY,
-    MAX_RANGE_M, MIN_RANGE_M,
+    Light, LightEmission, LightFault, LightKind, LightKinds, LightShape, LightSphere,
+    MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M,
 };
 pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
 pub use light_nodes::LightNode;

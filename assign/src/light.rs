@@ -1,12 +1,15 @@
 //! Lights with compact support, and their record on the GPU.
 //!
 //! Every light's contribution is multiplied by the window `(1 - (d / range)^4)^2`, clamped at 0,
-//! so its *support*, the set of points it can reach, is exact: a ball, or a ball cut by a cone.
-//! Culling and shading read the same `range`.
+//! with `d` the distance to the closest point of the emitter, so its *support*, the set of points
+//! it can reach, is exact: a ball, a ball cut by a cone, or a rounded rectangle or polygon, cut by
+//! its plane where one-sided. Culling and shading read the same `range`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use thiserror::Error;
+
+use crate::emitter::{Emitter, Outline};
 
 /// What a light is, beside its position, range and intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,16 +26,20 @@ pub enum LightShape {
         /// Half angle at which the light ends, radians, `0 < outer <= π`.
         outer_angle: f32,
     },
+    /// Emits the same radiance from every point of a flat emitter, in all directions in front.
+    Area(Emitter),
 }
 
 /// One light, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it is, metres.
+    /// Where it is, metres; of a rectangle the middle, of a polygon that of the smallest rectangle
+    /// around it.
     pub position: Vec3,
     /// Distance at which its window reaches 0, metres, [`MIN_RANGE_M`] to [`MAX_RANGE_M`].
     pub range_m: f32,
-    /// Radiant intensity, linear RGB, each 0 to [`MAX_INTENSITY`] and not all 0.
+    /// Radiant intensity, linear RGB, each 0 to [`MAX_INTENSITY`] and not all 0; of an area light
+    /// the intensity along its normal, its radiance times its area.
     pub intensity: Vec3,
     /// What kind of light it is.
     pub shape: LightShape,
@@ -62,7 +69,7 @@ pub enum LightFault {
 }
 
 /// The kinds of light, as stored in the top four bits of [`LightEmission::kind_and_shape`].
-/// The numbers 2, 3 and 4 are kept for rectangles, polygons and hemispherical VPLs.
+/// The number 4 is kept for hemispherical VPLs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum LightKind {
@@ -70,6 +77,42 @@ pub enum LightKind {
     Point = 0,
     /// [`LightShape::Spot`].
     Spot = 1,
+    /// [`LightShape::Area`] with a rectangle.
+    Rectangle = 2,
+    /// [`LightShape::Area`] with a polygon.
+    Polygon = 3,
+}
+
+/// The kinds beside points that some lights are of: shaders are compiled for what there is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct LightKinds {
+    /// Spots: the flag `spots`.
+    pub spots: bool,
+    /// Rectangles or polygons: the flag `areas`.
+    pub areas: bool,
+}
+
+impl LightKinds {
+    /// Every combination.
+    pub const ALL: [Self; 4] = [
+        Self { spots: false, areas: false },
+        Self { spots: true, areas: false },
+        Self { spots: false, areas: true },
+        Self { spots: true, areas: true },
+    ];
+
+    /// The kinds of some lights.
+    pub fn of(lights: &[Light]) -> Self {
+        Self {
+            spots: lights.iter().any(|light| light.kind() == LightKind::Spot),
+            areas: lights.iter().any(|light| matches!(light.shape, LightShape::Area(_))),
+        }
+    }
+
+    /// Whether a shader that is compiled for these kinds lights all of `others`.
+    pub fn cover(self, others: Self) -> bool {
+        self.spots >= others.spots && self.areas >= others.areas
+    }
 }
 
 /// The part of a light that culling reads: its bounding sphere. 16 bytes.
@@ -78,8 +121,8 @@ pub enum LightKind {
 pub struct LightSphere {
     /// World-space position, metres.
     pub position_world: [f32; 3],
-    /// Range, metres.
-    pub range_m: f32,
+    /// Radius of a ball that holds the support, metres: the range, and an emitter's own radius.
+    pub radius_m: f32,
 }
 
 /// The part of a light that only shading reads. 16 bytes.
@@ -99,6 +142,11 @@ impl Light {
         Self { position, range_m, intensity, shape: LightShape::Point }
     }
 
+    /// An area light; `position` is the one that [`Emitter::polygon`] gave, or any of a rectangle.
+    pub fn area(emitter: Emitter, position: Vec3, range_m: f32, intensity: Vec3) -> Self {
+        Self { position, range_m, intensity, shape: LightShape::Area(emitter) }
+    }
+
     /// The range at which an unbounded light's unoccluded intensity over squared distance falls
     /// to `threshold`: `sqrt(max(intensity) / threshold)` (Watrous 2024, "Light volumes").
     pub fn range_from_threshold(intensity: Vec3, threshold: f32) -> f32 {
@@ -110,6 +158,26 @@ impl Light {
         match self.shape {
             LightShape::Point => LightKind::Point,
             LightShape::Spot { .. } => LightKind::Spot,
+            LightShape::Area(emitter) => match emitter.outline() {
+                Outline::Rectangle => LightKind::Rectangle,
+                Outline::Polygon => LightKind::Polygon,
+            },
+        }
+    }
+
+    /// Radius of a ball around its position that holds its support, metres.
+    pub fn radius_m(&self) -> f32 {
+        match &self.shape {
+            LightShape::Area(emitter) => (self.range_m + emitter.radius()).next_up(),
+            LightShape::Point | LightShape::Spot { .. } => self.range_m,
+        }
+    }
+
+    /// Where the window of its diffuse light reaches 0, metres.
+    pub fn diffuse_range_m(&self) -> f32 {
+        match &self.shape {
+            LightShape::Area(emitter) => self.range_m * emitter.diffuse_share,
+            LightShape::Point | LightShape::Spot { .. } => self.range_m,
         }
     }
 
@@ -151,6 +219,9 @@ impl Light {
                 return out("spot inner angle", inner_angle, "between 0 and the outer angle");
             }
         }
+        if let LightShape::Area(emitter) = &self.shape {
+            emitter.check()?;
+        }
         Ok(())
     }
 
@@ -170,18 +241,49 @@ impl Light {
                 let cos = direction.as_dvec3().normalize().dot(to_point) / distance;
                 ball.min(cos - f64::from(outer_angle).cos())
             }
+            LightShape::Area(emitter) => {
+                let range = f64::from(self.range_m);
+                let window = 1.0 - to_point.distance(emitter.closest(to_point)) / range;
+                if emitter.two_sided {
+                    window
+                } else {
+                    window.min(emitter.in_front(to_point) / range)
+                }
+            }
         }
+    }
+
+    /// How far `point` lies inside the support of the light's diffuse part, as [`reach`](Self::reach)
+    /// says it of the whole light's.
+    pub fn diffuse_reach(&self, point: DVec3) -> f64 {
+        Self { range_m: self.diffuse_range_m(), ..*self }.reach(point)
+    }
+
+    /// How far the light rises above the horizon of a surface at `point`, in f64, as a share of its
+    /// range: a surface that it does not rise above is not lit.
+    pub fn above_horizon(&self, point: DVec3, normal: DVec3) -> f64 {
+        let height = normal.dot(self.position.as_dvec3() - point);
+        let rise = match &self.shape {
+            LightShape::Area(emitter) => {
+                let heights = emitter.vertices().iter().map(|v| normal.dot(v.as_dvec3()));
+                heights.fold(f64::NEG_INFINITY, f64::max)
+            }
+            LightShape::Point | LightShape::Spot { .. } => 0.0,
+        };
+        (height + rise) / f64::from(self.range_m)
     }
 
     /// The part of the light's record that culling reads.
     pub fn sphere(&self) -> LightSphere {
-        LightSphere { position_world: self.position.to_array(), range_m: self.range_m }
+        LightSphere { position_world: self.position.to_array(), radius_m: self.radius_m() }
     }
 
     /// The light's record for shading; appends what its kind needs to `shapes`.
     ///
     /// Shape vectors: a point light has none; a spot has `(direction, cos outer)` and
-    /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`.
+    /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`; an area light has `(normal,
+    /// range)`, `(half x, diffuse range)`, `(half y, vertex count)` with the count negative where
+    /// two-sided, `(area, 0, 0, 0)`, and its vertices relative to its position, `(vertex, 0)` each.
     pub(crate) fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
         let first_shape = shapes.len() as u32;
         if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
@@ -190,6 +292,16 @@ impl Light {
             let scale = 1.0 / (inner_angle.cos() - cos_outer).max(1e-3);
             shapes.push([direction.x, direction.y, direction.z, cos_outer]);
             shapes.push([scale, outer_angle.sin().max(0.0), 0.0, 0.0]);
+        }
+        if let LightShape::Area(emitter) = &self.shape {
+            let [half_x, half_y] = emitter.half_axes();
+            let count = emitter.vertices().len() as f32;
+            let count = if emitter.two_sided { -count } else { count };
+            shapes.push(emitter.normal().extend(self.range_m).to_array());
+            shapes.push(half_x.extend(self.diffuse_range_m()).to_array());
+            shapes.push(half_y.extend(count).to_array());
+            shapes.push([emitter.area(), 0.0, 0.0, 0.0]);
+            shapes.extend(emitter.vertices().iter().map(|v| v.extend(0.0).to_array()));
         }
         LightEmission {
             intensity: self.intensity.to_array(),

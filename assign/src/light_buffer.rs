@@ -6,7 +6,7 @@ use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, Light, LightEmission, LightFault, LightKind, LightOrder, LightSphere,
+    AssignError, Gpu, Light, LightEmission, LightFault, LightKinds, LightOrder, LightSphere,
     light_nodes::{LightNode, nodes},
 };
 
@@ -30,7 +30,7 @@ pub struct LightBuffer {
     lights: Vec<Light>,
     given: Vec<u32>,
     rejected: Vec<RejectedLight>,
-    has_spots: bool,
+    kinds: LightKinds,
     bounds: Option<(Vec3, Vec3)>,
     spheres: wgpu::Buffer,
     emissions: wgpu::Buffer,
@@ -55,7 +55,7 @@ impl LightBuffer {
             lights: Vec::new(),
             given: Vec::new(),
             rejected: Vec::new(),
-            has_spots: false,
+            kinds: LightKinds::default(),
             bounds: None,
             spheres: gpu.storage("light spheres", 0)?,
             emissions: gpu.storage("light emissions", 0)?,
@@ -113,10 +113,10 @@ impl LightBuffer {
         gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
         gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
-        self.has_spots = accepted.iter().any(|l| l.kind() == LightKind::Spot);
+        self.kinds = LightKinds::of(&accepted);
         self.bounds = accepted
             .iter()
-            .map(|l| (l.position - l.range_m, l.position + l.range_m))
+            .map(|l| (l.position - l.radius_m(), l.position + l.radius_m()))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         self.lights = accepted;
         self.given = given;
@@ -155,9 +155,9 @@ impl LightBuffer {
         &self.rejected
     }
 
-    /// Whether any light is a spot: shaders are compiled for what there is.
-    pub fn has_spots(&self) -> bool {
-        self.has_spots
+    /// The kinds that there are: shaders are compiled for them.
+    pub fn kinds(&self) -> LightKinds {
+        self.kinds
     }
 
     /// World-space box around all supports, metres; `None` without lights.

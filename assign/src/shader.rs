@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::AssignError;
+use crate::{AssignError, LightKinds};
 
 /// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
 ///
@@ -27,7 +27,12 @@ impl<'a> Shader<'a> {
             .module("package::lights", include_str!("shaders/lights.wesl"))
             .module("package::volume", include_str!("shaders/volume.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
-            .flag("spots", false)
+            .light_kinds(LightKinds::default())
+    }
+
+    /// Compiles what lights of these kinds take.
+    pub fn light_kinds(self, kinds: LightKinds) -> Self {
+        self.flag("spots", kinds.spots).flag("areas", kinds.areas)
     }
 
     /// Adds or replaces a module.

@@ -6,8 +6,8 @@
 use std::mem::offset_of;
 
 use assign::{
-    Counters, CullSettings, CullUniform, Culler, GroupShape, LightEmission, LightList, LightNode,
-    LightSource, LightSphere, ViewUniform,
+    Counters, CullSettings, CullUniform, Culler, GroupShape, LightEmission, LightKinds, LightList,
+    LightNode, LightSource, LightSphere, ViewUniform,
 };
 
 const STRATEGY: &str = "
@@ -30,7 +30,9 @@ macro_rules! fields {
 
 fn kernel() -> naga::Module {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
-    let source = Culler::kernel_source(GroupShape::Box, settings, false, STRATEGY, true).unwrap();
+    let source =
+        Culler::kernel_source(GroupShape::Box, settings, false, STRATEGY, LightKinds::ALL[3])
+            .unwrap();
     naga::front::wgsl::parse_str(&source).unwrap()
 }
 
@@ -74,7 +76,7 @@ fn view() {
 
 #[test]
 fn light_sphere() {
-    let fields = fields!(LightSphere: position_world, range_m);
+    let fields = fields!(LightSphere: position_world, radius_m);
     let bytes = size_of::<LightSphere>();
     check("LightSphere", bytes, &fields, Some(bytes));
 }

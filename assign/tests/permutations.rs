@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-use assign::{CullSettings, Culler, GroupShape, LightSource};
+use assign::{CullSettings, Culler, GroupShape, LightKinds, LightSource};
 
 const GROUP_OF: &str = "
 import package::sample::ViewSample;
@@ -74,9 +74,9 @@ fn validate(source: &str) -> Result<naga::Module, String> {
 #[test]
 fn every_permutation_of_the_kernel_validates() {
     for (shape, bounds, settings, sparse) in permutations() {
-        for spots in [false, true] {
-            let what = format!("{shape:?}, {settings:?}, sparse {sparse}, spots {spots}");
-            let source = Culler::kernel_source(shape, settings, sparse, &strategy(bounds), spots)
+        for kinds in LightKinds::ALL {
+            let what = format!("{shape:?}, {settings:?}, sparse {sparse}, {kinds:?}");
+            let source = Culler::kernel_source(shape, settings, sparse, &strategy(bounds), kinds)
                 .unwrap_or_else(|e| panic!("{what}: {e}"));
             let module = validate(&source).unwrap_or_else(|e| panic!("{what}: {e}"));
             let mut entry_points: Vec<_> = module.entry_points.iter().map(|e| &e.name).collect();
@@ -87,7 +87,7 @@ fn every_permutation_of_the_kernel_validates() {
                 let mut variables = module.global_variables.iter();
                 variables.any(|(_, v)| v.name.as_deref().is_some_and(is_named))
             };
-            assert_eq!(reads("light_shapes"), spots, "{what}");
+            assert_eq!(reads("light_shapes"), kinds.spots || kinds.areas, "{what}");
             assert_eq!(reads("light_nodes"), settings.source == LightSource::Hierarchy, "{what}");
             let reads_live = source.contains("live.count") || source.contains("live_live.count");
             assert_eq!(reads_live, sparse, "{what}");
@@ -100,9 +100,9 @@ fn every_permutation_of_the_kernel_validates() {
 fn flags_change_the_kernel() {
     let mut sources = Vec::new();
     for (shape, bounds, settings, sparse) in permutations() {
-        for spots in [false, true] {
+        for kinds in LightKinds::ALL {
             let module = strategy(bounds);
-            sources.push(Culler::kernel_source(shape, settings, sparse, &module, spots).unwrap());
+            sources.push(Culler::kernel_source(shape, settings, sparse, &module, kinds).unwrap());
         }
     }
     let count = sources.len();
@@ -115,6 +115,7 @@ fn flags_change_the_kernel() {
 fn a_strategy_of_the_wrong_shape_is_rejected() {
     let boxes = strategy(BOXES[0].1);
     let settings = CullSettings::default();
-    let linked = Culler::kernel_source(GroupShape::Frustum, settings, false, &boxes, false);
+    let linked =
+        Culler::kernel_source(GroupShape::Frustum, settings, false, &boxes, LightKinds::default());
     assert!(linked.map_err(|e| e.to_string()).and_then(|source| validate(&source)).is_err());
 }

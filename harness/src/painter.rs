@@ -30,11 +30,12 @@ impl<'a> Painter<'a> {
         mode: Mode,
         cut: Cut,
     ) -> Result<Self, HarnessError> {
-        let spots = stage.lights.has_spots();
+        let kinds = stage.lights.kinds();
         Ok(match method {
             Method::Lists { strategy, early_exit } => {
                 let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
-                let options = LightingOptions { spots, exit_weight, cut };
+                let options =
+                    LightingOptions { kinds, exit_weight, cut, ..LightingOptions::default() };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
             }
@@ -98,5 +99,5 @@ pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, H
         let accepted = format!("windowed for {RASTER_SPHERE}");
         return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
     }
-    Ok(RasterSpheres::new(&stage.renderer, stage.lights.has_spots())?)
+    Ok(RasterSpheres::new(&stage.renderer, stage.lights.kinds())?)
 }

@@ -115,12 +115,20 @@ impl Scene {
                     (1, direction, [inner_angle, outer_angle])
                 }
                 LightShape::Point => (0, Vec3::ZERO, [0.0; 2]),
+                LightShape::Area(_) => (2, Vec3::ZERO, [0.0; 2]),
             };
             feed.int(kind);
             feed.floats(&light.position.to_array());
             feed.floats(&light.intensity.to_array());
             feed.floats(&direction.to_array());
             feed.floats(&[light.range_m, angles[0], angles[1]]);
+            if let LightShape::Area(emitter) = &light.shape {
+                feed.int(u64::from(emitter.two_sided));
+                feed.floats(&[emitter.diffuse_share]);
+                for vertex in emitter.vertices() {
+                    feed.floats(&vertex.to_array());
+                }
+            }
         }
     }
 

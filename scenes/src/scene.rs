@@ -1,6 +1,6 @@
 //! A scene in main memory: indexed meshes, placed by models, with materials, lights and cameras.
 
-use assign::Light;
+use assign::{Light, LightShape};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
@@ -218,6 +218,9 @@ impl Scene {
             light.position *= factor;
             light.range_m *= factor;
             light.intensity *= factor * factor;
+            if let LightShape::Area(emitter) = &mut light.shape {
+                *emitter = emitter.scaled(factor);
+            }
         }
         for camera in &mut self.cameras {
             camera.pose = camera.pose.scaled(factor);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use assign::AssignError;
+use assign::{AssignError, LightKinds};
 use thiserror::Error;
 
 /// Why a scene cannot be drawn, or an image not written.
@@ -42,8 +42,15 @@ pub enum ShadingError {
         right: [u32; 2],
     },
     /// A lighting pass meets a kind of light that its shader was not made for.
-    #[error("the lighting pass was made without spots, and the lights hold one: make it anew")]
-    Spots,
+    #[error(
+        "the lighting pass was made for {made:?}, and the lights are of {lights:?}: make it anew"
+    )]
+    Kinds {
+        /// The kinds that it was made for.
+        made: LightKinds,
+        /// The kinds of the prepared lights.
+        lights: LightKinds,
+    },
     /// A file could not be read.
     #[error("{path}: cannot be read: {reason}")]
     Read {

@@ -13,11 +13,12 @@
 //!
 //! Both modes call the one lighting function in `lighting.wesl`; a sample is found from pixel and
 //! depth by `sample_at` in both, so a strategy's groups are the same. Only what a scene contains
-//! is compiled and bound: each texture, alpha masks, emission, spots.
+//! is compiled and bound: each texture, alpha masks, emission, spots, area lights.
 //!
 //! [`truth`](LightBvh) checks a strategy's lists on the CPU in f64; [`HdrImage`] compares images
 //! bit for bit.
 
+mod area_model;
 mod error;
 mod geometry;
 mod heat_map;
@@ -34,6 +35,7 @@ mod shaders;
 mod targets;
 mod truth;
 
+pub use area_model::AreaModel;
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};

@@ -1,10 +1,12 @@
 //! Lighting with one strategy's lists, in one mode.
 
-use assign::{AssignError, Assignment, Gpu, Passes, View, entry, uniform_entry};
+use assign::{
+    AssignError, Assignment, Gpu, LightKinds, Passes, Shader, View, entry, uniform_entry,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Mode, Renderer, ShadingError,
+    AreaModel, Mode, Renderer, ShadingError,
     raster::{LISTS_GROUP, Lists, RasterPass, RasterPipelines},
     shaders,
 };
@@ -13,14 +15,14 @@ use crate::{
 #[derive(Debug)]
 pub struct Lighting {
     kind: Kind,
-    spots: bool,
+    kinds: LightKinds,
 }
 
 /// How the lights of a list are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightingOptions {
-    /// Whether any light is a spot.
-    pub spots: bool,
+    /// The kinds of lights that it lights.
+    pub kinds: LightKinds,
     /// A light is left out of a sample, before its BRDF, where its fall-off or the cosine of
     /// incidence is at most this. 0 leaves out what adds nothing, out of range (the survey's
     /// bounding sphere, Watrous 2024), cone or horizon, and changes no bit of the image, for the
@@ -29,6 +31,8 @@ pub struct LightingOptions {
     pub exit_weight: f32,
     /// How the fall-off ends at a light's range.
     pub cut: Cut,
+    /// How the light of area lights is integrated.
+    pub area: AreaModel,
 }
 
 /// How a light's fall-off ends at its range.
@@ -55,6 +59,14 @@ impl Cut {
 impl LightingOptions {
     /// The [`exit_weight`](Self::exit_weight) with which every light of a list is evaluated.
     pub const EVALUATE_ALL: f32 = -1.0;
+
+    /// Compiles what they ask for.
+    pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
+        shader
+            .light_kinds(self.kinds)
+            .flag("hard_cut", self.cut == Cut::Hard)
+            .flag(self.area.flag(), self.kinds.areas)
+    }
 }
 
 #[derive(Debug)]
@@ -96,11 +108,11 @@ impl Lighting {
                 renderer.scene.bind_group(gpu, &uniform),
             ),
         };
-        Ok(Self { kind, spots: options.spots })
+        Ok(Self { kind, kinds: options.kinds })
     }
 
     /// Records the pass `shade`, after the strategy's own. An error where the prepared lights
-    /// hold a spot and the shader was made without.
+    /// are of a kind that the shader was made without.
     pub fn record(
         &self,
         renderer: &Renderer,
@@ -108,8 +120,8 @@ impl Lighting {
         strategy: &dyn Assignment,
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
-        if renderer.has_spots && !self.spots {
-            return Err(ShadingError::Spots);
+        if !self.kinds.cover(renderer.kinds) {
+            return Err(ShadingError::Kinds { made: self.kinds, lights: renderer.kinds });
         }
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
@@ -140,10 +152,10 @@ impl Deferred {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
         let layout = deferred_layout(gpu, emissive, model_ids);
-        let shader = shaders::lighting(LISTS_GROUP)
+        let shader = lists
+            .options
+            .set_flags(shaders::lighting(LISTS_GROUP))
             .module("package::strategy", lists.lookup.module.source())
-            .flag("spots", lists.options.spots)
-            .flag("hard_cut", lists.options.cut == Cut::Hard)
             .flag("model_ids", model_ids)
             .flag("emissive", emissive);
         // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.

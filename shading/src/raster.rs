@@ -7,7 +7,7 @@ use assign::{DepthMapping, FrameBindings, Gpu, Shader};
 use crate::{
     ShadingError,
     geometry::{DrawKey, SceneGpu},
-    lighting::{Cut, LightingOptions},
+    lighting::LightingOptions,
     materials::TEXTURE_FLAGS,
     shaders,
     targets::{
@@ -90,10 +90,10 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
         shader = shader.flag(flag, material.textures[slot]);
     }
     if let RasterPass::Forward(lists) = pass {
-        shader = shader
-            .module("package::strategy", lists.lookup.module.source())
-            .flag("spots", lists.options.spots)
-            .flag("hard_cut", lists.options.cut == Cut::Hard);
+        shader = lists
+            .options
+            .set_flags(shader)
+            .module("package::strategy", lists.lookup.module.source());
     }
     shader
 }

@@ -4,12 +4,12 @@
 //! around each light are drawn where they lie behind the surface, every fragment adds one light to
 //! one pixel, and blending sums. A pixel is read and written once per volume that covers it.
 
-use assign::{AssignError, DepthMapping, LightBuffer, Passes, View};
+use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, View};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::{
-    Renderer, ShadingError,
+    AreaModel, Renderer, ShadingError,
     lighting::{TEXELS, texture, texture_entry},
     raster::LISTS_GROUP,
     shaders,
@@ -29,12 +29,12 @@ pub struct RasterSpheres {
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
     vertex_count: u32,
-    spots: bool,
+    kinds: LightKinds,
 }
 
 impl RasterSpheres {
     /// Makes the pipelines. An error where the device cannot blend into single precision.
-    pub fn new(renderer: &Renderer, spots: bool) -> Result<Self, ShadingError> {
+    pub fn new(renderer: &Renderer, kinds: LightKinds) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {
@@ -59,7 +59,8 @@ impl RasterSpheres {
             entries: &entries,
         });
         let module = shaders::lighting(LISTS_GROUP)
-            .flag("spots", spots)
+            .light_kinds(kinds)
+            .flag(AreaModel::default().flag(), kinds.areas)
             .flag("emissive", emissive)
             .create(&gpu.device, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
@@ -76,7 +77,7 @@ impl RasterSpheres {
                 usage: wgpu::BufferUsages::VERTEX,
             }),
             layout,
-            spots,
+            kinds,
         })
     }
 
@@ -88,8 +89,8 @@ impl RasterSpheres {
         lights: &LightBuffer,
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
-        if lights.has_spots() && !self.spots {
-            return Err(ShadingError::Spots);
+        if !self.kinds.cover(lights.kinds()) {
+            return Err(ShadingError::Kinds { made: self.kinds, lights: lights.kinds() });
         }
         let targets = &renderer.targets;
         let mut entries = vec![

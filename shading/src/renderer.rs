@@ -1,7 +1,8 @@
 //! One scene drawn into one set of targets: the passes that all strategies share.
 
 use assign::{
-    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
+    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, LightKinds, ModelBox, Passes,
+    View,
 };
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
@@ -45,8 +46,8 @@ pub struct Renderer {
     scene_group: wgpu::BindGroup,
     pub(crate) targets: Targets,
     pub(crate) depth_mapping: DepthMapping,
-    /// Whether the prepared lights hold a spot.
-    pub(crate) has_spots: bool,
+    /// The kinds of the prepared lights.
+    pub(crate) kinds: LightKinds,
     models: Vec<ModelBox>,
     surface_bounds: (Vec3, Vec3),
     depth: RasterPipelines,
@@ -78,7 +79,7 @@ impl Renderer {
             clay: pipelines(RasterPass::Clay)?,
             gpu: gpu.clone(),
             depth_mapping: view.depth,
-            has_spots: false,
+            kinds: LightKinds::default(),
             frame,
             scene_group: scene.bind_group(gpu, &lighting_uniform(gpu, 0.0)),
             scene,
@@ -139,7 +140,7 @@ impl Renderer {
             }
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights))?;
-        self.has_spots = lights.has_spots();
+        self.kinds = lights.kinds();
         Ok(())
     }
 

@@ -17,6 +17,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "write_model_ids",
         "model_ids",
         "hard_cut",
+        "area_point",
         "mask",
         "emissive",
         "uv_transforms",
@@ -27,6 +28,8 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
     ];
     let shader = Shader::new(lists_group)
         .module("package::brdf", include_str!("shaders/brdf.wesl"))
+        .module("package::area", include_str!("shaders/area.wesl"))
+        .module("package::area_point", include_str!("shaders/area_point.wesl"))
         .module("package::lighting", include_str!("shaders/lighting.wesl"))
         .module("package::scene", include_str!("shaders/scene.wesl"))
         .module("package::material", include_str!("shaders/material.wesl"))

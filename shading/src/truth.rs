@@ -64,7 +64,7 @@ impl<'a> LightBvh<'a> {
             .iter()
             .map(|light| {
                 // A little more than the range: traversal decides in f32.
-                let reach = light.range_m * 1.000_01 + light.position.abs().max_element() * 1e-6;
+                let reach = light.radius_m() * 1.000_01 + light.position.abs().max_element() * 1e-6;
                 Aabb::new((light.position - reach).into(), (light.position + reach).into())
             })
             .collect();

@@ -69,7 +69,7 @@ fn everything(
     renderer.prepare(view, lights).unwrap();
     let mut strategy = Everything::new(gpu).unwrap();
     let options =
-        LightingOptions { spots: lights.has_spots(), exit_weight, ..LightingOptions::default() };
+        LightingOptions { kinds: lights.kinds(), exit_weight, ..LightingOptions::default() };
     let lighting = Lighting::new(renderer, &strategy, mode, options).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -115,7 +115,7 @@ fn raster_spheres_show_the_image_of_no_culling() {
         let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
         let reference =
             everything(&gpu, &mut renderer, &view, &lights, Mode::Deferred, EVALUATE_ALL);
-        let spheres = RasterSpheres::new(&renderer, true).unwrap();
+        let spheres = RasterSpheres::new(&renderer, lights.kinds()).unwrap();
         let draw = |lights: &LightBuffer| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -144,7 +144,7 @@ fn both_modes_find_the_models_of_their_pixels() {
     for mode in [Mode::Deferred, Mode::Forward] {
         let reference = everything(&gpu, &mut renderer, &view, &lights, mode, EVALUATE_ALL);
         let mut strategy = PerModel::new(&gpu, Some(0.7), CullSettings::default()).unwrap();
-        let options = LightingOptions { spots: lights.has_spots(), ..LightingOptions::default() };
+        let options = LightingOptions { kinds: lights.kinds(), ..LightingOptions::default() };
         let lighting = Lighting::new(&renderer, &strategy, mode, options).unwrap();
         let frame = renderer.frame(&view, &lights);
         strategy.prepare(&gpu, &frame).unwrap();

@@ -55,7 +55,7 @@ fn evaluate(gpu: &Gpu, lights: &LightBuffer, queries: &[Query]) -> Vec<[f32; 4]>
     let module = shading::lighting_shader()
         .module("package::evaluate", EVALUATE)
         .module("package::strategy", include_str!("../../assign/src/shaders/everything.wesl"))
-        .flag("spots", lights.has_spots())
+        .light_kinds(lights.kinds())
         .create(&gpu.device, "package::evaluate")
         .unwrap();
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

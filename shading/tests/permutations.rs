@@ -29,6 +29,16 @@ fn subsets(flags: &[&'static str]) -> Vec<Flags> {
     (0..1 << flags.len()).map(|bits| chosen(bits).map(|i| flags[i]).collect()).collect()
 }
 
+/// The flags of each model of area lights.
+const AREA_MODELS: [&str; 1] = ["area_point"];
+
+/// Each set as it is, and with area lights of each model.
+fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
+    let areas = |set: &Flags, model| set.iter().copied().chain(["areas", model]).collect();
+    let with = |set: &Flags| AREA_MODELS.map(|model| areas(set, model));
+    sets.iter().flat_map(|set| with(set).into_iter().chain([set.clone()])).collect()
+}
+
 /// What a linked and validated shader has.
 #[derive(Debug, PartialEq)]
 struct Linked {
@@ -105,7 +115,7 @@ fn model_ids() {
 
 #[test]
 fn raster_spheres() {
-    for flags in subsets(&["emissive", "spots"]) {
+    for flags in with_areas(subsets(&["emissive", "spots"])) {
         let linked = link("package::raster_spheres", &flags, None);
         let emissive = flags.contains("emissive");
         let expected = if emissive { vec![0, 1, 2, 3] } else { vec![0, 1, 2] };
@@ -137,7 +147,7 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        for flags in material_flags(Some("forward"), &["emissive", "spots"]) {
+        for flags in with_areas(material_flags(Some("forward"), &["emissive", "spots"])) {
             let slots = shaded_slots(&flags);
             check_geometry(&flags, Some(look_up), Some("fragment_forward"), slots);
         }
@@ -160,7 +170,7 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in subsets(&["emissive", "spots", "model_ids", "hard_cut"]) {
+        for flags in with_areas(subsets(&["emissive", "spots", "model_ids", "hard_cut"])) {
             let mut images = vec![0, 1, 2, 4, 6];
             images.extend(flags.contains("emissive").then_some(3));
             images.extend(flags.contains("model_ids").then_some(5));

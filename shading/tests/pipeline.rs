@@ -4,15 +4,15 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
-use assign::{Assignment, EncoderPasses, Everything, Gpu, LightBuffer, View};
+use assign::{Assignment, EncoderPasses, Everything, Gpu, LightBuffer, LightKinds, View};
 use glam::{DVec3, Vec3};
 use shading::{
     HdrImage, LightBvh, Lighting, LightingOptions, Mode, Renderer, Samples, probe,
     record_before_lighting, record_for_probe,
 };
 
-fn options(spots: bool) -> LightingOptions {
-    LightingOptions { spots, ..LightingOptions::default() }
+fn options(kinds: LightKinds) -> LightingOptions {
+    LightingOptions { kinds, ..LightingOptions::default() }
 }
 
 /// A frame lit by every light, its image and its samples.
@@ -20,7 +20,7 @@ fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, 
     let mut renderer = Renderer::new(gpu, &common::showcase(), view).unwrap();
     renderer.prepare(view, lights).unwrap();
     let mut strategy = Everything::new(gpu).unwrap();
-    let lighting = Lighting::new(&renderer, &strategy, mode, options(lights.has_spots())).unwrap();
+    let lighting = Lighting::new(&renderer, &strategy, mode, options(lights.kinds())).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
     let frame = renderer.frame(view, lights);
@@ -171,8 +171,8 @@ fn every_pipeline_passes_validation_without_a_gpu() {
     let renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
     let strategy = Everything::new(&gpu).unwrap();
     for mode in [Mode::Deferred, Mode::Forward] {
-        for spots in [false, true] {
-            Lighting::new(&renderer, &strategy, mode, options(spots)).unwrap();
+        for kinds in LightKinds::ALL {
+            Lighting::new(&renderer, &strategy, mode, options(kinds)).unwrap();
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::View;
 ///
 /// Test (Enhuber 2019, section 3.5.1): NP, the nearest point of the box; exact for a ball. For a
 /// spot the same axis is tried against the cone's own extent, and the cone against the sphere
-/// around the box.
+/// around the box. For an area light the axis is that between the nearest points of box and
+/// outline, and the farthest corner is tried against the outline's plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Lowest corner, world space, metres.
@@ -44,11 +45,19 @@ impl Aabb {
 
     /// Whether the light's volume may reach the box.
     pub fn reaches(&self, volume: &LightVolume) -> bool {
-        let slack_m = self.slack_m + self.slack_per_m * volume.range_m;
+        let slack_m = self.slack_m + self.slack_per_m * volume.radius_m;
         let nearest = volume.center.max(self.min_world).min(self.max_world);
         let to_light = volume.center - nearest;
-        let reach = volume.range_m + slack_m;
+        let reach = volume.radius_m + slack_m;
         if to_light.dot(to_light) > reach * reach {
+            return false;
+        }
+        let closest = |point: Vec3| point.max(self.min_world).min(self.max_world);
+        let highest = |axis: Vec3| {
+            let farthest = Vec3::select(axis.cmpgt(Vec3::ZERO), self.max_world, self.min_world);
+            axis.dot(farthest - volume.center)
+        };
+        if volume.has_outline() && volume.parts_from(closest, highest, slack_m) {
             return false;
         }
         let distance_m = to_light.length();

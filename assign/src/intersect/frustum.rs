@@ -78,7 +78,7 @@ impl Frustum {
     pub fn reaches(&self, volume: &LightVolume, tests: FrustumTests) -> bool {
         let magnitude = volume.center.abs();
         let slack_m = self.slack_m
-            + self.slack_per_m * (magnitude.x + magnitude.y + magnitude.z + volume.range_m);
+            + self.slack_per_m * (magnitude.x + magnitude.y + magnitude.z + volume.radius_m);
         if tests.hs && self.half_spaces_miss(volume, slack_m) {
             return false;
         }
@@ -89,7 +89,8 @@ impl Frustum {
         let gap = |axes: &[Vec3]| {
             axes.iter().fold(f32::NEG_INFINITY, |gap, axis| gap.max(self.gap_along(*axis, volume)))
         };
-        if tests.sat_n && self.gap_towards(self.nearest_corner(volume.center), volume) > slack_m {
+        let nearest = self.nearest_corner(volume.closest_on_outline(self.center));
+        if tests.sat_n && self.gap_towards(nearest, volume) > slack_m {
             return false;
         }
         if tests.sat_e && gap(&self.edges) > slack_m {
@@ -101,6 +102,13 @@ impl Frustum {
         }
         let misses = |corner: &Vec3| self.gap_towards(*corner, volume) > slack_m;
         if tests.sat_v && self.corners.iter().any(misses) {
+            return false;
+        }
+        let behind = |volume: &LightVolume| {
+            let (_, highest) = self.corner_range(volume.axis, volume.center);
+            highest < -slack_m - volume.extent_along(-volume.axis)
+        };
+        if volume.has_outline() && volume.is_half() && behind(volume) {
             return false;
         }
         !volume.cone_misses_sphere(self.center, self.radius_m + slack_m)
@@ -124,7 +132,7 @@ impl Frustum {
 
     /// How far the axis from the light to a corner separates volume and frustum, metres.
     fn gap_towards(&self, corner: Vec3, volume: &LightVolume) -> f32 {
-        let to_corner = corner - volume.center;
+        let to_corner = corner - volume.closest_on_outline(corner);
         let distance_m = to_corner.length();
         if distance_m == 0.0 {
             return -1.0;

@@ -55,12 +55,27 @@ impl OrientedBox {
 
     /// Whether the light's volume may reach the box.
     pub fn reaches(&self, volume: &LightVolume) -> bool {
-        let slack_m = self.slack_m + self.slack_per_m * volume.range_m;
+        let slack_m = self.slack_m + self.slack_per_m * volume.radius_m;
         let offset = volume.center - self.center_world;
         let local = Vec3::from_array(self.axes.map(|axis| offset.dot(axis)));
         let to_light = local - local.max(-self.half_extents_m).min(self.half_extents_m);
-        let reach = volume.range_m + slack_m;
+        let reach = volume.radius_m + slack_m;
         if to_light.dot(to_light) > reach * reach {
+            return false;
+        }
+        let closest = |point: Vec3| {
+            let offset = point - self.center_world;
+            let local = Vec3::from_array(self.axes.map(|axis| offset.dot(axis)));
+            let near = local.max(-self.half_extents_m).min(self.half_extents_m);
+            let [x, y, z] = self.axes;
+            self.center_world + x * near.x + y * near.y + z * near.z
+        };
+        let extent = |axis: Vec3| {
+            let along = Vec3::from_array(self.axes.map(|own| own.dot(axis).abs()));
+            along.dot(self.half_extents_m)
+        };
+        let highest = |axis: Vec3| extent(axis) - axis.dot(offset);
+        if volume.has_outline() && volume.parts_from(closest, highest, slack_m) {
             return false;
         }
         let distance_m = to_light.length();

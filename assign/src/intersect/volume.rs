@@ -5,11 +5,14 @@ use glam::Vec3;
 
 use crate::{Light, LightShape};
 
-/// Ball around `center`, cut by a cone around `axis` where `cos_outer > -1`.
+/// The outline blown up by a ball of `range_m`, cut by a cone around `axis` where
+/// `cos_outer > -1`. The outline is a point, or, of an area light, the rectangle of the half axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightVolume {
     /// Position of the light, world space, metres.
     pub center: Vec3,
+    /// Radius of a ball around all of it, metres.
+    pub radius_m: f32,
     /// Range of the light, metres.
     pub range_m: f32,
     /// Axis of the cone, of unit length; zero without a cone.
@@ -18,18 +21,22 @@ pub struct LightVolume {
     pub cos_outer: f32,
     /// Sine of the cone's half angle; 0 without a cone.
     pub sin_outer: f32,
+    /// Half axes of the outline, metres; zero of a point.
+    pub half_axes: [Vec3; 2],
 }
 
 impl From<&Light> for LightVolume {
     fn from(light: &Light) -> Self {
         let ball = Self {
             center: light.position,
+            radius_m: light.radius_m(),
             range_m: light.range_m,
             axis: Vec3::ZERO,
             cos_outer: -1.0,
             sin_outer: 0.0,
+            half_axes: [Vec3::ZERO; 2],
         };
-        match light.shape {
+        match &light.shape {
             LightShape::Point => ball,
             LightShape::Spot { direction, outer_angle, .. } => Self {
                 axis: direction.normalize(),
@@ -37,6 +44,12 @@ impl From<&Light> for LightVolume {
                 sin_outer: outer_angle.sin().max(0.0),
                 ..ball
             },
+            LightShape::Area(emitter) => {
+                let sheet = Self { axis: emitter.normal(), half_axes: emitter.half_axes(), ..ball };
+                // One-sided: the half ball in front.
+                let half = Self { cos_outer: 0.0, sin_outer: 1.0, ..sheet };
+                if emitter.two_sided { sheet } else { half }
+            }
         }
     }
 }
@@ -49,6 +62,10 @@ const CONE_ERROR: f32 = 1e-6;
 /// Sine below which the angle stops growing: `sqrt(2 * 5e-7)`, the edge's angle for the narrowest
 /// cone and for the widest.
 const CONE_SINE_MIN: f32 = 1e-3;
+
+/// How often the nearest points of a box and an outline are projected onto each other. Any axis
+/// they give is a valid test; more rounds find a better one.
+const PROJECTIONS: usize = 3;
 
 impl LightVolume {
     /// How far the volume extends from its centre along the unit vector `axis`, metres, `>= 0`.
@@ -68,16 +85,62 @@ impl LightVolume {
         } else {
             (cos_rim + self.edge_angle()).clamp(0.0, 1.0)
         };
-        self.range_m * cos_nearest
+        self.outline_extent(axis) + self.range_m * cos_nearest
     }
 
-    /// Whether the cone passes a sphere by. Loose behind the apex, where the ball's test decides.
+    /// How far the outline extends from the volume's centre along a unit vector, metres.
+    fn outline_extent(&self, axis: Vec3) -> f32 {
+        self.half_axes[0].dot(axis).abs() + self.half_axes[1].dot(axis).abs()
+    }
+
+    /// The outline's point closest to `point`, world space.
+    pub(super) fn closest_on_outline(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        let along = |half: Vec3| {
+            (half.dot(offset) / half.length_squared().max(1e-30)).clamp(-1.0, 1.0) * half
+        };
+        self.center + along(self.half_axes[0]) + along(self.half_axes[1])
+    }
+
+    /// Whether it is an area light.
+    pub(super) fn has_outline(&self) -> bool {
+        self.half_axes != [Vec3::ZERO; 2]
+    }
+
+    /// Whether only what lies in front of the outline's plane is lit.
+    pub(super) fn is_half(&self) -> bool {
+        self.cos_outer == 0.0
+    }
+
+    /// Whether a box parts from the outline: along the axis between their nearest points, found by
+    /// projecting back and forth, or along the outline's normal. `closest` gives the box's point
+    /// closest to one, `highest` the greatest coordinate of the box along an axis, seen from the
+    /// volume's centre.
+    pub(super) fn parts_from(
+        &self,
+        closest: impl Fn(Vec3) -> Vec3,
+        highest: impl Fn(Vec3) -> f32,
+        slack_m: f32,
+    ) -> bool {
+        let mut on_box = closest(self.center);
+        let mut on_outline = self.center;
+        for _ in 0..PROJECTIONS {
+            on_outline = self.closest_on_outline(on_box);
+            on_box = closest(on_outline);
+        }
+        let across = on_outline - on_box;
+        let apart = |axis: Vec3| -highest(axis) > self.extent_along(-axis) + slack_m;
+        (across.length() > 0.0 && apart(across / across.length()))
+            || (self.is_half() && apart(self.axis))
+    }
+
+    /// Whether the cone passes a sphere by: of an outline its plane. Loose behind the apex, where the ball's test decides.
     pub fn cone_misses_sphere(&self, center: Vec3, radius_m: f32) -> bool {
         let to_center = center - self.center;
         let along = to_center.dot(self.axis);
         let across = to_center.cross(self.axis).length();
         let outside = across * self.cos_outer - along * self.sin_outer;
-        outside > radius_m + self.range_m * self.edge_angle()
+        outside > radius_m + self.radius_m * self.edge_angle()
     }
 
     /// How far beyond the cone's edge shading may still see light, radians.

@@ -19,7 +19,7 @@ fn is_lit(light: &Light, sample: Vec3) -> bool {
     let to_light = offset / distance_2.max(1e-20).sqrt();
     let ratio_2 = distance_2 / (light.range_m * light.range_m);
     let in_cone = match light.shape {
-        LightShape::Point => true,
+        LightShape::Point | LightShape::Area(_) => true,
         LightShape::Spot { direction, outer_angle, .. } => {
             direction.normalize().dot(-to_light) > outer_angle.cos()
         }

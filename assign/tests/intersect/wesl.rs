@@ -1,7 +1,8 @@
 //! The WESL tests on the adapter against the Rust mirror and the exact oracle.
 
 use assign::{
-    Frame, FrameBindings, FrustumTests, Gpu, Light, LightBuffer, Shader, entry, storage_entry,
+    Frame, FrameBindings, FrustumTests, Gpu, Light, LightBuffer, LightKinds, Shader, entry,
+    storage_entry,
 };
 use bytemuck::cast_slice;
 use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
@@ -101,7 +102,7 @@ impl Tester {
             .flag("sat_n", tests.sat_n)
             .flag("sat_p", tests.sat_p)
             .flag("sat_v", tests.sat_v)
-            .flag("spots", spots)
+            .light_kinds(LightKinds { spots, areas: false })
             .create(&gpu.device, "package::driver")
             .unwrap();
         let stages = wgpu::ShaderStages::COMPUTE;

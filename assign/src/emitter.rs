@@ -1,0 +1,348 @@
+//! Flat emitters: rectangles and convex polygons.
+//!
+//! An emitter lies in a plane through its light's position. Its light reaches the points closer to
+//! it than the light's range, in front of its plane where it is one-sided: the support is the
+//! outline blown up by a ball, or by the front half of one. So along any axis it extends as far as
+//! the outline does, and then as far as a ball, or as a cone of half angle π/2 around the normal:
+//! what culling knows of spots serves here too.
+
+use glam::{DVec3, Vec3};
+
+use crate::light::LightFault;
+
+/// The most vertices of a polygon.
+pub const MAX_VERTICES: usize = 10;
+
+/// How far vertices may lie off their plane, and corners turn the wrong way, as a share of the
+/// emitter's size.
+const FLATNESS: f32 = 1e-4;
+
+/// The smallest ratio of an emitter's area to the square of its size: a hair of 1 to 10,000.
+const MIN_AREA_SHARE: f32 = 1e-4;
+
+/// Outline of an emitter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outline {
+    /// Four right angles.
+    Rectangle,
+    /// 3 to [`MAX_VERTICES`] vertices, convex.
+    Polygon,
+}
+
+/// A flat emitter around its light's position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emitter {
+    outline: Outline,
+    count: u8,
+    /// Relative to the light's position, metres, counter-clockwise seen from the front.
+    vertices: [Vec3; MAX_VERTICES],
+    half_x: Vec3,
+    half_y: Vec3,
+    /// Whether it emits from its back as well.
+    pub two_sided: bool,
+    /// Where the window of its diffuse light reaches 0, as a share of the light's range, above 0
+    /// and at most 1. Specular light goes on to the range (Swarbrick 2025, section 3.4).
+    pub diffuse_share: f32,
+}
+
+impl Emitter {
+    /// A one-sided rectangle from its half axes, metres, at right angles; it emits towards
+    /// `half_x` x `half_y`.
+    pub fn rectangle(half_x: Vec3, half_y: Vec3) -> Self {
+        let mut vertices = [Vec3::ZERO; MAX_VERTICES];
+        vertices[..4].copy_from_slice(&[
+            -half_x - half_y,
+            half_x - half_y,
+            half_x + half_y,
+            half_y - half_x,
+        ]);
+        Self {
+            outline: Outline::Rectangle,
+            count: 4,
+            vertices,
+            half_x,
+            half_y,
+            two_sided: false,
+            diffuse_share: 1.0,
+        }
+    }
+
+    /// A one-sided convex polygon from its vertices, world space, metres, counter-clockwise seen
+    /// from the front; and the light's position, the middle of the smallest rectangle around it.
+    ///
+    /// # Errors
+    ///
+    /// [`LightFault::OutOfRange`] where there are fewer than 3 vertices or more than
+    /// [`MAX_VERTICES`]. Everything else is for [`Light::check`](crate::Light::check).
+    pub fn polygon(vertices_world: &[Vec3]) -> Result<(Self, Vec3), LightFault> {
+        let count = vertices_world.len();
+        if !(3..=MAX_VERTICES).contains(&count) {
+            return Err(LightFault::OutOfRange {
+                field: "polygon vertex count",
+                value: count as f32,
+                accepted: "3 to 10",
+            });
+        }
+        let (center, half_x, half_y) = smallest_rectangle(vertices_world);
+        let mut vertices = [Vec3::ZERO; MAX_VERTICES];
+        for (own, world) in vertices.iter_mut().zip(vertices_world) {
+            *own = world - center;
+        }
+        let outline = Outline::Polygon;
+        let count = count as u8;
+        let emitter =
+            Self { outline, count, vertices, half_x, half_y, two_sided: false, diffuse_share: 1.0 };
+        Ok((emitter, center))
+    }
+
+    /// The same from both sides.
+    #[must_use]
+    pub fn two_sided(self) -> Self {
+        Self { two_sided: true, ..self }
+    }
+
+    /// The same with diffuse light up to a share of the range.
+    #[must_use]
+    pub fn with_diffuse_share(self, diffuse_share: f32) -> Self {
+        Self { diffuse_share, ..self }
+    }
+
+    /// The same, `factor` times as large.
+    #[must_use]
+    pub fn scaled(self, factor: f32) -> Self {
+        Self {
+            vertices: self.vertices.map(|v| v * factor),
+            half_x: self.half_x * factor,
+            half_y: self.half_y * factor,
+            ..self
+        }
+    }
+
+    /// Its outline.
+    pub fn outline(&self) -> Outline {
+        self.outline
+    }
+
+    /// Vertices relative to the light's position, metres, counter-clockwise seen from the front.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices[..usize::from(self.count)]
+    }
+
+    /// Half axes of the rectangle, or of the smallest rectangle around the polygon, metres.
+    pub fn half_axes(&self) -> [Vec3; 2] {
+        [self.half_x, self.half_y]
+    }
+
+    /// Unit normal of the front; zero for an emitter without area.
+    pub fn normal(&self) -> Vec3 {
+        (self.area_vector() / self.area_vector().length().max(f64::MIN_POSITIVE)).as_vec3()
+    }
+
+    /// Area of one side, square metres.
+    pub fn area(&self) -> f32 {
+        self.area_vector().length() as f32
+    }
+
+    /// Radius of a sphere around the light's position that holds the emitter, metres.
+    pub fn radius(&self) -> f32 {
+        self.vertices().iter().map(|v| v.length()).fold(0.0, f32::max).next_up()
+    }
+
+    /// The point of the emitter closest to `offset`, both relative to the light's position.
+    pub fn closest(&self, offset: DVec3) -> DVec3 {
+        let normal = self.area_vector().normalize_or_zero();
+        let on_plane = offset - normal * normal.dot(offset - self.vertices[0].as_dvec3());
+        if self.edges().all(|(a, b)| normal.dot((b - a).cross(on_plane - a)) >= 0.0) {
+            return on_plane;
+        }
+        let on_edges = self.edges().map(|(a, b)| {
+            let edge = b - a;
+            let along = edge.dot(offset - a) / edge.length_squared().max(f64::MIN_POSITIVE);
+            a + edge * along.clamp(0.0, 1.0)
+        });
+        let nearer = |a: DVec3, b: DVec3| {
+            if b.distance_squared(offset) < a.distance_squared(offset) { b } else { a }
+        };
+        on_edges.reduce(nearer).unwrap_or_default()
+    }
+
+    /// How far `offset` lies in front of the emitter's plane, metres; without a sign where it
+    /// emits to both sides.
+    pub fn in_front(&self, offset: DVec3) -> f64 {
+        let along = self.area_vector().normalize_or_zero().dot(offset);
+        if self.two_sided { along.abs() } else { along }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
+        let next = |ix: usize| self.vertices[(ix + 1) % usize::from(self.count)];
+        let vertices = self.vertices().iter().enumerate();
+        vertices.map(move |(ix, v)| (v.as_dvec3(), next(ix).as_dvec3()))
+    }
+
+    /// Half the sum of the edges' cross products: the normal, as long as the area is large.
+    fn area_vector(&self) -> DVec3 {
+        0.5 * self.edges().map(|(a, b)| a.cross(b)).sum::<DVec3>()
+    }
+
+    /// Checks every field.
+    pub(crate) fn check(&self) -> Result<(), LightFault> {
+        let out = |field, value, accepted| Err(LightFault::OutOfRange { field, value, accepted });
+        let numbers = self.vertices().iter().flat_map(|v| v.to_array());
+        if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
+            return Err(LightFault::NotFinite { field: "emitter vertex", value });
+        }
+        let size = self.vertices().iter().map(|v| v.length()).fold(0.0, f32::max);
+        if !(MIN_SIZE_M..=MAX_SIZE_M).contains(&size) {
+            return out("emitter size", size, "between 1e-4 and 1e5 metres from its middle");
+        }
+        let share = self.area() / (size * size);
+        if share < MIN_AREA_SHARE {
+            return out("emitter area over squared size", share, "at least 1e-4");
+        }
+        let normal = self.area_vector().normalize_or_zero();
+        let off_plane = |v: &Vec3| (normal.dot(v.as_dvec3()).abs() / f64::from(size)) as f32;
+        if let Some(value) = self.vertices().iter().map(off_plane).find(|off| *off > FLATNESS) {
+            return out("emitter vertex off its plane over size", value, "at most 1e-4");
+        }
+        // Every vertex lies on the inner side of every edge.
+        let inner = |(a, b): (DVec3, DVec3)| {
+            let edge = (b - a).normalize_or_zero();
+            let depth = |v: &Vec3| normal.dot(edge.cross(v.as_dvec3() - a));
+            let deepest = self.vertices().iter().map(depth).fold(f64::INFINITY, f64::min);
+            (deepest / f64::from(size)) as f32
+        };
+        if let Some(value) = self.edges().map(inner).find(|depth| *depth < -FLATNESS) {
+            return out("emitter vertex outside an edge over size", value, "0: convex");
+        }
+        let edges: Vec<DVec3> = self.edges().map(|(a, b)| b - a).collect();
+        let next = edges.iter().cycle().skip(1);
+        let turn = |(a, b): (&DVec3, &DVec3)| normal.dot(a.cross(*b)).atan2(a.dot(*b));
+        let turns = (edges.iter().zip(next).map(turn).sum::<f64>() / std::f64::consts::TAU) as f32;
+        if turns > 1.5 {
+            return out("turns of the emitter's outline", turns, "1");
+        }
+        if let Outline::Rectangle = self.outline {
+            let [x, y] = [self.half_x.normalize_or_zero(), self.half_y.normalize_or_zero()];
+            if x.dot(y).abs() > 1e-3 {
+                return out("cosine between half axes", x.dot(y), "0: a right angle");
+            }
+        }
+        if !(self.diffuse_share > 0.0 && self.diffuse_share <= 1.0) {
+            return out("diffuse share", self.diffuse_share, "above 0 and at most 1");
+        }
+        Ok(())
+    }
+}
+
+/// The smallest and the largest distance of an emitter's farthest vertex from its middle, metres.
+const MIN_SIZE_M: f32 = 1e-4;
+const MAX_SIZE_M: f32 = 1e5;
+
+/// The rectangle of least area around a convex polygon, in its plane: one side lies along an edge.
+/// Centre and half axes, turned so that their cross product is along the polygon's normal.
+fn smallest_rectangle(vertices: &[Vec3]) -> (Vec3, Vec3, Vec3) {
+    let count = vertices.len();
+    let origin = vertices[0].as_dvec3();
+    let local: Vec<DVec3> = vertices.iter().map(|v| v.as_dvec3() - origin).collect();
+    let edges = (0..count).map(|ix| (local[ix], local[(ix + 1) % count]));
+    let normal = edges.clone().map(|(a, b)| a.cross(b)).sum::<DVec3>().normalize_or(DVec3::Y);
+    let along = |(a, b): (DVec3, DVec3)| {
+        let x = (b - a).reject_from(normal).normalize_or(normal.any_orthonormal_vector());
+        let y = normal.cross(x);
+        let range = |axis: DVec3| {
+            let ends = (f64::INFINITY, f64::NEG_INFINITY);
+            local.iter().map(|v| axis.dot(*v)).fold(ends, |e, t| (e.0.min(t), e.1.max(t)))
+        };
+        let ((x0, x1), (y0, y1)) = (range(x), range(y));
+        let center = origin + 0.5 * (x * (x0 + x1) + y * (y0 + y1));
+        (center, 0.5 * (x1 - x0) * x, 0.5 * (y1 - y0) * y)
+    };
+    let area = |r: &(DVec3, DVec3, DVec3)| r.1.length() * r.2.length();
+    let best = edges.map(along).min_by(|a, b| area(a).total_cmp(&area(b)));
+    let (center, x, y) = best.unwrap_or((origin, DVec3::X, DVec3::Y));
+    // Rounded outwards: the rectangle holds the polygon.
+    let grown = 1.0 + 4.0 * f64::from(f32::EPSILON);
+    let slack = (origin.abs().max_element() + x.length() + y.length()) * f64::from(f32::EPSILON);
+    let longer = |axis: DVec3| (axis * grown + axis.normalize_or_zero() * slack).as_vec3();
+    (center.as_vec3(), longer(x), longer(y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hexagon() -> (Emitter, Vec3) {
+        let vertices: Vec<Vec3> = (0..6)
+            .map(|ix| {
+                let angle = std::f32::consts::TAU * ix as f32 / 6.0;
+                Vec3::new(5.0 + 2.0 * angle.cos(), 1.0, 7.0 - 2.0 * angle.sin())
+            })
+            .collect();
+        Emitter::polygon(&vertices).unwrap()
+    }
+
+    #[test]
+    fn a_rectangle_emits_towards_the_cross_product_of_its_axes() {
+        let emitter = Emitter::rectangle(Vec3::X, 2.0 * Vec3::Y);
+        emitter.check().unwrap();
+        assert_eq!((emitter.normal(), emitter.area()), (Vec3::Z, 8.0));
+        assert_eq!(emitter.in_front(DVec3::NEG_Z), -1.0);
+        assert_eq!(emitter.two_sided().in_front(DVec3::NEG_Z), 1.0);
+    }
+
+    #[test]
+    fn a_polygon_lies_in_its_rectangle_around_the_middle() {
+        let (emitter, center) = hexagon();
+        emitter.check().unwrap();
+        assert!(center.distance(Vec3::new(5.0, 1.0, 7.0)) < 1e-5, "{center}");
+        assert!((emitter.normal() - Vec3::Y).length() < 1e-6, "{}", emitter.normal());
+        assert!((emitter.area() - 6.0 * 3.0_f32.sqrt()).abs() < 1e-4);
+        for v in emitter.vertices() {
+            for axis in emitter.half_axes() {
+                assert!(v.dot(axis).abs() <= axis.length_squared());
+            }
+        }
+    }
+
+    #[test]
+    fn the_closest_point_is_on_the_face_an_edge_or_a_corner() {
+        let emitter = Emitter::rectangle(Vec3::X, 2.0 * Vec3::Y);
+        let closest = |x, y, z| emitter.closest(DVec3::new(x, y, z)).to_array();
+        assert_eq!(closest(0.5, 1.5, 3.0), [0.5, 1.5, 0.0]);
+        assert_eq!(closest(4.0, 1.5, 3.0), [1.0, 1.5, 0.0]);
+        assert_eq!(closest(-4.0, 9.0, -3.0), [-1.0, 2.0, 0.0]);
+    }
+
+    #[test]
+    fn faults_name_field_and_value() {
+        let fault = |emitter: Emitter| emitter.check().unwrap_err().to_string();
+        let fault_of = |vertices: &[Vec3]| fault(Emitter::polygon(vertices).unwrap().0);
+        assert_eq!(
+            Emitter::polygon(&[Vec3::ZERO, Vec3::X]).unwrap_err().to_string(),
+            "polygon vertex count is 2: it must be 3 to 10"
+        );
+        let bent = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.1), Vec3::Y];
+        assert!(fault_of(&bent).contains("off its plane"), "{}", fault_of(&bent));
+        let arrow = [Vec3::ZERO, Vec3::new(2.0, -1.0, 0.0), Vec3::X, Vec3::new(2.0, 1.0, 0.0)];
+        assert!(fault_of(&arrow).contains("convex"), "{}", fault_of(&arrow));
+        // Goes round twice: every corner turns the right way.
+        let star: Vec<Vec3> = (0..5)
+            .map(|ix| {
+                let angle = 2.0 * std::f32::consts::TAU * ix as f32 / 5.0;
+                Vec3::new(angle.cos(), angle.sin(), 0.0)
+            })
+            .collect();
+        assert!(fault_of(&star).contains("convex"), "{}", fault_of(&star));
+        let twice = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ZERO, Vec3::X, Vec3::Y];
+        assert!(fault_of(&twice).contains("outline is 2"), "{}", fault_of(&twice));
+        let skewed = Emitter::rectangle(Vec3::X, Vec3::new(0.1, 1.0, 0.0));
+        assert!(fault(skewed).contains("right angle"), "{}", fault(skewed));
+        let square = Emitter::rectangle(Vec3::X, Vec3::Y);
+        assert!(fault(square.with_diffuse_share(0.0)).contains("diffuse share is 0"));
+        assert!(fault(square.scaled(1e9)).contains("emitter size"));
+        let hair = Emitter::rectangle(Vec3::X, 1e-6 * Vec3::Y);
+        assert!(fault(hair).contains("area"), "{}", fault(hair));
+        let bad = Emitter::rectangle(Vec3::X, Vec3::new(0.0, f32::NAN, 0.0));
+        assert!(fault(bad).contains("vertex is NaN"), "{}", fault(bad));
+    }
+}
