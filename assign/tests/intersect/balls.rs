@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 
-use crate::cases::{aim, group};
+use crate::cases::{Kind, aim, group};
 use crate::deterministic;
 use crate::groups::{UNIONS, box_of, union};
 
@@ -11,7 +11,7 @@ proptest! {
     #![proptest_config(deterministic(6_000))]
 
     #[test]
-    fn a_ball_within_range_reaches(group in group(), aims in prop::collection::vec(aim(false), 4)) {
+    fn a_ball_within_range_reaches(group in group(), aims in prop::collection::vec(aim(Kind::Point), 4)) {
         let bounds = group.bounds();
         for aim in aims {
             let light = aim.light(&group);

@@ -1,7 +1,7 @@
 //! Random views, groups and lights, drawn to hurt: thin slices, far cameras, grazing rims.
 
 use assign::intersect::UNBOUNDED;
-use assign::{DepthMapping, Light, LightShape, Projection, View, Viewport};
+use assign::{DepthMapping, Emitter, Light, LightShape, Projection, View, Viewport};
 use glam::{DQuat, DVec3, Mat3, Quat, Vec2, Vec3};
 use proptest::prelude::*;
 
@@ -154,7 +154,49 @@ pub(crate) struct Aim {
     gap_m: f32,
     at_eye: bool,
     range: Range,
-    cone: Option<Cone>,
+    kind: Kind,
+    cone: Cone,
+    outline: Outline,
+}
+
+/// What kind of light is aimed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Point,
+    Spot,
+    /// A flat emitter, turned so that its front's edge is where a spot's of 90 degrees would be.
+    Area,
+}
+
+/// The outline of an emitter.
+#[derive(Clone, Copy, Debug)]
+struct Outline {
+    /// 2 for a rectangle, else a polygon's vertices.
+    vertices: u32,
+    half_m: f32,
+    aspect: f32,
+    turn: f32,
+    two_sided: bool,
+}
+
+impl Outline {
+    /// The emitter that faces along `normal`, and how far its middle lies off.
+    fn emitter(self, normal: DVec3) -> (Emitter, Vec3) {
+        let x = normal.any_orthonormal_vector();
+        let x = DQuat::from_axis_angle(normal, self.turn.into()) * x * f64::from(self.half_m);
+        let y = normal.cross(x) * f64::from(self.aspect);
+        let (emitter, center) = if self.vertices == 2 {
+            (Emitter::rectangle(x.as_vec3(), y.as_vec3()), Vec3::ZERO)
+        } else {
+            let corner = |ix: u32| {
+                let (sin, cos) =
+                    (std::f64::consts::TAU * f64::from(ix) / f64::from(self.vertices)).sin_cos();
+                (x * cos + y * sin).as_vec3()
+            };
+            Emitter::polygon(&(0..self.vertices).map(corner).collect::<Vec<_>>()).unwrap()
+        };
+        (if self.two_sided { emitter.two_sided() } else { emitter }, center)
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -204,7 +246,21 @@ fn cone() -> impl Strategy<Value = Cone> {
     (outer, tilt, 0.0_f64..6.3).prop_map(|(outer, tilt, about)| Cone { outer, tilt, about })
 }
 
-pub(crate) fn aim(spots: bool) -> impl Strategy<Value = Aim> {
+fn outline() -> impl Strategy<Value = Outline> {
+    let half = prop_oneof![3 => power_of_ten(-2.0..2.0), 1 => power_of_ten(-3.5..4.0)];
+    let aspect = prop_oneof![3 => 0.2_f32..1.0, 1 => power_of_ten(-3.0..0.0)];
+    (2_u32..=10, half, aspect, 0.0_f32..6.3, prop::bool::weighted(0.3)).prop_map(
+        |(vertices, half_m, aspect, turn, two_sided)| Outline {
+            vertices,
+            half_m,
+            aspect,
+            turn,
+            two_sided,
+        },
+    )
+}
+
+pub(crate) fn aim(kind: Kind) -> impl Strategy<Value = Aim> {
     let gap =
         prop_oneof![4 => power_of_ten(-3.0..3.0), 1 => power_of_ten(3.0..6.0), 1 => Just(0.0_f32)];
     let range = prop_oneof![
@@ -213,15 +269,17 @@ pub(crate) fn aim(spots: bool) -> impl Strategy<Value = Aim> {
         2 => power_of_ten(-4.0..6.0).prop_map(Range::Metres),
     ];
     let at_eye = prop::bool::weighted(0.05);
-    (weights(), weights(), unit(), gap, at_eye, range, cone()).prop_map(
-        move |(near, at, away, gap_m, at_eye, range, cone)| Aim {
+    (weights(), weights(), unit(), gap, at_eye, range, cone(), outline()).prop_map(
+        move |(near, at, away, gap_m, at_eye, range, cone, outline)| Aim {
             near,
             at,
             away,
             gap_m,
             at_eye,
             range,
-            cone: spots.then_some(cone),
+            kind,
+            cone,
+            outline,
         },
     )
 }
@@ -234,16 +292,29 @@ impl Aim {
         let center = position.as_dvec3();
         let target = group.hull(center, 0.0).blend(self.at);
         let mut light = Light::point(position, 1.0, Vec3::ONE);
-        if let Some(cone) = self.cone {
-            let towards = target.normalize_or(DVec3::NEG_Y);
-            let about =
-                DQuat::from_axis_angle(towards, cone.about) * towards.any_orthonormal_vector();
-            let tilt = cone.tilt.0 * f64::from(cone.outer) + cone.tilt.1;
-            light.shape = LightShape::Spot {
-                direction: (DQuat::from_axis_angle(about, tilt) * towards).as_vec3().normalize(),
-                inner_angle: 0.5 * cone.outer,
-                outer_angle: cone.outer,
-            };
+        let towards = target.normalize_or(DVec3::NEG_Y);
+        let about =
+            DQuat::from_axis_angle(towards, self.cone.about) * towards.any_orthonormal_vector();
+        let direction = |outer: f32| {
+            let tilt = self.cone.tilt.0 * f64::from(outer) + self.cone.tilt.1;
+            DQuat::from_axis_angle(about, tilt) * towards
+        };
+        let outer_angle = self.cone.outer;
+        match self.kind {
+            Kind::Point => {}
+            Kind::Spot => {
+                light.shape = LightShape::Spot {
+                    direction: direction(outer_angle).as_vec3().normalize(),
+                    inner_angle: 0.5 * outer_angle,
+                    outer_angle,
+                };
+            }
+            Kind::Area => {
+                let normal = direction(std::f32::consts::FRAC_PI_2);
+                let (emitter, center) = self.outline.emitter(normal);
+                light.shape = LightShape::Area(emitter);
+                light.position += center;
+            }
         }
         light.range_m = match self.range {
             Range::Metres(metres) => metres,
@@ -263,8 +334,9 @@ fn touching_range(group: &Group, mut light: Light) -> f32 {
     if distance == 0.0 {
         return 1.0;
     }
-    let mut low = distance as f32;
-    if f64::from(low) < distance {
+    let size_m = light.radius_m() - light.range_m;
+    let mut low = (distance as f32 - size_m).max(1e-4);
+    if size_m == 0.0 && f64::from(low) < distance {
         low = low.next_up();
     }
     if light.shape == LightShape::Point {
@@ -296,10 +368,10 @@ fn touching_range(group: &Group, mut light: Light) -> f32 {
 /// found, which above a half angle of π/2 does not mean that there is none.
 pub(crate) fn witness(group: &Group, light: &Light) -> Option<DVec3> {
     let center = light.position.as_dvec3();
-    let range = f64::from(light.range_m);
-    let hull = group.hull(center, range);
+    let radius = f64::from(light.radius_m());
+    let hull = group.hull(center, radius);
     let nearest = hull.nearest(DVec3::ZERO);
-    if nearest.length() > range {
+    if nearest.length() > radius {
         return None;
     }
     if light.shape == LightShape::Point {

@@ -76,16 +76,28 @@ fn nearest_on_triangle(p: DVec3, a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
         .unwrap()
 }
 
-/// A ball cut by a cone of half angle up to π/2, apex at the origin.
-#[derive(Clone, Copy, Debug)]
+/// A ball cut by a cone of half angle up to π/2, apex at the origin, swept over an outline.
+#[derive(Clone, Debug)]
 pub(crate) struct Wedge {
     pub(crate) axis: DVec3,
     pub(crate) half_angle: f64,
     pub(crate) range: f64,
+    /// Vertices of the outline; none where it is the origin.
+    pub(crate) outline: Vec<DVec3>,
 }
 
 impl Wedge {
+    fn size(&self) -> f64 {
+        self.range + self.outline.iter().map(|v| v.length()).fold(0.0, f64::max)
+    }
+
     fn support(&self, direction: DVec3) -> DVec3 {
+        let along = |v: &&DVec3| v.dot(direction);
+        let vertex = self.outline.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+        vertex.copied().unwrap_or_default() + self.blown_up(direction)
+    }
+
+    fn blown_up(&self, direction: DVec3) -> DVec3 {
         let u = direction.normalize_or(DVec3::X);
         let along = self.axis.dot(u);
         let across = u - self.axis * along;
@@ -111,14 +123,26 @@ impl Wedge {
 pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
     let range = f64::from(light.range_m);
-    let LightShape::Spot { direction, outer_angle, .. } = light.shape else {
-        let axis = towards.normalize_or(DVec3::X);
-        return [axis, -axis].map(|axis| Wedge { axis, half_angle: FRAC_PI_2, range }).to_vec();
+    let half =
+        |axis: DVec3, outline: Vec<DVec3>| Wedge { axis, half_angle: FRAC_PI_2, range, outline };
+    let (direction, outer_angle) = match &light.shape {
+        LightShape::Point => {
+            let axis = towards.normalize_or(DVec3::X);
+            return [axis, -axis].map(|axis| half(axis, vec![])).to_vec();
+        }
+        LightShape::Area(emitter) => {
+            let outline: Vec<DVec3> = emitter.vertices().iter().map(|v| v.as_dvec3()).collect();
+            let front = outline[0] - outline[1];
+            let front = (outline[2] - outline[1]).cross(front).normalize();
+            let sides = if emitter.two_sided { 2 } else { 1 };
+            return [front, -front][..sides].iter().map(|n| half(*n, outline.clone())).collect();
+        }
+        LightShape::Spot { direction, outer_angle, .. } => (direction, outer_angle),
     };
     let axis = direction.as_dvec3().normalize();
-    let outer = f64::from(outer_angle);
+    let outer = f64::from(*outer_angle);
     if outer <= FRAC_PI_2 {
-        return vec![Wedge { axis, half_angle: outer, range }];
+        return vec![Wedge { axis, half_angle: outer, range, outline: vec![] }];
     }
     let tilt = outer.min(PI) - FRAC_PI_2;
     let x = (towards - axis * axis.dot(towards)).normalize_or(axis.any_orthonormal_vector());
@@ -126,11 +150,7 @@ pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
     (0..8)
         .map(|i| {
             let (sin, cos) = (TAU * f64::from(i) / 8.0).sin_cos();
-            Wedge {
-                axis: axis * tilt.cos() + (x * cos + y * sin) * tilt.sin(),
-                half_angle: FRAC_PI_2,
-                range,
-            }
+            half(axis * tilt.cos() + (x * cos + y * sin) * tilt.sin(), vec![])
         })
         .collect()
 }
@@ -140,7 +160,7 @@ pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
 pub(crate) enum Overlap {
     /// A separating plane was found.
     Apart,
-    /// They share, up to `1e-8` of the range, this point of the hull.
+    /// They share, up to `1e-8` of the wedge's size, this point of the hull.
     At(DVec3),
     /// Too close to call.
     Unknown,
@@ -148,7 +168,7 @@ pub(crate) enum Overlap {
 
 /// Whether a hull, seen from the light's centre, and a wedge overlap.
 pub(crate) fn overlap(hull: &Hull, wedge: &Wedge) -> Overlap {
-    let tolerance = 1e-8 * wedge.range;
+    let tolerance = 1e-8 * wedge.size();
     let vertex = |direction: DVec3| {
         let (on_hull, on_wedge) = (hull.support(-direction), wedge.support(direction));
         (on_hull - on_wedge, on_hull)
@@ -247,7 +267,7 @@ mod tests {
     fn overlap_of_a_wedge_and_a_cube() {
         let apart_by = |x: f64, axis: DVec3, half_angle: f64, range: f64| {
             let hull = Hull(cube().0.map(|c| c + DVec3::new(x, -0.5, -0.5)));
-            overlap(&hull, &Wedge { axis, half_angle, range })
+            overlap(&hull, &Wedge { axis, half_angle, range, outline: vec![] })
         };
         assert!(matches!(apart_by(1.0, DVec3::X, 0.1, 1.001), Overlap::At(_)));
         assert_eq!(apart_by(1.0, DVec3::X, 0.1, 0.999), Overlap::Apart);

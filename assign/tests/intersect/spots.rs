@@ -7,7 +7,7 @@ use assign::{FrustumTests, Light, LightShape, Projection, View};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use proptest::prelude::*;
 
-use crate::cases::{aim, group, witness};
+use crate::cases::{Kind, aim, group, witness};
 use crate::deterministic;
 use crate::groups::{Group, Shape, UNIONS, box_of, union};
 
@@ -33,7 +33,7 @@ proptest! {
     #[test]
     fn a_cone_that_holds_a_point_of_the_group_reaches(
         group in group(),
-        aims in prop::collection::vec(aim(true), 4),
+        aims in prop::collection::vec(aim(Kind::Spot), 4),
         samples in prop::collection::vec(prop::array::uniform3(0.0_f32..1.0), 24),
     ) {
         let bounds = group.bounds();

@@ -8,7 +8,7 @@ use bytemuck::cast_slice;
 use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
-use crate::cases::{aabb, aim, frustum, oriented, witness};
+use crate::cases::{Kind, aabb, aim, frustum, oriented, witness};
 use crate::deterministic;
 use crate::groups::{Bounds, Group, Shape, UNIONS, box_of, union};
 
@@ -92,7 +92,13 @@ struct Tester {
 }
 
 impl Tester {
-    fn new(gpu: &Gpu, bounds: &str, strategy: &str, tests: FrustumTests, spots: bool) -> Self {
+    fn new(
+        gpu: &Gpu,
+        bounds: &str,
+        strategy: &str,
+        tests: FrustumTests,
+        kinds: LightKinds,
+    ) -> Self {
         let module = Shader::new(2)
             .module("package::driver", DRIVER)
             .module("package::bounds", bounds)
@@ -102,7 +108,7 @@ impl Tester {
             .flag("sat_n", tests.sat_n)
             .flag("sat_p", tests.sat_p)
             .flag("sat_v", tests.sat_v)
-            .light_kinds(LightKinds { spots, areas: false })
+            .light_kinds(kinds)
             .create(&gpu.device, "package::driver")
             .unwrap();
         let stages = wgpu::ShaderStages::COMPUTE;
@@ -183,7 +189,7 @@ fn compare(
     tester: &Tester,
     groups: &BoxedStrategy<Group>,
     tests: FrustumTests,
-    spots: bool,
+    kinds: LightKinds,
 ) -> Tally {
     let mut tally = Tally::default();
     let mut frame = FrameBindings::new(&tester.gpu);
@@ -191,8 +197,14 @@ fn compare(
     for _ in 0..GROUPS {
         let group = groups.new_tree(&mut runner).unwrap().current();
         let mut light = |i| {
-            // A scene with spots has point lights too.
-            let aim = aim(spots && i % 4 != 0).new_tree(&mut runner).unwrap();
+            // A scene with spots or area lights has point lights too.
+            let kind = match i % 4 {
+                1 if kinds.spots => Kind::Spot,
+                2 | 3 if kinds.areas => Kind::Area,
+                2 | 3 if kinds.spots => Kind::Spot,
+                _ => Kind::Point,
+            };
+            let aim = aim(kind).new_tree(&mut runner).unwrap();
             aim.current().light(&group)
         };
         let bounds = group.bounds();
@@ -245,11 +257,11 @@ fn on_the_edge(bounds: &Bounds, light: &Light, tests: FrustumTests) -> Vec<Light
 /// Compares every permutation of one shape. `unions` are the tests that it knows.
 fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, unions: &[&str]) {
     let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
-    for spots in [false, true] {
+    for kinds in LightKinds::ALL {
         for tests in unions {
-            let tester = Tester::new(&gpu, bounds, strategy, union(tests), spots);
-            let tally = compare(&tester, groups, union(tests), spots);
-            println!("{}, {tests}, spots {spots}: {tally:?}", gpu.info.name);
+            let tester = Tester::new(&gpu, bounds, strategy, union(tests), kinds);
+            let tally = compare(&tester, groups, union(tests), kinds);
+            println!("{}, {tests}, {kinds:?}: {tally:?}", gpu.info.name);
             // Both answers are common. Two lights in five lie on the edge, where rounding decides:
             // up to 16 % of all pairs differ on llvmpipe.
             let share = |count: usize| count as f64 / tally.pairs as f64;

@@ -1,0 +1,49 @@
+//! Area lights: one whose support holds a point of a group reaches it.
+
+use glam::DVec3;
+use proptest::prelude::*;
+
+use crate::cases::{Kind, aim, group, witness};
+use crate::deterministic;
+use crate::groups::{UNIONS, box_of, union};
+
+proptest! {
+    #![proptest_config(deterministic(2_500))]
+
+    #[test]
+    fn a_support_that_holds_a_point_of_the_group_reaches(
+        group in group(),
+        aims in prop::collection::vec(aim(Kind::Area), 4),
+    ) {
+        let bounds = group.bounds();
+        for aim in aims {
+            let light = aim.light(&group);
+            let center = light.position.as_dvec3();
+            let hull = group.hull(center, f64::from(light.radius_m()));
+            let found = witness(&group, &light);
+            let nearest = center + hull.nearest(DVec3::ZERO);
+            let mut points = hull.0.iter().map(|corner| center + corner).chain([nearest]);
+            if found.is_some() || points.any(|p| light.reach(p) > 0.0) {
+                for tests in UNIONS {
+                    prop_assert!(bounds.reaches(&light, union(tests)), "{tests}: {light:?}");
+                }
+                let (min_world, max_world) = box_of(&light);
+                prop_assert!(bounds.reaches_box(min_world, max_world), "box of {light:?}");
+            }
+        }
+    }
+
+    /// Both say of a point whether it is lit, by other means: support points, and distances. The
+    /// normal of a hair is good to its vertices' rounding over its width.
+    #[test]
+    fn what_overlaps_is_within_reach(group in group(), aims in prop::collection::vec(aim(Kind::Area), 4)) {
+        for aim in aims {
+            let light = aim.light(&group);
+            if let Some(point) = witness(&group, &light) {
+                let size = f64::from(light.radius_m()) + point.length();
+                let by = light.reach(point) * f64::from(light.range_m) / size;
+                prop_assert!(by > -1e-4, "{by:e} {light:?}");
+            }
+        }
+    }
+}
