@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use assign::{Light, LightShape};
-use glam::Vec3;
+use assign::{Emitter, Light, LightShape, MAX_VERTICES};
+use glam::{DQuat, DVec3, Vec3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::{Distribution, Gamma, LogNormal};
 use rand_pcg::Pcg64Mcg;
@@ -30,6 +30,15 @@ const SPOT_OUTER_DEGREES: (f64, f64) = (15.0, 60.0);
 
 /// Inner angle of spots as a share of the outer.
 const SPOT_INNER_SHARE: (f64, f64) = (0.5, 0.95);
+
+/// Half the longer side of emitters, as a share of their range.
+const HALF_SIZE_SHARE: (f64, f64) = (0.05, 0.35);
+
+/// The shorter side of emitters as a share of the longer.
+const ASPECT: (f64, f64) = (0.2, 1.0);
+
+/// Share of emitters that emit from both sides.
+const TWO_SIDED_SHARE: f64 = 0.25;
 
 /// Standard deviation of the logarithm of [`Radii::LogNormal`].
 const LOG_SPREAD: f64 = 1.0;
@@ -147,8 +156,12 @@ pub struct LightSpec {
     pub bounds: Aabb,
     /// How they fill the box.
     pub places: Places,
-    /// Share of spots among them, 0..=1; the rest are points.
+    /// Share of spots among them, 0..=1.
     pub spot_share: f32,
+    /// Share of area lights, 0..=1, half of them rectangles and half polygons; the rest are points.
+    pub area_share: f32,
+    /// Where the diffuse light of area lights ends, as a share of their range.
+    pub diffuse_share: f32,
 }
 
 impl LightSpec {
@@ -162,6 +175,8 @@ impl LightSpec {
             bounds,
             places: Places::Box,
             spot_share: 0.0,
+            area_share: 0.0,
+            diffuse_share: 1.0,
         }
     }
 
@@ -177,6 +192,14 @@ impl LightSpec {
         }
         if !(0.0..=1.0).contains(&self.spot_share) {
             return fail("spot share", self.spot_share.to_string(), "between 0 and 1");
+        }
+        if !(0.0..=1.0).contains(&self.area_share) || self.spot_share + self.area_share > 1.0 {
+            let accepted = "between 0 and 1, and no more than 1 with the share of spots";
+            return fail("area light share", self.area_share.to_string(), accepted);
+        }
+        if !(self.diffuse_share > 0.0 && self.diffuse_share <= 1.0) {
+            let value = self.diffuse_share.to_string();
+            return fail("diffuse share", value, "above 0 and at most 1");
         }
         let Aabb { min, max } = self.bounds;
         if !(min.is_finite() && max.is_finite()) || self.bounds.is_empty() {
@@ -215,15 +238,19 @@ fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
     }));
     let color = random_color(&mut rng);
     let shape = random_spot(&mut rng);
-    let is_spot = rng.random::<f64>() < f64::from(spec.spot_share);
+    let kind = rng.random::<f64>();
+    let is_spot = kind < f64::from(spec.spot_share);
+    let is_area = !is_spot && kind < f64::from(spec.spot_share) + f64::from(spec.area_share);
     // Drawn in f64 and rounded, so that a platform's ln and pow can hardly show.
     let range_m = (radii.sample(&mut rng) as f32 * spec.radius_scale).max(MIN_RADIUS_M);
-    Light {
-        position,
-        range_m,
-        intensity: color * (THRESHOLD * range_m * range_m),
-        shape: if is_spot { shape } else { LightShape::Point },
+    let intensity = color * (THRESHOLD * range_m * range_m);
+    if is_area {
+        let emitter = random_emitter(&mut Pcg64Mcg::seed_from_u64(!stream(spec.seed, ix)), range_m);
+        let emitter = emitter.with_diffuse_share(spec.diffuse_share);
+        return Light::area(emitter, position, range_m, intensity);
     }
+    let shape = if is_spot { shape } else { LightShape::Point };
+    Light { position, range_m, intensity, shape }
 }
 
 /// A well-mixed 64-bit value for one light (splitmix64's finaliser).
@@ -247,17 +274,46 @@ fn random_color(rng: &mut impl Rng) -> Vec3 {
     Vec3::new(channel(5.0), channel(3.0), channel(1.0))
 }
 
-/// A spot of random direction and angles.
-fn random_spot(rng: &mut impl Rng) -> LightShape {
-    let lerp = |(a, b): (f64, f64), t: f64| a + (b - a) * t;
+/// A unit vector, uniform on the sphere.
+fn random_direction(rng: &mut impl Rng) -> DVec3 {
     let cos_theta: f64 = 1.0 - 2.0 * rng.random::<f64>();
     let phi = TAU * rng.random::<f64>();
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-    let direction = glam::DVec3::new(sin_theta * phi.cos(), cos_theta, sin_theta * phi.sin());
+    DVec3::new(sin_theta * phi.cos(), cos_theta, sin_theta * phi.sin()).normalize()
+}
+
+/// An emitter that faces anywhere, of a size that goes with its range: a rectangle, or a polygon
+/// with its vertices on an ellipse.
+fn random_emitter(rng: &mut impl Rng, range_m: f32) -> Emitter {
+    let normal = random_direction(rng);
+    let x =
+        DQuat::from_axis_angle(normal, TAU * rng.random::<f64>()) * normal.any_orthonormal_vector();
+    let half = f64::from(range_m) * rng.random_range(HALF_SIZE_SHARE.0..HALF_SIZE_SHARE.1);
+    // The smallest range gives an emitter that is just large enough.
+    let x = x * half.max(2e-4);
+    let y = normal.cross(x) * rng.random_range(ASPECT.0..ASPECT.1);
+    let two_sided = rng.random::<f64>() < TWO_SIDED_SHARE;
+    let count = if rng.random::<bool>() { 0 } else { rng.random_range(3..=MAX_VERTICES) };
+    let vertex = |ix: usize| {
+        let (sin, cos) = (TAU * ix as f64 / count as f64).sin_cos();
+        (x * cos + y * sin).as_vec3()
+    };
+    let vertices: Vec<Vec3> = (0..count).map(vertex).collect();
+    let emitter = match Emitter::polygon(&vertices) {
+        Ok((polygon, _)) => polygon,
+        Err(_) => Emitter::rectangle(x.as_vec3(), y.as_vec3()),
+    };
+    if two_sided { emitter.two_sided() } else { emitter }
+}
+
+/// A spot of random direction and angles.
+fn random_spot(rng: &mut impl Rng) -> LightShape {
+    let lerp = |(a, b): (f64, f64), t: f64| a + (b - a) * t;
+    let direction = random_direction(rng);
     let outer = lerp(SPOT_OUTER_DEGREES, rng.random()).to_radians();
     let inner = outer * lerp(SPOT_INNER_SHARE, rng.random());
     LightShape::Spot {
-        direction: direction.normalize().as_vec3().normalize(),
+        direction: direction.as_vec3().normalize(),
         inner_angle: inner as f32,
         outer_angle: outer as f32,
     }
@@ -265,6 +321,8 @@ fn random_spot(rng: &mut impl Rng) -> LightShape {
 
 #[cfg(test)]
 mod tests {
+    use assign::LightKind;
+
     use super::*;
 
     fn spec(count: u32) -> LightSpec {
@@ -285,7 +343,7 @@ mod tests {
 
     #[test]
     fn every_light_is_usable_and_inside() {
-        let spec = LightSpec { radius_scale: 1e-6, ..spec(5_000) };
+        let spec = LightSpec { radius_scale: 1e-6, area_share: 0.5, ..spec(5_000) };
         for light in scatter_lights(&spec).expect("valid") {
             light.check().expect("usable");
             assert!(spec.bounds.contains(light.position));
@@ -310,7 +368,7 @@ mod tests {
         let spots = lights.iter().filter(|l| l.shape != LightShape::Point).count() as f64 / n;
         assert!((spots - 0.25).abs() < 0.007, "spots {spots}");
         // The standard error of a uniform mean is its extent over sqrt(12 n): 0.0064 along z.
-        let center = lights.iter().map(|l| l.position.as_dvec3()).sum::<glam::DVec3>() / n;
+        let center = lights.iter().map(|l| l.position.as_dvec3()).sum::<DVec3>() / n;
         let off = center - spec(0).bounds.center().as_dvec3();
         assert!(off.abs().max_element() < 0.032, "middle {center}");
     }
@@ -348,6 +406,24 @@ mod tests {
             let range = Light::range_from_threshold(light.intensity, THRESHOLD);
             assert!((range / light.range_m - 1.0).abs() < 1e-5);
         }
+    }
+
+    #[test]
+    fn area_lights_are_drawn_beside_the_others() {
+        let spec = LightSpec { area_share: 0.5, diffuse_share: 0.6, ..spec(10_000) };
+        let lights = scatter_lights(&spec).expect("valid");
+        let plain = LightSpec { area_share: 0.0, ..spec };
+        for (light, plain) in lights.iter().zip(scatter_lights(&plain).expect("valid")) {
+            light.check().expect("usable");
+            assert_eq!((light.position, light.range_m), (plain.position, plain.range_m));
+        }
+        let count = |kind| lights.iter().filter(|l| l.kind() == kind).count();
+        // Five standard deviations of a share of a quarter.
+        for kind in [LightKind::Spot, LightKind::Rectangle, LightKind::Polygon, LightKind::Point] {
+            assert!((2_283..2_717).contains(&count(kind)), "{kind:?}: {}", count(kind));
+        }
+        let lit = lights.iter().filter(|l| l.kind() == LightKind::Polygon);
+        assert!(lit.clone().all(|l| (l.diffuse_range_m() / l.range_m - 0.6).abs() < 1e-6));
     }
 
     /// The stream of values is pinned: a change of generator would make results incomparable.

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::stage::{Rng, Stage};
-use crate::{Light, LightShape};
+use crate::{Emitter, Light, LightShape};
 
 /// Kinds of lights in a mix.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,9 @@ pub(super) enum Kinds {
     Points,
     /// Spots of half angles between two, radians, cut off at pi.
     Spots(f64, f64),
-    /// Both, all half angles.
+    /// Rectangles and polygons of every size, one- and two-sided.
+    Areas,
+    /// All, all half angles.
     Mixed,
 }
 
@@ -72,11 +74,61 @@ fn at_sample(rng: &mut Rng, stage: &Stage, range_m: (f64, f64), kinds: Kinds, sh
     match kinds {
         Kinds::Points => light,
         Kinds::Spots(low, high) => aimed(rng, light, point, low, high),
-        Kinds::Mixed => match rng.below(2) {
+        Kinds::Areas => spread(rng, light, point),
+        Kinds::Mixed => match rng.below(3) {
             0 => light,
-            _ => aimed(rng, light, point, 0.02, std::f64::consts::PI),
+            1 => aimed(rng, light, point, 0.02, std::f64::consts::PI),
+            _ => spread(rng, light, point),
         },
     }
+}
+
+/// Spreads a light out over an emitter whose point closest to `point` is where the light was: of a
+/// face that looks at the point, or of a corner that turns almost edge-on.
+fn spread(rng: &mut Rng, light: Light, point: DVec3) -> Light {
+    let corner = light.position.as_dvec3();
+    let away = (corner - point).normalize_or(DVec3::Y);
+    let about = away.cross(rng.direction()).normalize_or(DVec3::X);
+    let faces = rng.below(2) == 0;
+    // The normal's angle to the way back to the point: up to a right one.
+    let turn = match rng.below(2) {
+        _ if faces => 0.0,
+        0 => std::f64::consts::FRAC_PI_2 * (1.0 - edge(rng)),
+        _ => rng.range(0.0, 1.5),
+    };
+    let normal = -away * turn.cos() + about * turn.sin();
+    let size = f64::from(light.range_m) * rng.log_range(0.01, 3.0);
+    let size = size.clamp(2e-4, 1e4);
+    let x = normal.cross(rng.direction()).normalize_or(normal.any_orthonormal_vector());
+    let y = normal.cross(x) * size * rng.log_range(0.05, 1.0);
+    let x = x * size;
+    let farther = |axis: DVec3| if axis.dot(away) < 0.0 { -axis } else { axis };
+    let (emitter, position) = if rng.below(2) == 0 {
+        let offset = match faces {
+            true => x * rng.range(-1.0, 1.0) + y * rng.range(-1.0, 1.0),
+            false => farther(x) + farther(y),
+        };
+        (Emitter::rectangle(x.as_vec3(), y.as_vec3()), (corner + offset).as_vec3())
+    } else {
+        let count = 3 + rng.below(8);
+        let vertex = |ix: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * ix as f64 / count as f64).sin_cos();
+            (corner + x * cos + y * sin).as_vec3()
+        };
+        let vertices: Vec<Vec3> = (0..count).map(vertex).collect();
+        match Emitter::polygon(&vertices) {
+            Ok(polygon) => polygon,
+            Err(_) => return light,
+        }
+    };
+    let emitter = match rng.below(3) {
+        0 => emitter.two_sided(),
+        1 => emitter.with_diffuse_share(rng.range(0.2, 1.0) as f32),
+        _ => emitter,
+    };
+    let spread = Light::area(emitter, position, light.range_m, light.intensity);
+    // Far from the origin the smallest are bent by rounding.
+    if spread.check().is_ok() { spread } else { light }
 }
 
 /// Turns a light into a spot whose cone holds `point`: half of them by little.
@@ -127,5 +179,11 @@ pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
         spot(Vec3::ZERO, 0.1, 0.5),
         spot(Vec3::X, 0.1, f32::NAN),
         spot(Vec3::X, 0.0, 0.0),
+        Light { shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::ZERO)), ..sound },
+        Light { shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::X)), ..sound },
+        Light {
+            shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::Y).with_diffuse_share(2.0)),
+            ..sound
+        },
     ]
 }

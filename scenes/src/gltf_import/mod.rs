@@ -5,6 +5,7 @@
 
 mod accessor;
 mod animation;
+mod area_lights;
 mod file;
 mod images;
 mod materials;

@@ -12,7 +12,7 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{Warnings, file::File, meshes::Meshes};
+use super::{Warnings, area_lights, file::File, meshes::Meshes};
 use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
 
 /// The most triangles drawn, every node counting its mesh's. A small file can place one large
@@ -95,6 +95,7 @@ pub(super) fn load(
             placed.add_model(&name, mesh.value(), to_world, meshes, warnings);
         }
         placed.add_light(file, node, to_world, warnings)?;
+        placed.lights.extend(area_lights::of_node(file, ix, node, to_world)?);
         if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
             let chain = chain(&parents, ix);
             placed.add_camera(camera, &name, to_world, chain, warnings);
