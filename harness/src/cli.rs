@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use assign::{FrustumTests, LightOrder};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use scenes::Radii;
+use scenes::{Outlines, Radii};
 use shading::Cut;
 
 pub use error::{BAD_INPUT, CliError};
@@ -181,6 +181,23 @@ pub struct CompareArgs {
     #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
     pub spots: f64,
 
+    /// Share of area lights among the scattered lights, 0 to 1, with that of spots at most 1
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
+    pub areas: f64,
+
+    /// Outlines of the scattered area lights
+    #[arg(long, value_name = "WHICH", default_value = "both")]
+    pub outlines: OutlinesChoice,
+
+    /// Where the diffuse light of scattered area lights ends, as a share of the range of their
+    /// specular light, above 0 and at most 1
+    #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
+    pub diffuse_share: f64,
+
+    /// Draw the scene N x N times beside itself, with its lights and those scattered in it, 1 to 64
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies)]
+    pub replicate: u32,
+
     /// Image size in pixels, each side 1 to 16,384
     #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
     pub size: Size,
@@ -253,6 +270,27 @@ pub enum LightBox {
     Bounds,
     /// Seven upright cylinders in the box of the scene without far-off parts
     Cylinders,
+}
+
+/// Outlines of scattered area lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OutlinesChoice {
+    /// Half of each
+    Both,
+    /// Rectangles
+    Rectangles,
+    /// Polygons of 3 to 10 vertices
+    Polygons,
+}
+
+impl From<OutlinesChoice> for Outlines {
+    fn from(choice: OutlinesChoice) -> Self {
+        match choice {
+            OutlinesChoice::Both => Self::Both,
+            OutlinesChoice::Rectangles => Self::Rectangles,
+            OutlinesChoice::Polygons => Self::Polygons,
+        }
+    }
 }
 
 /// How the radii of scattered lights are distributed.

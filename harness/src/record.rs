@@ -98,6 +98,8 @@ pub fn record(
             .filter(|(_, count)| *count > 0)
             .map(|(kind, count)| (kind.to_owned(), count))
             .collect(),
+        area_model: None,
+        operations: None,
         radius_scale: stage.radius_scale,
         eye: stage.view.eye().to_array().map(f64::from),
         forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),

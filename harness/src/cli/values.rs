@@ -128,6 +128,15 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     number(text, 0.0, 1.0).ok_or_else(|| "a number from 0 to 1".to_owned())
 }
 
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    let accepted = || "a number above 0 and at most 1".to_owned();
+    share(text).ok().filter(|part| *part > 0.0).ok_or_else(accepted)
+}
+
+pub(super) fn copies(text: &str) -> Result<u32, String> {
+    whole(text, 1, 64).ok_or_else(|| "a whole number from 1 to 64".to_owned())
+}
+
 pub(super) fn lights(text: &str) -> Result<u32, String> {
     whole(text, 0, MAX_LIGHTS).ok_or_else(|| "a whole number from 0 to 16,777,216".to_owned())
 }
