@@ -256,6 +256,11 @@ pub struct CompareArgs {
     #[arg(long, value_name = "WHICH", default_value = "all")]
     pub pictures: PicturesChoice,
 
+    /// Count the light operations of every method with lists: the terms that are evaluated, and those
+    /// that would be seen
+    #[arg(long)]
+    pub operations: bool,
+
     /// What to check against the CPU: every (light, pixel) pair, or nothing
     #[arg(long, value_name = "LEVEL", default_value = "full")]
     pub truth: TruthChoice,

@@ -146,6 +146,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         along_path: args.path,
         seed: args.seed,
         cut: args.cut.into(),
+        operations: args.operations,
     }
 }
 

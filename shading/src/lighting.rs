@@ -15,7 +15,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Lighting {
     kind: Kind,
-    kinds: LightKinds,
+    options: LightingOptions,
 }
 
 /// How the lights of a list are evaluated.
@@ -108,7 +108,12 @@ impl Lighting {
                 renderer.scene.bind_group(gpu, &uniform),
             ),
         };
-        Ok(Self { kind, kinds: options.kinds })
+        Ok(Self { kind, options })
+    }
+
+    /// What it was made with.
+    pub fn options(&self) -> LightingOptions {
+        self.options
     }
 
     /// Records the pass `shade`, after the strategy's own. An error where the prepared lights
@@ -120,8 +125,9 @@ impl Lighting {
         strategy: &dyn Assignment,
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
-        if !self.kinds.cover(renderer.kinds) {
-            return Err(ShadingError::Kinds { made: self.kinds, lights: renderer.kinds });
+        let made = self.options.kinds;
+        if !made.cover(renderer.kinds) {
+            return Err(ShadingError::Kinds { made, lights: renderer.kinds });
         }
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),

@@ -158,7 +158,11 @@ fn forward() {
 /// `lists` and `images` of group 2.
 fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], images: &[u32]) {
     let linked = link(&format!("package::{root}"), flags, Some(look_up));
-    let entry_point = if root == "deferred" { "shade" } else { root };
+    let entry_point = match root {
+        "deferred" => "shade",
+        "operations" => "count_operations",
+        _ => root,
+    };
     assert_eq!(linked.entry_points, [entry_point.to_owned()].into(), "{root} {flags:?}");
     let of_group = |group| -> Vec<u32> {
         linked.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
@@ -176,6 +180,18 @@ fn deferred() {
             images.extend(flags.contains("model_ids").then_some(5));
             images.sort_unstable();
             check_compute("deferred", &flags, look_up, look_up.2, &images);
+        }
+    }
+}
+
+#[test]
+fn operations() {
+    for look_up in LOOK_UPS {
+        for flags in with_areas(subsets(&["spots", "model_ids"])) {
+            let mut images = vec![0, 1, 2, 8, 9];
+            images.extend(flags.contains("model_ids").then_some(5));
+            images.sort_unstable();
+            check_compute("operations", &flags, look_up, look_up.2, &images);
         }
     }
 }
