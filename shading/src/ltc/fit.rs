@@ -1,0 +1,166 @@
+//! The fit of one entry of the table: a roughness and a view.
+//!
+//! The lobe's matrix is `M = R * [[p, 0, q], [0, s, 0], [0, 0, 1]]`, with R's z the mean direction of
+//! the light that the BRDF reflects (Heitz et al. 2016, section 3.2). Nelder and Mead look for ln p,
+//! ln s and q / p. They minimise the integral of |difference|^3, weighted by the sum over the same
+//! directions of the densities that these are drawn with: half from the BRDF, half from the lobe.
+//! Samples lie on a fixed grid and move with the lobe, so that the objective is smooth and every run
+//! finds the same.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DVec3};
+
+use super::{lobe::Lobe, nelder_mead::minimize};
+
+/// Grid of the samples of one side of the plane of incidence; the other mirrors them.
+const AROUND: u32 = 16;
+const OUTWARDS: u32 = 32;
+/// Grid of the albedos, finer.
+const ALBEDO_SIDE: u32 = 160;
+/// First step of the search, and the share of the objective at which it ends.
+const STEP: f64 = 0.05;
+const TOLERANCE: f64 = 1e-7;
+
+/// A fitted lobe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// M, which moves a cosine to the lobe.
+    pub matrix: DMat3,
+    /// A: the integral of D V cos.
+    pub albedo: f64,
+    /// B: the integral of D V cos (1 - v.h)^5.
+    pub fresnel: f64,
+    /// The objective at the end.
+    pub residual: f64,
+    /// ln p, ln s and q / p: where a neighbour's search may start.
+    pub parameters: DVec3,
+}
+
+/// Fits a lobe to the BRDF of a perceptual roughness seen under a cosine of 0 to 1, starting from a
+/// neighbour's parameters. Where the view is the normal, the lobe is round and upright.
+pub fn fit(roughness: f64, cos_view: f64, start: Option<DVec3>) -> Fit {
+    let lobe = Lobe::seen_under(roughness, cos_view);
+    let seen = Mean::of(&lobe);
+    let is_round = cos_view >= 1.0;
+    let start = start.unwrap_or_else(|| {
+        let width = lobe.alpha().ln();
+        DVec3::new(width, width, 0.0)
+    });
+    let samples = samples_of(&lobe);
+    let matrix = |parameters: DVec3| {
+        if is_round {
+            let round = DVec3::new(parameters.x, parameters.x, 0.0);
+            matrix_of(DVec3::Z, round)
+        } else {
+            matrix_of(seen.direction, parameters)
+        }
+    };
+    let objective = |parameters| {
+        // A round lobe's other two parameters are held by a term of their own.
+        let held = if is_round {
+            (parameters - start).dot(parameters - start) - (parameters.x - start.x).powi(2)
+        } else {
+            0.0
+        };
+        difference(&lobe, seen.albedo, &samples, &matrix(parameters)) * (1.0 + held)
+    };
+    let (found, residual) = minimize(start, STEP, TOLERANCE, objective);
+    let parameters = if is_round { DVec3::new(found.x, found.x, 0.0) } else { found };
+    let matrix = matrix(parameters);
+    Fit { matrix, albedo: seen.albedo, fresnel: seen.fresnel, residual, parameters }
+}
+
+fn matrix_of(z: DVec3, parameters: DVec3) -> DMat3 {
+    let x = DVec3::new(z.z, 0.0, -z.x);
+    let (p, s) = (parameters.x.exp(), parameters.y.exp());
+    let frame = DMat3::from_cols(x, DVec3::Y, z);
+    frame
+        * DMat3::from_cols(
+            DVec3::new(p, 0.0, 0.0),
+            DVec3::new(0.0, s, 0.0),
+            DVec3::new(parameters.z * p, 0.0, 1.0),
+        )
+}
+
+/// The light that a BRDF reflects from all directions.
+struct Mean {
+    albedo: f64,
+    fresnel: f64,
+    /// Mean direction, unit.
+    direction: DVec3,
+}
+
+impl Mean {
+    fn of(lobe: &Lobe) -> Self {
+        let (mut albedo, mut fresnel, mut direction) = (0.0, 0.0, DVec3::ZERO);
+        for (u, v) in grid(ALBEDO_SIDE / 2, ALBEDO_SIDE) {
+            let to_light = lobe.sample(u, v);
+            if to_light.z > 0.0 {
+                let (value, schlick) = lobe.evaluate(to_light);
+                let weight = value / lobe.density(to_light);
+                albedo += weight;
+                fresnel += weight * schlick;
+                direction += weight * to_light;
+            }
+        }
+        let count = f64::from(ALBEDO_SIDE * ALBEDO_SIDE / 2);
+        // The plane of incidence halves the lobe.
+        direction.y = 0.0;
+        let direction = direction.normalize_or(DVec3::Z);
+        Self { albedo: albedo / count, fresnel: fresnel / count, direction }
+    }
+}
+
+/// Middles of the cells of a grid over half the unit square, `u` above 1/2.
+fn grid(around: u32, outwards: u32) -> impl Iterator<Item = (f64, f64)> {
+    (0..around).flat_map(move |i| {
+        (0..outwards).map(move |j| {
+            let u = 0.5 + 0.5 * (f64::from(i) + 0.5) / f64::from(around);
+            (u, (f64::from(j) + 0.5) / f64::from(outwards))
+        })
+    })
+}
+
+/// A direction with what does not change in the search: the BRDF and the density of its samples.
+struct Sample {
+    to_light: DVec3,
+    value: f64,
+    density: f64,
+}
+
+fn samples_of(lobe: &Lobe) -> Vec<Sample> {
+    let sample = |(u, v)| {
+        let to_light = lobe.sample(u, v);
+        Sample { to_light, value: lobe.evaluate(to_light).0, density: lobe.density(to_light) }
+    };
+    grid(AROUND, OUTWARDS).map(sample).filter(|sample| sample.density > 0.0).collect()
+}
+
+/// The objective: |BRDF - albedo times the lobe's density|^3 over the sum of the densities.
+fn difference(lobe: &Lobe, albedo: f64, samples: &[Sample], matrix: &DMat3) -> f64 {
+    let inverse = matrix.inverse();
+    let scale = inverse.determinant().abs() / PI;
+    let density = |to_light: DVec3| {
+        let cosine = inverse * to_light;
+        scale * cosine.z.max(0.0) / cosine.length_squared().powi(2)
+    };
+    let cube = |value: f64, drawn: f64, fitted: f64| {
+        let sum = drawn + fitted;
+        if sum > 0.0 { (value - albedo * fitted).abs().powi(3) / sum } else { 0.0 }
+    };
+    let from_brdf: f64 = samples
+        .iter()
+        .map(|sample| cube(sample.value, sample.density, density(sample.to_light)))
+        .sum();
+    let from_lobe: f64 = grid(AROUND, OUTWARDS)
+        .map(|(u, v)| {
+            let (sin, cos) = ((u - 0.5) * TAU).sin_cos();
+            let cosine = DVec3::new(v.sqrt() * cos, v.sqrt() * sin, (1.0 - v).sqrt());
+            let to_light = (*matrix * cosine).normalize_or_zero();
+            let value = lobe.evaluate(to_light).0;
+            cube(value, lobe.density(to_light), density(to_light))
+        })
+        .sum();
+    (from_brdf + from_lobe) / f64::from(AROUND * OUTWARDS)
+}
