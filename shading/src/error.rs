@@ -44,6 +44,16 @@ pub enum ShadingError {
     /// A lighting pass meets a kind of light that its shader was not made for.
     #[error("the lighting pass was made without spots, and the lights hold one: make it anew")]
     Spots,
+    /// A table of linearly transformed cosines is not one.
+    #[error("LTC table: {field} is {value}: it must be {accepted}")]
+    LtcTable {
+        /// What is wrong with it.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// What would be accepted.
+        accepted: String,
+    },
     /// A file could not be read.
     #[error("{path}: cannot be read: {reason}")]
     Read {

@@ -48,25 +48,13 @@ pub fn fit(roughness: f64, cos_view: f64, start: Option<DVec3>) -> Fit {
         DVec3::new(width, width, 0.0)
     });
     let samples = samples_of(&lobe);
-    let matrix = |parameters: DVec3| {
-        if is_round {
-            let round = DVec3::new(parameters.x, parameters.x, 0.0);
-            matrix_of(DVec3::Z, round)
-        } else {
-            matrix_of(seen.direction, parameters)
-        }
-    };
-    let objective = |parameters| {
-        // A round lobe's other two parameters are held by a term of their own.
-        let held = if is_round {
-            (parameters - start).dot(parameters - start) - (parameters.x - start.x).powi(2)
-        } else {
-            0.0
-        };
-        difference(&lobe, seen.albedo, &samples, &matrix(parameters)) * (1.0 + held)
-    };
+    // A round lobe has one parameter; the search moves the others without effect.
+    let round = |parameters: DVec3| DVec3::new(parameters.x, parameters.x, 0.0);
+    let allowed = |parameters: DVec3| if is_round { round(parameters) } else { parameters };
+    let matrix = |parameters: DVec3| matrix_of(seen.direction, allowed(parameters));
+    let objective = |parameters| difference(&lobe, seen.albedo, &samples, &matrix(parameters));
     let (found, residual) = minimize(start, STEP, TOLERANCE, objective);
-    let parameters = if is_round { DVec3::new(found.x, found.x, 0.0) } else { found };
+    let parameters = allowed(found);
     let matrix = matrix(parameters);
     Fit { matrix, albedo: seen.albedo, fresnel: seen.fresnel, residual, parameters }
 }
@@ -107,7 +95,8 @@ impl Mean {
         let count = f64::from(ALBEDO_SIDE * ALBEDO_SIDE / 2);
         // The plane of incidence halves the lobe.
         direction.y = 0.0;
-        let direction = direction.normalize_or(DVec3::Z);
+        let direction =
+            if lobe.to_eye.x > 0.0 { direction.normalize_or(DVec3::Z) } else { DVec3::Z };
         Self { albedo: albedo / count, fresnel: fresnel / count, direction }
     }
 }

@@ -27,11 +27,16 @@
 //!
 //! The BRDF is that of `brdf.wesl`. [`integrate`] is its integral without any of this, to compare.
 
+mod fit;
 mod lobe;
+mod nelder_mead;
 mod polygon;
 mod quadrature;
 mod spherical_rectangle;
+mod table;
 
+pub use fit::{Fit, fit};
 pub use polygon::{cosine_integral, ltc_integral};
 pub use quadrature::{Estimate, Integrals, integrate};
 pub use spherical_rectangle::SphericalRectangle;
+pub use table::{Entry, TABLE_SIZE, Table};
