@@ -82,11 +82,13 @@ struct Mean {
 impl Mean {
     fn of(lobe: &Lobe) -> Self {
         let (mut albedo, mut fresnel, mut direction) = (0.0, 0.0, DVec3::ZERO);
-        for (u, v) in grid(ALBEDO_SIDE / 2, ALBEDO_SIDE) {
+        for (u, t) in grid(ALBEDO_SIDE / 2, ALBEDO_SIDE) {
+            // Finer towards normals at right angles to the view, where the lobe's tail is.
+            let (v, spread) = (1.0 - (1.0 - t) * (1.0 - t), 2.0 * (1.0 - t));
             let to_light = lobe.sample(u, v);
             if to_light.z > 0.0 {
                 let (value, schlick) = lobe.evaluate(to_light);
-                let weight = value / lobe.density(to_light);
+                let weight = spread * value / lobe.density(to_light);
                 albedo += weight;
                 fresnel += weight * schlick;
                 direction += weight * to_light;
@@ -152,4 +154,44 @@ fn difference(lobe: &Lobe, albedo: f64, samples: &[Sample], matrix: &DMat3) -> f
         })
         .sum();
     (from_brdf + from_lobe) / f64::from(AROUND * OUTWARDS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ltc::{Entry, Table, integrate};
+
+    /// Roughness and view of texels from smooth to rough and from the normal to grazing.
+    const TEXELS: [(usize, usize); 8] =
+        [(3, 0), (8, 30), (20, 10), (20, 50), (30, 60), (40, 40), (50, 0), (63, 20)];
+
+    #[test]
+    fn a_fit_from_scratch_is_the_committed_entry() {
+        let table = Table::ggx().unwrap();
+        for (x, y) in TEXELS {
+            let (roughness, y) = (x as f64 / 63.0, y as f64 / 63.0);
+            let cos_view = 1.0 - y * y;
+            let found = fit(roughness, cos_view, None);
+            let committed = table.look_up(roughness, cos_view);
+            let d = committed.difference(&Entry::new(&found));
+            eprintln!("{x} {y} {d:?} {:?}", found.residual);
+        }
+    }
+
+    #[test]
+    fn the_albedos_are_the_integrals_over_the_hemisphere() {
+        let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| DVec3::new(x, y, 1e-9));
+        for (x, y) in TEXELS {
+            let (roughness, y) = (x as f64 / 63.0, y as f64 / 63.0);
+            let lobe = Lobe::seen_under(roughness, 1.0 - y * y);
+            let seen = Mean::of(&lobe);
+            let truth = integrate(&sky, lobe.to_eye, roughness, 1e-4).value;
+            eprintln!(
+                "{x} {y} {} {}",
+                seen.albedo - truth.specular,
+                seen.fresnel - truth.specular_fresnel
+            );
+        }
+    }
 }

@@ -6,6 +6,11 @@ use glam::DVec3;
 
 use crate::reference::{MIN_COS_VIEW, MIN_ROUGHNESS};
 
+/// GGX's alpha of a perceptual roughness.
+pub(super) fn alpha_of(roughness: f64) -> f64 {
+    roughness.max(MIN_ROUGHNESS).powi(2)
+}
+
 /// GGX with height-correlated Smith, seen from one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lobe {
@@ -19,7 +24,7 @@ pub(super) struct Lobe {
 impl Lobe {
     /// The lobe of a perceptual roughness and a unit direction to the eye.
     pub(super) fn new(roughness: f64, to_eye: DVec3) -> Self {
-        let alpha = roughness.max(MIN_ROUGHNESS).powi(2);
+        let alpha = alpha_of(roughness);
         let alpha_2 = alpha * alpha;
         let cos_view = to_eye.z.abs().max(MIN_COS_VIEW);
         let root_view = (cos_view * cos_view * (1.0 - alpha_2) + alpha_2).sqrt();

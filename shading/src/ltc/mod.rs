@@ -4,7 +4,7 @@
 //!
 //! The integral of a cosine over a spherical polygon is a sum over its edges (Lambert 1760). A
 //! matrix M stretches the cosine into a lobe of about the shape of a BRDF's, so that the BRDF's
-//! integral over a polygon is about that of the cosine over the polygon moved by M^-1. A table
+//! integral over a polygon is about that of the cosine over the polygon moved by M^-1. A [`Table`]
 //! holds M^-1 for each roughness and view, and the integrals that scale the lobe.
 //!
 //! # The frame
@@ -27,16 +27,25 @@
 //!
 //! The BRDF is that of `brdf.wesl`. [`integrate`] is its integral without any of this, to compare.
 
+mod accuracy;
+mod diffuse_fresnel;
 mod fit;
+mod generate;
 mod lobe;
 mod nelder_mead;
 mod polygon;
+mod polynomial;
+mod polynomial_coefficients;
 mod quadrature;
 mod spherical_rectangle;
 mod table;
 
+pub use accuracy::{Accuracy, AccuracyCase, accuracy_cases};
+pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
 pub use fit::{Fit, fit};
+pub use generate::{FitReport, TableDifference, generate};
 pub use polygon::{cosine_integral, ltc_integral};
+pub use polynomial::{POLYNOMIAL_COMPONENTS, Polynomial};
 pub use quadrature::{Estimate, Integrals, integrate};
 pub use spherical_rectangle::SphericalRectangle;
 pub use table::{Entry, TABLE_SIZE, Table};

@@ -28,7 +28,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    fn new(fit: &Fit) -> Self {
+    pub(super) fn new(fit: &Fit) -> Self {
         let inverse = fit.matrix.inverse();
         let scaled =
             |column: usize, row: usize| (inverse.col(column)[row] / inverse.y_axis.y) as f32;
@@ -227,10 +227,53 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dump() {
-        let start = std::time::Instant::now();
-        let table = Table::fit(TABLE_SIZE, |_| ()).unwrap();
-        eprintln!("{:?}", start.elapsed());
-        std::fs::write("/tmp/ggx.bin", table.to_bytes()).unwrap();
+    fn a_file_is_read_as_it_was_written() {
+        let table = Table::ggx().unwrap();
+        assert_eq!(table.size(), TABLE_SIZE);
+        assert_eq!(table.to_bytes(), include_bytes!("ggx.bin"));
+        assert_eq!(table.as_bytes().len(), TABLE_SIZE * TABLE_SIZE * 32);
+    }
+
+    #[test]
+    fn a_file_that_is_no_table_is_refused() {
+        let good = Table::fit(2, |_| ()).unwrap().to_bytes();
+        let with = |at: usize, bytes: &[u8]| {
+            let mut file = good.clone();
+            file[at..at + bytes.len()].copy_from_slice(bytes);
+            file
+        };
+        for (file, refusal) in [
+            (with(0, b"DDS "), "magic is DDS : it must be LTCT"),
+            (with(4, &[2]), "version is 2: it must be 1"),
+            (with(8, &[0]), "size is 0: it must be 2 to 1024 texels each way"),
+            (with(8, &[255; 4]), "size is 4294967295: it must be 2 to 1024 texels each way"),
+            (with(8, &[3]), "length is 140: it must be 300 bytes"),
+            (with(12, &[255; 4]), "entry is NaN: it must be finite"),
+            (good[..11].to_vec(), "length is 11: it must be a header and all entries, in bytes"),
+            (good[..139].to_vec(), "length is 139: it must be 140 bytes"),
+        ] {
+            let error = Table::from_bytes(&file).unwrap_err().to_string();
+            assert_eq!(error, format!("LTC table: {refusal}"));
+        }
+        assert!(Table::from_bytes(&good).is_ok());
+    }
+
+    #[test]
+    fn between_texels_the_look_up_is_bilinear() {
+        let table = Table::ggx().unwrap();
+        let last = (TABLE_SIZE - 1) as f64;
+        for (x, y, entry) in table.entries() {
+            let found = table.look_up(x, cos_view(y));
+            // The way through the cosine costs some digits.
+            let near = |a: &f32, b: &f32| (a - b).abs() <= 1e-5;
+            assert!(found.inverse.iter().zip(&entry.inverse).all(|(a, b)| near(a, b)), "{x}, {y}");
+        }
+        let at = |x: f64, y: f64| table.look_up(x / last, cos_view(y / last)).inverse[3];
+        let mean = 0.25 * (at(30.0, 40.0) + at(31.0, 40.0) + at(30.0, 41.0) + at(31.0, 41.0));
+        assert!((at(30.5, 40.5) - mean).abs() < 1e-6);
+        // Outside, the edge.
+        assert_eq!(table.look_up(-1.0, 2.0), table.look_up(0.0, 1.0));
+        assert_eq!(table.look_up(9.0, -1.0), table.look_up(1.0, 0.0));
+        assert_eq!(table.look_up(f64::NAN, 1.0), table.look_up(0.0, 1.0));
     }
 }
