@@ -159,22 +159,32 @@ fn difference(lobe: &Lobe, albedo: f64, samples: &[Sample], matrix: &DMat3) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ltc::{Entry, Table, integrate};
+    use crate::ltc::{Entry, Table, TableDifference, integrate};
 
     /// Roughness and view of texels from smooth to rough and from the normal to grazing.
     const TEXELS: [(usize, usize); 8] =
         [(3, 0), (8, 30), (20, 10), (20, 50), (30, 60), (40, 40), (50, 0), (63, 20)];
 
+    fn place(x: usize, y: usize) -> (f64, f64) {
+        let y = y as f64 / 63.0;
+        (x as f64 / 63.0, 1.0 - y * y)
+    }
+
     #[test]
     fn a_fit_from_scratch_is_the_committed_entry() {
         let table = Table::ggx().unwrap();
         for (x, y) in TEXELS {
-            let (roughness, y) = (x as f64 / 63.0, y as f64 / 63.0);
-            let cos_view = 1.0 - y * y;
-            let found = fit(roughness, cos_view, None);
+            let (roughness, cos_view) = place(x, y);
+            let found = Entry::new(&fit(roughness, cos_view, None));
             let committed = table.look_up(roughness, cos_view);
-            let d = committed.difference(&Entry::new(&found));
-            eprintln!("{x} {y} {d:?} {:?}", found.residual);
+            let TableDifference { integrals, covered } = committed.difference(&found);
+            assert!(integrals < 1e-5 && covered < 1e-4, "{x}, {y}: {integrals:e}, {covered:e}");
+            // Away from grazing views the lobe determines its matrix.
+            for (a, b) in committed.inverse.iter().zip(found.inverse) {
+                assert!(y > 40 || (a - b).abs() < 1e-3, "{x}, {y}: {committed:?}, {found:?}");
+            }
+            let other = table.look_up(roughness - 2e-3, cos_view);
+            assert!(other.difference(&found).covered > 1e-4, "{x}, {y}: too coarse to tell");
         }
     }
 
@@ -183,15 +193,21 @@ mod tests {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         for (x, y) in TEXELS {
-            let (roughness, y) = (x as f64 / 63.0, y as f64 / 63.0);
-            let lobe = Lobe::seen_under(roughness, 1.0 - y * y);
+            let (roughness, cos_view) = place(x, y);
+            let lobe = Lobe::seen_under(roughness, cos_view);
             let seen = Mean::of(&lobe);
-            let truth = integrate(&sky, lobe.to_eye, roughness, 1e-4).value;
-            eprintln!(
-                "{x} {y} {} {}",
-                seen.albedo - truth.specular,
-                seen.fresnel - truth.specular_fresnel
-            );
+            let truth = integrate(&sky, lobe.to_eye, roughness, 1e-5).value;
+            let off = seen.albedo - truth.specular;
+            assert!(off.abs() < 5e-5, "{x}, {y}: A off {off:e}");
+            let off = seen.fresnel - truth.specular_fresnel;
+            assert!(off.abs() < 5e-6, "{x}, {y}: B off {off:e}");
         }
+    }
+
+    #[test]
+    fn seen_from_the_normal_a_lobe_is_round_and_upright() {
+        let Fit { matrix, .. } = fit(0.4, 1.0, None);
+        let width = matrix.x_axis.x;
+        assert_eq!(matrix, DMat3::from_diagonal(DVec3::new(width, width, 1.0)));
     }
 }

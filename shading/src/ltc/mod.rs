@@ -45,7 +45,7 @@ pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
 pub use fit::{Fit, fit};
 pub use generate::{FitReport, TableDifference, generate};
 pub use polygon::{cosine_integral, ltc_integral};
-pub use polynomial::{POLYNOMIAL_COMPONENTS, Polynomial};
+pub use polynomial::{LTC_POLYNOMIAL_WESL, POLYNOMIAL_COMPONENTS, Polynomial};
 pub use quadrature::{Estimate, Integrals, integrate};
 pub use spherical_rectangle::SphericalRectangle;
 pub use table::{Entry, TABLE_SIZE, Table};

@@ -110,7 +110,7 @@ fn cross_z(a: DVec3, b: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ltc::quadrature::integrate;
+    use crate::ltc::{SphericalRectangle, integrate};
 
     /// A rectangle about `center`, spanned by half its edges.
     fn rectangle(center: DVec3, x: DVec3, y: DVec3) -> [DVec3; 4] {
@@ -205,6 +205,27 @@ mod tests {
             let (whole, parts) = (ltc_integral(&stretched(), &long), squares.sum::<f64>());
             assert!((whole - parts).abs() < 1e-7 && whole > 1e-3, "{step}: {whole}, {parts}");
         }
+    }
+
+    #[test]
+    fn it_is_the_integral_of_the_transformed_density() {
+        // By the midpoint rule, over a rectangle across the horizon and across the lobe's own.
+        let inverse = stretched();
+        let (corner, x, y) = (DVec3::new(-2.0, -0.3, -0.5), DVec3::X * 4.0, DVec3::Z * 2.0);
+        let rectangle = SphericalRectangle::new(corner, x, y).unwrap();
+        let side = 1000;
+        let at = |step: u32| (f64::from(step) + 0.5) / f64::from(side);
+        let density = |direction: DVec3| {
+            let cosine = inverse * direction;
+            let is_above = direction.z > 0.0 && cosine.z > 0.0;
+            let value = cosine.z * inverse.determinant() / cosine.length_squared().powi(2);
+            if is_above { value / std::f64::consts::PI } else { 0.0 }
+        };
+        let places = (0..side * side).map(|ix| rectangle.direction(at(ix % side), at(ix / side)));
+        let sum: f64 = places.map(density).sum();
+        let sampled = sum * rectangle.solid_angle() / f64::from(side * side);
+        let closed = ltc_integral(&inverse, &[corner, corner + x, corner + x + y, corner + y]);
+        assert!((closed / sampled - 1.0).abs() < 1e-5 && closed > 0.05, "{closed} {sampled}");
     }
 
     #[test]

@@ -177,8 +177,7 @@ impl Table {
     pub fn look_up(&self, roughness: f64, cos_view: f64) -> Entry {
         let last = self.size - 1;
         let place = |at: f64| {
-            // No number counts as 0.
-            let at = at.max(0.0).min(1.0) * last as f64;
+            let at = unit(at) * last as f64;
             let texel = (at as usize).min(last - 1);
             (texel, (at - texel as f64) as f32)
         };
@@ -204,7 +203,12 @@ pub(super) fn cos_view(y: f64) -> f64 {
 
 /// The y of a cosine of the view, clamped to 0..1.
 pub(super) fn y_of(cos_view: f64) -> f64 {
-    (1.0 - cos_view.clamp(0.0, 1.0)).sqrt()
+    (1.0 - unit(cos_view)).sqrt()
+}
+
+/// A value clamped to 0..1; what is no number counts as 0.
+pub(super) fn unit(value: f64) -> f64 {
+    if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 
 fn check_size(size: usize) -> Result<(), ShadingError> {
