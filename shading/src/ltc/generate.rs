@@ -128,7 +128,9 @@ mod tests {
         let text = |name| fs::read_to_string(dir.join(name)).unwrap();
         assert_eq!(text("polynomial_coefficients.rs"), polynomial.to_rust());
         assert_eq!(text("ltc_polynomial.wesl"), polynomial.to_wesl());
-        assert!(report.table.median > 0.02 && report.difference.covered > 0.01, "{report:?}");
+        // It is coarser than the committed one.
+        let TableDifference { integrals, covered } = report.difference;
+        assert!(report.table.median > 0.04 && integrals > 0.01 && covered > 0.01, "{report:?}");
     }
 
     #[test]
