@@ -5,6 +5,7 @@
 //! they are; whoever looks them up offers the [`nearest`] ones.
 
 mod error;
+mod fit_ltc;
 mod names;
 mod study;
 mod values;
@@ -19,6 +20,7 @@ use scenes::{Outlines, Radii};
 use shading::Cut;
 
 pub use error::{BAD_INPUT, CliError};
+pub use fit_ltc::FitLtcArgs;
 pub use names::{did_you_mean, nearest};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use values::{Camera, CameraPose, Size, Strategies};
@@ -70,6 +72,8 @@ pub enum Invocation {
     Report(ReportArgs),
     /// Search for the best strategy and parameters.
     Advise(AdviseArgs),
+    /// Fit linearly transformed cosines to the BRDF.
+    FitLtc(FitLtcArgs),
     /// List what can be named on the command line.
     List(Listing),
     /// Print this text (help or version) and end well.
@@ -108,6 +112,8 @@ enum Command {
     Report(ReportArgs),
     /// Search for the strategy and parameters to use on this scene and this GPU
     Advise(AdviseArgs),
+    /// Fit linearly transformed cosines to the BRDF anew, and compare them with those in use
+    FitLtc(FitLtcArgs),
     /// List the strategies, scenes or adapters that can be named
     List {
         /// What to list
@@ -413,6 +419,7 @@ where
         Ok(Cli { command: Some(Command::Study(args)), .. }) => Ok(Invocation::Study(args)),
         Ok(Cli { command: Some(Command::Report(args)), .. }) => Ok(Invocation::Report(args)),
         Ok(Cli { command: Some(Command::Advise(args)), .. }) => Ok(Invocation::Advise(args)),
+        Ok(Cli { command: Some(Command::FitLtc(args)), .. }) => Ok(Invocation::FitLtc(args)),
         Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
         Err(shown)
             if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>

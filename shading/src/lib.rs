@@ -24,6 +24,7 @@ mod geometry;
 mod heat_map;
 mod image;
 mod lighting;
+pub mod ltc;
 mod materials;
 mod mips;
 mod operations;

@@ -17,7 +17,9 @@ pub struct Surface {
 }
 
 /// Below this perceptual roughness GGX's peak overflows single precision: `brdf.wesl`.
-const MIN_ROUGHNESS: f64 = 0.045;
+pub(crate) const MIN_ROUGHNESS: f64 = 0.045;
+/// Least cosine between the normal and the direction to the eye.
+pub(crate) const MIN_COS_VIEW: f64 = 1e-4;
 /// Reflectance of a dielectric at normal incidence.
 const DIELECTRIC_F0: f64 = 0.04;
 /// Least squared distance of inverse-square fall-off, square metres.
@@ -27,7 +29,7 @@ const MIN_DISTANCE_2: f64 = 1e-4;
 /// Lambert and Cook-Torrance with GGX, height-correlated Smith and Schlick.
 pub fn reflect_light(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> DVec3 {
     let cos_l = surface.normal.dot(to_light).max(0.0);
-    let cos_v = surface.normal.dot(to_eye).abs().max(1e-4);
+    let cos_v = surface.normal.dot(to_eye).abs().max(MIN_COS_VIEW);
     let half_way = (to_eye + to_light).normalize_or_zero();
     let cos_h = surface.normal.dot(half_way).clamp(0.0, 1.0);
     let cos_vh = to_eye.dot(half_way).clamp(0.0, 1.0);

@@ -118,6 +118,22 @@ fn every_value_out_of_range_is_named_with_its_range() {
 }
 
 #[test]
+fn lobes_are_fitted_into_a_folder_or_only_compared() {
+    let args = |line| match parse_line(line) {
+        Ok(Invocation::FitLtc(args)) => args,
+        other => panic!("{line}: {other:?}"),
+    };
+    assert_eq!(args("fit-ltc"), FitLtcArgs { out: None, size: 64 });
+    let out = Some(PathBuf::from("x"));
+    assert_eq!(args("fit-ltc --out x --size 1024"), FitLtcArgs { out, size: 1024 });
+    for size in ["1", "1025", "-2", "x"] {
+        let message = refusal(&format!("fit-ltc --size {size}"));
+        let expected = format!("--size is {size}: it must be a whole number from 2 to 1,024");
+        assert_eq!(message, expected);
+    }
+}
+
+#[test]
 fn empty_values_are_refused() {
     assert_eq!(message(parse(["lightbench", "--out", ""])), "--out needs a value");
     for option in ["--scene", "--adapter", "--strategies", "--size", "--seed"] {
@@ -137,7 +153,7 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
     assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, list";
+    let known = "known are compare, study, report, advise, fit-ltc, list";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
     assert_eq!(refusal("study"), "study needs which one: comparison or culling");
     assert_eq!(refusal("report"), "report needs a folder: of a comparison or a study");

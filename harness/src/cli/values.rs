@@ -145,6 +145,11 @@ pub(super) fn frames(text: &str) -> Result<u32, String> {
     whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
 }
 
+pub(super) fn table_size(text: &str) -> Result<usize, String> {
+    let size = whole(text, 2, 1024).ok_or("a whole number from 2 to 1,024")?;
+    Ok(size as usize)
+}
+
 pub(super) fn warmup(text: &str) -> Result<u32, String> {
     whole(text, 0, MAX_FRAMES).ok_or_else(|| "a whole number from 0 to 100,000".to_owned())
 }
