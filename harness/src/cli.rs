@@ -17,7 +17,7 @@ use assign::{FrustumTests, LightOrder};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use scenes::{Outlines, Radii};
-use shading::Cut;
+use shading::{AreaModel, Cut};
 
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
@@ -199,6 +199,10 @@ pub struct CompareArgs {
     /// specular light, above 0 and at most 1
     #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
     pub diffuse_share: f64,
+
+    /// How the light of area lights is integrated
+    #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
+    pub area_model: AreaModel,
 
     /// Draw the scene N x N times beside itself, with its lights and those scattered in it, 1 to 64
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies)]

@@ -24,6 +24,7 @@ mod geometry;
 mod heat_map;
 mod image;
 mod lighting;
+mod lighting_inputs;
 pub mod ltc;
 mod materials;
 mod mips;
