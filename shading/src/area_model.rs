@@ -22,8 +22,8 @@ impl AreaModel {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Point, Self::LtcTable, Self::LtcPolynomial];
 
-    /// The flag that compiles it.
-    pub(crate) fn flag(self) -> &'static str {
+    /// The flag that compiles it, together with `areas`.
+    pub fn flag(self) -> &'static str {
         match self {
             Self::Point => "area_point",
             Self::LtcTable => "area_ltc_table",

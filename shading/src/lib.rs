@@ -19,6 +19,7 @@
 //! bit for bit.
 
 mod area_model;
+mod area_reference;
 mod error;
 mod geometry;
 mod heat_map;
