@@ -39,7 +39,7 @@ mod shaders;
 mod targets;
 mod truth;
 
-pub use area_model::AreaModel;
+pub use area_model::{AreaModel, MAX_AREA_SAMPLES};
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};

@@ -22,7 +22,8 @@ impl LightingInputs {
     /// Uploads what the options ask for.
     pub(crate) fn new(gpu: &Gpu, options: LightingOptions) -> Result<Self, ShadingError> {
         let uniform = gpu.uniform("lighting", 16);
-        let numbers = [options.exit_weight, 0.0, 0.0, 0.0];
+        options.area.check()?;
+        let numbers = [options.exit_weight.to_bits(), options.area.samples(), 0, 0];
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&numbers));
         let table = match options.reads_table() {
             false => None,

@@ -131,11 +131,39 @@ fn models_are_as_far_from_the_truth_as_they_should_be() {
         })
         .collect();
     let error = |model| error_of(&evaluate(&gpu, &buffer, &queries, model), &truth);
-    let [point, table, polynomial] =
-        [AreaModel::Point, AreaModel::LtcTable, AreaModel::LtcPolynomial].map(error);
-    println!("point {point:.4}, table {table:.4}, polynomial {polynomial:.4}");
+    let [point, mrp, table, polynomial] =
+        [AreaModel::Point, AreaModel::Mrp, AreaModel::LtcTable, AreaModel::LtcPolynomial]
+            .map(error);
+    println!("point {point:.4}, MRP {mrp:.4}, table {table:.4}, polynomial {polynomial:.4}");
+    assert!(mrp < 0.4 * point && table < 0.2 * mrp, "{point} {mrp} {table}");
     assert!(table < 0.07 && polynomial < 0.08, "{table} {polynomial}");
     assert!(point > 4.0 * table, "{point} {table}");
+}
+
+/// Four times the samples halve the error of independent ones; evenly spread ones do better.
+#[test]
+fn sampling_converges_to_the_truth() {
+    let gpu = common::gpu();
+    let lights = lights(40);
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let mut queries = queries(&lights, 1_500);
+    queries.iter_mut().for_each(|query| query[1][3] = 0.4 + 0.6 * query[1][3]);
+    let truth: Vec<DVec3> = queries
+        .iter()
+        .map(|query| {
+            let (position, surface, to_eye) = asked(query);
+            light_contribution(&buffer.lights()[light_of(query)], position, &surface, to_eye)
+        })
+        .collect();
+    let counts = [4, 16, 64, 256, 1024];
+    let errors = counts.map(|samples| {
+        let model = AreaModel::MonteCarlo { samples };
+        error_of(&evaluate(&gpu, &buffer, &queries, model), &truth)
+    });
+    println!("{}: samples {counts:?}, errors {errors:.5?}", gpu.info.name);
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{errors:?}");
+    // Over 256 times the samples a sixteenth at least, to below what the quadrature is good to.
+    assert!(errors[4] < errors[0] / 16.0 && errors[4] < 0.01, "{errors:?}");
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! The shaders' lighting function, light by light.
 
-use assign::{EncoderPasses, Frame, FrameBindings, Gpu, LightBuffer, Passes, entry, storage_entry};
+use assign::{
+    EncoderPasses, Frame, FrameBindings, Gpu, LightBuffer, Passes, entry, storage_entry,
+    uniform_entry,
+};
 use shading::AreaModel;
 
 /// One evaluation: position and light, eye direction and roughness, normal and metallic, colour and
@@ -47,16 +50,23 @@ pub(crate) fn evaluate(
         entries: &[
             storage_entry(0, stages, true),
             storage_entry(1, stages, false),
+            uniform_entry(6, stages),
             storage_entry(7, stages, true),
         ],
     });
+    let samples = match area {
+        AreaModel::MonteCarlo { samples } => samples,
+        _ => 0,
+    };
+    let numbers = gpu.uniform("lighting", 16);
+    gpu.queue.write_buffer(&numbers, 0, bytemuck::bytes_of(&[0, samples, 0, 0]));
     let table = shading::ltc::Table::ggx().unwrap();
     let looked_up = gpu.storage("table", table.as_bytes().len() as u64).unwrap();
     gpu.queue.write_buffer(&looked_up, 0, table.as_bytes());
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layout,
-        entries: &[entry(0, &asked), entry(1, &answered), entry(7, &looked_up)],
+        entries: &[entry(0, &asked), entry(1, &answered), entry(6, &numbers), entry(7, &looked_up)],
     });
     let module = shading::lighting_shader()
         .module("package::evaluate", EVALUATE)
