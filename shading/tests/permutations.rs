@@ -212,6 +212,18 @@ fn probe() {
     }
 }
 
+#[test]
+fn surfaces() {
+    for flags in subsets(&["emissive"]) {
+        let linked = link("package::surfaces", &flags, None);
+        let emissive = flags.contains("emissive");
+        let expected = if emissive { vec![0, 1, 2, 3, 4, 5, 6, 7] } else { vec![0, 1, 2, 4, 5, 6] };
+        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
+        assert_eq!(images, expected, "{flags:?}");
+        assert_eq!(linked.entry_points, ["surfaces".to_owned()].into(), "{flags:?}");
+    }
+}
+
 /// The flags that bind nothing reach the module as well.
 #[test]
 fn flags_change_the_shader() {
