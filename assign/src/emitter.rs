@@ -187,7 +187,7 @@ impl Emitter {
     /// Checks every field.
     pub(crate) fn check(&self) -> Result<(), LightFault> {
         let out = |field, value, accepted| Err(LightFault::OutOfRange { field, value, accepted });
-        let numbers = self.vertices().iter().flat_map(|v| v.to_array());
+        let numbers = self.vertices().iter().flat_map(Vec3::to_array);
         if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
             return Err(LightFault::NotFinite { field: "emitter vertex", value });
         }

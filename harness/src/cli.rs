@@ -5,6 +5,7 @@
 //! they are; whoever looks them up offers the [`nearest`] ones.
 
 mod error;
+mod fit_ltc;
 mod names;
 mod study;
 mod values;
@@ -15,10 +16,11 @@ use std::path::PathBuf;
 use assign::{FrustumTests, LightOrder};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use scenes::Radii;
-use shading::Cut;
+use scenes::{Outlines, Radii};
+use shading::{AreaModel, Cut};
 
 pub use error::{BAD_INPUT, CliError};
+pub use fit_ltc::FitLtcArgs;
 pub use names::{did_you_mean, nearest};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use values::{Camera, CameraPose, Size, Strategies};
@@ -70,6 +72,8 @@ pub enum Invocation {
     Report(ReportArgs),
     /// Search for the best strategy and parameters.
     Advise(AdviseArgs),
+    /// Fit linearly transformed cosines to the BRDF.
+    FitLtc(FitLtcArgs),
     /// List what can be named on the command line.
     List(Listing),
     /// Print this text (help or version) and end well.
@@ -108,6 +112,8 @@ enum Command {
     Report(ReportArgs),
     /// Search for the strategy and parameters to use on this scene and this GPU
     Advise(AdviseArgs),
+    /// Fit linearly transformed cosines to the BRDF anew, and compare them with those in use
+    FitLtc(FitLtcArgs),
     /// List the strategies, scenes or adapters that can be named
     List {
         /// What to list
@@ -181,6 +187,27 @@ pub struct CompareArgs {
     #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
     pub spots: f64,
 
+    /// Share of area lights among the scattered lights, 0 to 1, with that of spots at most 1
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
+    pub areas: f64,
+
+    /// Outlines of the scattered area lights
+    #[arg(long, value_name = "WHICH", default_value = "both")]
+    pub outlines: OutlinesChoice,
+
+    /// Where the diffuse light of scattered area lights ends, as a share of the range of their
+    /// specular light, above 0 and at most 1
+    #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
+    pub diffuse_share: f64,
+
+    /// How the light of area lights is integrated
+    #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
+    pub area_model: AreaModel,
+
+    /// Draw the scene N x N times beside itself, with its lights and those scattered in it, 1 to 64
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies)]
+    pub replicate: u32,
+
     /// Image size in pixels, each side 1 to 16,384
     #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
     pub size: Size,
@@ -239,6 +266,11 @@ pub struct CompareArgs {
     #[arg(long, value_name = "WHICH", default_value = "all")]
     pub pictures: PicturesChoice,
 
+    /// Count the light operations of every method with lists: the terms that are evaluated, and those
+    /// that would be seen
+    #[arg(long)]
+    pub operations: bool,
+
     /// What to check against the CPU: every (light, pixel) pair, or nothing
     #[arg(long, value_name = "LEVEL", default_value = "full")]
     pub truth: TruthChoice,
@@ -253,6 +285,27 @@ pub enum LightBox {
     Bounds,
     /// Seven upright cylinders in the box of the scene without far-off parts
     Cylinders,
+}
+
+/// Outlines of scattered area lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OutlinesChoice {
+    /// Half of each
+    Both,
+    /// Rectangles
+    Rectangles,
+    /// Polygons of 3 to 10 vertices
+    Polygons,
+}
+
+impl From<OutlinesChoice> for Outlines {
+    fn from(choice: OutlinesChoice) -> Self {
+        match choice {
+            OutlinesChoice::Both => Self::Both,
+            OutlinesChoice::Rectangles => Self::Rectangles,
+            OutlinesChoice::Polygons => Self::Polygons,
+        }
+    }
 }
 
 /// How the radii of scattered lights are distributed.
@@ -370,6 +423,7 @@ where
         Ok(Cli { command: Some(Command::Study(args)), .. }) => Ok(Invocation::Study(args)),
         Ok(Cli { command: Some(Command::Report(args)), .. }) => Ok(Invocation::Report(args)),
         Ok(Cli { command: Some(Command::Advise(args)), .. }) => Ok(Invocation::Advise(args)),
+        Ok(Cli { command: Some(Command::FitLtc(args)), .. }) => Ok(Invocation::FitLtc(args)),
         Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
         Err(shown)
             if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>

@@ -89,7 +89,7 @@ impl Bench {
 
     /// The stage that arguments ask for; the scene is opened once while it stays the same.
     pub fn stage(&mut self, args: &CompareArgs) -> Result<&mut Stage, HarnessError> {
-        let key = format!("{} {}", args.scene, args.scene_scale);
+        let key = format!("{} {} {}", args.scene, args.scene_scale, args.replicate);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 stage.set_up(&self.gpu, args)?;
@@ -146,6 +146,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         along_path: args.path,
         seed: args.seed,
         cut: args.cut.into(),
+        operations: args.operations,
     }
 }
 

@@ -11,6 +11,7 @@ pub mod compare;
 mod digits;
 pub mod error;
 pub mod errors;
+pub mod fit_ltc;
 pub mod list_lengths;
 pub mod machine;
 pub mod measure;

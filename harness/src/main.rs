@@ -11,6 +11,7 @@ use harness::{
     cli::{self, CliError, Invocation, Listing},
     compare::compare,
     error::HarnessError,
+    fit_ltc::fit_ltc,
     registry::{STRATEGIES, StrategyEntry},
     study::study,
 };
@@ -39,6 +40,7 @@ fn run() -> Result<(), HarnessError> {
         Invocation::Study(args) => study(&args)?,
         Invocation::Report(args) => again(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
+        Invocation::FitLtc(args) => fit_ltc(&args)?,
     };
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         // Whoever read has read enough.

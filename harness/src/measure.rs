@@ -6,7 +6,10 @@ use std::time::{Duration, Instant};
 use assign::{
     Assignment, Counters, EncoderPasses, Everything, Gpu, Light, LightBuffer, MAX_RANGE_M,
 };
-use shading::{Cut, HdrImage, LightBvh, ListsTruth, Mode, probe, record_for_probe};
+use shading::{
+    Cut, HdrImage, LightBvh, LightingOptions, ListsTruth, Mode, Operations, count_operations,
+    probe, record_for_probe,
+};
 
 use crate::{
     clock::PassClock,
@@ -32,6 +35,8 @@ pub struct ListsFigures {
     pub truth: Option<ListsTruth>,
     /// How long the lists are that samples read; empty where the truth was not asked for.
     pub lengths: ListLengths,
+    /// Light operations, where they were asked for.
+    pub operations: Option<Operations>,
 }
 
 /// What a method showed before its times were taken.
@@ -68,6 +73,8 @@ pub struct Plan {
     pub seed: u64,
     /// How fall-off ends.
     pub cut: Cut,
+    /// Whether light operations are counted.
+    pub operations: bool,
 }
 
 /// Frames in which the pool of a method may grow to what its lists ask for.
@@ -95,6 +102,8 @@ pub struct Contest<'a> {
     plan: Plan,
     clock: PassClock,
     contenders: Vec<Contender<'a>>,
+    /// That of the first image that was checked.
+    exposure: Option<f32>,
 }
 
 impl<'a> Contest<'a> {
@@ -116,7 +125,14 @@ impl<'a> Contest<'a> {
                 overflowed_frames: 0,
             });
         }
-        Ok(Self { gpu: gpu.clone(), mode, plan, clock: PassClock::new(gpu), contenders })
+        Ok(Self {
+            gpu: gpu.clone(),
+            mode,
+            plan,
+            clock: PassClock::new(gpu),
+            contenders,
+            exposure: None,
+        })
     }
 
     /// Draws one method until none of its lists overflows, reads its image back, and checks its
@@ -136,8 +152,10 @@ impl<'a> Contest<'a> {
         }
         let image = read(&self.gpu, stage)?;
         let lists = match &self.contenders[method].painter {
-            Painter::Lists { strategy, .. } => {
-                Some(count(&self.gpu, stage, *strategy, self.mode, truth)?)
+            Painter::Lists { strategy, lighting } => {
+                let exposure = *self.exposure.get_or_insert_with(|| image.auto_exposure());
+                let seen = self.plan.operations.then(|| (lighting.options(), exposure));
+                Some(count(&self.gpu, stage, *strategy, self.mode, truth, seen)?)
             }
             Painter::RasterSphere(_) | Painter::Clay => None,
         };
@@ -339,27 +357,35 @@ pub fn pass_kind(name: &str) -> PassKind {
     }
 }
 
-/// Reads the lists of the last frame back and checks them.
+/// Reads the lists of the last frame back and checks them; `seen` asks for light operations.
 fn count(
     gpu: &Gpu,
     stage: &Stage,
     strategy: &dyn Assignment,
     mode: Mode,
     truth: Option<&LightBvh<'_>>,
+    seen: Option<(LightingOptions, f32)>,
 ) -> Result<ListsFigures, HarnessError> {
     let snapshot = strategy.lists().snapshot(gpu)?;
     let mut lengths = ListLengths::default();
+    let Stage { renderer, view, lights, .. } = stage;
+    if mode == Mode::Forward && (truth.is_some() || seen.is_some()) {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut passes = EncoderPasses { encoder: &mut encoder };
+        record_for_probe(renderer, view, strategy, &mut passes);
+        gpu.queue.submit([encoder.finish()]);
+    }
+    let frame = renderer.frame(view, lights);
+    let operations = match seen {
+        None => None,
+        Some((options, exposure)) => {
+            Some(count_operations(renderer, strategy, &frame, options, exposure)?)
+        }
+    };
     let truth = match truth {
         None => None,
         Some(bvh) => {
-            let Stage { renderer, view, lights, .. } = stage;
-            if mode == Mode::Forward {
-                let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                let mut passes = EncoderPasses { encoder: &mut encoder };
-                record_for_probe(renderer, view, strategy, &mut passes);
-                gpu.queue.submit([encoder.finish()]);
-            }
-            let samples = probe(renderer, strategy, &renderer.frame(view, lights))?;
+            let samples = probe(renderer, strategy, &frame)?;
             let pixels = view.viewport.width as usize * view.viewport.height as usize;
             lengths = ListLengths::new(&samples, &snapshot, pixels);
             Some(bvh.check(&samples, &snapshot, strategy.needs().normals))
@@ -371,6 +397,7 @@ fn count(
         bytes: strategy.lists().bytes(),
         truth,
         lengths,
+        operations,
     })
 }
 

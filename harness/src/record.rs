@@ -10,7 +10,7 @@ use crate::{
     error::HarnessError,
     errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
-    results::{Images, Record, mean},
+    results::{Images, Operations, Record, mean},
     schedule::rounds,
     stage::Stage,
 };
@@ -98,6 +98,13 @@ pub fn record(
             .filter(|(_, count)| *count > 0)
             .map(|(kind, count)| (kind.to_owned(), count))
             .collect(),
+        area_model: stage.lights.kinds().areas.then(|| stage.area_model.to_string()),
+        operations: lists.operations.map(|counted| Operations {
+            diffuse: counted.diffuse,
+            specular: counted.specular,
+            outer_specular: counted.outer_specular,
+            perceptible: counted.perceptible,
+        }),
         radius_scale: stage.radius_scale,
         eye: stage.view.eye().to_array().map(f64::from),
         forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),

@@ -169,6 +169,20 @@ impl Clock {
     }
 }
 
+/// Evaluations of one term of one light at one sample, summed over an image (Swarbrick 2025,
+/// appendix I).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Operations {
+    /// Diffuse terms that were evaluated.
+    pub diffuse: u64,
+    /// Specular terms that were evaluated.
+    pub specular: u64,
+    /// Of those, the ones at samples beyond the reach of the light's diffuse term.
+    pub outer_specular: u64,
+    /// Terms of either kind whose light would be seen: 0 to 2 of each pair.
+    pub perceptible: u64,
+}
+
 /// One strategy on one scene in one mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
@@ -189,9 +203,15 @@ pub struct Record {
     pub mode: Mode,
     /// Lights that took part.
     pub lights: u64,
-    /// Lights of each kind, by name: `point`, `spot`.
+    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`.
     #[serde(default)]
     pub light_kinds: BTreeMap<String, u64>,
+    /// How area lights were shaded: `ltc`; absent where there was none.
+    #[serde(default)]
+    pub area_model: Option<String>,
+    /// Light operations, where they were counted.
+    #[serde(default)]
+    pub operations: Option<Operations>,
     /// Factor on the radii of scattered lights; at 1 their mean is one metre.
     pub radius_scale: f64,
     /// The camera's position, world space, metres.

@@ -3,7 +3,7 @@
 use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, Projection, View};
 use glam::{Vec2, Vec3};
 use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, scatter_lights};
-use shading::Renderer;
+use shading::{AreaModel, Renderer};
 
 use crate::{
     cli::{Camera, CliError, CompareArgs, LightBox},
@@ -30,6 +30,8 @@ pub struct Stage {
     pub own_lights: usize,
     /// The lights, faulty ones left out.
     pub lights: LightBuffer,
+    /// How area lights are shaded.
+    pub area_model: AreaModel,
     /// The camera.
     pub view: View,
     /// The pipeline.
@@ -63,7 +65,7 @@ impl Stage {
     pub fn new(gpu: &Gpu, args: &CompareArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
         let unscaled_m = scene.core_bounds.diagonal();
-        let scene = scene.scaled(args.scene_scale as f32)?;
+        let scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
         let Set { lens, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
         Ok(Self {
             scene_hash: scene.hash(),
@@ -71,6 +73,7 @@ impl Stage {
             light_box: lit.bounds,
             own_lights: lit.own,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
+            area_model: args.area_model,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
@@ -87,6 +90,7 @@ impl Stage {
         self.light_box = lit.bounds;
         self.own_lights = lit.own;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
+        self.area_model = args.area_model;
         self.view = view;
         self.lens = lens;
         Ok(())
@@ -105,9 +109,14 @@ impl Stage {
     }
 
     /// Lights of each kind, by name.
-    pub fn light_kinds(&self) -> [(&'static str, u64); 2] {
+    pub fn light_kinds(&self) -> [(&'static str, u64); 4] {
         let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
-        [("point", count(LightKind::Point)), ("spot", count(LightKind::Spot))]
+        [
+            ("point", count(LightKind::Point)),
+            ("spot", count(LightKind::Spot)),
+            ("rectangle", count(LightKind::Rectangle)),
+            ("polygon", count(LightKind::Polygon)),
+        ]
     }
 }
 
@@ -135,7 +144,7 @@ impl Lit {
             lights.extend(other.lights);
         }
         let own = lights.len();
-        lights.extend(scatter_lights(&LightSpec {
+        let scattered = scatter_lights(&LightSpec {
             count: args.lights,
             seed: args.seed,
             radius_scale: radius_scale as f32,
@@ -146,7 +155,11 @@ impl Lit {
                 LightBox::Core | LightBox::Bounds => Places::Box,
             },
             spot_share: args.spots as f32,
-        })?);
+            area_share: args.areas as f32,
+            outlines: args.outlines.into(),
+            diffuse_share: args.diffuse_share as f32,
+        })?;
+        lights.extend(copies(scene, args, &scattered));
         if let Some(threshold) = args.threshold {
             for light in &mut lights {
                 light.range_m = Light::range_from_threshold(light.intensity, threshold as f32)
@@ -155,6 +168,18 @@ impl Lit {
         }
         Ok(Self { lights, bounds, own })
     }
+}
+
+/// Scattered lights, those of each copy of the scene: the first lot first.
+fn copies(scene: &Scene, args: &CompareArgs, lights: &[Light]) -> Vec<Light> {
+    let side = args.replicate;
+    let step = (scene.bounds.max - scene.bounds.min) / side as f32;
+    let offsets = (0..side).flat_map(|x| (0..side).map(move |z| (x as f32, z as f32)));
+    let moved = |(x, z): (f32, f32)| {
+        let by = Vec3::new(x * step.x, 0.0, z * step.z);
+        lights.iter().map(move |light| Light { position: light.position + by, ..*light })
+    };
+    offsets.flat_map(moved).collect()
 }
 
 /// Lights as large, against their scene, as lights of one metre are in a hall: a town under

@@ -24,7 +24,9 @@ pub use aabb::Aabb;
 pub use atrium::atrium;
 pub use error::SceneError;
 pub use gltf_import::load_gltf;
-pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Places, Radii, THRESHOLD, scatter_lights};
+pub use lights::{
+    LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Outlines, Places, Radii, THRESHOLD, scatter_lights,
+};
 pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
 pub use path::{CameraPath, Pose};
 pub use registry::{SceneEntry, list, open};

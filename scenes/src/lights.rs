@@ -32,7 +32,7 @@ const SPOT_OUTER_DEGREES: (f64, f64) = (15.0, 60.0);
 const SPOT_INNER_SHARE: (f64, f64) = (0.5, 0.95);
 
 /// Half the longer side of emitters, as a share of their range.
-const HALF_SIZE_SHARE: (f64, f64) = (0.05, 0.35);
+const HALF_SIZE_SHARE: (f64, f64) = (0.03, 0.15);
 
 /// The shorter side of emitters as a share of the longer.
 const ASPECT: (f64, f64) = (0.2, 1.0);
@@ -103,6 +103,18 @@ impl Places {
     }
 }
 
+/// Outlines of scattered area lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outlines {
+    /// Half of each.
+    #[default]
+    Both,
+    /// Rectangles.
+    Rectangles,
+    /// Polygons of 3 to 10 vertices.
+    Polygons,
+}
+
 /// A distribution, ready to draw from.
 enum RadiusSource {
     Gamma(Gamma<f64>),
@@ -158,8 +170,10 @@ pub struct LightSpec {
     pub places: Places,
     /// Share of spots among them, 0..=1.
     pub spot_share: f32,
-    /// Share of area lights, 0..=1, half of them rectangles and half polygons; the rest are points.
+    /// Share of area lights, 0..=1; the rest are points.
     pub area_share: f32,
+    /// Outlines of the area lights.
+    pub outlines: Outlines,
     /// Where the diffuse light of area lights ends, as a share of their range.
     pub diffuse_share: f32,
 }
@@ -176,6 +190,7 @@ impl LightSpec {
             places: Places::Box,
             spot_share: 0.0,
             area_share: 0.0,
+            outlines: Outlines::Both,
             diffuse_share: 1.0,
         }
     }
@@ -245,7 +260,8 @@ fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
     let range_m = (radii.sample(&mut rng) as f32 * spec.radius_scale).max(MIN_RADIUS_M);
     let intensity = color * (THRESHOLD * range_m * range_m);
     if is_area {
-        let emitter = random_emitter(&mut Pcg64Mcg::seed_from_u64(!stream(spec.seed, ix)), range_m);
+        let mut rng = Pcg64Mcg::seed_from_u64(!stream(spec.seed, ix));
+        let emitter = random_emitter(&mut rng, spec.outlines, range_m);
         let emitter = emitter.with_diffuse_share(spec.diffuse_share);
         return Light::area(emitter, position, range_m, intensity);
     }
@@ -284,7 +300,7 @@ fn random_direction(rng: &mut impl Rng) -> DVec3 {
 
 /// An emitter that faces anywhere, of a size that goes with its range: a rectangle, or a polygon
 /// with its vertices on an ellipse.
-fn random_emitter(rng: &mut impl Rng, range_m: f32) -> Emitter {
+fn random_emitter(rng: &mut impl Rng, outlines: Outlines, range_m: f32) -> Emitter {
     let normal = random_direction(rng);
     let x =
         DQuat::from_axis_angle(normal, TAU * rng.random::<f64>()) * normal.any_orthonormal_vector();
@@ -293,7 +309,12 @@ fn random_emitter(rng: &mut impl Rng, range_m: f32) -> Emitter {
     let x = x * half.max(2e-4);
     let y = normal.cross(x) * rng.random_range(ASPECT.0..ASPECT.1);
     let two_sided = rng.random::<f64>() < TWO_SIDED_SHARE;
-    let count = if rng.random::<bool>() { 0 } else { rng.random_range(3..=MAX_VERTICES) };
+    let is_polygon = match outlines {
+        Outlines::Both => rng.random::<bool>(),
+        Outlines::Rectangles => false,
+        Outlines::Polygons => true,
+    };
+    let count = if is_polygon { rng.random_range(3..=MAX_VERTICES) } else { 0 };
     let vertex = |ix: usize| {
         let (sin, cos) = (TAU * ix as f64 / count as f64).sin_cos();
         (x * cos + y * sin).as_vec3()

@@ -193,6 +193,43 @@ impl Scene {
         })
     }
 
+    /// The scene `side` x `side` times beside itself, along X and Z: the first where it was, its
+    /// lights with it. Camera, path and [`Scene::core_bounds`] stay those of the first.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::OutOfRange`] unless `side` is 1 to 64 and there are at most 200,000,000
+    /// triangles.
+    pub fn replicated(mut self, side: u32) -> Result<Self, SceneError> {
+        let copies = u64::from(side) * u64::from(side);
+        let out =
+            |value: String, accepted| SceneError::OutOfRange { field: "copies", value, accepted };
+        if !(1..=64).contains(&side) {
+            return Err(out(side.to_string(), "1 to 64 along each side"));
+        }
+        if self.triangle_count().saturating_mul(copies) > 200_000_000 {
+            let value = format!("{copies} of {} triangles", self.triangle_count());
+            return Err(out(value, "at most 200000000 triangles together"));
+        }
+        let size = self.bounds.max - self.bounds.min;
+        let (models, instances) = (self.models.clone(), self.instances.clone());
+        let lights = self.lights.clone();
+        for (x, z) in (0..side).flat_map(|x| (0..side).map(move |z| (x, z))).skip(1) {
+            let by = Vec3::new(x as f32 * size.x, 0.0, z as f32 * size.z);
+            let first = self.models.len() as u32;
+            self.models.extend(models.iter().map(|model| Model {
+                object_to_world: Mat4::from_translation(by) * model.object_to_world,
+                ..model.clone()
+            }));
+            let moved = |i: &Instance| Instance { model: first + i.model, ..*i };
+            self.instances.extend(instances.iter().map(moved));
+            self.lights.extend(lights.iter().map(|l| Light { position: l.position + by, ..*l }));
+        }
+        let last = (side - 1) as f32;
+        self.bounds.max += Vec3::new(last * size.x, 0.0, last * size.z);
+        Ok(self)
+    }
+
     /// The scene, uniformly scaled about the origin.
     ///
     /// Geometry, boxes, cameras, the path and the positions of the scene's own lights scale by
@@ -241,6 +278,30 @@ impl Scene {
 
 #[cfg(test)]
 mod tests {
+    use assign::Light;
+    use glam::Vec3;
+
+    #[test]
+    fn copies_stand_beside_the_first() {
+        let mut one = crate::atrium(1);
+        one.lights = vec![Light::point(Vec3::Y, 1.0, Vec3::ONE)];
+        let four = one.clone().replicated(2).expect("in range");
+        assert_eq!(four.triangle_count(), 4 * one.triangle_count());
+        assert_eq!((four.models.len(), four.lights.len()), (4 * one.models.len(), 4));
+        let size = one.bounds.max - one.bounds.min;
+        assert_eq!(four.lights[3].position, Vec3::new(size.x, 1.0, size.z));
+        assert_eq!((four.bounds.min, four.core_bounds), (one.bounds.min, one.core_bounds));
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for corner in four.world_triangles().flatten() {
+            (low, high) = (low.min(corner), high.max(corner));
+        }
+        let off = (low - four.bounds.min).abs().max((high - four.bounds.max).abs());
+        assert!(off.max_element() < 1e-4 * size.length(), "{low} {high} {:?}", four.bounds);
+        assert_ne!(four.hash(), one.hash());
+        let refused = one.replicated(0).expect_err("none").to_string();
+        assert!(refused.contains("copies is 0"), "{refused}");
+    }
+
     #[test]
     fn samples_are_every_nth_triangle() {
         let scene = crate::atrium(1);

@@ -51,6 +51,16 @@ pub enum ShadingError {
         /// The kinds of the prepared lights.
         lights: LightKinds,
     },
+    /// A table of linearly transformed cosines is not one.
+    #[error("LTC table: {field} is {value}: it must be {accepted}")]
+    LtcTable {
+        /// What is wrong with it.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// What would be accepted.
+        accepted: String,
+    },
     /// A file could not be read.
     #[error("{path}: cannot be read: {reason}")]
     Read {

@@ -16,16 +16,20 @@
 //! is compiled and bound: each texture, alpha masks, emission, spots, area lights.
 //!
 //! [`truth`](LightBvh) checks a strategy's lists on the CPU in f64; [`HdrImage`] compares images
-//! bit for bit.
+//! bit for bit; [`traced`] renders the true image, shadows and one bounce included.
 
 mod area_model;
+mod area_reference;
 mod error;
 mod geometry;
 mod heat_map;
 mod image;
 mod lighting;
+mod lighting_inputs;
+pub mod ltc;
 mod materials;
 mod mips;
+mod operations;
 mod probe;
 mod raster;
 mod raster_spheres;
@@ -33,15 +37,17 @@ pub mod reference;
 mod renderer;
 mod shaders;
 mod targets;
+pub mod traced;
 mod truth;
 
-pub use area_model::AreaModel;
+pub use area_model::{AreaModel, MAX_AREA_SAMPLES};
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
 pub use image::{HdrImage, ImageDifference, luminance};
 pub use lighting::{Cut, Lighting, LightingOptions};
 pub use materials::MaterialRecord;
+pub use operations::{Operations, count_operations};
 pub use probe::{Samples, probe, record_for_probe};
 pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};
 pub use renderer::{Mode, Renderer, record_before_lighting};

@@ -30,7 +30,8 @@ fn subsets(flags: &[&'static str]) -> Vec<Flags> {
 }
 
 /// The flags of each model of area lights.
-const AREA_MODELS: [&str; 1] = ["area_point"];
+const AREA_MODELS: [&str; 5] =
+    ["area_point", "area_mrp", "area_ltc_table", "area_ltc_polynomial", "area_monte_carlo"];
 
 /// Each set as it is, and with area lights of each model.
 fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
@@ -147,7 +148,11 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        for flags in with_areas(material_flags(Some("forward"), &["emissive", "spots"])) {
+        let sets = material_flags(Some("forward"), &["emissive", "spots"]);
+        // Area lights read no texture: one material with all of them will do.
+        let areas =
+            with_areas(sets.iter().max_by_key(|set| set.len()).into_iter().cloned().collect());
+        for flags in sets.into_iter().chain(areas) {
             let slots = shaded_slots(&flags);
             check_geometry(&flags, Some(look_up), Some("fragment_forward"), slots);
         }
@@ -158,12 +163,19 @@ fn forward() {
 /// `lists` and `images` of group 2.
 fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], images: &[u32]) {
     let linked = link(&format!("package::{root}"), flags, Some(look_up));
-    let entry_point = if root == "deferred" { "shade" } else { root };
+    let entry_point = match root {
+        "deferred" => "shade",
+        "operations" => "count_operations",
+        _ => root,
+    };
     assert_eq!(linked.entry_points, [entry_point.to_owned()].into(), "{root} {flags:?}");
     let of_group = |group| -> Vec<u32> {
         linked.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
     };
     assert_eq!(of_group(1), lists, "{root} {flags:?} {}", look_up.0);
+    let mut images = images.to_vec();
+    images.extend(flags.contains("area_ltc_table").then_some(7));
+    images.sort_unstable();
     assert_eq!(of_group(2), images, "{root} {flags:?} {}", look_up.0);
 }
 
@@ -181,6 +193,19 @@ fn deferred() {
 }
 
 #[test]
+fn operations() {
+    for look_up in LOOK_UPS {
+        for flags in with_areas(subsets(&["spots", "model_ids"])) {
+            let mut images = vec![0, 1, 2, 8, 9];
+            images.extend(flags.contains("area_monte_carlo").then_some(6));
+            images.extend(flags.contains("model_ids").then_some(5));
+            images.sort_unstable();
+            check_compute("operations", &flags, look_up, look_up.2, &images);
+        }
+    }
+}
+
+#[test]
 fn probe() {
     for look_up in LOOK_UPS {
         // It asks for the group, and reads no list.
@@ -188,6 +213,18 @@ fn probe() {
         check_compute("probe", &Flags::new(), look_up, &own, &[0, 1, 2, 3]);
         let model_ids = ["model_ids"].into();
         check_compute("probe", &model_ids, look_up, &own, &[0, 1, 2, 3, 5]);
+    }
+}
+
+#[test]
+fn surfaces() {
+    for flags in subsets(&["emissive"]) {
+        let linked = link("package::surfaces", &flags, None);
+        let emissive = flags.contains("emissive");
+        let expected = if emissive { vec![0, 1, 2, 3, 4, 5, 6, 7] } else { vec![0, 1, 2, 4, 5, 6] };
+        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
+        assert_eq!(images, expected, "{flags:?}");
+        assert_eq!(linked.entry_points, ["surfaces".to_owned()].into(), "{flags:?}");
     }
 }
 

@@ -81,7 +81,11 @@ impl CliError {
             )),
             ErrorKind::InvalidSubcommand => {
                 let name = text(ContextKind::InvalidSubcommand).unwrap_or_default();
-                Self::unknown("command", &name, &["compare", "study", "report", "advise", "list"])
+                Self::unknown(
+                    "command",
+                    &name,
+                    &["compare", "study", "report", "advise", "fit-ltc", "list"],
+                )
             }
             ErrorKind::MissingRequiredArgument => Self::new(match option {
                 "<DIR>..." => "report needs a folder: of a comparison or a study",

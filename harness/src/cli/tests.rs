@@ -84,6 +84,14 @@ fn every_value_out_of_range_is_named_with_its_range() {
             "a number from 1e-6 to 1e6",
         ),
         ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
+        (
+            "--area-model",
+            &["LTC", "disc", ""],
+            "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples",
+        ),
+        ("--areas", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
+        ("--diffuse-share", &["0", "1.01", "NaN"], "a number above 0 and at most 1"),
+        ("--replicate", &["0", "65", "1.5"], "a whole number from 1 to 64"),
         ("--spots", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
         ("--lights", &["-1", "16777217", "1.5", "99999999999999999999"], counts),
         ("--frames", &["0", "100001", "-3", "all"], counts),
@@ -115,6 +123,22 @@ fn every_value_out_of_range_is_named_with_its_range() {
 }
 
 #[test]
+fn lobes_are_fitted_into_a_folder_or_only_compared() {
+    let args = |line| match parse_line(line) {
+        Ok(Invocation::FitLtc(args)) => args,
+        other => panic!("{line}: {other:?}"),
+    };
+    assert_eq!(args("fit-ltc"), FitLtcArgs { out: None, size: 64 });
+    let out = Some(PathBuf::from("x"));
+    assert_eq!(args("fit-ltc --out x --size 1024"), FitLtcArgs { out, size: 1024 });
+    for size in ["1", "1025", "-2", "x"] {
+        let message = refusal(&format!("fit-ltc --size {size}"));
+        let expected = format!("--size is {size}: it must be a whole number from 2 to 1,024");
+        assert_eq!(message, expected);
+    }
+}
+
+#[test]
 fn empty_values_are_refused() {
     assert_eq!(message(parse(["lightbench", "--out", ""])), "--out needs a value");
     for option in ["--scene", "--adapter", "--strategies", "--size", "--seed"] {
@@ -134,7 +158,7 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
     assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, list";
+    let known = "known are compare, study, report, advise, fit-ltc, list";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
     assert_eq!(refusal("study"), "study needs which one: comparison or culling");
     assert_eq!(refusal("report"), "report needs a folder: of a comparison or a study");

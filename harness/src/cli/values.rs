@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use assign::{AssignError, FrustumTests, LightOrder};
 
+use shading::AreaModel;
+
 use super::MAX_LIGHTS;
 
 const MAX_SIDE: u32 = 16_384;
@@ -128,12 +130,31 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     number(text, 0.0, 1.0).ok_or_else(|| "a number from 0 to 1".to_owned())
 }
 
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    let accepted = || "a number above 0 and at most 1".to_owned();
+    share(text).ok().filter(|part| *part > 0.0).ok_or_else(accepted)
+}
+
+pub(super) fn area_model(text: &str) -> Result<AreaModel, String> {
+    let accepted = "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples";
+    text.parse().map_err(|_| accepted.to_owned())
+}
+
+pub(super) fn copies(text: &str) -> Result<u32, String> {
+    whole(text, 1, 64).ok_or_else(|| "a whole number from 1 to 64".to_owned())
+}
+
 pub(super) fn lights(text: &str) -> Result<u32, String> {
     whole(text, 0, MAX_LIGHTS).ok_or_else(|| "a whole number from 0 to 16,777,216".to_owned())
 }
 
 pub(super) fn frames(text: &str) -> Result<u32, String> {
     whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
+}
+
+pub(super) fn table_size(text: &str) -> Result<usize, String> {
+    let size = whole(text, 2, 1024).ok_or("a whole number from 2 to 1,024")?;
+    Ok(size as usize)
 }
 
 pub(super) fn warmup(text: &str) -> Result<u32, String> {

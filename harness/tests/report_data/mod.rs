@@ -67,6 +67,8 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         mode,
         lights: 1_000,
         light_kinds: BTreeMap::from([("point".to_owned(), 900), ("spot".to_owned(), 100)]),
+        area_model: None,
+        operations: None,
         radius_scale: 1.0,
         eye: [0.0, 1.7, 8.0],
         forward: [0.0, 0.0, -1.0],

@@ -1,0 +1,109 @@
+//! How far lobes are from the BRDF: over random rectangles, against its true integral.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+use super::{polygon::ltc_integral, quadrature::integrate, table::Entry};
+
+/// Tolerance of the true integrals, relative.
+const TOLERANCE: f64 = 1e-3;
+/// Farthest that a rectangle's centre is from the mirror direction.
+const FARTHEST_DEGREES: f64 = 25.0;
+
+/// A rectangle seen from a surface, and the true integral of the specular lobe over it.
+#[derive(Clone, Debug)]
+pub struct AccuracyCase {
+    /// The rectangle's corners, shading frame.
+    pub rectangle: [DVec3; 4],
+    /// Perceptual roughness.
+    pub roughness: f64,
+    /// Cosine of the view.
+    pub cos_view: f64,
+    /// The integral of D V cos over the rectangle.
+    pub specular: f64,
+}
+
+/// Relative errors over many cases.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Median of the unsigned errors.
+    pub median: f64,
+    /// Mean of the signed errors.
+    pub bias: f64,
+    /// 95 % of the unsigned errors are below this.
+    pub p95: f64,
+}
+
+/// Cases drawn at random, the same for each seed.
+///
+/// Roughness and cosine of the view are uniform in 0.1 to 1. A rectangle's centre lies at a distance
+/// of 1 to 3, within 25 degrees of the mirror direction and above the horizon; half its sides are
+/// log-uniform in 0.1 to 1, and it is turned in any way but nearly edge-on. Parts of it may lie below
+/// the horizon.
+pub fn accuracy_cases(count: usize, seed: u64) -> Vec<AccuracyCase> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut cases: Vec<AccuracyCase> = (0..count).map(|_| draw(&mut rng)).collect();
+    cases.par_iter_mut().for_each(|case| {
+        let to_eye = to_eye(case.cos_view);
+        let truth = integrate(&case.rectangle, to_eye, case.roughness, TOLERANCE);
+        case.specular = truth.value.specular;
+    });
+    cases
+}
+
+impl Accuracy {
+    /// Of lobes that `entry` gives for a roughness and a cosine of the view; all 0 without cases.
+    pub fn of(cases: &[AccuracyCase], entry: impl Fn(f64, f64) -> Entry) -> Self {
+        let error = |case: &AccuracyCase| {
+            let entry = entry(case.roughness, case.cos_view);
+            let covered = ltc_integral(&entry.inverse(), &case.rectangle);
+            covered * entry.specular_albedo(1.0) / case.specular - 1.0
+        };
+        let mut errors: Vec<f64> = cases.iter().map(error).collect();
+        let bias = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+        errors.iter_mut().for_each(|error| *error = error.abs());
+        errors.sort_by(f64::total_cmp);
+        let quantile = |share: f64| {
+            let ix = (errors.len().saturating_sub(1) as f64 * share).round();
+            errors.get(ix as usize).copied().unwrap_or_default()
+        };
+        Self { median: quantile(0.5), bias, p95: quantile(0.95) }
+    }
+}
+
+fn to_eye(cos_view: f64) -> DVec3 {
+    DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view)
+}
+
+/// A case that lacks its true integral.
+fn draw(rng: &mut Pcg64Mcg) -> AccuracyCase {
+    let roughness = rng.random_range(0.1..1.0);
+    let cos_view = rng.random_range(0.1..1.0);
+    let mirror = to_eye(cos_view) * DVec3::new(-1.0, 1.0, 1.0);
+    let nearest = FARTHEST_DEGREES.to_radians().cos();
+    let direction = draw_until(rng, |at| at.dot(mirror) > nearest && at.z > 0.0);
+    let normal = draw_until(rng, |normal| normal.dot(direction).abs() > 0.1);
+    let x = draw_until(rng, |x| x.cross(normal).length() > 0.1).cross(normal).normalize();
+    let center = direction * rng.random_range(1.0..3.0);
+    let mut half_side = || 10_f64.powf(rng.random_range(-1.0..0.0));
+    let (x, y) = (x * half_side(), normal.cross(x) * half_side());
+    let rectangle = [center - x - y, center + x - y, center + x + y, center - x + y];
+    AccuracyCase { rectangle, roughness, cos_view, specular: 0.0 }
+}
+
+/// A direction, uniform on the part of the sphere that is accepted.
+fn draw_until(rng: &mut Pcg64Mcg, accepted: impl Fn(DVec3) -> bool) -> DVec3 {
+    loop {
+        let z: f64 = rng.random_range(-1.0..1.0);
+        let (sin, cos) = rng.random_range(0.0..TAU).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        let direction = DVec3::new(across * cos, across * sin, z);
+        if accepted(direction) {
+            return direction;
+        }
+    }
+}

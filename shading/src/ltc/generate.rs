@@ -1,0 +1,146 @@
+//! Makes the committed files: the table, and the polynomials of it as Rust and as WESL.
+
+use std::{fs, path::Path};
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    accuracy::{Accuracy, accuracy_cases},
+    polygon::ltc_integral,
+    polynomial::Polynomial,
+    table::{Entry, Table, cos_view},
+};
+use crate::ShadingError;
+
+/// Rectangles that the medians are taken over, and their seed.
+const CASES: usize = 1500;
+const SEED: u64 = 1;
+
+/// What a fit came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitReport {
+    /// The table against the BRDF.
+    pub table: Accuracy,
+    /// The polynomials against the BRDF.
+    pub polynomial: Accuracy,
+    /// Root mean square errors of the polynomials against the table, in the order of
+    /// [`POLYNOMIAL_COMPONENTS`](super::POLYNOMIAL_COMPONENTS).
+    pub rms_errors: [f64; 6],
+    /// The table against the committed one, at the latter's places.
+    pub difference: TableDifference,
+}
+
+/// How far two tables are apart at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TableDifference {
+    /// Of A and B.
+    pub integrals: f64,
+    /// Of what a lobe covers of a polygon about as large as it is.
+    pub covered: f64,
+}
+
+/// Fits a table of `size` texels each way and polynomials of it. Writes `ggx.bin`,
+/// `polynomial_coefficients.rs` and `ltc_polynomial.wesl` to a folder, if there is one. `progress` is
+/// called with the number of entries just done, from several threads.
+///
+/// # Errors
+///
+/// [`ShadingError::LtcTable`] for a size that no table has, [`ShadingError::Write`] where a file
+/// cannot be written.
+pub fn generate(
+    out_dir: Option<&Path>,
+    size: usize,
+    progress: impl Fn(usize) + Sync,
+) -> Result<FitReport, ShadingError> {
+    if let Some(dir) = out_dir {
+        write(dir, |dir| fs::create_dir_all(dir))?;
+    }
+    let table = Table::fit(size, progress)?;
+    let polynomial = Polynomial::of(&table);
+    if let Some(dir) = out_dir {
+        write(&dir.join("ggx.bin"), |path| fs::write(path, table.to_bytes()))?;
+        write(&dir.join("polynomial_coefficients.rs"), |path| {
+            fs::write(path, polynomial.to_rust())
+        })?;
+        write(&dir.join("ltc_polynomial.wesl"), |path| fs::write(path, polynomial.to_wesl()))?;
+    }
+    let cases = accuracy_cases(CASES, SEED);
+    Ok(FitReport {
+        table: Accuracy::of(&cases, |roughness, cos| table.look_up(roughness, cos)),
+        polynomial: Accuracy::of(&cases, |roughness, cos| polynomial.entry(roughness, cos)),
+        rms_errors: polynomial.rms_errors(&table),
+        difference: Table::ggx()?.difference(&table),
+    })
+}
+
+fn write(path: &Path, write: impl Fn(&Path) -> std::io::Result<()>) -> Result<(), ShadingError> {
+    write(path).map_err(|error| {
+        let reason = error.to_string();
+        ShadingError::Write { path: path.to_owned(), reason }
+    })
+}
+
+impl Table {
+    /// The largest differences to another table at this one's places.
+    pub fn difference(&self, other: &Self) -> TableDifference {
+        let differences =
+            self.entries().map(|(x, y, entry)| entry.difference(&other.look_up(x, cos_view(y))));
+        differences.fold(TableDifference::default(), |largest, next| TableDifference {
+            integrals: largest.integrals.max(next.integrals),
+            covered: largest.covered.max(next.covered),
+        })
+    }
+}
+
+impl Entry {
+    /// How far another entry is from this one. Entries of the inverse are not compared one by one:
+    /// at grazing views, different ones make the same lobe.
+    pub fn difference(&self, other: &Self) -> TableDifference {
+        let pairs = self.integrals.iter().zip(other.integrals);
+        let integrals = pairs.map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max);
+        let lobe: DMat3 = self.inverse().inverse();
+        // Squares beside each other in the cosine's own space, moved to where this lobe has them.
+        let covered = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0]].map(|[x, y]| {
+            let corner = |i: f64, j: f64| lobe * DVec3::new(x + i, y + j, 1.0);
+            let square =
+                [corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)];
+            (ltc_integral(&self.inverse(), &square) - ltc_integral(&other.inverse(), &square)).abs()
+        });
+        TableDifference { integrals, covered: covered.into_iter().fold(0.0, f64::max) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_fit_is_written_and_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("new");
+        let entries = std::sync::atomic::AtomicUsize::new(0);
+        let count = |done| {
+            entries.fetch_add(done, std::sync::atomic::Ordering::Relaxed);
+        };
+        let report = generate(Some(&dir), 8, count).unwrap();
+        assert_eq!(entries.into_inner(), 64);
+        let table = Table::from_bytes(&fs::read(dir.join("ggx.bin")).unwrap()).unwrap();
+        assert_eq!(table.size(), 8);
+        let polynomial = Polynomial::of(&table);
+        let text = |name| fs::read_to_string(dir.join(name)).unwrap();
+        assert_eq!(text("polynomial_coefficients.rs"), polynomial.to_rust());
+        assert_eq!(text("ltc_polynomial.wesl"), polynomial.to_wesl());
+        // It is coarser than the committed one.
+        let TableDifference { integrals, covered } = report.difference;
+        assert!(report.table.median > 0.04 && integrals > 0.01 && covered > 0.01, "{report:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_named() {
+        let refusal = generate(None, 1, |_| ()).unwrap_err().to_string();
+        assert_eq!(refusal, "LTC table: size is 1: it must be 2 to 1024 texels each way");
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let refusal = generate(Some(file.path()), 2, |_| ()).unwrap_err();
+        assert!(matches!(refusal, ShadingError::Write { .. }), "{refusal}");
+    }
+}

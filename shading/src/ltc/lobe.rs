@@ -1,0 +1,121 @@
+//! The BRDF's specular lobe for one view, in the shading frame.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+
+use crate::reference::{MIN_COS_VIEW, MIN_ROUGHNESS};
+
+/// GGX's alpha of a perceptual roughness.
+pub(crate) fn alpha_of(roughness: f64) -> f64 {
+    roughness.max(MIN_ROUGHNESS).powi(2)
+}
+
+/// GGX with height-correlated Smith, seen from one direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lobe {
+    pub(crate) to_eye: DVec3,
+    alpha: f64,
+    alpha_2: f64,
+    cos_view: f64,
+    root_view: f64,
+}
+
+impl Lobe {
+    /// The lobe of a perceptual roughness and a unit direction to the eye.
+    pub(crate) fn new(roughness: f64, to_eye: DVec3) -> Self {
+        let alpha = alpha_of(roughness);
+        let alpha_2 = alpha * alpha;
+        let cos_view = to_eye.z.abs().max(MIN_COS_VIEW);
+        let root_view = (cos_view * cos_view * (1.0 - alpha_2) + alpha_2).sqrt();
+        Self { to_eye, alpha, alpha_2, cos_view, root_view }
+    }
+
+    /// Seen from the x-z plane under a cosine of 0 to 1.
+    pub(crate) fn seen_under(roughness: f64, cos_view: f64) -> Self {
+        let cos = cos_view.clamp(MIN_COS_VIEW, 1.0);
+        Self::new(roughness, DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos))
+    }
+
+    pub(crate) fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
+    pub(crate) fn cos_view(&self) -> f64 {
+        self.cos_view
+    }
+
+    /// GGX's distribution of half vectors (Walter et al. 2007, equation 33).
+    fn distribution(&self, cos_half: f64) -> f64 {
+        let peak = cos_half * cos_half * (self.alpha_2 - 1.0) + 1.0;
+        self.alpha_2 / (PI * peak * peak)
+    }
+
+    fn half_way(&self, to_light: DVec3) -> DVec3 {
+        (self.to_eye + to_light).normalize_or_zero()
+    }
+
+    /// D V cos, the BRDF at a Fresnel term of 1 times the cosine of incidence, and Schlick's
+    /// `(1 - v.h)^5`.
+    pub(crate) fn evaluate(&self, to_light: DVec3) -> (f64, f64) {
+        let cos_light = to_light.z.max(0.0);
+        let half_way = self.half_way(to_light);
+        let root_light = (cos_light * cos_light * (1.0 - self.alpha_2) + self.alpha_2).sqrt();
+        let smith = cos_light * self.root_view + self.cos_view * root_light;
+        let lobe =
+            self.distribution(half_way.z.clamp(0.0, 1.0)) * 0.5 * cos_light / smith.max(1e-6);
+        (lobe, (1.0 - self.to_eye.dot(half_way).clamp(0.0, 1.0)).powi(5))
+    }
+
+    /// Density at which [`Self::sample`] finds a direction, per steradian.
+    pub(crate) fn density(&self, to_light: DVec3) -> f64 {
+        let cos_half = self.half_way(to_light).z.clamp(0.0, 1.0);
+        self.distribution(cos_half) * 0.5 / (self.cos_view + self.root_view)
+    }
+
+    /// A direction to a light that mirrors the eye in a normal visible from it (Heitz 2018), perhaps
+    /// below the horizon. Samples of `u` and `1 - u` mirror each other in the x-z plane.
+    pub(crate) fn sample(&self, u: f64, v: f64) -> DVec3 {
+        let stretched = DVec3::new(self.alpha * self.to_eye.x, 0.0, self.cos_view).normalize();
+        let up = DVec3::new(-stretched.z, 0.0, stretched.x);
+        let (sin, cos) = ((u - 0.5) * TAU).sin_cos();
+        let (across, along) = (v.sqrt() * sin, v.sqrt() * cos);
+        let share = 0.5 * (1.0 + stretched.z);
+        let along = (1.0 - share) * (1.0 - across * across).max(0.0).sqrt() + share * along;
+        let rest = (1.0 - across * across - along * along).max(0.0).sqrt();
+        let normal = across * DVec3::Y + along * up + rest * stretched;
+        let normal = DVec3::new(self.alpha * normal.x, self.alpha * normal.y, normal.z.max(0.0));
+        let normal = normal.normalize_or(DVec3::Z);
+        2.0 * self.to_eye.dot(normal) * normal - self.to_eye
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::{Surface, reflect_light};
+
+    #[test]
+    fn the_lobe_is_the_reference_s_specular_term() {
+        for roughness in [0.0, 0.2, 0.7] {
+            for cos_view in [0.02, 0.5, 1.0] {
+                let lobe = Lobe::seen_under(roughness, cos_view);
+                let to_light = DVec3::new(-0.6, 0.3, 0.7).normalize();
+                let (specular, schlick) = lobe.evaluate(to_light);
+                let surface = |metallic, base_color| Surface {
+                    base_color: DVec3::splat(base_color),
+                    metallic,
+                    normal: DVec3::Z,
+                    roughness,
+                };
+                let reflected = reflect_light(&surface(1.0, 0.3), lobe.to_eye, to_light).x;
+                let expected = specular * (0.3 * (1.0 - schlick) + schlick);
+                assert!((reflected - expected).abs() <= 1e-12 * expected, "{reflected} {expected}");
+                let diffuse = reflect_light(&surface(0.0, 1.0), lobe.to_eye, to_light).x
+                    - reflect_light(&surface(0.0, 0.0), lobe.to_eye, to_light).x;
+                let expected = 0.96 * (1.0 - schlick) * to_light.z / PI;
+                assert!((diffuse - expected).abs() < 1e-9 * expected, "{diffuse} {expected}");
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Linearly transformed cosines (Heitz et al. 2016): what polygon lights reflect, in closed form.
+//!
+//! # The idea
+//!
+//! The integral of a cosine over a spherical polygon is a sum over its edges (Lambert 1760). A
+//! matrix M stretches the cosine into a lobe of about the shape of a BRDF's, so that the BRDF's
+//! integral over a polygon is about that of the cosine over the polygon moved by M^-1. A [`Table`]
+//! holds M^-1 for each roughness and view, and the integrals that scale the lobe.
+//!
+//! # The frame
+//!
+//! Everything here happens in the shading frame: the shaded point at the origin, z the shading
+//! normal, x the view direction's projection onto the surface. A polygon is a slice of its vertices
+//! there, in order around it and in either sense: integrals are those of a light that shines to both
+//! sides, and whoever has a one-sided light leaves it out where the point lies behind it. Units are
+//! the caller's: only directions count.
+//!
+//! # The terms
+//!
+//! Radiance reflected to the eye from a polygon of unit radiance, with `f0` the reflectance at
+//! normal incidence, A and B the integrals of an [`Entry`], C [`diffuse_fresnel`]:
+//!
+//! | term | value |
+//! |---|---|
+//! | specular | `ltc_integral * (f0 * (A - B) + B)` |
+//! | diffuse | `albedo * cosine_integral * (1 - f0) * (1 - C)` |
+//!
+//! The BRDF is that of `brdf.wesl`. [`integrate`] is its integral without any of this, to compare.
+
+mod accuracy;
+mod diffuse_fresnel;
+mod fit;
+mod generate;
+pub(crate) mod lobe;
+mod nelder_mead;
+mod polygon;
+mod polynomial;
+mod polynomial_coefficients;
+mod quadrature;
+mod spherical_rectangle;
+mod table;
+
+pub use accuracy::{Accuracy, AccuracyCase, accuracy_cases};
+pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
+pub use fit::{Fit, fit};
+pub use generate::{FitReport, TableDifference, generate};
+pub use polygon::{cosine_integral, ltc_integral};
+pub use polynomial::{LTC_POLYNOMIAL_WESL, POLYNOMIAL_COMPONENTS, Polynomial};
+pub use quadrature::{Estimate, Integrals, integrate};
+pub use spherical_rectangle::SphericalRectangle;
+pub use table::{Entry, TABLE_SIZE, Table};

@@ -1,0 +1,375 @@
+//! The truth: the BRDF itself, integrated over a polygon by adaptive quadrature.
+//!
+//! The polygon is clipped to the horizon, cut along the axes so that no piece spans more than a
+//! right angle, and each piece fanned into triangles. A triangle of unit vectors is integrated by
+//! Radon's rule of seven points (exact to degree 5) over its flat chord, each point pushed out to
+//! the sphere. Triangles are split in four: first until they are no larger than the lobe is narrow,
+//! or than they are far from its peak, so that no peak stays unseen; then the one of the largest
+//! error, until the sum of all errors is small.
+//!
+//! The error of a triangle is the change that its last split made, shared by the four parts. The
+//! error that remains is far smaller where the integrand is smooth.
+
+use std::{cmp::Ordering, collections::BinaryHeap, f64::consts::PI};
+
+use glam::DVec3;
+
+use super::{
+    lobe::Lobe,
+    polygon::{clip, clip_at},
+};
+
+/// Triangles at most: a bound on time, never met at the tolerances of the tests.
+const MAX_TRIANGLES: usize = 400_000;
+/// An integral below this counts as this one in its relative error.
+const SMALLEST: f64 = 1e-9;
+
+/// Integrals over a polygon of unit radiance, each times the cosine of incidence.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Integrals {
+    /// D V, the specular lobe at a Fresnel term of 1.
+    pub specular: f64,
+    /// D V times Schlick's `(1 - v.h)^5`.
+    pub specular_fresnel: f64,
+    /// 1 / pi: the form factor.
+    pub diffuse: f64,
+    /// `(1 - v.h)^5 / pi`.
+    pub diffuse_fresnel: f64,
+}
+
+impl Integrals {
+    /// Radiance that the specular lobe reflects, for a reflectance at normal incidence.
+    pub fn specular_reflected(&self, f0: f64) -> f64 {
+        f0 * (self.specular - self.specular_fresnel) + self.specular_fresnel
+    }
+
+    /// Radiance that is reflected diffusely, for an albedo and a reflectance at normal incidence.
+    pub fn diffuse_reflected(&self, albedo: f64, f0: f64) -> f64 {
+        albedo * (1.0 - f0) * (self.diffuse - self.diffuse_fresnel)
+    }
+
+    fn map(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            specular: f(self.specular, other.specular),
+            specular_fresnel: f(self.specular_fresnel, other.specular_fresnel),
+            diffuse: f(self.diffuse, other.diffuse),
+            diffuse_fresnel: f(self.diffuse_fresnel, other.diffuse_fresnel),
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        self.map(other, |a, b| a + b)
+    }
+
+    fn largest(self) -> f64 {
+        self.specular.max(self.specular_fresnel).max(self.diffuse).max(self.diffuse_fresnel)
+    }
+}
+
+/// What a quadrature found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The integrals.
+    pub value: Integrals,
+    /// Bounds of their errors, absolute.
+    pub error: Integrals,
+    /// Triangles that the polygon was cut into.
+    pub triangles: usize,
+}
+
+/// Integrates the BRDF of a perceptual roughness, seen from the unit direction `to_eye`, over the
+/// part of a convex polygon above the horizon. Vertices in the shading frame, in order.
+///
+/// Each error is at most `tolerance` times its integral, or times 1e-9 where that is larger; a
+/// tolerance below 1e-10 counts as that.
+pub fn integrate(vertices: &[DVec3], to_eye: DVec3, roughness: f64, tolerance: f64) -> Estimate {
+    let integrand = Integrand::new(Lobe::new(roughness, to_eye));
+    let tolerance = tolerance.max(1e-10);
+    let mut triangles = BinaryHeap::new();
+    let mut sum =
+        Estimate { value: Integrals::default(), error: Integrals::default(), triangles: 0 };
+    for piece in quadrants(vertices) {
+        for pair in piece[1..].windows(2) {
+            let corners = [piece[0], pair[0], pair[1]].map(DVec3::normalize_or_zero);
+            refine(&integrand, corners, 0, &mut triangles);
+        }
+    }
+    for triangle in &triangles {
+        sum.value = sum.value.plus(triangle.value);
+        sum.error = sum.error.plus(triangle.error);
+    }
+    let is_wanted = |sum: &Estimate| {
+        let relative = sum.error.map(sum.value, |error, value| error / value.max(SMALLEST));
+        relative.largest() > tolerance
+    };
+    while is_wanted(&sum) && triangles.len() < MAX_TRIANGLES {
+        let Some(worst) = triangles.pop() else { break };
+        let parts = split(&integrand, &worst);
+        sum.value = sum.value.map(worst.value, |a, b| a - b);
+        sum.error = sum.error.map(worst.error, |a, b| a - b);
+        for part in parts {
+            sum.value = sum.value.plus(part.value);
+            sum.error = sum.error.plus(part.error);
+            triangles.push(part.ranked(&sum.value));
+        }
+    }
+    sum.triangles = triangles.len();
+    sum
+}
+
+/// The parts of a polygon above the horizon in each quadrant of the surface.
+fn quadrants(vertices: &[DVec3]) -> impl Iterator<Item = Vec<DVec3>> {
+    let above = clip(vertices);
+    let quarters = [DVec3::X, DVec3::NEG_X].into_iter().flat_map(move |x| {
+        let half = clip_at(&above, x);
+        [DVec3::Y, DVec3::NEG_Y].map(|y| clip_at(&half, y))
+    });
+    quarters.filter(|piece| piece.len() >= 3)
+}
+
+/// A triangle of unit vectors, ordered by the share of its error.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    corners: [DVec3; 3],
+    value: Integrals,
+    error: Integrals,
+    rank: f64,
+}
+
+impl Triangle {
+    fn ranked(self, sum: &Integrals) -> Self {
+        let rank = self.error.map(*sum, |error, sum| error / sum.max(SMALLEST)).largest();
+        Self { rank, ..self }
+    }
+}
+
+impl PartialEq for Triangle {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Triangle {}
+
+impl PartialOrd for Triangle {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Triangle {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.rank.total_cmp(&other.rank)
+    }
+}
+
+/// What is integrated, and where it peaks.
+struct Integrand {
+    lobe: Lobe,
+    peak: DVec3,
+    width: f64,
+}
+
+impl Integrand {
+    fn new(lobe: Lobe) -> Self {
+        let peak = DVec3::new(-lobe.to_eye.x, -lobe.to_eye.y, lobe.to_eye.z);
+        // Half vectors spread by alpha; light directions by twice that, foreshortened across the
+        // plane of incidence.
+        let width = 2.0 * lobe.alpha() * lobe.cos_view().max(0.05);
+        Self { lobe, peak, width }
+    }
+
+    fn at(&self, to_light: DVec3) -> Integrals {
+        let (specular, schlick) = self.lobe.evaluate(to_light);
+        let diffuse = to_light.z.max(0.0) / PI;
+        Integrals {
+            specular,
+            specular_fresnel: specular * schlick,
+            diffuse,
+            diffuse_fresnel: diffuse * schlick,
+        }
+    }
+
+    /// Radon's rule over the chord of a triangle.
+    fn over(&self, [a, b, c]: [DVec3; 3]) -> Integrals {
+        let root = 15_f64.sqrt();
+        let volume = a.dot(b.cross(c)).abs();
+        let mut sum = Integrals::default();
+        let mut add = |weight: f64, u: f64, v: f64| {
+            let point = a * (1.0 - u - v) + b * u + c * v;
+            let length = point.length();
+            // Solid angle of the chord's area there.
+            let weight = 0.5 * weight * volume / length.powi(3).max(1e-300);
+            sum = sum.map(self.at(point / length.max(1e-300)), |sum, value| sum + weight * value);
+        };
+        add(0.225, 1.0 / 3.0, 1.0 / 3.0);
+        for sign in [-1.0, 1.0] {
+            let near = (6.0 + sign * root) / 21.0;
+            let weight = (155.0 + sign * root) / 1200.0;
+            add(weight, near, near);
+            add(weight, 1.0 - 2.0 * near, near);
+            add(weight, near, 1.0 - 2.0 * near);
+        }
+        sum
+    }
+}
+
+/// Splits a triangle until none is larger than the lobe is narrow or than it is far from the peak.
+fn refine(
+    integrand: &Integrand,
+    corners: [DVec3; 3],
+    depth: u32,
+    found: &mut BinaryHeap<Triangle>,
+) {
+    let [a, b, c] = corners;
+    let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let center = (a + b + c).normalize_or_zero();
+    let distance = center.distance(integrand.peak);
+    // A direction that is no number has no peak, and ends the search at once.
+    let is_wider = size > 0.5 * integrand.width;
+    let is_near = size > 0.5 * (integrand.width + distance - size);
+    if is_wider && is_near && depth < 24 {
+        for part in parts(corners) {
+            refine(integrand, part, depth + 1, found);
+        }
+    } else {
+        let value = integrand.over(corners);
+        let whole = Triangle { corners, value, error: value, rank: 0.0 };
+        found.extend(split(integrand, &whole).map(|part| part.ranked(&Integrals::default())));
+    }
+}
+
+fn parts([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
+    let (ab, bc, ca) =
+        ((a + b).normalize_or_zero(), (b + c).normalize_or_zero(), (c + a).normalize_or_zero());
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+}
+
+/// The four parts of a triangle; a quarter of the change is the error of each.
+fn split(integrand: &Integrand, whole: &Triangle) -> [Triangle; 4] {
+    let split = parts(whole.corners).map(|corners| (corners, integrand.over(corners)));
+    let sum = split.iter().fold(Integrals::default(), |sum, (_, value)| sum.plus(*value));
+    let error = sum.map(whole.value, |after, before| 0.25 * (after - before).abs());
+    split.map(|(corners, value)| Triangle { corners, value, error, rank: 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::ltc::SphericalRectangle;
+
+    fn to_eye(cos: f64) -> DVec3 {
+        DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
+    }
+
+    /// A midpoint rule over the area-preserving map of a rectangle.
+    fn by_samples(corner: DVec3, x: DVec3, y: DVec3, lobe: &Lobe, side: u32) -> Integrals {
+        let integrand = Integrand::new(*lobe);
+        let rectangle = SphericalRectangle::new(corner, x, y).unwrap();
+        let weight = rectangle.solid_angle() / f64::from(side * side);
+        let mut sum = Integrals::default();
+        for i in 0..side {
+            for j in 0..side {
+                let at = |step: u32| (f64::from(step) + 0.5) / f64::from(side);
+                let direction = rectangle.direction(at(i), at(j));
+                sum = sum.map(integrand.at(direction), |sum, value| sum + weight * value);
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn it_agrees_with_samples_of_the_area_preserving_map() {
+        // Beside the peak and across it, across the horizon, at a grazing view.
+        for (corner, x, y, cos_view, roughness) in [
+            (DVec3::new(-1.5, -0.5, 1.0), DVec3::X, DVec3::Y, 0.7, 0.3),
+            (DVec3::new(-1.5, -0.5, -0.5), DVec3::Z, DVec3::Y, 0.2, 0.5),
+            (DVec3::new(-1.5, 0.1, -0.5), DVec3::Z, DVec3::Y, 0.02, 0.3),
+            (DVec3::new(-0.1, -0.1, 1.0), DVec3::X * 0.2, DVec3::Y * 0.2, 1.0, 0.1),
+        ] {
+            let polygon = [corner, corner + x, corner + x + y, corner + y];
+            let found = integrate(&polygon, to_eye(cos_view), roughness, 1e-5);
+            let lobe = Lobe::new(roughness, to_eye(cos_view));
+            let sampled = by_samples(corner, x, y, &lobe, 600);
+            let off = found.value.map(sampled, |a, b| (a - b).abs() / b);
+            assert!(
+                off.largest() < 2e-3,
+                "{cos_view}, {roughness}: {found:?}, sampled {sampled:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn errors_bound_what_a_finer_quadrature_changes() {
+        let polygon = [[-3.0, -1.0], [1.0, -2.0], [2.0, 1.0], [-1.0, 2.0]];
+        for height in [0.1, 1.0] {
+            let polygon = polygon.map(|[x, y]| DVec3::new(x, y, height + 0.03 * x));
+            for roughness in [0.0, 0.045, 0.1, 0.3, 1.0] {
+                for cos_view in [0.01, 0.3, 1.0] {
+                    let coarse = integrate(&polygon, to_eye(cos_view), roughness, 1e-3);
+                    let fine = integrate(&polygon, to_eye(cos_view), roughness, 1e-8);
+                    let off = coarse.value.map(fine.value, |a, b| (a - b).abs());
+                    let excess = off.map(coarse.error, |off, error| off - error);
+                    assert!(
+                        excess.largest() < 1e-9,
+                        "{roughness}, {cos_view}: {coarse:?} {fine:?}"
+                    );
+                    let allowed = fine
+                        .error
+                        .map(fine.value, |error, value| error - 1.01e-8 * value.max(SMALLEST));
+                    assert!(allowed.largest() <= 0.0, "{roughness}, {cos_view}: {fine:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_peak_stays_unseen() {
+        // A mirror's reflection, a tenth of a degree wide, anywhere in the sky.
+        let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| DVec3::new(x, y, 1e-9));
+        for step in 0..400 {
+            let turn = f64::from(step);
+            let cos = 0.3 + 0.7 * (turn + 0.5) / 400.0;
+            let sin = (1.0 - cos * cos).sqrt();
+            let to_eye = DVec3::new(sin * turn.cos(), sin * turn.sin(), cos);
+            let found = integrate(&sky, to_eye, 0.0, 0.05);
+            assert!((found.value.specular - 1.0).abs() < 0.01, "{step}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn the_whole_hemisphere_is_reflected_by_a_smooth_mirror() {
+        let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| DVec3::new(x, y, 1e-9));
+        let found = integrate(&sky, to_eye(0.8), 0.045, 1e-4);
+        assert!((found.value.specular - 1.0).abs() < 1e-3, "{found:?}");
+        assert!((found.value.diffuse - 1.0).abs() < 1e-6, "{found:?}");
+    }
+
+    #[test]
+    fn nothing_comes_from_below_the_horizon() {
+        let below = [[0.0, 0.0], [1.0, 0.0], [0.0, TAU]].map(|[x, y]| DVec3::new(x, y, -0.1));
+        let found = integrate(&below, to_eye(0.5), 0.3, 1e-3);
+        assert_eq!((found.value, found.triangles), (Integrals::default(), 0));
+        assert_eq!(integrate(&[], to_eye(0.5), 0.3, 1e-3).value, Integrals::default());
+    }
+
+    #[test]
+    fn what_is_no_number_ends_at_once() {
+        let above =
+            [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 1.0), DVec3::new(0.1, 1.0, 1.0)];
+        let odd = [
+            (DVec3::NAN, 0.0),
+            (DVec3::ZERO, 0.0),
+            (DVec3::INFINITY, 1.0),
+            (to_eye(0.5), f64::NAN),
+        ];
+        for (to_eye, roughness) in odd {
+            assert!(integrate(&above, to_eye, roughness, 1e-3).triangles < 10_000);
+        }
+        assert!(integrate(&[DVec3::NAN; 4], to_eye(0.5), 0.3, 1e-3).triangles < 10_000);
+    }
+}

@@ -1,0 +1,119 @@
+//! Light operations: how many terms of lights shading evaluates, and how many would be seen.
+
+use std::iter::Sum;
+
+use assign::{Assignment, EncoderPasses, Frame, Passes, entry, storage_entry, uniform_entry};
+use bytemuck::pod_collect_to_vec;
+
+use crate::{
+    LightingOptions, Renderer, ShadingError,
+    lighting::{MODEL_BINDING, TEXELS, compute_pipeline, texture, texture_entry},
+    lighting_inputs::LightingInputs,
+    raster::LISTS_GROUP,
+    shaders,
+};
+
+/// Evaluations of one term of one light at one sample (Swarbrick 2025, appendix I).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    /// Diffuse terms that are evaluated.
+    pub diffuse: u64,
+    /// Specular terms that are evaluated.
+    pub specular: u64,
+    /// Of those, the ones at samples beyond the reach of the light's diffuse term.
+    pub outer_specular: u64,
+    /// Terms whose light would be seen, 0 to 2 of each pair: on a white surface, under a colourless
+    /// light, its luminance on a display of gamma 2.2 is above 0.005, or both terms' above 0.01.
+    pub perceptible: u64,
+}
+
+impl Sum for Operations {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |a, b| Self {
+            diffuse: a.diffuse + b.diffuse,
+            specular: a.specular + b.specular,
+            outer_specular: a.outer_specular + b.outer_specular,
+            perceptible: a.perceptible + b.perceptible,
+        })
+    }
+}
+
+/// Where the counts and the exposure are bound.
+const COUNTS_BINDING: u32 = 8;
+const EXPOSURE_BINDING: u32 = 9;
+
+/// Counts the operations of a frame's lists, blocking. `exposure` is the factor from radiance to the
+/// display's scale. G-buffer and model ids are those of the last recorded geometry passes: see
+/// [`record_for_probe`](crate::record_for_probe).
+pub fn count_operations(
+    renderer: &Renderer,
+    strategy: &dyn Assignment,
+    frame: &Frame<'_>,
+    options: LightingOptions,
+    exposure: f32,
+) -> Result<Operations, ShadingError> {
+    let gpu = &renderer.gpu;
+    let viewport = frame.view.viewport;
+    let bytes = u64::from(viewport.width) * u64::from(viewport.height) * 16;
+    let counts = gpu.storage("operations", bytes)?;
+    let shown = gpu.uniform("exposure", 16);
+    gpu.queue.write_buffer(&shown, 0, bytemuck::bytes_of(&[exposure, 0.0, 0.0, 0.0]));
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let targets = &renderer.targets;
+    let mut entries = vec![
+        texture_entry(0, wgpu::TextureSampleType::Depth),
+        texture_entry(1, TEXELS),
+        texture_entry(2, TEXELS),
+        storage_entry(COUNTS_BINDING, stages, false),
+        uniform_entry(EXPOSURE_BINDING, stages),
+    ];
+    let mut resources = vec![
+        texture(0, &targets.depth),
+        texture(1, &targets.base_color),
+        texture(2, &targets.normal),
+        entry(COUNTS_BINDING, &counts),
+        entry(EXPOSURE_BINDING, &shown),
+    ];
+    let inputs = LightingInputs::new(gpu, options)?;
+    entries.extend(LightingInputs::layout(inputs.has_table(), stages));
+    resources.extend(inputs.entries());
+    let model_ids = strategy.needs().models;
+    if model_ids {
+        entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
+        resources.push(texture(MODEL_BINDING, &targets.model_ids));
+    }
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("operations"),
+        entries: &entries,
+    });
+    let lookup = strategy.lookup();
+    let module = options
+        .set_flags(shaders::lighting(LISTS_GROUP))
+        .module("package::strategy", lookup.module.source())
+        .flag("model_ids", model_ids)
+        .create(&gpu.device, "package::operations")?;
+    let layouts = [renderer.frame.layout(), lookup.layout, &layout];
+    let pipeline = compute_pipeline(gpu, &layouts, &module, "count_operations");
+    let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("operations"),
+        layout: &layout,
+        entries: &resources,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    EncoderPasses { encoder: &mut encoder }.compute("operations", &mut |pass| {
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
+        pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
+        pass.set_bind_group(2, &images, &[]);
+        pass.dispatch_workgroups(viewport.width.div_ceil(8), viewport.height.div_ceil(8), 1);
+    });
+    gpu.queue.submit([encoder.finish()]);
+    let counts: Vec<[u32; 4]> = pod_collect_to_vec(&gpu.read(&counts, bytes)?);
+    let of_pixel = |[diffuse, specular, outer, perceptible]: [u32; 4]| Operations {
+        diffuse: diffuse.into(),
+        specular: specular.into(),
+        outer_specular: outer.into(),
+        perceptible: perceptible.into(),
+    };
+    Ok(counts.into_iter().map(of_pixel).sum())
+}
