@@ -157,7 +157,7 @@ fn a_bounce_is_the_integral_over_the_walls() {
 fn over_walls(walls: &[[Vec3; 3]], light: &Light, at: &SurfaceSample) -> DVec3 {
     let side = 200;
     let mut sum = DVec3::ZERO;
-    for [center, x, y] in walls.iter().map(|wall| wall.map(|v| v.as_dvec3())) {
+    for [center, x, y] in walls.iter().map(|wall| wall.map(Vec3::as_dvec3)) {
         let normal = x.cross(y);
         for cell in 0..side * side {
             let along = |step: u32| (f64::from(step) + 0.5) / f64::from(side) * 2.0 - 1.0;

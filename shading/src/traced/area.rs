@@ -7,7 +7,7 @@
 //! a small emitter over a rough surface makes a rare, large value.
 
 use assign::{Emitter, Light};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -96,7 +96,7 @@ impl<'a> SeenEmitter<'a> {
         pairs: u32,
         rng: &mut Pcg64Mcg,
     ) -> Estimate {
-        let [x, y] = self.emitter.half_axes().map(|axis| axis.as_dvec3());
+        let [x, y] = self.emitter.half_axes().map(Vec3::as_dvec3);
         let rectangle = SphericalRectangle::new(self.center - x - y, 2.0 * x, 2.0 * y);
         let Some(rectangle) = rectangle.filter(|r| r.solid_angle() > SMALL) else {
             let middle = self.sample.position + self.center;

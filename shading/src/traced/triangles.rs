@@ -54,7 +54,7 @@ impl Triangles {
 
     /// World-space corners of a triangle.
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.corners[triangle as usize].map(|corner| corner.as_dvec3())
+        self.corners[triangle as usize].map(Vec3::as_dvec3)
     }
 
     /// The first hit along a unit direction before `max_m` that `counts`. Of two at the same
