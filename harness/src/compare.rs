@@ -10,7 +10,7 @@ use shading::{EDGE, HdrImage, LightBvh, Mode};
 use crate::{
     checks::{RASTER_SPHERE, check_modes, check_writable, checked, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, TruthChoice},
+    cli::{CliError, CompareArgs, StageArgs, TruthChoice},
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
@@ -88,7 +88,7 @@ impl Bench {
     }
 
     /// The stage that arguments ask for; the scene is opened once while it stays the same.
-    pub fn stage(&mut self, args: &CompareArgs) -> Result<&mut Stage, HarnessError> {
+    pub fn stage(&mut self, args: &StageArgs) -> Result<&mut Stage, HarnessError> {
         let key = format!("{} {} {}", args.scene, args.scene_scale, args.replicate);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
@@ -115,7 +115,7 @@ impl Bench {
         let gpu = self.gpu.clone();
         let choices = checked(choices, &gpu)?;
         let machine = machine(&gpu);
-        let stage = self.stage(args)?;
+        let stage = self.stage(&args.stage)?;
         // What a strategy cannot serve shows before anything long begins.
         let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
         let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
@@ -144,7 +144,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(defaults[kind]),
         along_path: args.path,
-        seed: args.seed,
+        seed: args.stage.seed,
         cut: args.cut.into(),
         operations: args.operations,
     }
@@ -270,7 +270,7 @@ impl Run<'_> {
             self.results.records.push(record);
         }
         if self.args.path {
-            self.stage.set_up(&self.gpu, self.args)?;
+            self.stage.set_up(&self.gpu, &self.args.stage)?;
         }
         Ok(())
     }

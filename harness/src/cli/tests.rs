@@ -33,17 +33,17 @@ fn the_definition_is_sound() {
 #[test]
 fn without_arguments_the_main_job_runs() {
     let args = compare("");
-    assert_eq!(args.scene, "atrium");
+    assert_eq!(args.stage.scene, "atrium");
     assert_eq!(args.strategies.0, ["None", "Sphere", "DC-I", "SC-E/bvh"]);
-    assert_eq!((args.lights, args.spots, args.seed), (1000, 0.0, 1));
-    assert_eq!((args.scene_scale, args.radius_scale), (1.0, None));
-    assert_eq!(args.size, Size { width: 640, height: 360 });
+    assert_eq!((args.stage.lights, args.stage.spots, args.stage.seed), (1000, 0.0, 1));
+    assert_eq!((args.stage.scene_scale, args.stage.radius_scale), (1.0, None));
+    assert_eq!(args.stage.size, Size { width: 640, height: 360 });
     assert_eq!((args.frames, args.warmup), (None, None));
     assert_eq!(args.mode.modes(), [Mode::Deferred]);
-    assert_eq!(args.light_box, LightBox::Core);
+    assert_eq!(args.stage.light_box, LightBox::Core);
     assert_eq!(args.out, PathBuf::from("out/compare"));
     assert_eq!(args.truth, TruthChoice::Full);
-    assert_eq!((args.camera, args.adapter, args.no_own_lights), (None, None, false));
+    assert_eq!((args.stage.camera, args.adapter, args.stage.no_own_lights), (None, None, false));
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn compare_is_the_command_where_none_is_named() {
     let args = compare(line);
     assert_eq!(args, compare(&format!("compare {line}")));
     let pose = CameraPose { eye: [-1.0, 2.0, 3.5], target: [0.0, -1.0, 0.0] };
-    assert_eq!(args.camera, Some(Camera::Pose(pose)));
+    assert_eq!(args.stage.camera, Some(Camera::Pose(pose)));
     let on_path = compare("--camera path:3/12").camera;
     assert_eq!(on_path, Some(Camera::OnPath { frame: 3, count: 12 }));
     assert_eq!(args.mode.modes(), [Mode::Deferred, Mode::Forward]);
