@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use assign::FrustumTests;
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use shading::Cut;
+use shading::{AreaModel, Cut};
 
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
@@ -160,6 +160,10 @@ pub struct CompareArgs {
     /// Where strategies take lights from that name no source: the list of all, or the hierarchy
     #[arg(long, value_name = "SOURCE", default_value = "linear")]
     pub source: SourceChoice,
+
+    /// How the light of area lights is integrated
+    #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
+    pub area_model: AreaModel,
 
     /// Frames to time, 1 to 100,000, every sample kept [default: 64, or 3 on a software adapter]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]

@@ -116,6 +116,7 @@ impl Bench {
         let choices = checked(choices, &gpu)?;
         let machine = machine(&gpu);
         let stage = self.stage(&args.stage)?;
+        stage.area_model = args.area_model;
         // What a strategy cannot serve shows before anything long begins.
         let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
         let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };

@@ -34,8 +34,7 @@ impl<'a> Painter<'a> {
         Ok(match method {
             Method::Lists { strategy, early_exit } => {
                 let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
-                let options =
-                    LightingOptions { kinds, exit_weight, cut, ..LightingOptions::default() };
+                let options = LightingOptions { kinds, exit_weight, cut, area: stage.area_model };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
             }
@@ -99,5 +98,5 @@ pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, H
         let accepted = format!("windowed for {RASTER_SPHERE}");
         return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
     }
-    Ok(RasterSpheres::new(&stage.renderer, stage.lights.kinds())?)
+    Ok(RasterSpheres::new(&stage.renderer, stage.lights.kinds(), stage.area_model)?)
 }

@@ -98,7 +98,7 @@ pub fn record(
             .filter(|(_, count)| *count > 0)
             .map(|(kind, count)| (kind.to_owned(), count))
             .collect(),
-        area_model: None,
+        area_model: stage.lights.kinds().areas.then(|| stage.area_model.to_string()),
         operations: lists.operations.map(|counted| Operations {
             diffuse: counted.diffuse,
             specular: counted.specular,

@@ -3,10 +3,10 @@
 use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, Projection, View};
 use glam::{Vec2, Vec3};
 use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, scatter_lights};
-use shading::Renderer;
+use shading::{AreaModel, Renderer};
 
 use crate::{
-    cli::{Camera, CliError, StageArgs, LightBox},
+    cli::{Camera, CliError, LightBox, StageArgs},
     error::HarnessError,
 };
 
@@ -30,6 +30,8 @@ pub struct Stage {
     pub own_lights: usize,
     /// The lights, faulty ones left out.
     pub lights: LightBuffer,
+    /// How area lights are shaded.
+    pub area_model: AreaModel,
     /// The camera.
     pub view: View,
     /// The pipeline.
@@ -71,6 +73,7 @@ impl Stage {
             light_box: lit.bounds,
             own_lights: lit.own,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
+            area_model: AreaModel::default(),
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,

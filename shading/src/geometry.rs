@@ -1,6 +1,6 @@
 //! A scene's triangles on the GPU, and the order in which they are drawn.
 
-use assign::{AssignError, Gpu, entry, storage_entry, uniform_entry};
+use assign::{AssignError, Gpu, entry, storage_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::Mat3;
 use scenes::{Instance, Model, Scene, Vertex};
@@ -8,7 +8,7 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     ShadingError,
-    lighting::LIGHTING_BINDING,
+    lighting_inputs::LightingInputs,
     materials::{MaterialKey, Materials},
 };
 
@@ -58,7 +58,8 @@ pub struct SceneGpu {
     pub(crate) indices: wgpu::Buffer,
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
-    pub(crate) layout: wgpu::BindGroupLayout,
+    /// Of bind group 2: without and with the table of linearly transformed cosines.
+    layouts: [wgpu::BindGroupLayout; 2],
     pub(crate) instances: wgpu::Buffer,
 }
 
@@ -77,27 +78,36 @@ impl SceneGpu {
         let vertices = buffer("vertices", &vertex_bytes, wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("indices", &index_bytes, wgpu::BufferUsages::INDEX)?;
         let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("scene"),
-            entries: &[
+        let layout = |table| {
+            let stages = wgpu::ShaderStages::FRAGMENT;
+            let own = [
                 storage_entry(0, wgpu::ShaderStages::VERTEX, true),
-                storage_entry(1, wgpu::ShaderStages::FRAGMENT, true),
-                uniform_entry(LIGHTING_BINDING, wgpu::ShaderStages::FRAGMENT),
-            ],
-        });
-        Ok(Self { vertices, indices, draws, materials, layout, instances })
+                storage_entry(1, stages, true),
+            ];
+            let entries: Vec<_> =
+                own.into_iter().chain(LightingInputs::layout(table, stages)).collect();
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("scene"),
+                entries: &entries,
+            })
+        };
+        let layouts = [layout(false), layout(true)];
+        Ok(Self { vertices, indices, draws, materials, layouts, instances })
     }
 
-    /// Bind group 2, with `LightingUniform`.
-    pub(crate) fn bind_group(&self, gpu: &Gpu, lighting: &wgpu::Buffer) -> wgpu::BindGroup {
+    /// Layout of bind group 2.
+    pub(crate) fn layout(&self, reads_table: bool) -> &wgpu::BindGroupLayout {
+        &self.layouts[usize::from(reads_table)]
+    }
+
+    /// Bind group 2, with what lighting reads.
+    pub(crate) fn bind_group(&self, gpu: &Gpu, inputs: &LightingInputs) -> wgpu::BindGroup {
+        let own = [entry(0, &self.instances), entry(1, &self.materials.factors)];
+        let entries: Vec<_> = own.into_iter().chain(inputs.entries()).collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, &self.instances),
-                entry(1, &self.materials.factors),
-                entry(LIGHTING_BINDING, lighting),
-            ],
+            layout: self.layout(inputs.has_table()),
+            entries: &entries,
         })
     }
 

@@ -19,11 +19,13 @@
 //! bit for bit.
 
 mod area_model;
+mod area_reference;
 mod error;
 mod geometry;
 mod heat_map;
 mod image;
 mod lighting;
+mod lighting_inputs;
 pub mod ltc;
 mod materials;
 mod mips;
@@ -37,7 +39,7 @@ mod shaders;
 mod targets;
 mod truth;
 
-pub use area_model::AreaModel;
+pub use area_model::{AreaModel, MAX_AREA_SAMPLES};
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};

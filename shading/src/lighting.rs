@@ -1,12 +1,11 @@
 //! Lighting with one strategy's lists, in one mode.
 
-use assign::{
-    AssignError, Assignment, Gpu, LightKinds, Passes, Shader, View, entry, uniform_entry,
-};
+use assign::{AssignError, Assignment, Gpu, LightKinds, Passes, Shader, View};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     AreaModel, Mode, Renderer, ShadingError,
+    lighting_inputs::LightingInputs,
     raster::{LISTS_GROUP, Lists, RasterPass, RasterPipelines},
     shaders,
 };
@@ -94,9 +93,9 @@ impl Lighting {
         let lists = Lists { lookup: strategy.lookup(), options };
         let model_ids = strategy.needs().models;
         let gpu = &renderer.gpu;
-        let uniform = lighting_uniform(gpu, options.exit_weight);
+        let inputs = LightingInputs::new(gpu, options)?;
         let kind = match mode {
-            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists, model_ids, uniform)?),
+            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists, model_ids, inputs)?),
             Mode::Forward => Kind::Forward(
                 RasterPipelines::new(
                     gpu,
@@ -105,7 +104,7 @@ impl Lighting {
                     renderer.depth_mapping,
                     RasterPass::Forward(lists),
                 )?,
-                renderer.scene.bind_group(gpu, &uniform),
+                renderer.scene.bind_group(gpu, &inputs),
             ),
         };
         Ok(Self { kind, options })
@@ -145,7 +144,7 @@ struct Deferred {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     model_ids: bool,
-    uniform: wgpu::Buffer,
+    inputs: LightingInputs,
 }
 
 impl Deferred {
@@ -153,11 +152,11 @@ impl Deferred {
         renderer: &Renderer,
         lists: Lists<'_>,
         model_ids: bool,
-        uniform: wgpu::Buffer,
+        inputs: LightingInputs,
     ) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
-        let layout = deferred_layout(gpu, emissive, model_ids);
+        let layout = deferred_layout(gpu, emissive, model_ids, inputs.has_table());
         let shader = lists
             .options
             .set_flags(shaders::lighting(LISTS_GROUP))
@@ -174,7 +173,7 @@ impl Deferred {
             &module,
             "shade",
         );
-        Ok(Self { pipeline, layout, model_ids, uniform })
+        Ok(Self { pipeline, layout, model_ids, inputs })
     }
 
     fn record(
@@ -190,8 +189,8 @@ impl Deferred {
             texture(1, &targets.base_color),
             texture(2, &targets.normal),
             texture(4, &targets.radiance),
-            entry(LIGHTING_BINDING, &self.uniform),
         ];
+        entries.extend(self.inputs.entries());
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
         if self.model_ids {
             entries.push(texture(MODEL_BINDING, &targets.model_ids));
@@ -213,13 +212,6 @@ impl Deferred {
             );
         });
     }
-}
-
-/// `LightingUniform`.
-pub(crate) fn lighting_uniform(gpu: &Gpu, exit_weight: f32) -> wgpu::Buffer {
-    let uniform = gpu.uniform("lighting", 16);
-    gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&[exit_weight, 0.0, 0.0, 0.0]));
-    uniform
 }
 
 /// A compute pipeline over bind groups 0, 1, ….
@@ -274,10 +266,12 @@ pub(crate) const TEXELS: wgpu::TextureSampleType =
 /// Where deferred lighting and the probe bind model ids.
 pub(crate) const MODEL_BINDING: u32 = 5;
 
-/// Where lighting binds `LightingUniform`, in both modes.
-pub(crate) const LIGHTING_BINDING: u32 = 6;
-
-fn deferred_layout(gpu: &Gpu, emissive: bool, model_ids: bool) -> wgpu::BindGroupLayout {
+fn deferred_layout(
+    gpu: &Gpu,
+    emissive: bool,
+    model_ids: bool,
+    table: bool,
+) -> wgpu::BindGroupLayout {
     let mut entries = vec![
         texture_entry(0, wgpu::TextureSampleType::Depth),
         texture_entry(1, TEXELS),
@@ -292,8 +286,8 @@ fn deferred_layout(gpu: &Gpu, emissive: bool, model_ids: bool) -> wgpu::BindGrou
             },
             count: None,
         },
-        uniform_entry(LIGHTING_BINDING, wgpu::ShaderStages::COMPUTE),
     ];
+    entries.extend(LightingInputs::layout(table, wgpu::ShaderStages::COMPUTE));
     if emissive {
         entries.push(texture_entry(3, TEXELS));
     }

@@ -8,6 +8,7 @@ use bytemuck::pod_collect_to_vec;
 use crate::{
     LightingOptions, Renderer, ShadingError,
     lighting::{MODEL_BINDING, TEXELS, compute_pipeline, texture, texture_entry},
+    lighting_inputs::LightingInputs,
     raster::LISTS_GROUP,
     shaders,
 };
@@ -73,6 +74,9 @@ pub fn count_operations(
         entry(COUNTS_BINDING, &counts),
         entry(EXPOSURE_BINDING, &shown),
     ];
+    let inputs = LightingInputs::new(gpu, options)?;
+    entries.extend(LightingInputs::layout(inputs.has_table(), stages));
+    resources.extend(inputs.entries());
     let model_ids = strategy.needs().models;
     if model_ids {
         entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));

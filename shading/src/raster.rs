@@ -112,14 +112,15 @@ fn pipeline(
     #[allow(unsafe_code, reason = "its loop ends")]
     let module = unsafe { shader.create_uncounted(&gpu.device, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, scene.has_emissive());
-    let lists = match pass {
-        RasterPass::Forward(lists) => Some(lists.lookup.layout),
-        _ => None,
+    let (lists, reads_table) = match pass {
+        RasterPass::Forward(lists) => (Some(lists.lookup.layout), lists.options.reads_table()),
+        _ => (None, false),
     };
+    let scene_layout = scene.layout(reads_table);
     let textures = fragment.and_then(|_| scene.materials.layout(key.material));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
-        bind_group_layouts: &[Some(frame.layout()), lists, Some(&scene.layout), textures],
+        bind_group_layouts: &[Some(frame.layout()), lists, Some(scene_layout), textures],
         immediate_size: 0,
     });
     let is_depth = matches!(pass, RasterPass::Depth);

@@ -9,8 +9,9 @@ use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::{
-    AreaModel, Renderer, ShadingError,
+    AreaModel, LightingOptions, Renderer, ShadingError,
     lighting::{TEXELS, texture, texture_entry},
+    lighting_inputs::LightingInputs,
     raster::LISTS_GROUP,
     shaders,
     targets::{DEPTH_FORMAT, RADIANCE_FORMAT},
@@ -29,12 +30,18 @@ pub struct RasterSpheres {
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
     vertex_count: u32,
-    kinds: LightKinds,
+    options: LightingOptions,
+    inputs: wgpu::BindGroup,
 }
 
 impl RasterSpheres {
     /// Makes the pipelines. An error where the device cannot blend into single precision.
-    pub fn new(renderer: &Renderer, kinds: LightKinds) -> Result<Self, ShadingError> {
+    pub fn new(
+        renderer: &Renderer,
+        kinds: LightKinds,
+        area: AreaModel,
+    ) -> Result<Self, ShadingError> {
+        let options = LightingOptions { kinds, area, ..LightingOptions::default() };
         let gpu = &renderer.gpu;
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {
@@ -58,13 +65,25 @@ impl RasterSpheres {
             label: Some("raster spheres"),
             entries: &entries,
         });
-        let module = shaders::lighting(LISTS_GROUP)
-            .light_kinds(kinds)
-            .flag(AreaModel::default().flag(), kinds.areas)
+        let inputs = LightingInputs::new(gpu, options)?;
+        let stages = wgpu::ShaderStages::FRAGMENT;
+        let entries: Vec<_> = LightingInputs::layout(inputs.has_table(), stages).collect();
+        let inputs_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("raster spheres"),
+            entries: &entries,
+        });
+        let entries: Vec<_> = inputs.entries().collect();
+        let inputs = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("raster spheres"),
+            layout: &inputs_layout,
+            entries: &entries,
+        });
+        let module = options
+            .set_flags(shaders::lighting(LISTS_GROUP))
             .flag("emissive", emissive)
             .create(&gpu.device, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
-            pipeline(renderer, &layout, &module, [vertex, fragment], volumes)
+            pipeline(renderer, [&layout, &inputs_layout], &module, [vertex, fragment], volumes)
         };
         let triangles = sphere();
         Ok(Self {
@@ -77,7 +96,8 @@ impl RasterSpheres {
                 usage: wgpu::BufferUsages::VERTEX,
             }),
             layout,
-            kinds,
+            options,
+            inputs,
         })
     }
 
@@ -89,8 +109,9 @@ impl RasterSpheres {
         lights: &LightBuffer,
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
-        if !self.kinds.cover(lights.kinds()) {
-            return Err(ShadingError::Kinds { made: self.kinds, lights: lights.kinds() });
+        let made = self.options.kinds;
+        if !made.cover(lights.kinds()) {
+            return Err(ShadingError::Kinds { made, lights: lights.kinds() });
         }
         let targets = &renderer.targets;
         let mut entries = vec![
@@ -128,6 +149,7 @@ impl RasterSpheres {
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
             pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
             pass.set_bind_group(1, &images, &[]);
+            pass.set_bind_group(2, &self.inputs, &[]);
             if let Some(emission) = &self.emission {
                 pass.set_pipeline(emission);
                 pass.draw(0..3, 0..1);
@@ -142,7 +164,7 @@ impl RasterSpheres {
 
 fn pipeline(
     renderer: &Renderer,
-    images: &wgpu::BindGroupLayout,
+    [images, inputs]: [&wgpu::BindGroupLayout; 2],
     module: &wgpu::ShaderModule,
     [vertex, fragment]: [&str; 2],
     volumes: bool,
@@ -150,7 +172,7 @@ fn pipeline(
     let device = &renderer.gpu.device;
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(fragment),
-        bind_group_layouts: &[Some(renderer.frame.layout()), Some(images)],
+        bind_group_layouts: &[Some(renderer.frame.layout()), Some(images), Some(inputs)],
         immediate_size: 0,
     });
     let add = wgpu::BlendComponent {

@@ -3,6 +3,8 @@
 use assign::{Light, LightShape};
 use glam::DVec3;
 
+use crate::{area_reference::SeenArea, ltc};
+
 /// A point of a surface, as `brdf.wesl` has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
@@ -21,7 +23,7 @@ pub(crate) const MIN_ROUGHNESS: f64 = 0.045;
 /// Least cosine between the normal and the direction to the eye.
 pub(crate) const MIN_COS_VIEW: f64 = 1e-4;
 /// Reflectance of a dielectric at normal incidence.
-const DIELECTRIC_F0: f64 = 0.04;
+pub(crate) const DIELECTRIC_F0: f64 = 0.04;
 /// Least squared distance of inverse-square fall-off, square metres.
 const MIN_DISTANCE_2: f64 = 1e-4;
 
@@ -51,13 +53,40 @@ pub fn fall_off(distance_2: f64, range_m: f64) -> f64 {
     window * window / distance_2.max(MIN_DISTANCE_2)
 }
 
-/// Radiance that one light adds at `position`.
+/// Radiance that one light adds at `position`: of an area light the BRDF's integral over its emitter,
+/// to 1e-4 of it.
 pub fn light_contribution(
     light: &Light,
     position: DVec3,
     surface: &Surface,
     to_eye: DVec3,
 ) -> DVec3 {
+    if let LightShape::Area(emitter) = &light.shape {
+        let seen = SeenArea::new(light, emitter, position, surface, to_eye);
+        return seen.map_or(DVec3::ZERO, |seen| seen.truth());
+    }
+    point_contribution(light, position, surface, to_eye)
+}
+
+/// What linearly transformed cosines make of an area light at `position`; of other lights
+/// [`light_contribution`].
+pub fn ltc_contribution(
+    table: &ltc::Table,
+    light: &Light,
+    position: DVec3,
+    surface: &Surface,
+    to_eye: DVec3,
+) -> DVec3 {
+    let LightShape::Area(emitter) = &light.shape else {
+        return light_contribution(light, position, surface, to_eye);
+    };
+    let entry = table.look_up(surface.roughness, surface.normal.dot(to_eye).abs());
+    let seen = SeenArea::new(light, emitter, position, surface, to_eye);
+    seen.map_or(DVec3::ZERO, |seen| seen.ltc(&entry))
+}
+
+/// A point or a spot; an area light counts as a point at its middle that faces all ways.
+fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye: DVec3) -> DVec3 {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
     let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));

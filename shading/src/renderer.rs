@@ -9,9 +9,9 @@ use scenes::{Aabb, Model, Scene};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    ShadingError,
+    LightingOptions, ShadingError,
     geometry::SceneGpu,
-    lighting::lighting_uniform,
+    lighting_inputs::LightingInputs,
     raster::{RasterPass, RasterPipelines},
     targets::Targets,
 };
@@ -69,6 +69,7 @@ impl Renderer {
         let models = scene.models.iter().map(model_box).collect();
         let scene = SceneGpu::new(gpu, scene)?;
         let targets = Targets::new(gpu, view, scene.has_emissive())?;
+        let inputs = LightingInputs::new(gpu, LightingOptions::default())?;
         let pipelines = |pass| RasterPipelines::new(gpu, &frame, &scene, view.depth, pass);
         Ok(Self {
             depth: pipelines(RasterPass::Depth)?,
@@ -81,7 +82,7 @@ impl Renderer {
             depth_mapping: view.depth,
             kinds: LightKinds::default(),
             frame,
-            scene_group: scene.bind_group(gpu, &lighting_uniform(gpu, 0.0)),
+            scene_group: scene.bind_group(gpu, &inputs),
             scene,
             targets,
         })

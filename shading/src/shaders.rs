@@ -18,6 +18,10 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "model_ids",
         "hard_cut",
         "area_point",
+        "area_mrp",
+        "area_monte_carlo",
+        "area_ltc_table",
+        "area_ltc_polynomial",
         "mask",
         "emissive",
         "uv_transforms",
@@ -30,6 +34,12 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::brdf", include_str!("shaders/brdf.wesl"))
         .module("package::area", include_str!("shaders/area.wesl"))
         .module("package::area_point", include_str!("shaders/area_point.wesl"))
+        .module("package::area_mrp", include_str!("shaders/area_mrp.wesl"))
+        .module("package::area_monte_carlo", include_str!("shaders/area_monte_carlo.wesl"))
+        .module("package::lighting_uniform", include_str!("shaders/lighting_uniform.wesl"))
+        .module("package::area_ltc", include_str!("shaders/area_ltc.wesl"))
+        .module("package::ltc_table", include_str!("shaders/ltc_table.wesl"))
+        .module("package::ltc_polynomial", crate::ltc::LTC_POLYNOMIAL_WESL)
         .module("package::lighting", include_str!("shaders/lighting.wesl"))
         .module("package::scene", include_str!("shaders/scene.wesl"))
         .module("package::material", include_str!("shaders/material.wesl"))

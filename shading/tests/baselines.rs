@@ -13,8 +13,8 @@ use assign::{
 use assign_model::PerModel;
 use glam::{Vec2, Vec3};
 use shading::{
-    HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres, Renderer,
-    probe, record_before_lighting, record_for_probe,
+    AreaModel, HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres,
+    Renderer, probe, record_before_lighting, record_for_probe,
 };
 
 /// Points, spots, one around the camera and one beyond any far plane that reaches in.
@@ -115,7 +115,7 @@ fn raster_spheres_show_the_image_of_no_culling() {
         let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
         let reference =
             everything(&gpu, &mut renderer, &view, &lights, Mode::Deferred, EVALUATE_ALL);
-        let spheres = RasterSpheres::new(&renderer, lights.kinds()).unwrap();
+        let spheres = RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default()).unwrap();
         let draw = |lights: &LightBuffer| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut passes = EncoderPasses { encoder: &mut encoder };

@@ -4,83 +4,12 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
-use assign::{
-    EncoderPasses, Frame, FrameBindings, Gpu, Light, LightBuffer, Passes, entry, storage_entry,
-};
+use assign::{Light, LightBuffer};
 use glam::{DVec3, Vec3};
+use shading::AreaModel;
 use shading::reference::{Surface, light_contribution};
 
-/// One evaluation: position and light, eye direction and roughness, normal and metallic, colour and
-/// the weight at or under which the light is left out.
-type Query = [[f32; 4]; 4];
-
-const EVALUATE: &str = "
-import package::brdf::{Surface, see};
-import package::lighting::light_contribution;
-
-@group(2) @binding(0) var<storage, read> queries: array<array<vec4f, 4>>;
-@group(2) @binding(1) var<storage, read_write> answers: array<vec4f>;
-
-@compute @workgroup_size(64)
-fn evaluate(@builtin(global_invocation_id) thread: vec3u) {
-  if thread.x >= arrayLength(&queries) {
-    return;
-  }
-  let query = queries[thread.x];
-  let surface = Surface(query[3].xyz, query[2].w, query[2].xyz, query[1].w);
-  let light = bitcast<u32>(query[0].w);
-  let seen = see(surface, query[1].xyz);
-  answers[thread.x] = vec4f(light_contribution(light, query[0].xyz, seen, query[3].w), 1.0);
-}
-";
-
-/// Evaluates the queries on the GPU.
-fn evaluate(gpu: &Gpu, lights: &LightBuffer, queries: &[Query]) -> Vec<[f32; 4]> {
-    let view = common::view([8, 8]);
-    let mut bindings = FrameBindings::new(gpu);
-    bindings.update(gpu, &Frame::new(&view, lights)).unwrap();
-    let asked = gpu.storage("queries", size_of_val(queries) as u64).unwrap();
-    gpu.queue.write_buffer(&asked, 0, bytemuck::cast_slice(queries));
-    let answered = gpu.storage("answers", queries.len() as u64 * 16).unwrap();
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[storage_entry(0, stages, true), storage_entry(1, stages, false)],
-    });
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &layout,
-        entries: &[entry(0, &asked), entry(1, &answered)],
-    });
-    let module = shading::lighting_shader()
-        .module("package::evaluate", EVALUATE)
-        .module("package::strategy", include_str!("../../assign/src/shaders/everything.wesl"))
-        .light_kinds(lights.kinds())
-        .create(&gpu.device, "package::evaluate")
-        .unwrap();
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(bindings.layout()), None, Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("evaluate"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    EncoderPasses { encoder: &mut encoder }.compute("evaluate", &mut |pass| {
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, bindings.bind_group(), &[]);
-        pass.set_bind_group(2, &group, &[]);
-        pass.dispatch_workgroups((queries.len() as u32).div_ceil(64), 1, 1);
-    });
-    gpu.queue.submit([encoder.finish()]);
-    bytemuck::pod_collect_to_vec(&gpu.read(&answered, queries.len() as u64 * 16).unwrap())
-}
+use common::evaluate::{Query, evaluate};
 
 /// Directions that cover the sphere evenly (a Fibonacci spiral).
 fn direction(i: usize, count: usize) -> Vec3 {
@@ -146,7 +75,7 @@ fn shaders_agree_with_the_reference() {
         }
         let buffer = LightBuffer::new(&gpu, &lights).unwrap();
         let queries = queries(&lights, 20_000);
-        let answers = evaluate(&gpu, &buffer, &queries);
+        let answers = evaluate(&gpu, &buffer, &queries, AreaModel::default());
         let mut lit = 0;
         for (query, answer) in queries.iter().zip(&answers) {
             let expected = expected(&lights, query);
@@ -158,7 +87,14 @@ fn shaders_agree_with_the_reference() {
             lit += usize::from(expected.x > 1e-4);
         }
         // Without an exit every bit is the same; a greater weight leaves out what adds something.
-        let at = |exit_weight| bits(&evaluate(&gpu, &buffer, &leaving_out(&queries, exit_weight)));
+        let at = |exit_weight| {
+            bits(&evaluate(
+                &gpu,
+                &buffer,
+                &leaving_out(&queries, exit_weight),
+                AreaModel::default(),
+            ))
+        };
         assert_eq!(at(-1.0), bits(&answers), "{kinds}");
         assert_ne!(at(0.1), bits(&answers), "{kinds}");
         assert!(lit > 2_000, "{kinds}: only {lit} of 20000 samples are lit");
@@ -190,7 +126,10 @@ fn lights_on_a_surface_and_out_of_range_give_numbers() {
         }
     }
     let all = leaving_out(&queries, -1.0);
-    let answers = [evaluate(&gpu, &buffer, &queries), evaluate(&gpu, &buffer, &all)];
+    let answers = [
+        evaluate(&gpu, &buffer, &queries, AreaModel::default()),
+        evaluate(&gpu, &buffer, &all, AreaModel::default()),
+    ];
     assert_eq!(bits(&answers[0]), bits(&answers[1]));
     for (query, answer) in queries.iter().zip(&answers[0]) {
         assert!(answer.iter().all(|v| v.is_finite() && *v >= 0.0), "{query:?}: {answer:?}");

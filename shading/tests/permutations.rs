@@ -30,7 +30,8 @@ fn subsets(flags: &[&'static str]) -> Vec<Flags> {
 }
 
 /// The flags of each model of area lights.
-const AREA_MODELS: [&str; 1] = ["area_point"];
+const AREA_MODELS: [&str; 5] =
+    ["area_point", "area_mrp", "area_ltc_table", "area_ltc_polynomial", "area_monte_carlo"];
 
 /// Each set as it is, and with area lights of each model.
 fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
@@ -168,6 +169,9 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
         linked.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
     };
     assert_eq!(of_group(1), lists, "{root} {flags:?} {}", look_up.0);
+    let mut images = images.to_vec();
+    images.extend(flags.contains("area_ltc_table").then_some(7));
+    images.sort_unstable();
     assert_eq!(of_group(2), images, "{root} {flags:?} {}", look_up.0);
 }
 
@@ -189,6 +193,7 @@ fn operations() {
     for look_up in LOOK_UPS {
         for flags in with_areas(subsets(&["spots", "model_ids"])) {
             let mut images = vec![0, 1, 2, 8, 9];
+            images.extend(flags.contains("area_monte_carlo").then_some(6));
             images.extend(flags.contains("model_ids").then_some(5));
             images.sort_unstable();
             check_compute("operations", &flags, look_up, look_up.2, &images);

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use assign::{AssignError, FrustumTests, LightOrder};
 
+use shading::AreaModel;
+
 use super::MAX_LIGHTS;
 
 const MAX_SIDE: u32 = 16_384;
@@ -132,6 +134,11 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
 pub(super) fn part(text: &str) -> Result<f64, String> {
     let accepted = || "a number above 0 and at most 1".to_owned();
     share(text).ok().filter(|part| *part > 0.0).ok_or_else(accepted)
+}
+
+pub(super) fn area_model(text: &str) -> Result<AreaModel, String> {
+    let accepted = "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples";
+    text.parse().map_err(|_| accepted.to_owned())
 }
 
 pub(super) fn copies(text: &str) -> Result<u32, String> {

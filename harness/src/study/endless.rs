@@ -117,8 +117,13 @@ fn afar(one: Aabb, side: u32) -> String {
     let size = one.size();
     let ground = Vec3::new(size.x, 0.0, size.z) * side as f32;
     let middle = one.min + 0.5 * ground;
-    let eye = one.min + ground * Vec3::new(-0.15, 0.0, -0.15) + Vec3::Y * (size.y + 0.25 * ground.length());
-    format!("{:.3},{:.3},{:.3}:{:.3},{:.3},{:.3}", eye.x, eye.y, eye.z, middle.x, middle.y, middle.z)
+    let eye = one.min
+        + ground * Vec3::new(-0.15, 0.0, -0.15)
+        + Vec3::Y * (size.y + 0.25 * ground.length());
+    format!(
+        "{:.3},{:.3},{:.3}:{:.3},{:.3},{:.3}",
+        eye.x, eye.y, eye.z, middle.x, middle.y, middle.z
+    )
 }
 
 #[cfg(test)]

@@ -168,8 +168,7 @@ impl Done {
             let record = results.records.first().map(|record| record.scene_hash.clone());
             record.or_else(|| results.truth_image.as_ref().map(|truth| truth.scene_hash.clone()))
         };
-        let same =
-            |known: &&Job| known.scene == job.scene && scaled(known).eq(scaled(job));
+        let same = |known: &&Job| known.scene == job.scene && scaled(known).eq(scaled(job));
         let other = self.manifest.jobs.iter().filter(same);
         let known = other.filter_map(|known| hash(self.results.get(&known.name)?)).next();
         match (known, hash(results)) {

@@ -52,13 +52,17 @@ pub fn generate(
     size: usize,
     progress: impl Fn(usize) + Sync,
 ) -> Result<FitReport, ShadingError> {
+    if let Some(dir) = out_dir {
+        write(dir, |dir| fs::create_dir_all(dir))?;
+    }
     let table = Table::fit(size, progress)?;
     let polynomial = Polynomial::of(&table);
     if let Some(dir) = out_dir {
-        write(dir, "", |dir| fs::create_dir_all(dir))?;
-        write(dir, "ggx.bin", |path| fs::write(path, table.to_bytes()))?;
-        write(dir, "polynomial_coefficients.rs", |path| fs::write(path, polynomial.to_rust()))?;
-        write(dir, "ltc_polynomial.wesl", |path| fs::write(path, polynomial.to_wesl()))?;
+        write(&dir.join("ggx.bin"), |path| fs::write(path, table.to_bytes()))?;
+        write(&dir.join("polynomial_coefficients.rs"), |path| {
+            fs::write(path, polynomial.to_rust())
+        })?;
+        write(&dir.join("ltc_polynomial.wesl"), |path| fs::write(path, polynomial.to_wesl()))?;
     }
     let cases = accuracy_cases(CASES, SEED);
     Ok(FitReport {
@@ -69,13 +73,11 @@ pub fn generate(
     })
 }
 
-fn write(
-    dir: &Path,
-    name: &str,
-    write: impl Fn(&Path) -> std::io::Result<()>,
-) -> Result<(), ShadingError> {
-    let path = if name.is_empty() { dir.to_owned() } else { dir.join(name) };
-    write(&path).map_err(|error| ShadingError::Write { path, reason: error.to_string() })
+fn write(path: &Path, write: impl Fn(&Path) -> std::io::Result<()>) -> Result<(), ShadingError> {
+    write(path).map_err(|error| {
+        let reason = error.to_string();
+        ShadingError::Write { path: path.to_owned(), reason }
+    })
 }
 
 impl Table {

@@ -18,7 +18,7 @@
 //! # The terms
 //!
 //! Radiance reflected to the eye from a polygon of unit radiance, with `f0` the reflectance at
-//! normal incidence, A, B and C the its integrals:
+//! normal incidence, A and B the integrals of an [`Entry`], C [`diffuse_fresnel`]:
 //!
 //! | term | value |
 //! |---|---|

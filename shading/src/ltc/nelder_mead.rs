@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Rounds at most; a fit takes about 60.
+/// Rounds at most.
 const ROUNDS: usize = 200;
 
 /// Walks from `start`, with first steps of `step` along each axis, to a minimum, until the values at

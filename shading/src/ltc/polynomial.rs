@@ -16,8 +16,8 @@ use crate::reference::MIN_ROUGHNESS;
 /// The generated WESL module: `ltc_entry_polynomial(roughness, y)`.
 pub const LTC_POLYNOMIAL_WESL: &str = include_str!("../shaders/ltc_polynomial.wesl");
 
-/// Total degree. 5 makes the median error over random rectangles half a per cent larger than the
-/// table's, 6 a tenth of a per cent, 7 no less.
+/// Total degree. Median errors over 30,000 random rectangles: 4.9, 4.4, 3.9, 4.0 and 3.8 % for degrees
+/// 4 to 8, and 3.8 % for the table.
 const DEGREE: usize = 6;
 /// Terms of each polynomial.
 const TERMS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;

@@ -8,7 +8,7 @@
 //! error, until the sum of all errors is small.
 //!
 //! The error of a triangle is the change that its last split made, shared by the four parts. The
-//! error that remains is about a hundredth of that where the integrand is smooth.
+//! error that remains is far smaller where the integrand is smooth.
 
 use std::{cmp::Ordering, collections::BinaryHeap, f64::consts::PI};
 
@@ -224,8 +224,11 @@ fn refine(
     let [a, b, c] = corners;
     let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let center = (a + b + c).normalize_or_zero();
-    let gap = (center.distance(integrand.peak) - size).max(0.0);
-    if size > 0.5 * (integrand.width + gap).max(1e-9) && depth < 24 {
+    let distance = center.distance(integrand.peak);
+    // A direction that is no number has no peak, and ends the search at once.
+    let is_wider = size > 0.5 * integrand.width;
+    let is_near = size > 0.5 * (integrand.width + distance - size);
+    if is_wider && is_near && depth < 24 {
         for part in parts(corners) {
             refine(integrand, part, depth + 1, found);
         }
@@ -352,5 +355,21 @@ mod tests {
         let found = integrate(&below, to_eye(0.5), 0.3, 1e-3);
         assert_eq!((found.value, found.triangles), (Integrals::default(), 0));
         assert_eq!(integrate(&[], to_eye(0.5), 0.3, 1e-3).value, Integrals::default());
+    }
+
+    #[test]
+    fn what_is_no_number_ends_at_once() {
+        let above =
+            [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 1.0), DVec3::new(0.1, 1.0, 1.0)];
+        let odd = [
+            (DVec3::NAN, 0.0),
+            (DVec3::ZERO, 0.0),
+            (DVec3::INFINITY, 1.0),
+            (to_eye(0.5), f64::NAN),
+        ];
+        for (to_eye, roughness) in odd {
+            assert!(integrate(&above, to_eye, roughness, 1e-3).triangles < 10_000);
+        }
+        assert!(integrate(&[DVec3::NAN; 4], to_eye(0.5), 0.3, 1e-3).triangles < 10_000);
     }
 }

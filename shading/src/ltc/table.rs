@@ -2,6 +2,11 @@
 //!
 //! Indexed by x = perceptual roughness and y = sqrt(1 - cos view), both 0 to 1; the first texel's
 //! centre lies on 0, the last one's on 1, and between centres the look-up is bilinear.
+//!
+//! M^-1 is stored, not M. Between texels, what a fitted lobe covers of squares about its size was off by
+//! these shares with either, medians: 0.9 and 2.7 % for roughness 0.05 to 0.16 seen from near the
+//! normal, 1.4 and 2.9 % from midway, 0.14 and 0.22 % for roughness 0.16 to 0.48 near the normal. Only
+//! for the latter at the most grazing views was M better, 1.8 and 1.0 %.
 
 use glam::DMat3;
 use rayon::prelude::*;

@@ -1,5 +1,7 @@
 //! A small scene with one of everything the pipeline draws.
 
+pub(crate) mod evaluate;
+
 use assign::{Gpu, Light, LightShape, View};
 use glam::{Affine2, Mat4, Vec2, Vec3, Vec4};
 use scenes::{

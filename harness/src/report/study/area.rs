@@ -82,12 +82,7 @@ fn error(record: &Record, id: &str) -> Option<f64> {
 }
 
 /// Errors and times of all models, and what each gets wrong.
-pub(super) fn area(
-    done: &Done,
-    scene: &str,
-    charts: &mut Charts,
-    shots: &mut Shots<'_>,
-) -> String {
+pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> String {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
         all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
@@ -199,7 +194,12 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
         .iter()
         .filter_map(|at| known.iter().find(|(record, error)| (record.shade_ms, *error) == *at))
         .map(|(record, error)| {
-            format!("{} ({} ms, {})", model(record), significant(record.shade_ms), difference(*error))
+            format!(
+                "{} ({} ms, {})",
+                model(record),
+                significant(record.shade_ms),
+                difference(*error)
+            )
         })
         .collect();
     let mut found = vec![format!(

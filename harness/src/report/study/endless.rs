@@ -60,8 +60,7 @@ fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> String {
 
 /// The paper's table with ours.
 fn operations(case: &Case<'_>) -> String {
-    let rows: Vec<Vec<String>> =
-        case.entries.iter().map(|entry| row(case, entry.record)).collect();
+    let rows: Vec<Vec<String>> = case.entries.iter().map(|entry| row(case, entry.record)).collect();
     let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
     let heads = [
         "cones".to_owned(),
@@ -82,9 +81,8 @@ fn operations(case: &Case<'_>) -> String {
 
 fn row(case: &Case<'_>, record: &Record) -> Vec<String> {
     let counted = record.operations;
-    let count = |value: Option<u64>| {
-        value.map_or_else(|| ABSENT.to_owned(), |value| number(value as f64))
-    };
+    let count =
+        |value: Option<u64>| value.map_or_else(|| ABSENT.to_owned(), |value| number(value as f64));
     let theirs = match record.culls() {
         true => paper(case.place, case.lights, cones(&record.strategy)),
         false => None,

@@ -28,7 +28,9 @@ fn fastest<'a>(case: &Case<'a>, exact: bool) -> Option<&'a Record> {
 pub(super) fn best_cones(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
     for case in cases(done, scene) {
-        let (Some(position), Some(best)) = (case.position(), fastest(&case, true)) else { continue };
+        let (Some(position), Some(best)) = (case.position(), fastest(&case, true)) else {
+            continue;
+        };
         all += 1;
         good += usize::from(Ratio::of(best, position).is_some_and(|ratio| ratio.is_faster()));
         let said = |record: &Record| {

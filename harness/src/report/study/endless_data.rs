@@ -148,7 +148,8 @@ mod tests {
         // 54 cones leave out four fifths of what 23,043,487 outer operations are by position.
         let [position, cones] = [None, Some(54)].map(|n| paper("a", 126, n).unwrap());
         let inner = 42_893_462;
-        let share = (cones.listed.unwrap() - inner) as f64 / (position.listed.unwrap() - inner) as f64;
+        let share =
+            (cones.listed.unwrap() - inner) as f64 / (position.listed.unwrap() - inner) as f64;
         assert!((share - 0.204).abs() < 1e-3, "{share}");
     }
 }

@@ -1,0 +1,67 @@
+//! What lighting reads beside surfaces, lights and lists: its numbers, and the table of linearly
+//! transformed cosines where a model of area lights looks it up.
+
+use assign::{Gpu, entry, storage_entry, uniform_entry};
+
+use crate::{AreaModel, LightingOptions, ShadingError, ltc};
+
+/// Where `LightingUniform` is bound in group 2.
+pub(crate) const LIGHTING_BINDING: u32 = 6;
+
+/// Where the table is bound in group 2.
+pub(crate) const LTC_BINDING: u32 = 7;
+
+/// The resources of one set of options.
+#[derive(Debug)]
+pub(crate) struct LightingInputs {
+    uniform: wgpu::Buffer,
+    table: Option<wgpu::Buffer>,
+}
+
+impl LightingInputs {
+    /// Uploads what the options ask for.
+    pub(crate) fn new(gpu: &Gpu, options: LightingOptions) -> Result<Self, ShadingError> {
+        let uniform = gpu.uniform("lighting", 16);
+        options.area.check()?;
+        let numbers = [options.exit_weight.to_bits(), options.area.samples(), 0, 0];
+        gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&numbers));
+        let table = match options.reads_table() {
+            false => None,
+            true => {
+                let table = ltc::Table::ggx()?;
+                let bytes = table.as_bytes();
+                let buffer = gpu.storage("LTC table", bytes.len() as u64)?;
+                gpu.queue.write_buffer(&buffer, 0, bytes);
+                Some(buffer)
+            }
+        };
+        Ok(Self { uniform, table })
+    }
+
+    /// Layout entries of group 2, for the stages that light.
+    pub(crate) fn layout(
+        reads_table: bool,
+        stages: wgpu::ShaderStages,
+    ) -> impl Iterator<Item = wgpu::BindGroupLayoutEntry> {
+        let table = reads_table.then(|| storage_entry(LTC_BINDING, stages, true));
+        [uniform_entry(LIGHTING_BINDING, stages)].into_iter().chain(table)
+    }
+
+    /// Bind group entries of group 2.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
+        let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
+        [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table)
+    }
+
+    /// Whether the table is among them.
+    pub(crate) fn has_table(&self) -> bool {
+        self.table.is_some()
+    }
+}
+
+impl LightingOptions {
+    /// Whether shading looks the table up.
+    pub(crate) fn reads_table(&self) -> bool {
+        self.kinds.areas && self.area == AreaModel::LtcTable
+    }
+}

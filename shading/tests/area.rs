@@ -1,0 +1,326 @@
+//! Area lights: every model against f64, on the adapter of this machine.
+
+#![allow(dead_code, reason = "the common module serves several tests")]
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+mod common;
+
+use assign::{Emitter, Light, LightBuffer};
+use common::evaluate::{Query, evaluate};
+use glam::{DVec3, Vec3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use shading::AreaModel;
+use shading::ltc::Table;
+use shading::reference::{Surface, light_contribution, ltc_contribution};
+
+fn direction(rng: &mut Pcg64Mcg) -> Vec3 {
+    loop {
+        let v = Vec3::from_array(rng.random()) * 2.0 - 1.0;
+        if (0.01..1.0).contains(&v.length_squared()) {
+            return v.normalize();
+        }
+    }
+}
+
+/// Rectangles and polygons of 3 to 10 vertices, one- and two-sided, of 4 cm to 4 m.
+fn lights(count: usize) -> Vec<Light> {
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    (0..count)
+        .map(|ix| {
+            let normal = direction(&mut rng);
+            let x = normal.any_orthonormal_vector() * 10_f32.powf(rng.random_range(-1.4..0.3));
+            let y = normal.cross(x) * rng.random_range(0.1..1.0);
+            let position = 3.0 * direction(&mut rng);
+            let (emitter, position) = if ix % 2 == 0 {
+                (Emitter::rectangle(x, y), position)
+            } else {
+                let vertices = rng.random_range(3..=10);
+                let corner = |i: usize| {
+                    let (sin, cos) = (std::f32::consts::TAU * i as f32 / vertices as f32).sin_cos();
+                    position + x * cos + y * sin
+                };
+                Emitter::polygon(&(0..vertices).map(corner).collect::<Vec<_>>()).unwrap()
+            };
+            let emitter = if ix % 3 == 0 { emitter.two_sided() } else { emitter };
+            let emitter = emitter.with_diffuse_share(if ix % 5 == 0 { 0.7 } else { 1.0 });
+            let light = Light::area(emitter, position, 6.0, Vec3::new(4.0, 2.0, 1.0));
+            light.check().unwrap();
+            light
+        })
+        .collect()
+}
+
+/// Points all around each light, seen from their front, of every roughness.
+fn queries(lights: &[Light], count: usize) -> Vec<Query> {
+    let mut rng = Pcg64Mcg::seed_from_u64(8);
+    (0..count)
+        .map(|ix| {
+            let light = ix % lights.len();
+            let position = lights[light].position
+                + direction(&mut rng) * 10_f32.powf(rng.random_range(-1.5..0.85));
+            let normal = direction(&mut rng);
+            let to_eye = direction(&mut rng);
+            let to_eye = if to_eye.dot(normal) < 0.0 { -to_eye } else { to_eye };
+            [
+                position.extend(f32::from_bits(light as u32)).to_array(),
+                to_eye.extend(rng.random()).to_array(),
+                normal.extend(rng.random()).to_array(),
+                [0.9, 0.5, 0.1, 0.0],
+            ]
+        })
+        .collect()
+}
+
+fn asked(query: &Query) -> (DVec3, Surface, DVec3) {
+    let xyz = |v: [f32; 4]| DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
+    let surface = Surface {
+        base_color: xyz(query[3]),
+        metallic: f64::from(query[2][3]),
+        normal: xyz(query[2]).normalize(),
+        roughness: f64::from(query[1][3]),
+    };
+    (xyz(query[0]), surface, xyz(query[1]).normalize())
+}
+
+fn light_of(query: &Query) -> usize {
+    query[0][3].to_bits() as usize
+}
+
+#[test]
+fn linearly_transformed_cosines_are_those_of_f64() {
+    let gpu = common::gpu();
+    let lights = lights(40);
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let queries = queries(&lights, 6_000);
+    let table = Table::ggx().unwrap();
+    let answers = evaluate(&gpu, &buffer, &queries, AreaModel::LtcTable);
+    let (mut lit, mut worst) = (0, 0.0_f64);
+    for (query, answer) in queries.iter().zip(&answers) {
+        let (position, surface, to_eye) = asked(query);
+        let light = &buffer.lights()[light_of(query)];
+        let expected = ltc_contribution(&table, light, position, &surface, to_eye);
+        let off = (f64::from(answer[0]) - expected.x).abs() / (expected.x.abs() + 1e-3);
+        worst = worst.max(off);
+        assert!(off < 2e-3, "{answer:?} for {expected}: {query:?}");
+        lit += usize::from(expected.x > 1e-4);
+    }
+    println!("{}: {lit} lit, off by {worst:.1e} at most", gpu.info.name);
+    assert!(lit > 1_500, "only {lit} are lit");
+}
+
+/// Share of the light that a model gets wrong: the sum of differences over the sum of the truth.
+fn error_of(answers: &[[f32; 4]], truth: &[DVec3]) -> f64 {
+    let off = |(answer, truth): (&[f32; 4], &DVec3)| (f64::from(answer[0]) - truth.x).abs();
+    let sum: f64 = truth.iter().map(|truth| truth.x).sum();
+    answers.iter().zip(truth).map(off).sum::<f64>() / sum
+}
+
+#[test]
+fn models_are_as_far_from_the_truth_as_they_should_be() {
+    let gpu = common::gpu();
+    let lights = lights(40);
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    // Off the emitters and rough enough for the quadrature to be quick.
+    let mut queries = queries(&lights, 1_500);
+    queries.iter_mut().for_each(|query| query[1][3] = 0.2 + 0.8 * query[1][3]);
+    let truth: Vec<DVec3> = queries
+        .iter()
+        .map(|query| {
+            let (position, surface, to_eye) = asked(query);
+            light_contribution(&buffer.lights()[light_of(query)], position, &surface, to_eye)
+        })
+        .collect();
+    let error = |model| error_of(&evaluate(&gpu, &buffer, &queries, model), &truth);
+    let [point, mrp, table, polynomial] =
+        [AreaModel::Point, AreaModel::Mrp, AreaModel::LtcTable, AreaModel::LtcPolynomial]
+            .map(error);
+    println!("point {point:.4}, MRP {mrp:.4}, table {table:.4}, polynomial {polynomial:.4}");
+    assert!(mrp < 0.4 * point && table < 0.2 * mrp, "{point} {mrp} {table}");
+    assert!(table < 0.07 && polynomial < 0.08, "{table} {polynomial}");
+    assert!(point > 4.0 * table, "{point} {table}");
+}
+
+/// Four times the samples halve the error of independent ones; evenly spread ones do better.
+#[test]
+fn sampling_converges_to_the_truth() {
+    let gpu = common::gpu();
+    let lights = lights(40);
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let mut queries = queries(&lights, 1_500);
+    queries.iter_mut().for_each(|query| query[1][3] = 0.4 + 0.6 * query[1][3]);
+    let truth: Vec<DVec3> = queries
+        .iter()
+        .map(|query| {
+            let (position, surface, to_eye) = asked(query);
+            light_contribution(&buffer.lights()[light_of(query)], position, &surface, to_eye)
+        })
+        .collect();
+    let counts = [4, 16, 64, 256, 1024];
+    let errors = counts.map(|samples| {
+        let model = AreaModel::MonteCarlo { samples };
+        error_of(&evaluate(&gpu, &buffer, &queries, model), &truth)
+    });
+    println!("{}: samples {counts:?}, errors {errors:.5?}", gpu.info.name);
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{errors:?}");
+    // Over 256 times the samples a sixteenth at least, to below what the quadrature is good to.
+    assert!(errors[4] < errors[0] / 16.0 && errors[4] < 0.01, "{errors:?}");
+}
+
+#[test]
+fn nothing_is_lit_below_the_horizon_behind_a_light_or_out_of_its_range() {
+    let gpu = common::gpu();
+    let square = Emitter::rectangle(Vec3::X, Vec3::Y);
+    let at = |z: f32| Light::area(square, Vec3::new(0.0, 0.0, z), 3.0, Vec3::splat(50.0));
+    // The light looks up: from below it is behind, from above it is below the horizon of normals up.
+    let lights = [at(-1.0), at(1.0)];
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let query = |light: u32, position: Vec3, normal: Vec3, roughness: f32| -> Query {
+        [
+            position.extend(f32::from_bits(light)).to_array(),
+            (normal + 0.5 * Vec3::X).normalize().extend(roughness).to_array(),
+            normal.extend(0.5).to_array(),
+            [1.0, 1.0, 1.0, -1.0],
+        ]
+    };
+    let mut dark = Vec::new();
+    let mut bright = Vec::new();
+    for step in 0..40 {
+        let roughness = step as f32 / 39.0;
+        let across = Vec3::new(step as f32 * 0.05 - 1.0, 0.3, 0.0);
+        // Looking up from above, straight and tilted by less than the light is low.
+        dark.push(query(0, across, Vec3::Z, roughness));
+        dark.push(query(0, across, Vec3::new(0.2, 0.0, 1.0).normalize(), roughness));
+        // Behind.
+        dark.push(query(1, across, Vec3::Z, roughness));
+        // Beyond the range.
+        dark.push(query(0, across + Vec3::Z * 2.1, Vec3::NEG_Z, roughness));
+        bright.push(query(0, across, Vec3::NEG_Z, roughness));
+    }
+    for model in AreaModel::ALL {
+        let lit = evaluate(&gpu, &buffer, &bright, model);
+        assert!(lit.iter().all(|answer| answer[0] > 1e-3), "{model}");
+        for (query, answer) in dark.iter().zip(evaluate(&gpu, &buffer, &dark, model)) {
+            assert_eq!(answer[..3], [0.0; 3], "{model}: {query:?}");
+        }
+    }
+}
+
+/// A rectangle of 100 to 1, seen at 5 cm, along which a surface passes: no step differs from its
+/// neighbours' mean by more than curvature.
+#[test]
+fn a_long_light_close_by_is_without_noise() {
+    let gpu = common::gpu();
+    let table = Table::ggx().unwrap();
+    let lamp = Emitter::rectangle(Vec3::X * 2.0, Vec3::NEG_Y * 0.02);
+    let light = Light::area(lamp, Vec3::new(0.0, 0.0, 0.05), 5.0, Vec3::splat(1.0));
+    let buffer = LightBuffer::new(&gpu, &[light]).unwrap();
+    for roughness in [0.1, 0.3, 0.8] {
+        let queries: Vec<Query> = (0..2_000)
+            .map(|step| {
+                let position = Vec3::new(step as f32 * 1e-3 - 1.0, 0.01, 0.0);
+                let to_eye = Vec3::new(0.6, 0.2, 0.75).normalize();
+                [
+                    position.extend(f32::from_bits(0)).to_array(),
+                    to_eye.extend(roughness).to_array(),
+                    Vec3::Z.extend(0.0).to_array(),
+                    [0.5, 0.5, 0.5, 0.0],
+                ]
+            })
+            .collect();
+        for model in [AreaModel::LtcTable, AreaModel::LtcPolynomial] {
+            let answers = evaluate(&gpu, &buffer, &queries, model);
+            for (query, answer) in queries.iter().zip(&answers) {
+                let (position, surface, to_eye) = asked(query);
+                let exact = ltc_contribution(&table, &light, position, &surface, to_eye).x;
+                let off = (f64::from(answer[0]) / exact - 1.0).abs();
+                assert!(model != AreaModel::LtcTable || off < 1e-4, "{off:e} at {position}");
+            }
+            for three in answers.windows(3) {
+                let noise = (three[1][0] / (0.5 * (three[0][0] + three[2][0])) - 1.0).abs();
+                assert!(noise < 1e-4, "{model} at roughness {roughness}: {noise:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn surfaces_on_edge_on_and_inside_emitters_give_numbers() {
+    let gpu = common::gpu();
+    let square = Emitter::rectangle(Vec3::X, Vec3::Y).two_sided();
+    let lights = [
+        Light::area(square, Vec3::ZERO, 2.0, Vec3::splat(1e6)),
+        Light::area(square.scaled(1e-4), Vec3::ZERO, 1e-3, Vec3::splat(1e6)),
+        Light::area(square.scaled(1e4), Vec3::ZERO, 1e6, Vec3::splat(1e6)),
+    ];
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let mut queries = Vec::new();
+    for light in 0..3_u32 {
+        for position in [
+            Vec3::ZERO,
+            Vec3::X,
+            Vec3::new(1.0, 1.0, 0.0),
+            Vec3::X * 1.5,
+            Vec3::Z * 1e-20,
+            Vec3::NEG_Z * 1e-6,
+            Vec3::Z * 1e5,
+        ] {
+            for normal in [Vec3::Z, Vec3::NEG_Z, Vec3::X] {
+                for to_eye in [normal, Vec3::Y, -normal] {
+                    for roughness in [0.0, 0.5, 1.0] {
+                        queries.push([
+                            position.extend(f32::from_bits(light)).to_array(),
+                            to_eye.extend(roughness).to_array(),
+                            normal.extend(1.0).to_array(),
+                            [1.0, 1.0, 1.0, -1.0],
+                        ]);
+                    }
+                }
+            }
+        }
+    }
+    for model in AreaModel::ALL {
+        for (query, answer) in queries.iter().zip(evaluate(&gpu, &buffer, &queries, model)) {
+            let sound = answer[..3].iter().all(|x| x.is_finite() && *x >= 0.0);
+            assert!(sound, "{model}: {answer:?}, {query:?}");
+        }
+    }
+}
+
+/// Two-sided lights light both sides alike, and two halves of a light as much as all of it.
+#[test]
+fn sides_are_alike_and_parts_add_up() {
+    let gpu = common::gpu();
+    let lamp = |x: f32, center: f32| {
+        let emitter = Emitter::rectangle(Vec3::X * x, Vec3::Y * 0.4).two_sided();
+        // Without a window that would tell the parts apart.
+        Light::area(emitter, Vec3::X * center, 1e5, Vec3::splat(x))
+    };
+    let lights = [lamp(1.0, 0.0), lamp(0.5, -0.5), lamp(0.5, 0.5)];
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let query = |light: u32, position: Vec3, normal: Vec3, to_eye: Vec3, roughness: f32| -> Query {
+        [
+            position.extend(f32::from_bits(light)).to_array(),
+            to_eye.normalize().extend(roughness).to_array(),
+            normal.extend(0.3).to_array(),
+            [0.7, 0.7, 0.7, 0.0],
+        ]
+    };
+    for model in [AreaModel::LtcTable, AreaModel::LtcPolynomial] {
+        let mut queries = Vec::new();
+        for step in 0..60 {
+            let position = Vec3::new(step as f32 * 0.05 - 1.5, 0.2, -0.6);
+            let to_eye = Vec3::new(0.5, 0.1, 0.7);
+            let roughness = 0.1 + 0.015 * step as f32;
+            for light in 0..3 {
+                queries.push(query(light, position, Vec3::Z, to_eye, roughness));
+            }
+            let flip = Vec3::new(1.0, 1.0, -1.0);
+            queries.push(query(0, position * flip, Vec3::NEG_Z, to_eye * flip, roughness));
+        }
+        for answer in evaluate(&gpu, &buffer, &queries, model).chunks(4) {
+            let [whole, left, right, mirrored] = [0, 1, 2, 3].map(|i| f64::from(answer[i][0]));
+            assert!((left + right - whole).abs() < 1e-3 * whole + 1e-6, "{model}: {answer:?}");
+            assert!((mirrored - whole).abs() < 1e-4 * whole + 1e-6, "{model}: {answer:?}");
+        }
+    }
+}
