@@ -1,15 +1,16 @@
-//! DC-I, DC-E, SC-I and SC-E: clusters on the axes of bounds and occupancy.
+//! DC-I, DC-E, SC-I and SC-E: clusters on the axes of bounds, occupancy and normals.
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
-    FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
-    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs,
+    Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
+    Normals,
     clusters::{ClusterSize, ClustersUniform},
-    gather::Gather,
+    gather::{Gather, Images},
 };
 
 /// Which clusters get a list.
@@ -27,6 +28,7 @@ pub struct Clustered {
     size: ClusterSize,
     bounds: Bounds,
     occupancy: Occupancy,
+    normals: Normals,
     settings: CullSettings,
     clusters: wgpu::Buffer,
     gather: Option<Gather>,
@@ -34,12 +36,28 @@ pub struct Clustered {
 }
 
 /// The WESL module of clusters bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: &str =
-    concat!(include_str!("shaders/clusters.wesl"), include_str!("shaders/implicit.wesl"));
+pub const IMPLICIT_WESL: &str = concat!(
+    include_str!("shaders/clusters.wesl"),
+    include_str!("shaders/by_cluster.wesl"),
+    include_str!("shaders/implicit.wesl"),
+);
 
 /// The WESL module of clusters bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: &str =
-    concat!(include_str!("shaders/clusters.wesl"), include_str!("shaders/explicit.wesl"));
+pub const EXPLICIT_WESL: &str = concat!(
+    include_str!("shaders/clusters.wesl"),
+    include_str!("shaders/by_cluster.wesl"),
+    include_str!("shaders/explicit.wesl"),
+    "const WORDS: u32 = 6u;\n",
+);
+
+/// The WESL module of clusters bounded by the samples in them and split by their normals:
+/// `group_of`, `group_bounds` and `group_facing`.
+pub const BINS_WESL: &str = concat!(
+    include_str!("shaders/clusters.wesl"),
+    include_str!("shaders/by_bin.wesl"),
+    include_str!("shaders/explicit.wesl"),
+    "const WORDS: u32 = 12u;\n",
+);
 
 impl Clustered {
     /// Makes the strategy; `size` is checked.
@@ -50,12 +68,35 @@ impl Clustered {
         occupancy: Occupancy,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
+        Self::with_normals(gpu, size, bounds, occupancy, Normals::None, settings)
+    }
+
+    /// Makes the strategy with clusters split by normals; `size` and `normals` are checked. Only
+    /// sparse clusters with explicit bounds can be split.
+    pub fn with_normals(
+        gpu: &Gpu,
+        size: ClusterSize,
+        bounds: Bounds,
+        occupancy: Occupancy,
+        normals: Normals,
+        settings: CullSettings,
+    ) -> Result<Self, AssignError> {
         size.check()?;
+        normals.check()?;
+        if normals.is_some() && (bounds, occupancy) != (Bounds::Explicit, Occupancy::Sparse) {
+            return Err(AssignError::Unsupported {
+                strategy: family(bounds, occupancy).into(),
+                asked: format!("{} bins of normals", normals.bins()),
+                reason: "only sparse clusters with explicit bounds, SC-E, are split by normals"
+                    .into(),
+            });
+        }
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         let clusters = uniform_entry(FIRST_STRATEGY_BINDING, stages);
         let boxes = storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true);
         let (module, bindings) = match bounds {
             Bounds::Implicit => (IMPLICIT_WESL, vec![clusters]),
+            Bounds::Explicit if normals.is_some() => (BINS_WESL, vec![clusters, boxes]),
             Bounds::Explicit => (EXPLICIT_WESL, vec![clusters, boxes]),
         };
         let sparse = occupancy == Occupancy::Sparse;
@@ -64,10 +105,11 @@ impl Clustered {
             size,
             bounds,
             occupancy,
+            normals,
             settings,
             clusters: gpu.uniform("clusters", size_of::<ClustersUniform>() as u64),
             gather: match reads_samples {
-                true => Some(Gather::new(gpu, bounds, occupancy)?),
+                true => Some(Gather::new(gpu, bounds, occupancy, normals)?),
                 false => None,
             },
             culler: Culler::new(
@@ -77,6 +119,10 @@ impl Clustered {
                     shape: shape(bounds),
                     settings,
                     sparse,
+                    facing: match normals.is_some() {
+                        true => Facing::Horizon,
+                        false => Facing::Unknown,
+                    },
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(module) },
@@ -106,16 +152,19 @@ fn shape(bounds: Bounds) -> GroupShape {
 impl Assignment for Clustered {
     fn id(&self) -> String {
         let suffix = self.settings.suffix(shape(self.bounds));
-        format!("{}/{}{suffix}", family(self.bounds, self.occupancy), self.size)
+        let normals = self.normals.segment();
+        format!("{}/{}{normals}{suffix}", family(self.bounds, self.occupancy), self.size)
     }
 
     fn needs(&self) -> Needs {
-        Needs { depth: self.gather.is_some(), ..Needs::default() }
+        let normals = self.normals.is_some();
+        Needs { depth: self.gather.is_some(), normals, ..Needs::default() }
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let mut clusters = ClustersUniform::new(self.size, frame.view, frame.lights.bounds())?;
+        let mut clusters =
+            ClustersUniform::new(self.size, self.normals, frame.view, frame.lights.bounds())?;
         let count = clusters.group_count();
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.clusters)];
@@ -128,10 +177,16 @@ impl Assignment for Clustered {
                     reason: "its lists are made for the opaque surfaces in the depth buffer".into(),
                 });
             }
-            let missing = || AssignError::Missing { strategy: id, missing: "depth" };
-            let depth = frame.depth.ok_or_else(missing)?;
+            let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
+            let images = Images {
+                depth: frame.depth.ok_or_else(|| missing("depth"))?,
+                normals: match self.normals {
+                    Normals::None => None,
+                    Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),
+                },
+            };
             clusters.surfaces_only = 1;
-            gather.prepare(gpu, frame, depth, &self.clusters, count)?;
+            gather.prepare(gpu, frame, images, &self.clusters, count)?;
             if self.occupancy == Occupancy::Sparse {
                 groups = Groups::Live { count, live: gather.live() };
             }

@@ -6,6 +6,8 @@ use assign::{AssignError, Projection, View};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
+use crate::Normals;
+
 /// The size of clusters: pixels of a tile, and the number of depth slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClusterSize {
@@ -15,8 +17,8 @@ pub struct ClusterSize {
     pub slices: u32,
 }
 
-/// More clusters than this are refused: their records alone would take 128 MiB.
-const MAX_CLUSTERS: u64 = 1 << 24;
+/// More groups than this, clusters times bins of normals, are refused: their records alone would take 128 MiB.
+const MAX_GROUPS: u64 = 1 << 24;
 
 impl ClusterSize {
     /// Checks each field.
@@ -94,8 +96,10 @@ pub struct ClustersUniform {
     pub exponential: u32,
     /// 1 where lists are made for the surfaces in the depth buffer alone.
     pub surfaces_only: u32,
+    /// Cells along an edge of a face of the cube of normals; 0: normals are not told apart.
+    pub bin_side: u32,
     /// Pads to 64 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
@@ -104,11 +108,14 @@ pub const UNBOUNDED: f32 = 3.4e38;
 impl ClustersUniform {
     /// Cuts `view` into clusters.
     ///
+    /// Each cluster has a group for every bin of `normals`.
+    ///
     /// Slices run from the near to the far plane, exponentially in a perspective view (Enhuber
     /// 2019, equation 3.3), evenly in an orthographic one. Without a far plane they run to the
     /// farthest point that a light reaches (`light_bounds`), and the last one goes on to infinity.
     pub fn new(
         size: ClusterSize,
+        normals: Normals,
         view: &View,
         light_bounds: Option<(Vec3, Vec3)>,
     ) -> Result<Self, AssignError> {
@@ -118,12 +125,18 @@ impl ClustersUniform {
             viewport[1].div_ceil(size.tile_px[1]),
             size.slices,
         ];
-        let total = counts.iter().map(|&n| u64::from(n)).product::<u64>();
-        if total > MAX_CLUSTERS {
+        let bins = u64::from(normals.bins());
+        let total = counts.iter().map(|&n| u64::from(n)).product::<u64>() * bins;
+        if total > MAX_GROUPS {
             return Err(AssignError::Parameter {
                 field: "cluster size".into(),
-                value: format!("{size} at {}x{}: {total} clusters", viewport[0], viewport[1]),
-                accepted: format!("at most {MAX_CLUSTERS} clusters: larger tiles, fewer slices"),
+                value: format!(
+                    "{size} at {}x{}, {bins} bins a cluster: {total} groups",
+                    viewport[0], viewport[1]
+                ),
+                accepted: format!(
+                    "at most {MAX_GROUPS} groups: larger tiles, fewer slices or bins of normals"
+                ),
             });
         }
         let near = view.near_m;
@@ -141,13 +154,15 @@ impl ClustersUniform {
             far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
             exponential: u32::from(exponential),
             surfaces_only: 0,
-            padding: [0; 3],
+            bin_side: normals.side(),
+            padding: [0; 2],
         })
     }
 
-    /// Number of clusters.
+    /// Number of clusters times bins of normals.
     pub fn group_count(&self) -> u32 {
-        self.counts.iter().product()
+        let bins = (6 * self.bin_side * self.bin_side).max(1);
+        self.counts.iter().product::<u32>() * bins
     }
 }
 
@@ -184,7 +199,7 @@ mod tests {
         let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
         view.far_m = Some(512.0);
         let size = "64x64x20".parse().unwrap();
-        let clusters = ClustersUniform::new(size, &view, None).unwrap();
+        let clusters = ClustersUniform::new(size, Normals::None, &view, None).unwrap();
         assert_eq!(clusters.counts, [3, 1, 20]);
         // Ten octaves, two slices each.
         assert_eq!(clusters.slices_per_unit, 2.0);
@@ -195,12 +210,12 @@ mod tests {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [64, 64]);
         let bounds = Some((Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE));
         let size = "64x64x8".parse().unwrap();
-        let clusters = ClustersUniform::new(size, &view, bounds).unwrap();
+        let clusters = ClustersUniform::new(size, Normals::None, &view, bounds).unwrap();
         assert_eq!(clusters.slices_per_unit, 2.0);
         assert_eq!(clusters.far_m, UNBOUNDED);
         // Lights behind the camera leave one octave.
         let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
-        let clusters = ClustersUniform::new(size, &view, behind).unwrap();
+        let clusters = ClustersUniform::new(size, Normals::None, &view, behind).unwrap();
         assert_eq!(clusters.slices_per_unit, 8.0);
     }
 
@@ -210,17 +225,25 @@ mod tests {
         view.far_m = Some(1_000.0);
         view.depth = assign::DepthMapping::Standard;
         let size = "64x64x8".parse().unwrap();
-        let clusters = ClustersUniform::new(size, &view, None).unwrap();
+        let clusters = ClustersUniform::new(size, Normals::None, &view, None).unwrap();
         assert!((1_048.5..1_049.0).contains(&clusters.far_m), "{clusters:?}");
         // Too far for f32 to tell from infinity.
         view.far_m = Some(1e6);
-        let clusters = ClustersUniform::new(size, &view, None).unwrap();
+        let clusters = ClustersUniform::new(size, Normals::None, &view, None).unwrap();
         assert_eq!(clusters.far_m, UNBOUNDED);
     }
 
     #[test]
     fn too_many_clusters_are_refused() {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [16_384, 16_384]);
-        assert!(ClustersUniform::new("1x1x1".parse().unwrap(), &view, None).is_err());
+        let groups = |size: &str, normals| {
+            ClustersUniform::new(size.parse().unwrap(), normals, &view, None)
+                .map(|clusters| clusters.group_count())
+        };
+        assert!(groups("1x1x1", Normals::None).is_err());
+        assert_eq!(groups("16x16x8", Normals::None).unwrap(), 1 << 23);
+        let error = groups("16x16x8", Normals::Bins(6)).unwrap_err().to_string();
+        assert!(error.contains("6 bins a cluster: 50331648 groups"), "{error}");
+        assert_eq!(groups("128x128x8", Normals::Bins(54)).unwrap(), 54 << 17);
     }
 }

@@ -1,11 +1,12 @@
-//! The pass `bounds`: which clusters hold samples, and the boxes around those samples.
+//! The pass `bounds`: which clusters hold samples, and the boxes around those samples and their
+//! normals.
 
 use assign::{
     AssignError, Bounds, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, LiveGroups, Passes,
     Shader, View, entry, storage_entry, uniform_entry,
 };
 
-use crate::{EXPLICIT_WESL, IMPLICIT_WESL, Occupancy};
+use crate::{BINS_WESL, EXPLICIT_WESL, IMPLICIT_WESL, Normals, Occupancy};
 
 /// Bind group of the pass's own resources, and of the clusters' uniform.
 const GATHER_GROUP: u32 = 1;
@@ -18,7 +19,7 @@ const BLOCK_PX: u32 = 32;
 const CLEARED: u64 = 256;
 const MAX_DISPATCH: u64 = 65_535;
 
-/// Reads the depth buffer once.
+/// Reads the depth buffer once, and the normals where asked to.
 #[derive(Debug)]
 pub(crate) struct Gather {
     words: u64,
@@ -39,6 +40,7 @@ impl Gather {
         gpu: &Gpu,
         bounds: Bounds,
         occupancy: Occupancy,
+        normals: Normals,
     ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let bind_group_layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
@@ -47,32 +49,23 @@ impl Gather {
                 entries,
             })
         };
-        let depth = wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: stages,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
-        let layout = bind_group_layout(
-            "gather",
-            &[
-                depth,
-                storage_entry(1, stages, false),
-                uniform_entry(FIRST_STRATEGY_BINDING, stages),
-            ],
-        );
+        let mut entries = vec![
+            texture_entry(0, wgpu::TextureSampleType::Depth),
+            storage_entry(1, stages, false),
+            uniform_entry(FIRST_STRATEGY_BINDING, stages),
+        ];
+        if normals.is_some() {
+            entries.push(texture_entry(2, TEXELS));
+        }
+        let layout = bind_group_layout("gather", &entries);
         let live_layout = bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
         let frame = FrameBindings::new(gpu);
+        let shader = gather_shader(bounds, occupancy, normals);
         // SAFETY: loops count up to a constant, to the length of a buffer by a step of at least one
-        // workgroup, or over slices, of which there are 1,024 at most.
+        // workgroup, or over slices, of which there are 1,024 at most, or over cells, of which an edge
+        // has 3 at most.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe {
-            gather_shader(bounds, occupancy).create_uncounted(&gpu.device, "package::gather")
-        }?;
+        let module = unsafe { shader.create_uncounted(&gpu.device, "package::gather") }?;
         let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("gather"),
             bind_group_layouts: &[Some(frame.layout()), Some(&layout), Some(&live_layout)],
@@ -94,7 +87,11 @@ impl Gather {
         };
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
         Ok(Self {
-            words: if bounds == Bounds::Explicit { 6 } else { 1 },
+            words: match bounds {
+                Bounds::Implicit => 1,
+                Bounds::Explicit if normals.is_some() => 12,
+                Bounds::Explicit => 6,
+            },
             frame,
             layout,
             bind_group: None,
@@ -108,12 +105,12 @@ impl Gather {
         })
     }
 
-    /// Sizes buffers for `count` clusters and binds them: outside the clock.
+    /// Sizes buffers for `count` groups and binds them: outside the clock.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        depth: &wgpu::TextureView,
+        images: Images<'_>,
         clusters: &wgpu::Buffer,
         count: u32,
     ) -> Result<(), AssignError> {
@@ -125,17 +122,20 @@ impl Gather {
         // The kernel clears the whole buffer, which may be that of a larger view.
         self.clear_workgroups = (self.marks.size() / 4).div_ceil(CLEARED).min(MAX_DISPATCH) as u32;
         self.live.prepare(gpu, count)?;
+        let texture = |binding, view| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::TextureView(view),
+        };
+        let mut entries = vec![
+            texture(0, images.depth),
+            entry(1, &self.marks),
+            entry(FIRST_STRATEGY_BINDING, clusters),
+        ];
+        entries.extend(images.normals.map(|view| texture(2, view)));
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("gather"),
             layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(depth),
-                },
-                entry(1, &self.marks),
-                entry(FIRST_STRATEGY_BINDING, clusters),
-            ],
+            entries: &entries,
         }));
         self.live_bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("live groups"),
@@ -159,21 +159,45 @@ impl Gather {
         });
     }
 
-    /// The clusters that hold samples.
+    /// The groups that hold samples.
     pub(crate) fn live(&self) -> &LiveGroups {
         &self.live
     }
 
-    /// Explicit bounds: six words a cluster, see `gather.wesl`.
+    /// Explicit bounds: words of each group, see `gather.wesl`.
     pub(crate) fn marks(&self) -> &wgpu::Buffer {
         &self.marks
     }
 }
 
+/// What the pass reads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Images<'a> {
+    pub(crate) depth: &'a wgpu::TextureView,
+    /// Where the strategy was made with normals.
+    pub(crate) normals: Option<&'a wgpu::TextureView>,
+}
+
+const TEXELS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+
+fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
 /// The pass's shader.
-pub(crate) fn gather_shader<'a>(bounds: Bounds, occupancy: Occupancy) -> Shader<'a> {
+fn gather_shader<'a>(bounds: Bounds, occupancy: Occupancy, normals: Normals) -> Shader<'a> {
     let strategy = match bounds {
         Bounds::Implicit => IMPLICIT_WESL,
+        Bounds::Explicit if normals.is_some() => BINS_WESL,
         Bounds::Explicit => EXPLICIT_WESL,
     };
     Shader::new(GATHER_GROUP)
@@ -182,9 +206,14 @@ pub(crate) fn gather_shader<'a>(bounds: Bounds, occupancy: Occupancy) -> Shader<
         .module("package::strategy", strategy)
         .flag("explicit_bounds", bounds == Bounds::Explicit)
         .flag("sparse", occupancy == Occupancy::Sparse)
+        .flag("normals", normals.is_some())
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.
-pub fn gather_source(bounds: Bounds, occupancy: Occupancy) -> Result<String, AssignError> {
-    gather_shader(bounds, occupancy).link("package::gather")
+pub fn gather_source(
+    bounds: Bounds,
+    occupancy: Occupancy,
+    normals: Normals,
+) -> Result<String, AssignError> {
+    gather_shader(bounds, occupancy, normals).link("package::gather")
 }

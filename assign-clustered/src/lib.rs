@@ -50,7 +50,9 @@
 mod clustered;
 mod clusters;
 mod gather;
+mod normals;
 
-pub use clustered::{Clustered, EXPLICIT_WESL, IMPLICIT_WESL, Occupancy};
+pub use clustered::{BINS_WESL, Clustered, EXPLICIT_WESL, IMPLICIT_WESL, Occupancy};
 pub use clusters::{ClusterSize, ClustersUniform, UNBOUNDED};
 pub use gather::gather_source;
+pub use normals::Normals;

@@ -6,7 +6,7 @@ use assign::{
     AssignError, Assignment, Bounds, CullSettings, Gpu, LightSource,
     conformance::{self, faulty::Fault},
 };
-use assign_clustered::{Clustered, Occupancy};
+use assign_clustered::{Clustered, Normals, Occupancy};
 
 const DC_I: (Bounds, Occupancy) = (Bounds::Implicit, Occupancy::Dense);
 const DC_E: (Bounds, Occupancy) = (Bounds::Explicit, Occupancy::Dense);
@@ -67,6 +67,51 @@ fn sparse_explicit_conforms() {
     conforms(SC_E, "3x3x200", CullSettings::default());
 }
 
+fn split(
+    size: &str,
+    bins: u32,
+    settings: CullSettings,
+) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    move |gpu| {
+        let (size, normals) = (size.parse()?, Normals::Bins(bins));
+        let (bounds, occupancy) = SC_E;
+        Ok(Box::new(Clustered::with_normals(gpu, size, bounds, occupancy, normals, settings)?))
+    }
+}
+
+#[test]
+fn split_by_normals_conforms() {
+    for bins in [1, 6, 54] {
+        let strategy = split("48x48x40", bins, CullSettings::default());
+        println!("{}", conformance::run(&strategy).expect("conforms"));
+    }
+}
+
+#[test]
+fn split_by_normals_conforms_through_the_hierarchy() {
+    conformance::run(&split("16x16x8", 24, through_hierarchy())).expect("conforms");
+}
+
+#[test]
+fn only_sparse_explicit_clusters_are_split() {
+    let gpu = Gpu::noop().unwrap();
+    for (bounds, occupancy) in [DC_I, DC_E, SC_I, SC_E] {
+        let size = "32x32x8".parse().unwrap();
+        let make = |bins| {
+            let settings = CullSettings::default();
+            Clustered::with_normals(&gpu, size, bounds, occupancy, Normals::Bins(bins), settings)
+        };
+        if (bounds, occupancy) == SC_E {
+            assert_eq!(make(6).unwrap().id(), "SC-E/32x32x8/n6");
+            let error = make(7).unwrap_err().to_string();
+            assert!(error.contains("1, 6, 24 or 54"), "{error}");
+        } else {
+            let error = make(6).unwrap_err().to_string();
+            assert!(error.contains("only sparse clusters with explicit bounds"), "{error}");
+        }
+    }
+}
+
 #[test]
 fn all_conform_through_the_hierarchy() {
     for variant in [DC_I, DC_E, SC_I, SC_E] {
@@ -99,6 +144,11 @@ fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
 fn faults_are_rejected() {
     for variant in [DC_I, DC_E, SC_I, SC_E] {
         let make = clustered(variant, "16x16x8", CullSettings::default());
+        let planted = conformance::rejects_faults(&make).expect("rejects");
+        assert_eq!(planted.len(), Fault::ALL.len() - 1, "all but that of the horizon");
+    }
+    for bins in [1, 6] {
+        let make = split("16x16x8", bins, CullSettings::default());
         assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::ALL);
     }
 }

@@ -5,8 +5,10 @@
 
 use std::mem::offset_of;
 
-use assign::{Bounds, CullSettings, Culler, GroupShape, LightKinds, LightSource};
-use assign_clustered::{ClustersUniform, EXPLICIT_WESL, IMPLICIT_WESL, Occupancy, gather_source};
+use assign::{Bounds, CullSettings, Culler, Facing, GroupShape, LightKinds, LightSource};
+use assign_clustered::{
+    BINS_WESL, ClustersUniform, EXPLICIT_WESL, IMPLICIT_WESL, Normals, Occupancy, gather_source,
+};
 
 fn validated(what: &str, source: &str) -> naga::Module {
     let module = naga::front::wgsl::parse_str(source)
@@ -47,13 +49,26 @@ fn kernels_validate() {
 }
 
 #[test]
+fn kernels_that_know_normals_validate() {
+    for source in [LightSource::Linear, LightSource::Hierarchy] {
+        for kinds in LightKinds::ALL {
+            let settings = CullSettings { source, ..CullSettings::default() };
+            let source = Culler::facing_kernel_source(settings, Facing::Horizon, BINS_WESL, kinds);
+            validated(&format!("{source:?}, {kinds:?}"), &source.unwrap());
+        }
+    }
+}
+
+#[test]
 fn gathering_validates() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
         for occupancy in [Occupancy::Dense, Occupancy::Sparse] {
             let what = format!("{bounds:?}, {occupancy:?}");
-            validated(&what, &gather_source(bounds, occupancy).unwrap());
+            validated(&what, &gather_source(bounds, occupancy, Normals::None).unwrap());
         }
     }
+    let source = gather_source(Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6)).unwrap();
+    validated("with normals", &source);
 }
 
 /// Name and offset of every field of a Rust struct, in its order.
@@ -78,7 +93,7 @@ fn clusters() {
     let wesl: Vec<_> =
         members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
     let rust = fields!(ClustersUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential, surfaces_only);
+        near_m, far_m, exponential, surfaces_only, bin_side);
     assert_eq!(wesl, rust, "fields of WESL, then of Rust");
     assert_eq!(*span as usize, size_of::<ClustersUniform>());
 }

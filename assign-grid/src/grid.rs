@@ -3,9 +3,9 @@
 use std::str::FromStr;
 
 use assign::{
-    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Frame,
-    Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule, entry,
-    uniform_entry,
+    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule,
+    entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 use glam::Vec3;
@@ -75,6 +75,7 @@ impl Grid {
                     shape: GroupShape::Box,
                     settings,
                     sparse: false,
+                    facing: Facing::Unknown,
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(GRID_WESL) },

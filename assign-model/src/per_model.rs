@@ -1,9 +1,9 @@
 //! M: models, whole or in parts.
 
 use assign::{
-    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Frame,
-    Gpu, GroupShape, Groups, LightLists, Lookup, ModelBox, Needs, Passes, SampleDomain,
-    StrategyModule, entry, storage_entry,
+    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, ModelBox, Needs, Passes,
+    SampleDomain, StrategyModule, entry, storage_entry,
 };
 use bytemuck::cast_slice;
 
@@ -55,6 +55,7 @@ impl PerModel {
                     shape: GroupShape::OrientedBox,
                     settings,
                     sparse: false,
+                    facing: Facing::Unknown,
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(MODELS_WESL) },

@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
-    FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
-    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs,
+    Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -61,6 +61,7 @@ impl Tiled {
                     shape: GroupShape::Frustum,
                     settings,
                     sparse: false,
+                    facing: Facing::Unknown,
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(module) },

@@ -32,6 +32,18 @@ pub enum GroupShape {
     OrientedBox,
 }
 
+/// What the kernel knows of how a group's surfaces face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Facing {
+    /// Nothing.
+    #[default]
+    Unknown,
+    /// A cone around their normals, of groups that are boxes: the strategy's module has
+    /// `group_facing(group: u32) -> NormalCone`, and lights that rise above no horizon are left
+    /// out (`facing.wesl`).
+    Horizon,
+}
+
 /// Which groups get a list in a frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Groups<'a> {
@@ -65,6 +77,8 @@ pub struct CullerDescriptor<'a> {
     pub settings: CullSettings,
     /// Whether only [`Groups::Live`] get a list.
     pub sparse: bool,
+    /// What it knows of how its groups' surfaces face.
+    pub facing: Facing,
     /// WESL with `group_bounds(group: u32) -> GroupBounds` and `group_of(sample: ViewSample) -> u32`.
     pub module: StrategyModule,
     /// Layout of its resources, bindings from [`FIRST_STRATEGY_BINDING`], read-only.
@@ -93,6 +107,7 @@ struct Variant {
     shape: GroupShape,
     settings: CullSettings,
     sparse: bool,
+    facing: Facing,
 }
 
 #[derive(Debug)]
@@ -107,11 +122,26 @@ enum Dispatch {
     Indirect(wgpu::Buffer),
 }
 
+impl Variant {
+    fn check(self, strategy: &str) -> Result<(), AssignError> {
+        if self.facing != Facing::Unknown && self.shape != GroupShape::Box {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: format!("{:?} of groups that are a {:?}", self.facing, self.shape),
+                reason: "normals are tested of groups that are a Box alone".into(),
+            });
+        }
+        Ok(())
+    }
+}
+
 impl Culler {
     /// Makes the layouts; pipelines follow at the first [`prepare`](Self::prepare).
     pub fn new(gpu: &Gpu, descriptor: &CullerDescriptor<'_>) -> Result<Self, AssignError> {
-        let CullerDescriptor { label, shape, settings, sparse, module, bindings } = *descriptor;
-        let variant = Variant { shape, settings, sparse };
+        let CullerDescriptor { label, shape, settings, sparse, facing, module, bindings } =
+            *descriptor;
+        let variant = Variant { shape, settings, sparse, facing };
+        variant.check(label)?;
         Ok(Self {
             label: label.to_owned(),
             variant,
@@ -177,7 +207,19 @@ impl Culler {
         module: &str,
         kinds: LightKinds,
     ) -> Result<String, AssignError> {
-        kernel_shader(Variant { shape, settings, sparse }, module, kinds).link("package::cull")
+        let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
+        kernel_shader(variant, module, kinds).link("package::cull")
+    }
+
+    /// The linked WGSL of the kernel of live groups that are boxes and know how they face.
+    pub fn facing_kernel_source(
+        settings: CullSettings,
+        facing: Facing,
+        module: &str,
+        kinds: LightKinds,
+    ) -> Result<String, AssignError> {
+        let variant = Variant { shape: GroupShape::Box, settings, sparse: true, facing };
+        kernel_shader(variant, module, kinds).link("package::cull")
     }
 
     fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
@@ -263,7 +305,9 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Sh
     Shader::new(LISTS_GROUP)
         .module("package::cull", include_str!("shaders/cull.wesl"))
         .module("package::bounds", bounds)
+        .module("package::facing", include_str!("shaders/facing.wesl"))
         .module("package::strategy", module)
+        .flag("facing", variant.facing == Facing::Horizon)
         .flag("hs", tests.hs)
         .flag("sat_e", tests.sat_e)
         .flag("sat_n", tests.sat_n)

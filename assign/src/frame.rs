@@ -21,7 +21,7 @@ pub enum SampleDomain {
 pub struct Needs {
     /// The depth buffer of the opaque surfaces.
     pub depth: bool,
-    /// Shading normals.
+    /// Shading normals and roughness.
     pub normals: bool,
     /// The models' boxes, and `ViewSample.model_ix` of every sample.
     pub models: bool,
@@ -42,7 +42,8 @@ pub struct Frame<'a> {
     pub samples: SampleDomain,
     /// Depth of the opaque surfaces, `texture_depth_2d`, the size of the target.
     pub depth: Option<&'a wgpu::TextureView>,
-    /// Shading normals, world space, `texture_2d<f32>`, the size of the target.
+    /// Shading normals, world space, of unit length, and perceptual roughness in `w`:
+    /// `texture_2d<f32>`, half floats or better, the size of the target.
     pub normals: Option<&'a wgpu::TextureView>,
     /// The models' boxes; `ViewSample.model_ix` is an index here.
     pub models: Option<&'a [ModelBox]>,

@@ -47,7 +47,7 @@ mod shader;
 mod view;
 
 pub use assignment::{Assignment, Lookup, StrategyModule};
-pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, GroupShape, Groups};
+pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Facing, GroupShape, Groups};
 pub use cull_settings::{Bounds, CullSettings, FrustumTests, LightSource};
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use error::AssignError;

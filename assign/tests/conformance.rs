@@ -20,7 +20,7 @@ fn no_culling_conforms() {
 #[test]
 fn faults_in_no_culling_are_rejected() {
     let planted = conformance::rejects_faults(&everything).expect("rejects");
-    assert_eq!(planted.len(), 9, "{planted:?}");
+    assert_eq!(planted.len(), 10, "{planted:?}");
 }
 
 #[test]

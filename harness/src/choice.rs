@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use assign::{AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
+use assign_clustered::Normals;
 use serde_json::Value;
 use shading::RASTER_SPHERE_TOLERANCE;
 
@@ -97,6 +98,12 @@ impl Choice {
                 }
                 Some(Axis::Box) => {
                     choice.spec.grid_box = segment.parse().map_err(|_| choice.refuse(&segment))?;
+                }
+                Some(Axis::Normals) => {
+                    let bins = number_of(&segment, NORMALS).map(Normals::Bins);
+                    choice.spec.normals = bins
+                        .filter(|normals| normals.check().is_ok())
+                        .ok_or_else(|| choice.refuse(&segment))?;
                 }
                 Some(Axis::Cap) => {
                     let cap = number_of(&segment, CAP).ok_or_else(|| choice.refuse(&segment))?;
@@ -200,11 +207,17 @@ impl Choice {
                 }
                 Axis::Source => ("source", "linear".into()),
                 Axis::Box => ("box", format!("{:?}", self.spec.grid_box).to_lowercase()),
-                Axis::Cap | Axis::Reuse => continue,
+                Axis::Normals | Axis::Cap | Axis::Reuse => continue,
             };
             all.insert(name.to_owned(), value.into());
         }
-        for (name, value) in [("list_cap", self.spec.cap), ("reuse_frames", self.spec.reuse)] {
+        let normal_bins = self.spec.normals.is_some().then(|| self.spec.normals.bins());
+        let numbers = [
+            ("normal_bins", normal_bins),
+            ("list_cap", self.spec.cap),
+            ("reuse_frames", self.spec.reuse),
+        ];
+        for (name, value) in numbers {
             all.extend(value.map(|value| (name.to_owned(), value.into())));
         }
         all
@@ -245,6 +258,8 @@ impl Choice {
     }
 }
 
+/// How a segment begins that says the bins of normals.
+const NORMALS: &str = "n";
 /// How a segment begins that says the most lights of a list.
 const CAP: &str = "cap";
 /// How a segment begins that says for how many frames lists are used.
@@ -261,6 +276,7 @@ fn axis_of(segment: &str) -> Option<Axis> {
         "linear" | "bvh" => Some(Axis::Source),
         "lights" | "surfaces" => Some(Axis::Box),
         _ if segment.starts_with(CAP) => Some(Axis::Cap),
+        _ if number_of(segment, NORMALS).is_some() => Some(Axis::Normals),
         _ if segment.starts_with(REUSE) => Some(Axis::Reuse),
         _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
     }
@@ -293,6 +309,7 @@ mod tests {
         assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
         let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
         assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
+        assert_eq!(asked(&["--strategies", "sc-e/BVH/N6"]), ["SC-E/48x48x40/n6/bvh"]);
     }
 
     #[test]
@@ -318,6 +335,7 @@ mod tests {
         assert_eq!(told["slices"], 8);
         assert_eq!(told["tests"], "hs");
         assert_eq!(told["source"], "linear");
+        assert_eq!(Choice::parse("SC-E/n24").unwrap().parameters()["normal_bins"], 24);
     }
 
     #[test]
@@ -327,6 +345,8 @@ mod tests {
         assert!(error("None/3").contains("nothing behind"), "{}", error("None/3"));
         assert!(error("DC-E/hs").contains("linear or bvh"), "{}", error("DC-E/hs"));
         assert!(error("T-I/28x28/16x16").contains("16x16"), "{}", error("T-I/28x28/16x16"));
+        assert!(error("SC-E/n7").contains("n54"), "{}", error("SC-E/n7"));
+        assert!(error("DC-E/n6").contains("linear or bvh"), "{}", error("DC-E/n6"));
         assert!(error("DC-E/cap0").contains("cap32"), "{}", error("DC-E/cap0"));
         assert!(error("T-I/surfaces").contains("hs"), "{}", error("T-I/surfaces"));
     }

@@ -65,6 +65,7 @@ mod tests {
         };
         let samples = Samples {
             positions: vec![[0.0; 3]; 4],
+            normals: vec![[0.0; 3]; 4],
             groups: vec![1, 0, 1, ALL_LIGHTS],
             pixels: vec![0, 2, 3, 4],
         };

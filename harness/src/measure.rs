@@ -388,7 +388,7 @@ fn count(
             let samples = probe(renderer, strategy, &frame)?;
             let pixels = view.viewport.width as usize * view.viewport.height as usize;
             lengths = ListLengths::new(&samples, &snapshot, pixels);
-            Some(bvh.check(&samples, &snapshot))
+            Some(bvh.check(&samples, &snapshot, strategy.needs().normals))
         }
     };
     Ok(ListsFigures {

@@ -7,7 +7,7 @@ use assign::{
     CullSettings, Everything, Gpu,
 };
 use assign_clustered::{
-    Clustered,
+    Clustered, Normals,
     Occupancy::{Dense, Sparse},
 };
 use assign_grid::{Grid, GridBox};
@@ -44,6 +44,8 @@ pub enum Axis {
     Source,
     /// The box that is cut into cells: `lights` or `surfaces`.
     Box,
+    /// Bins of normals that clusters are split into: `n6`.
+    Normals,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
     /// Frames for which lists are used: `reuse4`. Lossy where groups or lights move.
@@ -57,6 +59,7 @@ impl Axis {
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
             Self::Box => "lights or surfaces",
+            Self::Normals => "n and the bins of normals: n1, n6, n24 or n54",
             Self::Cap => "cap and the most lights of a list, such as cap32",
             Self::Reuse => "reuse and the frames for which lists are used, such as reuse4",
         }
@@ -72,6 +75,8 @@ pub struct Spec {
     pub settings: CullSettings,
     /// The box of a grid.
     pub grid_box: GridBox,
+    /// Bins of normals.
+    pub normals: Normals,
     /// The most lights of a list.
     pub cap: Option<u32>,
     /// Frames for which lists are used.
@@ -204,11 +209,14 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "SC-E",
         parameters: CLUSTER,
         default: "48x48x40",
-        axes: BOXES,
+        axes: &[Axis::Normals, Axis::Source, Axis::Cap, Axis::Reuse],
         summary: "sparse clusters, explicit bounds: both at once",
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
-            Ok(Method::lists(Clustered::new(gpu, size, Explicit, Sparse, spec.settings)?))
+            let Spec { normals, settings, .. } = spec;
+            Ok(Method::lists(Clustered::with_normals(
+                gpu, size, Explicit, Sparse, *normals, *settings,
+            )?))
         },
     },
     StrategyEntry {

@@ -1,4 +1,4 @@
-//! What the GPU saw: each pixel's position and group, copied to the CPU for the truth.
+//! What the GPU saw: each pixel's position, normal and group, copied to the CPU for the truth.
 
 use assign::{Assignment, EncoderPasses, Frame, Passes, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
@@ -15,6 +15,8 @@ use crate::{
 pub struct Samples {
     /// World-space positions, metres, as shading reconstructs them.
     pub positions: Vec<[f32; 3]>,
+    /// World-space shading normals of unit length, as the G-buffer holds them.
+    pub normals: Vec<[f32; 3]>,
     /// The group of each sample.
     pub groups: Vec<u32>,
     /// The pixel of each sample, index into the viewport, rows from the top.
@@ -46,7 +48,7 @@ pub fn probe(
 ) -> Result<Samples, ShadingError> {
     let gpu = &renderer.gpu;
     let pixels = u64::from(frame.view.viewport.width) * u64::from(frame.view.viewport.height);
-    let positions = gpu.storage("probe positions", pixels * 16)?;
+    let seen = gpu.storage("probe samples", pixels * 32)?;
     let groups = gpu.storage("probe groups", pixels * 4)?;
     let stages = wgpu::ShaderStages::COMPUTE;
     let mut entries = vec![
@@ -58,7 +60,7 @@ pub fn probe(
     let mut resources = vec![
         texture(0, &renderer.targets.depth),
         texture(1, &renderer.targets.normal),
-        entry(2, &positions),
+        entry(2, &seen),
         entry(3, &groups),
     ];
     let model_ids = strategy.needs().models;
@@ -92,12 +94,13 @@ pub fn probe(
         pass.dispatch_workgroups(viewport.width.div_ceil(8), viewport.height.div_ceil(8), 1);
     });
     gpu.queue.submit([encoder.finish()]);
-    let positions: Vec<[f32; 4]> = pod_collect_to_vec(&gpu.read(&positions, pixels * 16)?);
+    let seen: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&seen, pixels * 32)?);
     let groups: Vec<u32> = pod_collect_to_vec(&gpu.read(&groups, pixels * 4)?);
     let mut samples = Samples::default();
-    for (pixel, (position, group)) in positions.into_iter().zip(groups).enumerate() {
+    for (pixel, ([position, normal], group)) in seen.into_iter().zip(groups).enumerate() {
         if position[3] > 0.5 {
             samples.positions.push([position[0], position[1], position[2]]);
+            samples.normals.push([normal[0], normal[1], normal[2]]);
             samples.groups.push(group);
             samples.pixels.push(pixel as u32);
         }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use assign::{ENTRY_LIGHT, Light, ListsSnapshot};
+use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot};
 use glam::{DVec3, Vec3A};
 use obvhs::{
     BvhBuildParams,
@@ -32,7 +32,9 @@ pub struct ListsTruth {
     pub contributing: u64,
     /// (Light, sample) pairs that shading evaluates.
     pub listed: u64,
-    /// Contributing pairs, off the edge, that are not listed, and samples without a position.
+    /// Contributing pairs, off the edge, that are not listed or lack the flag of a term that
+    /// contributes, and samples without a position. Of a strategy that knows normals those alone
+    /// whose light rises above the sample's horizon.
     pub missed: u64,
 }
 
@@ -89,20 +91,32 @@ impl<'a> LightBvh<'a> {
         });
     }
 
-    /// Checks a frame's lists against every sample.
-    pub fn check(&self, samples: &Samples, lists: &ListsSnapshot) -> ListsTruth {
+    /// Checks a frame's lists against every sample; `knows_normals` is whether the strategy may
+    /// leave out what stays below a sample's horizon.
+    pub fn check(
+        &self,
+        samples: &Samples,
+        lists: &ListsSnapshot,
+        knows_normals: bool,
+    ) -> ListsTruth {
         let mut order: Vec<u32> = (0..samples.groups.len() as u32).collect();
         order.sort_unstable_by_key(|&sample| samples.groups[sample as usize]);
         order
             .par_chunks(8192)
-            .map(|chunk| self.check_chunk(samples, lists, chunk))
+            .map(|chunk| self.check_chunk(samples, lists, knows_normals, chunk))
             .reduce(ListsTruth::default, ListsTruth::plus)
     }
 
     /// Checks samples whose groups ascend.
-    fn check_chunk(&self, samples: &Samples, lists: &ListsSnapshot, chunk: &[u32]) -> ListsTruth {
-        // The run of samples in which a light was last seen listed.
-        let mut listed_in = vec![u32::MAX; self.lights.len()];
+    fn check_chunk(
+        &self,
+        samples: &Samples,
+        lists: &ListsSnapshot,
+        knows_normals: bool,
+        chunk: &[u32],
+    ) -> ListsTruth {
+        // The run of samples in which a light was last seen listed, and its flags there.
+        let mut listed_in = vec![(u32::MAX, 0); self.lights.len()];
         let mut truth = ListsTruth::default();
         let runs =
             chunk.chunk_by(|&a, &b| samples.groups[a as usize] == samples.groups[b as usize]);
@@ -111,7 +125,7 @@ impl<'a> LightBvh<'a> {
             let entries = lists.entries_of(group).unwrap_or_default();
             for &entry in entries {
                 if let Some(seen) = listed_in.get_mut((entry & ENTRY_LIGHT) as usize) {
-                    *seen = run_ix as u32;
+                    *seen = (run_ix as u32, entry & !ENTRY_LIGHT);
                 }
             }
             truth.samples += run.len() as u64;
@@ -122,10 +136,18 @@ impl<'a> LightBvh<'a> {
                     truth.missed += 1;
                     continue;
                 }
-                self.lights_at(samples.positions[sample as usize], |light, reach| {
+                let [point, normal] = [&samples.positions, &samples.normals]
+                    .map(|of| DVec3::from(of[sample as usize].map(f64::from)));
+                self.lights_at(samples.positions[sample as usize], |light_ix, reach| {
                     truth.contributing += 1;
-                    let is_listed = listed_in[light as usize] == run_ix as u32;
-                    truth.missed += u64::from(!is_listed && reach > EDGE);
+                    let light = &self.lights[light_ix as usize];
+                    let (run, terms) = listed_in[light_ix as usize];
+                    let listed = if run == run_ix as u32 { terms } else { 0 };
+                    let diffuse = light.diffuse_reach(point) > EDGE;
+                    let needed = ENTRY_SPECULAR | if diffuse { ENTRY_DIFFUSE } else { 0 };
+                    let lacks = reach > EDGE && needed & !listed != 0;
+                    let lit = || !knows_normals || light.above_horizon(point, normal) > EDGE;
+                    truth.missed += u64::from(lacks && lit());
                 });
             }
         }
@@ -147,6 +169,7 @@ mod tests {
     fn samples() -> Samples {
         Samples {
             positions: vec![[0.0, 0.0, 0.0], [5.2, 0.0, 0.0], [50.0, 0.0, 0.0]],
+            normals: vec![[0.0, 1.0, 0.0]; 3],
             groups: vec![1, 0, 0],
             pixels: vec![0, 1, 2],
         }
@@ -162,7 +185,8 @@ mod tests {
             snapshot
                 .lists
                 .push(LightList { first: snapshot.entries.len() as u32, count: list.len() as u32 });
-            snapshot.entries.extend_from_slice(list);
+            let both = ENTRY_DIFFUSE | ENTRY_SPECULAR;
+            snapshot.entries.extend(list.iter().map(|light| light | both));
         }
         snapshot
     }
@@ -172,7 +196,7 @@ mod tests {
         let lights = lights(10);
         let bvh = LightBvh::new(&lights);
         // Sample 0 is reached by lights 0 and 1; sample 1 by 4, 5 and 6; sample 2 by none.
-        let truth = bvh.check(&samples(), &snapshot(&[&[3, 4, 5, 6], &[0, 1]]));
+        let truth = bvh.check(&samples(), &snapshot(&[&[3, 4, 5, 6], &[0, 1]]), false);
         assert_eq!(truth, ListsTruth { samples: 3, contributing: 5, listed: 4 + 4 + 2, missed: 0 });
     }
 
@@ -180,8 +204,29 @@ mod tests {
     fn a_light_left_out_is_missed() {
         let lights = lights(10);
         let bvh = LightBvh::new(&lights);
-        let truth = bvh.check(&samples(), &snapshot(&[&[4, 6], &[0, 1]]));
+        let truth = bvh.check(&samples(), &snapshot(&[&[4, 6], &[0, 1]]), false);
         assert_eq!(truth.missed, 1);
+    }
+
+    #[test]
+    fn a_light_without_the_flag_of_a_term_is_missed() {
+        let lights = lights(10);
+        let bvh = LightBvh::new(&lights);
+        let mut lists = snapshot(&[&[4, 5, 6], &[0, 1]]);
+        lists.entries[1] = 5 | ENTRY_SPECULAR;
+        assert_eq!(bvh.check(&samples(), &lists, false).missed, 1);
+    }
+
+    #[test]
+    fn below_the_horizon_nothing_is_missed_of_those_who_know_normals() {
+        let lights = lights(10);
+        let bvh = LightBvh::new(&lights);
+        let none = snapshot(&[&[], &[]]);
+        // At 5.2 facing along x: lights 4 and 5 lie behind, 6 in front.
+        let mut samples = samples();
+        samples.normals[1] = [1.0, 0.0, 0.0];
+        assert_eq!(bvh.check(&samples, &none, false).missed, 5);
+        assert_eq!(bvh.check(&samples, &none, true).missed, 1);
     }
 
     #[test]
@@ -189,7 +234,8 @@ mod tests {
         let lights = lights(10);
         let mut samples = samples();
         samples.positions[2] = [f32::NAN, 0.0, 0.0];
-        let truth = LightBvh::new(&lights).check(&samples, &snapshot(&[&[3, 4, 5, 6], &[0, 1]]));
+        let truth =
+            LightBvh::new(&lights).check(&samples, &snapshot(&[&[3, 4, 5, 6], &[0, 1]]), false);
         assert_eq!(truth.missed, 1);
     }
 

@@ -115,12 +115,12 @@ fn the_truth_finds_no_fault_in_all_lights_and_one_in_too_few() {
     strategy.prepare(&gpu, &assign::Frame::new(&view, &lights)).unwrap();
     let mut lists = strategy.lists().snapshot(&gpu).unwrap();
     let bvh = LightBvh::new(lights.lights());
-    let truth = bvh.check(&samples, &lists);
+    let truth = bvh.check(&samples, &lists, false);
     assert!(truth.contributing > 1_000, "{truth:?}");
     assert_eq!(truth.missed, 0);
     assert_eq!(truth.listed, truth.samples * 30);
     lists.lists[0].count -= 1;
-    assert!(bvh.check(&samples, &lists).missed > 0, "a dropped light must be missed");
+    assert!(bvh.check(&samples, &lists, false).missed > 0, "a dropped light must be missed");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{
-    lights::{Kinds, bad_lights, lights_at, mix, reaching},
+    lights::{Kinds, at_horizon, bad_lights, lights_at, mix, reaching},
     stage::{IN_THE_OPEN, Rng, Solid, Stage, room},
     views::{self, SIZE},
 };
@@ -68,6 +68,9 @@ pub const CASES: &[Case] = &[
     case("light-at-eye", "lights exactly at the eye", at_eye),
     case("light-on-surface", "lights exactly on the samples they light", |r| {
         still(r, &default_view(), 400, on_surface)
+    }),
+    case("lights-at-horizon", "lights that barely rise above a sample's horizon", |r| {
+        still(r, &default_view(), 600, at_horizon)
     }),
     case("light-at-tile-corner", "large lights that barely reach one sample", grazing),
     case("spots-near-0", "spots of half angles of a degree and less", |r| spots(r, 0.003, 0.02)),

@@ -24,6 +24,8 @@ pub(super) struct Seen {
     pub(super) probes: Vec<Probe>,
     pub(super) group_count: u32,
     pub(super) light_count: u32,
+    /// Whether lights below a sample's horizon may be missing from its list.
+    pub(super) knows_normals: bool,
 }
 
 impl Seen {
@@ -218,19 +220,20 @@ pub(super) fn pairs(seen: &Seen, lights: &[Light], findings: &mut Findings) -> P
 fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Place, String)>) {
     let mut pairs = Pairs::default();
     let mut missed = Vec::new();
-    let mut is_listed = vec![false; lights.len()];
+    let mut listed = vec![0_u32; lights.len()];
     for of_group in probes.chunk_by(|a, b| a.group == b.group) {
         let group = of_group[0].group;
         let entries = seen.entries(group);
-        is_listed.fill(false);
+        listed.fill(0);
         for entry in entries {
-            if let Some(flag) = is_listed.get_mut((entry & ENTRY_LIGHT) as usize) {
-                *flag = true;
+            if let Some(terms) = listed.get_mut((entry & ENTRY_LIGHT) as usize) {
+                *terms = entry & !ENTRY_LIGHT;
             }
         }
         pairs.listed += (entries.len() * of_group.len()) as u64;
         for probe in of_group {
             let point = DVec3::from_array(probe.position_world.map(f64::from));
+            let normal = DVec3::from_array(probe.normal_world.map(f64::from)).normalize_or_zero();
             for (light_ix, light) in lights.iter().enumerate() {
                 let range = f64::from(light.range_m);
                 let far = point.distance_squared(light.position.as_dvec3()) >= range * range;
@@ -242,8 +245,14 @@ fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Pl
                 if reach <= EDGE {
                     continue;
                 }
+                if seen.knows_normals && light.above_horizon(point, normal) <= EDGE {
+                    continue;
+                }
                 pairs.reaching += 1;
-                if is_listed[light_ix] {
+                let diffuse = light.diffuse_reach(point) > EDGE;
+                let needed = ENTRY_SPECULAR | if diffuse { ENTRY_DIFFUSE } else { 0 };
+                let missing = needed & !listed[light_ix];
+                if missing == 0 {
                     continue;
                 }
                 let place = Place {
@@ -251,18 +260,23 @@ fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Pl
                     light: Some(light_ix as u32),
                     sample: Some(sample_place(probe)),
                 };
-                missed.push((place, describe(light, reach, entries.len())));
+                missed.push((place, describe(light, reach, missing, entries.len())));
             }
         }
     }
     (pairs, missed)
 }
 
-fn describe(light: &Light, reach: f64, listed: usize) -> String {
+fn describe(light: &Light, reach: f64, missing: u32, listed: usize) -> String {
     let Light { position, range_m, .. } = light;
     let kind = light.kind();
+    let terms = match missing {
+        ENTRY_DIFFUSE => "diffuse term",
+        ENTRY_SPECULAR => "specular term",
+        _ => "light",
+    };
     format!(
-        "{kind:?} light at {position} of range {range_m} m reaches the sample by {reach:.2e} of its support, the list holds {listed}"
+        "{kind:?} light at {position} of range {range_m} m reaches the sample by {reach:.2e} of its support: the list of {listed} lacks the {terms}"
     )
 }
 

@@ -21,6 +21,10 @@ pub enum Fault {
     ForeignLight,
     /// The first entry of every list has lost its flags.
     LostTerms,
+    /// The last entry of every list says that the light's diffuse term reaches no sample.
+    LostDiffuse,
+    /// Lists are made with horizons that stand a little too high.
+    HighHorizon,
     /// Every list ends beyond the buffer.
     RunawayList,
     /// Lists are made from lights of 0.9 times their range.
@@ -47,12 +51,14 @@ pub enum Fault {
 
 impl Fault {
     /// All faults.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::DroppedLight,
         Self::ShuffledList,
         Self::Repeated,
         Self::ForeignLight,
         Self::LostTerms,
+        Self::LostDiffuse,
+        Self::HighHorizon,
         Self::RunawayList,
         Self::ShrunkenBound,
         Self::StaleLists,
@@ -74,6 +80,8 @@ impl Fault {
             Self::Repeated => ("33-lights", Breach::Repeated),
             Self::ForeignLight => ("33-lights", Breach::ForeignLight),
             Self::LostTerms => ("33-lights", Breach::NoTerm),
+            Self::LostDiffuse => ("33-lights", Breach::MissedPair),
+            Self::HighHorizon => ("lights-at-horizon", Breach::MissedPair),
             Self::RunawayList => ("33-lights", Breach::OutsideBuffer),
             Self::ShrunkenBound => ("light-at-tile-corner", Breach::MissedPair),
             Self::StaleLists => ("lights-move", Breach::MissedPair),
@@ -110,6 +118,11 @@ impl Fault {
         )
     }
 
+    /// Whether it is a fault only of strategies that read normals.
+    pub fn needs_normals(self) -> bool {
+        self == Self::HighHorizon
+    }
+
     /// What `fault.wesl` is to do in a frame; 0 is nothing.
     fn kernel_kind(self, frame: u32, rejected: bool) -> u32 {
         match self {
@@ -121,9 +134,11 @@ impl Fault {
             Self::RunawayList => 6,
             Self::Record0 => 7,
             Self::SilentOverflow => 8,
+            Self::LostDiffuse => 9,
             Self::Flicker => frame % 2,
             Self::LeakyQuarantine => u32::from(rejected),
             Self::ShrunkenBound
+            | Self::HighHorizon
             | Self::StaleLists
             | Self::StarvedPool
             | Self::Unrecorded
@@ -147,7 +162,8 @@ pub struct Faulty {
     inner: Box<dyn Assignment>,
     fault: Fault,
     frame: u32,
-    shrunken: LightBuffer,
+    /// The lights that the strategy is shown instead.
+    altered: LightBuffer,
     uniform: wgpu::Buffer,
     plant: wgpu::ComputePipeline,
     bind_group: Option<wgpu::BindGroup>,
@@ -165,7 +181,7 @@ impl Faulty {
             inner,
             fault,
             frame: 0,
-            shrunken: LightBuffer::new(gpu, &[])?,
+            altered: LightBuffer::new(gpu, &[])?,
             uniform: gpu.uniform("fault", 16),
             plant: plant_pipeline(gpu)?,
             bind_group: None,
@@ -175,9 +191,21 @@ impl Faulty {
         })
     }
 
-    /// The frame with lights of 0.9 times their range.
-    fn shrink<'a>(shrunken: &'a LightBuffer, frame: &Frame<'a>) -> Frame<'a> {
-        Frame { lights: shrunken, ..*frame }
+    /// What the strategy is shown of a light: its range, or its height above every surface that
+    /// faces the eye, is too small.
+    fn alter(&self, light: &Light, frame: &Frame<'_>) -> Light {
+        match self.fault {
+            Fault::HighHorizon => {
+                let away = (light.position - frame.view.eye()).normalize_or_zero();
+                Light { position: light.position + 0.05 * light.range_m * away, ..*light }
+            }
+            _ => Light { range_m: 0.9 * light.range_m, ..*light },
+        }
+    }
+
+    /// The frame with the altered lights.
+    fn altered<'a>(altered: &'a LightBuffer, frame: &Frame<'a>) -> Frame<'a> {
+        Frame { lights: altered, ..*frame }
     }
 
     /// Binds the finished lists to `fault.wesl`.
@@ -219,11 +247,11 @@ impl Assignment for Faulty {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         match self.fault {
-            Fault::ShrunkenBound => {
-                let shrink = |light: &Light| Light { range_m: 0.9 * light.range_m, ..*light };
-                let lights: Vec<Light> = frame.lights.lights().iter().map(shrink).collect();
-                self.shrunken.update(gpu, &lights)?;
-                let frame = Self::shrink(&self.shrunken, frame);
+            Fault::ShrunkenBound | Fault::HighHorizon => {
+                let lights = frame.lights.lights().iter();
+                let lights: Vec<Light> = lights.map(|light| self.alter(light, frame)).collect();
+                self.altered.update(gpu, &lights)?;
+                let frame = Self::altered(&self.altered, frame);
                 self.inner.prepare(gpu, &frame)?;
             }
             Fault::StarvedPool => {
@@ -246,8 +274,8 @@ impl Assignment for Faulty {
         match self.fault {
             Fault::StaleLists if *first_lights != lights => return,
             Fault::Unrecorded => return,
-            Fault::ShrunkenBound => {
-                let frame = Self::shrink(&self.shrunken, frame);
+            Fault::ShrunkenBound | Fault::HighHorizon => {
+                let frame = Self::altered(&self.altered, frame);
                 self.inner.record(&frame, passes);
             }
             _ => self.inner.record(frame, passes),

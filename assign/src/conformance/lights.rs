@@ -54,6 +54,29 @@ pub(super) fn lights_at(
     (0..count).map(one).collect()
 }
 
+/// Lights that barely rise above the horizon of a sample, or barely do not: points, and emitters
+/// whose highest vertex is there.
+pub(super) fn at_horizon(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Light> {
+    let one = |ix: usize| {
+        let sample = &stage.samples[rng.below(stage.on_surfaces)];
+        let normal = sample.normal_world.as_dvec3().normalize_or(DVec3::Y);
+        let along = normal.cross(rng.direction()).normalize_or(normal.any_orthonormal_vector());
+        let range = rng.log_range(0.5, 8.0);
+        let rise = edge(rng) * if ix.is_multiple_of(3) { -1.0 } else { 1.0 };
+        let highest = sample.point + (along + normal * rise) * range * rng.range(0.05, 0.9);
+        let light = Light::point(highest.as_vec3(), range as f32, Vec3::ONE);
+        if ix.is_multiple_of(2) {
+            return light;
+        }
+        // A rectangle that hangs down from there, along the horizon and away from the sample.
+        let half_x = normal.cross(along) * range * rng.log_range(0.02, 0.5);
+        let half_y = (along * rng.range(0.0, 1.0) - normal) * range * rng.log_range(0.02, 0.5);
+        let emitter = Emitter::rectangle(half_x.as_vec3(), half_y.as_vec3()).two_sided();
+        Light::area(emitter, (highest + half_y).as_vec3(), range as f32, Vec3::ONE)
+    };
+    (0..count).map(one).collect()
+}
+
 /// A point light anywhere that reaches `point`, of a range up to `range_m`.
 pub(super) fn reaching(rng: &mut Rng, point: DVec3, range_m: f64) -> Light {
     let range = rng.range(0.3, 1.0) * range_m;

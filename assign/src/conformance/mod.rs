@@ -19,7 +19,10 @@
 //!    sample lies and what list it got.
 //! 4. Everything is read back and checked on the CPU. Whether a light reaches the sample is
 //!    [`Light::reach`](crate::Light::reach) in f64 at the position that shading would use; a pair
-//!    closer to the edge than one part in a million does not count.
+//!    closer to the edge than one part in a million does not count. Nor does one whose light stays
+//!    below the sample's horizon, [`Light::above_horizon`](crate::Light::above_horizon), where the
+//!    strategy [needs](crate::Needs) normals. Every other sample is looked up with the normal as the
+//!    G-buffer rounds it, as deferred shading does, and with the exact one, as forward shading does.
 //!
 //! Records are filled with a mark before a case's first frame, so that a list which no pass wrote
 //! shows. Frames repeat until no list overflows (at most six), then once more: the same frame
@@ -114,9 +117,11 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
     let plain = find("33-lights")?;
     let has_groups =
         session::has_groups(&Rig::new(gpu), plain, make).map_err(|e| failed(plain, e))?;
+    let normals = make(gpu).map_err(setup)?.needs().normals;
     let mut planted = Vec::new();
     for fault in Fault::ALL {
-        if fault.needs_groups() && !has_groups {
+        let applies = (has_groups || !fault.needs_groups()) && (normals || !fault.needs_normals());
+        if !applies {
             continue;
         }
         let (name, breach) = fault.shows_in();

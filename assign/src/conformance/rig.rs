@@ -28,8 +28,9 @@ pub(super) struct Probe {
     pub(super) first: u32,
     pub(super) count: u32,
     depth_used: f32,
+    /// What was drawn; once looked up, what the look-up was asked with.
+    pub(super) normal_world: [f32; 3],
     pub(super) last: u32,
-    padding: [u32; 3],
 }
 
 /// A stage on the GPU.
@@ -86,6 +87,7 @@ impl<'a> Rig<'a> {
                 pixel: s.pixel.map(|p| p as f32 + 0.5),
                 depth_clip: s.depth_clip,
                 model_ix: s.model_ix,
+                normal_world: s.normal_world.to_array(),
                 ..Probe::zeroed()
             })
             .collect();

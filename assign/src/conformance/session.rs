@@ -241,6 +241,7 @@ impl Session {
             probes: rig.read_probes(surfaces)?,
             group_count,
             light_count: self.lights.count(),
+            knows_normals: self.strategy.needs().normals,
         })
     }
 }

@@ -128,6 +128,8 @@ pub(super) struct Sample {
     pub(super) model_ix: u32,
     /// Where it lies: lights are aimed at it.
     pub(super) point: DVec3,
+    /// Its shading normal; of one in the open that of the surface behind it, or zero.
+    pub(super) normal_world: Vec3,
 }
 
 /// A view, what it sees, and the samples to look up.
@@ -267,6 +269,7 @@ impl Stage {
             depth_clip,
             model_ix,
             point: self.rebuilt(&ray, depth_clip),
+            normal_world: normal,
         });
     }
 
@@ -305,7 +308,14 @@ impl Stage {
                 continue;
             }
             let pixel = [x, y];
-            self.samples.push(Sample { pixel, depth_clip, model_ix: IN_THE_OPEN, point });
+            let [normal_x, normal_y, normal_z, _] = self.texels[(x + y * self.target[0]) as usize];
+            self.samples.push(Sample {
+                pixel,
+                depth_clip,
+                model_ix: IN_THE_OPEN,
+                point,
+                normal_world: Vec3::new(normal_x, normal_y, normal_z),
+            });
         }
     }
 

@@ -1,4 +1,4 @@
-// Draws the surfaces that the CPU traced: depth and shading normal of every texel.
+// Draws the surfaces that the CPU traced: depth, shading normal and a roughness of every texel.
 
 // Shading normal in world space and clip depth; a negative depth is background.
 @group(0) @binding(0) var<storage, read> texels: array<vec4f>;
@@ -23,5 +23,5 @@ fn draw(@builtin(position) position: vec4f) -> Surface {
   if texel.w < 0.0 {
     discard;
   }
-  return Surface(vec4f(texel.xyz, 0.0), texel.w);
+  return Surface(vec4f(texel.xyz, 0.5), texel.w);
 }

@@ -7,7 +7,8 @@ use crate::AssignError;
 /// The promise that was broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Breach {
-    /// A light reaches a sample and is not in the list of the sample's group.
+    /// A light reaches a sample and is not in the list of the sample's group, or lacks the flag of a
+    /// term that does.
     MissedPair,
     /// A list's light indices do not ascend.
     NotAscending,
