@@ -164,19 +164,8 @@ struct Run<'a> {
 impl Run<'_> {
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self) {
+        note_faults(&mut self.results, self.stage);
         let name = &self.stage.scene.name;
-        self.results.warnings.extend(self.stage.scene.warnings.iter().cloned());
-        self.results.rejected_lights = self
-            .stage
-            .lights
-            .rejected()
-            .iter()
-            .map(|rejected| RejectedLight {
-                scene: name.clone(),
-                index: rejected.index as u64,
-                reason: rejected.fault.to_string(),
-            })
-            .collect();
         if self.args.path && !self.stage.scene.path.moves() {
             self.results
                 .warnings
@@ -275,6 +264,19 @@ impl Run<'_> {
         }
         Ok(())
     }
+}
+
+/// Notes what was wrong with the scene and its lights.
+pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
+    results.warnings.extend(stage.scene.warnings.iter().cloned());
+    let rejected = stage.lights.rejected().iter();
+    results.rejected_lights = rejected
+        .map(|rejected| RejectedLight {
+            scene: stage.scene.name.clone(),
+            index: rejected.index as u64,
+            reason: rejected.fault.to_string(),
+        })
+        .collect();
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

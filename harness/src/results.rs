@@ -147,8 +147,8 @@ pub struct TruthImage {
     pub raw: String,
     /// The tone-mapped image.
     pub image: String,
-    /// The standard error of each pixel's luminance, over the mean luminance of the image, as grey:
-    /// black at none, white from a hundredth on.
+    /// The standard error of each channel over the mean luminance of the image: black at none, white
+    /// from a hundredth on.
     pub error_image: String,
     /// The factor before the tone curve.
     pub exposure: f64,

@@ -55,7 +55,7 @@ fn compare_is_the_command_where_none_is_named() {
     assert_eq!(args, compare(&format!("compare {line}")));
     let pose = CameraPose { eye: [-1.0, 2.0, 3.5], target: [0.0, -1.0, 0.0] };
     assert_eq!(args.stage.camera, Some(Camera::Pose(pose)));
-    let on_path = compare("--camera path:3/12").camera;
+    let on_path = compare("--camera path:3/12").stage.camera;
     assert_eq!(on_path, Some(Camera::OnPath { frame: 3, count: 12 }));
     assert_eq!(args.mode.modes(), [Mode::Deferred, Mode::Forward]);
     assert_eq!(TruthLevel::from(args.truth), TruthLevel::None);
