@@ -88,7 +88,7 @@ const MODELS: [Model; 6] = [
     ("ltc", 2.0, |x, y| 1.01 * true_value(x, y)),
     ("ltc-polynomial", 3.0, |x, y| 1.02 * true_value(x, y)),
     ("monte-carlo:1", 4.0, |x, y| true_value(x, y) * if (x + y) % 2 == 0 { 0.5 } else { 1.5 }),
-    ("monte-carlo:16", 40.0, |x, y| true_value(x, y) * if (x + y) % 2 == 0 { 0.9 } else { 1.1 }),
+    ("monte-carlo:16", 40.0, |x, y| true_value(x, y) * if (x + y) % 2 == 0 { 0.92 } else { 1.08 }),
 ];
 
 /// A study of models, its images in a folder.
@@ -268,6 +268,6 @@ fn the_papers_figures_stand_beside_ours_by_place_and_lights() {
         let name = format!("atrium-a-126-{chart}.svg");
         assert!(charts.contains(&name), "{name} of {charts:?}");
     }
-    assert!(text.contains("54 cones is fastest without a loss"), "{text}");
+    assert!(text.contains("6 cones is fastest without a loss"), "{text}");
     assert!(text.contains("54 cones, cut 0.001 82.6 %"), "{text}");
 }

@@ -86,7 +86,7 @@ fn every_value_out_of_range_is_named_with_its_range() {
         ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
         (
             "--area-model",
-            &["LTC", "disc", ""],
+            &["LTC", "disc", "monte-carlo:0"],
             "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples",
         ),
         ("--areas", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
@@ -158,9 +158,9 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
     assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, fit-ltc, list";
+    let known = "known are compare, study, report, advise, fit-ltc, truth, list";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
-    assert_eq!(refusal("study"), "study needs which one: comparison or culling");
+    assert_eq!(refusal("study"), "study needs which one: comparison, culling, area or endless");
     assert_eq!(refusal("report"), "report needs a folder: of a comparison or a study");
     assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
     assert!(refusal("study comparison --shard 3/2").contains("K from 1 to N"));
