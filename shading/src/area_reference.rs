@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{
     ltc,
-    reference::{DIELECTRIC_F0, Surface},
+    reference::{Surface, f0_of, window},
 };
 
 /// Relative error at which the quadrature of the truth stops.
@@ -37,9 +37,8 @@ impl SeenArea {
         if emitter.in_front(to_position) <= 0.0 {
             return None;
         }
-        let distance = to_position.distance(emitter.closest(to_position));
-        let window =
-            |range_m: f32| (1.0 - (distance / f64::from(range_m)).powi(4)).max(0.0).powi(2);
+        let distance_2 = to_position.distance_squared(emitter.closest(to_position));
+        let window = |range_m: f32| window(distance_2, f64::from(range_m));
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
         let frame = shading_frame(surface.normal, to_eye);
         let vertices = emitter.vertices().iter();
@@ -49,7 +48,7 @@ impl SeenArea {
             diffuse: radiance * window(light.diffuse_range_m()),
             specular: radiance * window(light.range_m),
             albedo: (1.0 - surface.metallic) * surface.base_color,
-            f0: DVec3::splat(DIELECTRIC_F0).lerp(surface.base_color, surface.metallic),
+            f0: f0_of(surface),
             roughness: surface.roughness,
         })
     }

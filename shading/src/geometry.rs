@@ -253,7 +253,7 @@ fn plan(
     (records, draws)
 }
 
-fn record(model: &Model, model_ix: u32, material_ix: u32) -> InstanceRecord {
+pub(crate) fn record(model: &Model, model_ix: u32, material_ix: u32) -> InstanceRecord {
     let linear = Mat3::from_mat4(model.object_to_world);
     let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
     // The cofactor matrix is the inverse transpose times the determinant, and exists for a

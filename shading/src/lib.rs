@@ -16,7 +16,7 @@
 //! is compiled and bound: each texture, alpha masks, emission, spots, area lights.
 //!
 //! [`truth`](LightBvh) checks a strategy's lists on the CPU in f64; [`HdrImage`] compares images
-//! bit for bit.
+//! bit for bit; [`traced`] renders the true image, shadows and one bounce included.
 
 mod area_model;
 mod area_reference;
@@ -37,6 +37,7 @@ pub mod reference;
 mod renderer;
 mod shaders;
 mod targets;
+pub mod traced;
 mod truth;
 
 pub use area_model::{AreaModel, MAX_AREA_SAMPLES};

@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use scenes::{Encoding, Image};
 
-static TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
+/// The linear value of an sRGB byte.
+pub(crate) static TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|byte| {
         let v = byte as f32 / 255.0;
         if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }

@@ -23,13 +23,31 @@ pub(crate) const MIN_ROUGHNESS: f64 = 0.045;
 /// Least cosine between the normal and the direction to the eye.
 pub(crate) const MIN_COS_VIEW: f64 = 1e-4;
 /// Reflectance of a dielectric at normal incidence.
-pub(crate) const DIELECTRIC_F0: f64 = 0.04;
+const DIELECTRIC_F0: f64 = 0.04;
 /// Least squared distance of inverse-square fall-off, square metres.
 const MIN_DISTANCE_2: f64 = 1e-4;
+
+/// The two terms of the BRDF, per steradian.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lobes {
+    pub(crate) diffuse: DVec3,
+    pub(crate) specular: DVec3,
+}
 
 /// Radiance reflected to `to_eye` for unit irradiance from `to_light`, times cos of incidence:
 /// Lambert and Cook-Torrance with GGX, height-correlated Smith and Schlick.
 pub fn reflect_light(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> DVec3 {
+    let lobes = lobes_of(surface, to_eye, to_light);
+    (lobes.diffuse + lobes.specular) * surface.normal.dot(to_light).max(0.0)
+}
+
+/// Reflectance at normal incidence.
+pub(crate) fn f0_of(surface: &Surface) -> DVec3 {
+    DVec3::splat(DIELECTRIC_F0).lerp(surface.base_color, surface.metallic)
+}
+
+/// The BRDF for light from a direction.
+pub(crate) fn lobes_of(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> Lobes {
     let cos_l = surface.normal.dot(to_light).max(0.0);
     let cos_v = surface.normal.dot(to_eye).abs().max(MIN_COS_VIEW);
     let half_way = (to_eye + to_light).normalize_or_zero();
@@ -40,17 +58,21 @@ pub fn reflect_light(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> DVec3
     let distribution = alpha_2 / (std::f64::consts::PI * peak * peak);
     let smith = |a: f64, b: f64| a * (b * b * (1.0 - alpha_2) + alpha_2).sqrt();
     let visibility = 0.5 / (smith(cos_l, cos_v) + smith(cos_v, cos_l)).max(1e-6);
-    let f0 = DVec3::splat(DIELECTRIC_F0).lerp(surface.base_color, surface.metallic);
+    let f0 = f0_of(surface);
     let fresnel = f0 + (DVec3::ONE - f0) * (1.0 - cos_vh).powi(5);
     let diffuse = (DVec3::ONE - fresnel) * (1.0 - surface.metallic) * surface.base_color
         / std::f64::consts::PI;
-    (diffuse + distribution * visibility * fresnel) * cos_l
+    Lobes { diffuse, specular: distribution * visibility * fresnel }
+}
+
+/// The window `(1 - (d / range)^4)^2`, clamped at 0.
+pub(crate) fn window(distance_2: f64, range_m: f64) -> f64 {
+    (1.0 - (distance_2 / (range_m * range_m)).powi(2)).max(0.0).powi(2)
 }
 
 /// Inverse-square fall-off times the window `(1 - (d / range)^4)^2`, clamped at 0.
 pub fn fall_off(distance_2: f64, range_m: f64) -> f64 {
-    let window = (1.0 - (distance_2 / (range_m * range_m)).powi(2)).max(0.0);
-    window * window / distance_2.max(MIN_DISTANCE_2)
+    window(distance_2, range_m) / distance_2.max(MIN_DISTANCE_2)
 }
 
 /// Radiance that one light adds at `position`: of an area light the BRDF's integral over its emitter,

@@ -74,6 +74,11 @@ impl<'a> LightBvh<'a> {
         Self { lights, bvh: build_bvh2(&boxes, params, &mut Duration::default()) }
     }
 
+    /// The lights it was built over.
+    pub fn lights(&self) -> &'a [Light] {
+        self.lights
+    }
+
     /// Calls `found` with the index and the [`Light::reach`] of every light that reaches `point`.
     pub fn lights_at(&self, point: [f32; 3], mut found: impl FnMut(u32, f64)) {
         let exact = DVec3::from(point.map(f64::from));

@@ -148,7 +148,11 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        for flags in with_areas(material_flags(Some("forward"), &["emissive", "spots"])) {
+        let sets = material_flags(Some("forward"), &["emissive", "spots"]);
+        // Area lights read no texture: one material with all of them will do.
+        let areas =
+            with_areas(sets.iter().max_by_key(|set| set.len()).into_iter().cloned().collect());
+        for flags in sets.into_iter().chain(areas) {
             let slots = shaded_slots(&flags);
             check_geometry(&flags, Some(look_up), Some("fragment_forward"), slots);
         }
@@ -209,6 +213,18 @@ fn probe() {
         check_compute("probe", &Flags::new(), look_up, &own, &[0, 1, 2, 3]);
         let model_ids = ["model_ids"].into();
         check_compute("probe", &model_ids, look_up, &own, &[0, 1, 2, 3, 5]);
+    }
+}
+
+#[test]
+fn surfaces() {
+    for flags in subsets(&["emissive"]) {
+        let linked = link("package::surfaces", &flags, None);
+        let emissive = flags.contains("emissive");
+        let expected = if emissive { vec![0, 1, 2, 3, 4, 5, 6, 7] } else { vec![0, 1, 2, 4, 5, 6] };
+        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
+        assert_eq!(images, expected, "{flags:?}");
+        assert_eq!(linked.entry_points, ["surfaces".to_owned()].into(), "{flags:?}");
     }
 }
 

@@ -7,14 +7,14 @@ use glam::DVec3;
 use crate::reference::{MIN_COS_VIEW, MIN_ROUGHNESS};
 
 /// GGX's alpha of a perceptual roughness.
-pub(super) fn alpha_of(roughness: f64) -> f64 {
+pub(crate) fn alpha_of(roughness: f64) -> f64 {
     roughness.max(MIN_ROUGHNESS).powi(2)
 }
 
 /// GGX with height-correlated Smith, seen from one direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lobe {
-    pub(super) to_eye: DVec3,
+pub(crate) struct Lobe {
+    pub(crate) to_eye: DVec3,
     alpha: f64,
     alpha_2: f64,
     cos_view: f64,
@@ -23,7 +23,7 @@ pub(super) struct Lobe {
 
 impl Lobe {
     /// The lobe of a perceptual roughness and a unit direction to the eye.
-    pub(super) fn new(roughness: f64, to_eye: DVec3) -> Self {
+    pub(crate) fn new(roughness: f64, to_eye: DVec3) -> Self {
         let alpha = alpha_of(roughness);
         let alpha_2 = alpha * alpha;
         let cos_view = to_eye.z.abs().max(MIN_COS_VIEW);
@@ -32,16 +32,16 @@ impl Lobe {
     }
 
     /// Seen from the x-z plane under a cosine of 0 to 1.
-    pub(super) fn seen_under(roughness: f64, cos_view: f64) -> Self {
+    pub(crate) fn seen_under(roughness: f64, cos_view: f64) -> Self {
         let cos = cos_view.clamp(MIN_COS_VIEW, 1.0);
         Self::new(roughness, DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos))
     }
 
-    pub(super) fn alpha(&self) -> f64 {
+    pub(crate) fn alpha(&self) -> f64 {
         self.alpha
     }
 
-    pub(super) fn cos_view(&self) -> f64 {
+    pub(crate) fn cos_view(&self) -> f64 {
         self.cos_view
     }
 
@@ -57,7 +57,7 @@ impl Lobe {
 
     /// D V cos, the BRDF at a Fresnel term of 1 times the cosine of incidence, and Schlick's
     /// `(1 - v.h)^5`.
-    pub(super) fn evaluate(&self, to_light: DVec3) -> (f64, f64) {
+    pub(crate) fn evaluate(&self, to_light: DVec3) -> (f64, f64) {
         let cos_light = to_light.z.max(0.0);
         let half_way = self.half_way(to_light);
         let root_light = (cos_light * cos_light * (1.0 - self.alpha_2) + self.alpha_2).sqrt();
@@ -68,14 +68,14 @@ impl Lobe {
     }
 
     /// Density at which [`Self::sample`] finds a direction, per steradian.
-    pub(super) fn density(&self, to_light: DVec3) -> f64 {
+    pub(crate) fn density(&self, to_light: DVec3) -> f64 {
         let cos_half = self.half_way(to_light).z.clamp(0.0, 1.0);
         self.distribution(cos_half) * 0.5 / (self.cos_view + self.root_view)
     }
 
     /// A direction to a light that mirrors the eye in a normal visible from it (Heitz 2018), perhaps
     /// below the horizon. Samples of `u` and `1 - u` mirror each other in the x-z plane.
-    pub(super) fn sample(&self, u: f64, v: f64) -> DVec3 {
+    pub(crate) fn sample(&self, u: f64, v: f64) -> DVec3 {
         let stretched = DVec3::new(self.alpha * self.to_eye.x, 0.0, self.cos_view).normalize();
         let up = DVec3::new(-stretched.z, 0.0, stretched.x);
         let (sin, cos) = ((u - 0.5) * TAU).sin_cos();

@@ -31,7 +31,7 @@ mod accuracy;
 mod diffuse_fresnel;
 mod fit;
 mod generate;
-mod lobe;
+pub(crate) mod lobe;
 mod nelder_mead;
 mod polygon;
 mod polynomial;

@@ -1,0 +1,101 @@
+//! Directions drawn about as often as a surface reflects light from them.
+//!
+//! One of two lobes is chosen: the cosine, or GGX's visible normals (Heitz 2018), which alone serves
+//! metals. The density is that of the mixture, so that neither lobe's tail is divided by nothing.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DVec3};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use crate::{
+    ltc::lobe::Lobe,
+    reference::{MIN_COS_VIEW, Surface},
+};
+
+/// How often a dielectric's specular lobe is chosen.
+const SPECULAR_SHARE: f64 = 0.5;
+
+/// Samples the BRDF of one surface seen from one direction.
+pub(super) struct BrdfSampler {
+    /// From the shading frame, z the normal and the eye in the plane of x and z, to world space.
+    to_world: DMat3,
+    lobe: Lobe,
+    specular_share: f64,
+}
+
+impl BrdfSampler {
+    pub(super) fn new(surface: &Surface, to_eye: DVec3) -> Self {
+        let normal = surface.normal;
+        let x = to_eye.reject_from_normalized(normal).try_normalize();
+        let x = x.unwrap_or_else(|| normal.any_orthonormal_vector());
+        let to_world = DMat3::from_cols(x, normal.cross(x), normal);
+        let local = to_world.transpose() * to_eye;
+        // An eye below the shading horizon sees no microfacet.
+        let is_seen = local.z > MIN_COS_VIEW;
+        let specular_share = SPECULAR_SHARE + (1.0 - SPECULAR_SHARE) * surface.metallic;
+        Self {
+            to_world,
+            lobe: Lobe::new(surface.roughness, DVec3::new(local.x, 0.0, local.z)),
+            specular_share: if is_seen { specular_share } else { 0.0 },
+        }
+    }
+
+    /// A world-space vector in the shading frame.
+    pub(super) fn to_shading(&self, world: DVec3) -> DVec3 {
+        self.to_world.transpose() * world
+    }
+
+    /// A unit direction, world space, perhaps below the horizon.
+    pub(super) fn sample(&self, rng: &mut Pcg64Mcg) -> DVec3 {
+        let [choice, u, v] = rng.random::<[f64; 3]>();
+        let local = if choice < self.specular_share {
+            self.lobe.sample(u, v)
+        } else {
+            // Uniform on the disc, raised to the hemisphere (Malley).
+            let (sin, cos) = (u * TAU).sin_cos();
+            DVec3::new(v.sqrt() * cos, v.sqrt() * sin, (1.0 - v).sqrt())
+        };
+        self.to_world * local
+    }
+
+    /// Density of [`Self::sample`] above the horizon, per steradian.
+    pub(super) fn density(&self, direction: DVec3) -> f64 {
+        let local = self.to_shading(direction);
+        let cosine = local.z.max(0.0) / PI;
+        let specular = if self.specular_share > 0.0 { self.lobe.density(local) } else { 0.0 };
+        self.specular_share * specular + (1.0 - self.specular_share) * cosine
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+
+    #[test]
+    fn directions_come_as_often_as_their_density_says() {
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let normal = DVec3::new(0.3, 0.8, -0.5).normalize();
+        for (roughness, metallic) in [(0.3, 0.0), (0.6, 1.0), (1.0, 0.4)] {
+            let surface = Surface { base_color: DVec3::ONE, metallic, normal, roughness };
+            let to_eye = (normal + DVec3::X).normalize();
+            let sampler = BrdfSampler::new(&surface, to_eye);
+            // The solid angle of a cone's directions, each counted by the inverse of its density.
+            let axis = (normal - 0.6 * DVec3::X).normalize();
+            let count = 200_000;
+            let mut solid_angle = 0.0;
+            for _ in 0..count {
+                let direction = sampler.sample(&mut rng);
+                if direction.dot(axis) > 0.9 {
+                    solid_angle += 1.0 / sampler.density(direction) / f64::from(count);
+                }
+            }
+            let expected = TAU * 0.1;
+            let off = (solid_angle / expected - 1.0).abs();
+            assert!(off < 0.02, "{roughness}, {metallic}: {solid_angle} for {expected}");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Truth images: every pixel's radiance and its standard error.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use assign::Light;
+use glam::DVec3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+use super::{AREA_SAMPLES, Estimate, SurfaceSample, TracedScene, bounced_light, direct_radiance};
+use crate::{HdrImage, LightBvh, ShadingError};
+
+/// Rows that one thread renders before it reports.
+const BLOCK_ROWS: usize = 8;
+
+/// The way that light takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transport {
+    /// From lights to surface to eye, nothing in between, and what surfaces emit: what the shading
+    /// pipeline shows.
+    Unshadowed,
+    /// The same with shadows.
+    Direct,
+    /// From lights to a surface to another to the eye, with shadows; nothing else.
+    Bounce,
+}
+
+/// How a truth image is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TruthSettings {
+    /// The light that it shows.
+    pub transport: Transport,
+    /// Directions a pixel of a bounce.
+    pub bounce_samples: u32,
+    /// Pairs of directions to each area light with shadows.
+    pub area_samples: u32,
+    /// Images of different seeds are independent.
+    pub seed: u32,
+}
+
+impl TruthSettings {
+    /// 64 samples of either kind, seed 1.
+    pub fn new(transport: Transport) -> Self {
+        Self { transport, bounce_samples: 64, area_samples: AREA_SAMPLES, seed: 1 }
+    }
+}
+
+/// A truth and how far off it may be.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TruthImage {
+    /// Linear RGB radiance.
+    pub radiance: HdrImage,
+    /// Standard error of each channel: 0 where the value is exact.
+    pub standard_error: HdrImage,
+}
+
+impl TruthImage {
+    /// The sum with the independent image of another transport.
+    pub fn plus(&self, other: &Self) -> Result<Self, ShadingError> {
+        let sum = |a: f32, b: f32| a + b;
+        Ok(Self {
+            radiance: combine(&self.radiance, &other.radiance, sum)?,
+            standard_error: combine(&self.standard_error, &other.standard_error, f32::hypot)?,
+        })
+    }
+}
+
+fn combine(
+    a: &HdrImage,
+    b: &HdrImage,
+    channel: impl Fn(f32, f32) -> f32,
+) -> Result<HdrImage, ShadingError> {
+    if (a.width, a.height) != (b.width, b.height) {
+        let (left, right) = ([a.width, a.height], [b.width, b.height]);
+        return Err(ShadingError::Mismatch { left, right });
+    }
+    let pixels = a.pixels.iter().zip(&b.pixels);
+    let pixels = pixels.map(|(a, b)| std::array::from_fn(|i| channel(a[i], b[i]))).collect();
+    Ok(HdrImage { width: a.width, height: a.height, pixels })
+}
+
+/// Renders the truth of an image of `size` pixels on all threads.
+///
+/// `sample_of` gives a pixel's sample, index into the image, rows from the top: of
+/// [`GBufferSamples::sample`](super::GBufferSamples::sample), or of [`TracedScene::primary`]. Pixels
+/// without one are black. Faulty lights are left out, as they are where lights are uploaded.
+/// `progress` is told how many rows of how many are done, from any thread.
+pub fn truth_image(
+    scene: &TracedScene<'_>,
+    lights: &[Light],
+    size: [u32; 2],
+    sample_of: impl Fn(usize) -> Option<SurfaceSample> + Sync,
+    settings: TruthSettings,
+    progress: &(dyn Fn(u32, u32) + Sync),
+) -> TruthImage {
+    let sound: Vec<Light> = lights.iter().filter(|light| light.check().is_ok()).copied().collect();
+    let lights = LightBvh::new(&sound);
+    let [width, height] = size;
+    let mut estimates = vec![Estimate::default(); width as usize * height as usize];
+    let rows_done = AtomicU32::new(0);
+    let block = BLOCK_ROWS * width.max(1) as usize;
+    estimates.par_chunks_mut(block).enumerate().for_each(|(block_ix, block_pixels)| {
+        for (ix, estimate) in block_pixels.iter_mut().enumerate() {
+            let pixel = block_ix * block + ix;
+            if let Some(sample) = sample_of(pixel) {
+                *estimate = pixel_of(scene, &lights, &sample, settings, pixel);
+            }
+        }
+        let rows = (block_pixels.len() / width.max(1) as usize) as u32;
+        progress(rows_done.fetch_add(rows, Ordering::Relaxed) + rows, height);
+    });
+    let image = |of: fn(&Estimate) -> DVec3| HdrImage {
+        width,
+        height,
+        pixels: estimates.iter().map(|e| of(e).as_vec3().to_array()).collect(),
+    };
+    TruthImage { radiance: image(|e| e.mean), standard_error: image(Estimate::standard_error) }
+}
+
+fn pixel_of(
+    scene: &TracedScene<'_>,
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    settings: TruthSettings,
+    pixel: usize,
+) -> Estimate {
+    // Random numbers of the pixel's own: threads may take pixels in any order.
+    let mut rng = Pcg64Mcg::seed_from_u64((u64::from(settings.seed) << 32) | pixel as u64);
+    let emitted = Estimate::exact(sample.emission);
+    let shadows = match settings.transport {
+        Transport::Unshadowed => None,
+        Transport::Direct => Some(scene),
+        Transport::Bounce => {
+            return bounced_light(lights, sample, scene, settings.bounce_samples, &mut rng);
+        }
+    };
+    emitted + direct_radiance(lights, sample, shadows, settings.area_samples, &mut rng)
+}

@@ -1,0 +1,187 @@
+//! Rays against triangles: the one module that traces rays with obvhs.
+//!
+//! The hierarchy is traversed in single precision, over boxes a little larger than their triangles;
+//! the triangles themselves are intersected in double precision, so that edges of shadows lie where
+//! the vertices say, and no ray slips between two triangles that share an edge.
+
+use std::time::Duration;
+
+use glam::{DVec3, Vec3};
+use obvhs::{
+    BvhBuildParams,
+    aabb::Aabb,
+    bvh2::{Bvh2, builder::build_bvh2},
+    ray::{Ray, RayHit},
+};
+
+/// How much larger boxes are than triangles, as a share of the largest coordinate: eight units in
+/// the last place, for traversal's rounding and that of the ray's origin.
+const BOX_SLACK: f32 = 8.0 * f32::EPSILON;
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hit {
+    /// Index of the triangle.
+    pub(super) triangle: u32,
+    /// Distance along the ray, metres.
+    pub(super) distance_m: f64,
+    /// Weights of the second and the third corner.
+    pub(super) weights: [f64; 2],
+    /// Whether the ray came from the side on which the corners run counter-clockwise.
+    pub(super) is_front: bool,
+}
+
+/// A hierarchy over triangles.
+pub(super) struct Triangles {
+    bvh: Bvh2,
+    corners: Vec<[Vec3; 3]>,
+}
+
+impl Triangles {
+    /// Builds it over world-space corners, metres.
+    pub(super) fn new(corners: Vec<[Vec3; 3]>) -> Self {
+        let farthest = corners.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs().max_element()));
+        let slack = farthest * BOX_SLACK;
+        let boxes: Vec<Aabb> = corners
+            .iter()
+            .map(|[a, b, c]| {
+                Aabb::new((a.min(*b).min(*c) - slack).into(), (a.max(*b).max(*c) + slack).into())
+            })
+            .collect();
+        let params = BvhBuildParams::medium_build();
+        Self { bvh: build_bvh2(&boxes, params, &mut Duration::default()), corners }
+    }
+
+    /// World-space corners of a triangle.
+    pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.corners[triangle as usize].map(Vec3::as_dvec3)
+    }
+
+    /// The first hit along a unit direction before `max_m` that `counts`. Of two at the same
+    /// distance, that of the lower index, so that the hierarchy's shape does not matter.
+    pub(super) fn first(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        max_m: f64,
+        counts: impl Fn(&Hit) -> bool,
+    ) -> Option<Hit> {
+        let mut first: Option<Hit> = None;
+        let ray = ray(origin, direction, max_m)?;
+        self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, leaf| {
+            let triangle = self.bvh.primitive_indices[leaf];
+            let nearer = |hit: &Hit| {
+                first.is_none_or(|f| (hit.distance_m, triangle) < (f.distance_m, f.triangle))
+            };
+            let hit = self.intersect(triangle, origin, direction, max_m);
+            match hit.filter(|hit| nearer(hit) && counts(hit)) {
+                Some(hit) => {
+                    first = Some(hit);
+                    (hit.distance_m as f32).next_up()
+                }
+                None => f32::INFINITY,
+            }
+        });
+        first
+    }
+
+    /// Whether any hit before `max_m` counts.
+    pub(super) fn any(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        max_m: f64,
+        counts: impl Fn(&Hit) -> bool,
+    ) -> bool {
+        let Some(ray) = ray(origin, direction, max_m) else { return false };
+        !self.bvh.ray_traverse_miss(ray, |_, leaf| {
+            let triangle = self.bvh.primitive_indices[leaf];
+            let hit = self.intersect(triangle, origin, direction, max_m);
+            // Anything below the ray's end ends the search.
+            hit.filter(&counts).map_or(f32::INFINITY, |_| 0.0)
+        })
+    }
+
+    /// Möller and Trumbore 1997, both sides.
+    fn intersect(&self, triangle: u32, origin: DVec3, direction: DVec3, max_m: f64) -> Option<Hit> {
+        let [a, b, c] = self.corners(triangle);
+        let (along_b, along_c) = (b - a, c - a);
+        let across = direction.cross(along_c);
+        let determinant = along_b.dot(across);
+        let from_a = origin - a;
+        let turned = from_a.cross(along_b);
+        let weights = [from_a.dot(across) / determinant, direction.dot(turned) / determinant];
+        let distance_m = along_c.dot(turned) / determinant;
+        // A comparison with a number that is none is false: edge-on triangles are missed.
+        let inside = weights[0] >= 0.0 && weights[1] >= 0.0 && weights[0] + weights[1] <= 1.0;
+        (inside && distance_m > 0.0 && distance_m < max_m).then_some(Hit {
+            triangle,
+            distance_m,
+            weights,
+            is_front: determinant > 0.0,
+        })
+    }
+}
+
+/// The ray in single precision; `None` where it is none.
+fn ray(origin: DVec3, direction: DVec3, max_m: f64) -> Option<Ray> {
+    let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
+    let sound = origin.is_finite() && direction.is_finite() && max_m > 0.0;
+    sound.then(|| Ray::new(origin, direction, 0.0, (max_m as f32).next_up()))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+
+    fn random(rng: &mut Pcg64Mcg) -> DVec3 {
+        DVec3::new(rng.random(), rng.random(), rng.random()) * 2.0 - 1.0
+    }
+
+    #[test]
+    fn the_hierarchy_finds_what_a_loop_finds() {
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        let corner = |rng: &mut Pcg64Mcg, at: DVec3| (at * 5.0 + random(rng)).as_vec3();
+        let corners = (0..400)
+            .map(|_| {
+                let at = random(&mut rng);
+                [corner(&mut rng, at), corner(&mut rng, at), corner(&mut rng, at)]
+            })
+            .collect();
+        let triangles = Triangles::new(corners);
+        let mut hits = 0;
+        for _ in 0..2000 {
+            let (origin, direction) = (random(&mut rng) * 6.0, random(&mut rng).normalize());
+            // Every third is passed through.
+            let counts = |hit: &Hit| !hit.triangle.is_multiple_of(3);
+            let looped = (0..400)
+                .filter_map(|ix| triangles.intersect(ix, origin, direction, 5.0))
+                .filter(counts)
+                .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+            assert_eq!(triangles.first(origin, direction, 5.0, counts), looped);
+            assert_eq!(triangles.any(origin, direction, 5.0, counts), looped.is_some());
+            hits += usize::from(looped.is_some());
+        }
+        assert!((500..1500).contains(&hits), "{hits}");
+    }
+
+    #[test]
+    fn nothing_slips_through_an_edge_and_odd_rays_hit_nothing() {
+        let corner = |x, z| Vec3::new(x, 0.3, z);
+        let (a, b, c, d) =
+            (corner(-0.7, -0.9), corner(0.8, -0.7), corner(0.9, 1.1), corner(-1.0, 0.8));
+        let triangles = Triangles::new(vec![[a, b, c], [a, c, d]]);
+        for step in 1..1000 {
+            // Onto the diagonal that both share.
+            let target = a.as_dvec3().lerp(c.as_dvec3(), f64::from(step) / 1000.0);
+            let origin = DVec3::new(0.1, 2.0, -0.4);
+            let direction = (target - origin).normalize();
+            assert!(triangles.first(origin, direction, 9.0, |_| true).is_some(), "{step}");
+        }
+        assert!(!triangles.any(DVec3::NAN, DVec3::Y, 1.0, |_| true));
+        assert!(Triangles::new(vec![]).first(DVec3::ZERO, DVec3::Y, 1.0, |_| true).is_none());
+    }
+}
