@@ -78,7 +78,7 @@ fn methods(criterion: &mut Criterion) {
         let stage = OnceCell::new();
         let stage = || {
             stage.get_or_init(|| {
-                let mut stage = Stage::new(&gpu, &args).unwrap_or_else(|error| fail(&error));
+                let mut stage = Stage::new(&gpu, &args.stage).unwrap_or_else(|error| fail(&error));
                 let prepared = stage.renderer.prepare(&stage.view, &stage.lights);
                 prepared.unwrap_or_else(|error| fail(&error.into()));
                 stage
@@ -86,8 +86,8 @@ fn methods(criterion: &mut Criterion) {
         };
         for choice in choices(&args)? {
             let choice = choice.checked(&gpu)?;
-            let scene = args.scene.rsplit('/').next().unwrap_or_default();
-            let name = format!("{}/{scene}/{}", choice.id(), args.lights);
+            let scene = args.stage.scene.rsplit('/').next().unwrap_or_default();
+            let name = format!("{}/{scene}/{}", choice.id(), args.stage.lights);
             for (kind, family) in [(PassKind::Assign, "assign"), (PassKind::Shade, "shade")] {
                 // No lists, nothing to assign.
                 if kind == PassKind::Assign && !choice.has_groups() {

@@ -1,8 +1,6 @@
 //! `lightbench report`: metrics and charts again, from what earlier runs stored.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::path::Path;
 
 use shading::HdrImage;
 
@@ -12,8 +10,9 @@ use crate::{
     errors::{ImagePair, errors, stored},
     pictures::Pictures,
     report,
-    results::{Record, Results, ResultsError},
-    study::{Done, Manifest},
+    results::{Record, Results},
+    stored::{Store, is_plain},
+    study::{Done, Manifest, compare_with_truth},
 };
 
 /// Makes the report of a comparison or of a study; returns what to print.
@@ -27,10 +26,11 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
         for (job, results) in &mut done.results {
             if let Some(folder) = done.folders.get(job) {
                 refresh(results, folder)?;
-                if args.out.is_none() {
-                    results.write(&folder.join("results.json"))?;
-                }
             }
+        }
+        compare_with_truth(&mut done)?;
+        if args.out.is_none() {
+            done.write()?;
         }
         return report::write_study(&done, out);
     }
@@ -71,29 +71,18 @@ pub fn pictures(results: &Results, folder: &Path) -> Pictures {
 
 /// Computes the errors of every record whose linear images are there, and its times.
 fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
-    let mut store = Store { folder, images: HashMap::new() };
+    let mut store = Store::new(folder);
     for record in &mut results.records {
         record.set_times();
-        let Some(image) = store.image(record.images.raw.as_ref())? else { continue };
-        let exposure = record.images.exposure.unwrap_or(1.0) as f32;
-        let mut reference = |name: &Option<String>| -> Result<_, HarnessError> {
-            let Some(reference) = store.image(name.as_ref())? else { return Ok(None) };
-            if (reference.width, reference.height) != (image.width, image.height) {
-                let path = folder.join(name.as_deref().unwrap_or_default());
-                let reason = format!(
-                    "{}x{} pixels: it must be as large as {}, {}x{}",
-                    reference.width,
-                    reference.height,
-                    record.images.raw.as_deref().unwrap_or_default(),
-                    image.width,
-                    image.height
-                );
-                return Err(ResultsError::Parse { path, reason }.into());
-            }
-            Ok(Some(reference))
+        let images = &record.images;
+        let raw = images.raw.as_deref();
+        let Some(image) = store.image(raw)? else { continue };
+        let exposure = images.exposure.unwrap_or(1.0) as f32;
+        let mut reference = |name: &Option<String>| {
+            store.image_like(name.as_deref(), &image, raw.unwrap_or_default())
         };
-        let baseline = reference(&record.images.raw_baseline)?;
-        let unbounded = reference(&record.images.raw_unbounded)?;
+        let baseline = reference(&images.raw_baseline)?;
+        let unbounded = reference(&images.raw_unbounded)?;
         let against = |reference: &HdrImage| {
             stored(errors(&ImagePair { image: &image, reference, exposure }))
         };
@@ -112,48 +101,13 @@ fn keeps_errors(record: &Record) -> bool {
     record.along_path || record.is_control()
 }
 
-/// Linear images of a folder, each read once.
-struct Store<'a> {
-    folder: &'a Path,
-    images: HashMap<String, Option<Rc<HdrImage>>>,
-}
-
-impl Store<'_> {
-    /// The image of a name; `None` where none is named or there.
-    fn image(&mut self, name: Option<&String>) -> Result<Option<Rc<HdrImage>>, HarnessError> {
-        let Some(name) = name.filter(|name| is_plain(name)) else { return Ok(None) };
-        if let Some(known) = self.images.get(name) {
-            return Ok(known.clone());
-        }
-        let path: PathBuf = self.folder.join(name);
-        let image = match path.is_file() {
-            true => Some(Rc::new(HdrImage::read_exr(&path)?)),
-            false => None,
-        };
-        self.images.insert(name.clone(), image.clone());
-        Ok(image)
-    }
-}
-
-/// Whether a name is that of a file in the folder itself: results may come from anywhere.
-fn is_plain(name: &str) -> bool {
-    Path::new(name).file_name().is_some_and(|file| file == name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::ResultsError;
 
     fn of(folder: &Path) -> ReportArgs {
         ReportArgs { folders: vec![folder.to_owned()], out: None }
-    }
-
-    #[test]
-    fn names_that_lead_elsewhere_are_not_read() {
-        assert!(is_plain("deferred-None.exr"));
-        for name in ["../x.exr", "/etc/passwd", "a/b.png", "", ".."] {
-            assert!(!is_plain(name), "{name}");
-        }
     }
 
     #[test]

@@ -7,22 +7,25 @@
 mod error;
 mod fit_ltc;
 mod names;
+mod stage;
 mod study;
+mod truth;
 mod values;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use assign::{FrustumTests, LightOrder};
+use assign::FrustumTests;
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use scenes::{Outlines, Radii};
 use shading::{AreaModel, Cut};
 
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
 pub use names::{did_you_mean, nearest};
+pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
+pub use truth::TruthArgs;
 pub use values::{Camera, CameraPose, Size, Strategies};
 
 use crate::results::{Mode, TruthLevel};
@@ -74,6 +77,8 @@ pub enum Invocation {
     Advise(AdviseArgs),
     /// Fit linearly transformed cosines to the BRDF.
     FitLtc(FitLtcArgs),
+    /// Render what a view should look like.
+    Truth(TruthArgs),
     /// List what can be named on the command line.
     List(Listing),
     /// Print this text (help or version) and end well.
@@ -114,6 +119,8 @@ enum Command {
     Advise(AdviseArgs),
     /// Fit linearly transformed cosines to the BRDF anew, and compare them with those in use
     FitLtc(FitLtcArgs),
+    /// Render on the CPU what a view should look like, with shadows or a bounce where asked for
+    Truth(TruthArgs),
     /// List the strategies, scenes or adapters that can be named
     List {
         /// What to list
@@ -135,13 +142,9 @@ pub enum Listing {
 /// The options of `lightbench compare`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct CompareArgs {
-    /// A scene's name (see `lightbench list scenes`) or a .gltf or .glb file
-    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
-    pub scene: String,
-
-    /// Factor on the scene's size and its own lights, 1e-6 to 1e6; scattered lights keep theirs
-    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
-    pub scene_scale: f64,
+    /// What is drawn.
+    #[command(flatten)]
+    pub stage: StageArgs,
 
     /// Strategies, separated by commas, with their parameters; None is no culling, all is every one
     #[arg(long, value_name = "A,B,C", default_value = "None,Sphere,DC-I,SC-E/bvh")]
@@ -158,59 +161,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "SOURCE", default_value = "linear")]
     pub source: SourceChoice,
 
-    /// Order of the lights in their buffer, for all methods alike
-    #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order)]
-    pub light_order: LightOrder,
-
-    /// Lights to scatter in addition to the scene's own, 0 to 16,777,216
-    #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
-    pub lights: u32,
-
-    /// Add the lights that another .gltf or .glb file holds
-    #[arg(long, value_name = "FILE", value_parser = values::text)]
-    pub lights_from: Option<String>,
-
-    /// Leave out the lights that the scene's file holds
-    #[arg(long)]
-    pub no_own_lights: bool,
-
-    /// Where lights are scattered
-    #[arg(long, value_name = "BOX", default_value = "core")]
-    pub light_box: LightBox,
-
-    /// Factor on the radii of scattered lights, 1e-6 to 1e6; at 1 their mean is one metre
-    /// [default: 1 in a scene of 10 to 60 m, smaller and larger in proportion]
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale)]
-    pub radius_scale: Option<f64>,
-
-    /// Share of spots among the scattered lights, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
-    pub spots: f64,
-
-    /// Share of area lights among the scattered lights, 0 to 1, with that of spots at most 1
-    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
-    pub areas: f64,
-
-    /// Outlines of the scattered area lights
-    #[arg(long, value_name = "WHICH", default_value = "both")]
-    pub outlines: OutlinesChoice,
-
-    /// Where the diffuse light of scattered area lights ends, as a share of the range of their
-    /// specular light, above 0 and at most 1
-    #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
-    pub diffuse_share: f64,
-
     /// How the light of area lights is integrated
     #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
     pub area_model: AreaModel,
-
-    /// Draw the scene N x N times beside itself, with its lights and those scattered in it, 1 to 64
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies)]
-    pub replicate: u32,
-
-    /// Image size in pixels, each side 1 to 16,384
-    #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
-    pub size: Size,
 
     /// Frames to time, 1 to 100,000, every sample kept [default: 64, or 3 on a software adapter]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
@@ -220,23 +173,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::warmup)]
     pub warmup: Option<u32>,
 
-    /// Where the camera is and a point that it looks at, in metres, or path:F/N for frame F of N
-    /// along the scene's path; else the scene's own view
-    #[arg(long, value_name = "X,Y,Z:X,Y,Z", allow_hyphen_values = true)]
-    pub camera: Option<Camera>,
-
     /// Time each frame from another pose: the camera goes once along the scene's path
     #[arg(long, conflicts_with = "camera")]
     pub path: bool,
-
-    /// Distribution of the radii of scattered lights, of mean one metre each
-    #[arg(long, value_name = "NAME", default_value = "gamma")]
-    pub radii: RadiiChoice,
-
-    /// Give every light the range at which its intensity over squared distance falls to this,
-    /// 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02]
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
-    pub threshold: Option<f64>,
 
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed")]
@@ -249,10 +188,6 @@ pub struct CompareArgs {
     /// How pixels are lit
     #[arg(long, value_name = "MODE", default_value = "deferred")]
     pub mode: ModeChoice,
-
-    /// Seed of the scattered lights
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
-    pub seed: u64,
 
     /// Part of the adapter's name, where there are several
     #[arg(long, value_name = "NAME", value_parser = values::text)]
@@ -274,59 +209,6 @@ pub struct CompareArgs {
     /// What to check against the CPU: every (light, pixel) pair, or nothing
     #[arg(long, value_name = "LEVEL", default_value = "full")]
     pub truth: TruthChoice,
-}
-
-/// Where lights are scattered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LightBox {
-    /// The box of the scene without far-off parts
-    Core,
-    /// The box of everything in the scene
-    Bounds,
-    /// Seven upright cylinders in the box of the scene without far-off parts
-    Cylinders,
-}
-
-/// Outlines of scattered area lights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum OutlinesChoice {
-    /// Half of each
-    Both,
-    /// Rectangles
-    Rectangles,
-    /// Polygons of 3 to 10 vertices
-    Polygons,
-}
-
-impl From<OutlinesChoice> for Outlines {
-    fn from(choice: OutlinesChoice) -> Self {
-        match choice {
-            OutlinesChoice::Both => Self::Both,
-            OutlinesChoice::Rectangles => Self::Rectangles,
-            OutlinesChoice::Polygons => Self::Polygons,
-        }
-    }
-}
-
-/// How the radii of scattered lights are distributed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RadiiChoice {
-    /// Gamma with mode 0.25, as in the comparison paper
-    Gamma,
-    /// All alike
-    Equal,
-    /// Many small, a few very large
-    LogNormal,
-}
-
-impl From<RadiiChoice> for Radii {
-    fn from(choice: RadiiChoice) -> Self {
-        match choice {
-            RadiiChoice::Gamma => Self::Gamma,
-            RadiiChoice::Equal => Self::Equal,
-            RadiiChoice::LogNormal => Self::LogNormal,
-        }
-    }
 }
 
 /// How fall-off ends at a light's range.
@@ -424,6 +306,7 @@ where
         Ok(Cli { command: Some(Command::Report(args)), .. }) => Ok(Invocation::Report(args)),
         Ok(Cli { command: Some(Command::Advise(args)), .. }) => Ok(Invocation::Advise(args)),
         Ok(Cli { command: Some(Command::FitLtc(args)), .. }) => Ok(Invocation::FitLtc(args)),
+        Ok(Cli { command: Some(Command::Truth(args)), .. }) => Ok(Invocation::Truth(args)),
         Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
         Err(shown)
             if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>

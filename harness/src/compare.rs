@@ -10,7 +10,7 @@ use shading::{EDGE, HdrImage, LightBvh, Mode};
 use crate::{
     checks::{RASTER_SPHERE, check_modes, check_writable, checked, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, TruthChoice},
+    cli::{CliError, CompareArgs, StageArgs, TruthChoice},
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
@@ -88,7 +88,7 @@ impl Bench {
     }
 
     /// The stage that arguments ask for; the scene is opened once while it stays the same.
-    pub fn stage(&mut self, args: &CompareArgs) -> Result<&mut Stage, HarnessError> {
+    pub fn stage(&mut self, args: &StageArgs) -> Result<&mut Stage, HarnessError> {
         let key = format!("{} {} {}", args.scene, args.scene_scale, args.replicate);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
@@ -115,7 +115,8 @@ impl Bench {
         let gpu = self.gpu.clone();
         let choices = checked(choices, &gpu)?;
         let machine = machine(&gpu);
-        let stage = self.stage(args)?;
+        let stage = self.stage(&args.stage)?;
+        stage.area_model = args.area_model;
         // What a strategy cannot serve shows before anything long begins.
         let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
         let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
@@ -144,7 +145,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(defaults[kind]),
         along_path: args.path,
-        seed: args.seed,
+        seed: args.stage.seed,
         cut: args.cut.into(),
         operations: args.operations,
     }
@@ -163,19 +164,8 @@ struct Run<'a> {
 impl Run<'_> {
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self) {
+        note_faults(&mut self.results, self.stage);
         let name = &self.stage.scene.name;
-        self.results.warnings.extend(self.stage.scene.warnings.iter().cloned());
-        self.results.rejected_lights = self
-            .stage
-            .lights
-            .rejected()
-            .iter()
-            .map(|rejected| RejectedLight {
-                scene: name.clone(),
-                index: rejected.index as u64,
-                reason: rejected.fault.to_string(),
-            })
-            .collect();
         if self.args.path && !self.stage.scene.path.moves() {
             self.results
                 .warnings
@@ -270,10 +260,23 @@ impl Run<'_> {
             self.results.records.push(record);
         }
         if self.args.path {
-            self.stage.set_up(&self.gpu, self.args)?;
+            self.stage.set_up(&self.gpu, &self.args.stage)?;
         }
         Ok(())
     }
+}
+
+/// Notes what was wrong with the scene and its lights.
+pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
+    results.warnings.extend(stage.scene.warnings.iter().cloned());
+    let rejected = stage.lights.rejected().iter();
+    results.rejected_lights = rejected
+        .map(|rejected| RejectedLight {
+            scene: stage.scene.name.clone(),
+            index: rejected.index as u64,
+            reason: rejected.fault.to_string(),
+        })
+        .collect();
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

@@ -9,7 +9,7 @@ use shading::{HdrImage, luminance};
 use crate::results::Errors;
 
 /// Side of the tiles over which [`tile`](ErrorMetric) sums, pixels.
-const TILE_PX: usize = 16;
+pub const TILE_PX: usize = 16;
 
 /// A pixel counts as off where it differs by more than this share of its value and a hundredth of
 /// the mean.
@@ -156,6 +156,21 @@ fn rel_mse(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
 }
 
 fn worst_tile(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
+    let worst = tiles(pair).into_iter().map(f64::abs).fold(0.0, f64::max);
+    share(worst, sums.mean())
+}
+
+/// Where the tile with the greatest error begins, pixels from the left and from the top; `None` of
+/// an image without pixels.
+pub fn worst_tile_at(pair: &ImagePair<'_>) -> Option<[u32; 2]> {
+    let columns = (pair.image.width as usize).div_ceil(TILE_PX).max(1);
+    let all = tiles(pair);
+    let worst = (0..all.len()).max_by(|&a, &b| all[a].abs().total_cmp(&all[b].abs()))?;
+    Some([worst % columns, worst / columns].map(|tile| (tile * TILE_PX) as u32))
+}
+
+/// The error of the mean luminance of each tile, row by row.
+fn tiles(pair: &ImagePair<'_>) -> Vec<f64> {
     let columns = (pair.image.width as usize).div_ceil(TILE_PX).max(1);
     let width = (pair.image.width as usize).max(1);
     let mut tiles: Vec<(f64, f64)> = Vec::new();
@@ -167,8 +182,7 @@ fn worst_tile(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
         tiles[tile].0 += a - b;
         tiles[tile].1 += 1.0;
     }
-    let worst = tiles.iter().map(|(off, pixels)| (off / pixels).abs()).fold(0.0, f64::max);
-    share(worst, sums.mean())
+    tiles.into_iter().map(|(off, pixels)| off / pixels).collect()
 }
 
 fn pixels_off(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
@@ -233,6 +247,10 @@ mod tests {
         // One dark tile of eight.
         let tile = image(|ix| if ix % 64 < 16 && ix / 64 < 16 { 0.0 } else { 1.0 });
         assert!((of(&tile, &reference, "tile") - 1.0).abs() < 1e-12);
+        // It is found, at the right place.
+        let tile = image(|ix| if ix % 64 / 16 == 2 && ix / 64 / 16 == 1 { 0.0 } else { 1.0 });
+        let pair = ImagePair { image: &tile, reference: &reference, exposure: 1.0 };
+        assert_eq!(worst_tile_at(&pair), Some([32, 16]));
     }
 
     #[test]

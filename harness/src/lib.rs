@@ -23,4 +23,6 @@ pub mod report;
 pub mod results;
 pub mod schedule;
 pub mod stage;
+pub mod stored;
 pub mod study;
+pub mod truth;

@@ -14,6 +14,7 @@ use harness::{
     fit_ltc::fit_ltc,
     registry::{STRATEGIES, StrategyEntry},
     study::study,
+    truth::truth,
 };
 
 fn main() -> ExitCode {
@@ -41,6 +42,7 @@ fn run() -> Result<(), HarnessError> {
         Invocation::Report(args) => again(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
         Invocation::FitLtc(args) => fit_ltc(&args)?,
+        Invocation::Truth(args) => truth(&args, command)?,
     };
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         // Whoever read has read enough.

@@ -52,8 +52,11 @@ pub struct Results {
     pub command: Vec<String>,
     /// What the errors are measured against.
     pub truth: Truth,
-    /// One entry per scene, mode and strategy, in the order of the command.
+    /// One entry per scene, mode and strategy, in the order of the command; none of a truth image.
     pub records: Vec<Record>,
+    /// The truth image, where this is a run of `lightbench truth`.
+    #[serde(default)]
+    pub truth_image: Option<TruthImage>,
     /// Lights left out because a field was NaN, infinite or out of range.
     #[serde(default)]
     pub rejected_lights: Vec<RejectedLight>,
@@ -125,6 +128,40 @@ pub struct Truth {
     /// Further remarks, one sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
+}
+
+/// What a view should look like, rendered on the CPU.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TruthImage {
+    /// The scene's id, or its file's name.
+    pub scene: String,
+    /// Hash of everything in the scene that reaches the GPU, hexadecimal.
+    pub scene_hash: String,
+    /// Lights that took part.
+    pub lights: u64,
+    /// Image width, pixels.
+    pub width: u32,
+    /// Image height, pixels.
+    pub height: u32,
+    /// The linear image, an EXR file of 32-bit floats beside `results.json`.
+    pub raw: String,
+    /// The tone-mapped image.
+    pub image: String,
+    /// The standard error of each channel over the mean luminance of the image: black at none, white
+    /// from a hundredth on.
+    pub error_image: String,
+    /// The factor before the tone curve.
+    pub exposure: f64,
+    /// Root mean square of the pixels' standard errors of luminance, over the mean luminance.
+    pub standard_error: f64,
+    /// Whether surfaces cast shadows.
+    pub shadows: bool,
+    /// Times that light is reflected between surfaces before it is seen.
+    pub bounces: u32,
+    /// Samples of each pixel, where samples were drawn.
+    pub samples: u32,
+    /// How long the CPU took, seconds.
+    pub seconds: f64,
 }
 
 /// How much of a run was checked against the truth.
@@ -317,6 +354,10 @@ pub struct Record {
     /// Errors against lights without a range, by metric.
     #[serde(default)]
     pub unbounded_errors: Errors,
+    /// Errors against the truth image of a study, by metric: those of the model of area lights, never
+    /// of culling.
+    #[serde(default)]
+    pub truth_errors: Errors,
     /// Order of the lights in their buffer: `given`, `morton` or `bvh`.
     #[serde(default)]
     pub light_order: Option<String>,
@@ -382,6 +423,7 @@ impl Results {
             command,
             truth,
             records: Vec::new(),
+            truth_image: None,
             rejected_lights: Vec::new(),
             warnings: Vec::new(),
         }

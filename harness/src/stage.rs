@@ -6,7 +6,7 @@ use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, scatter_lights};
 use shading::{AreaModel, Renderer};
 
 use crate::{
-    cli::{Camera, CliError, CompareArgs, LightBox},
+    cli::{Camera, CliError, LightBox, StageArgs},
     error::HarnessError,
 };
 
@@ -50,7 +50,7 @@ struct Set {
 }
 
 impl Set {
-    fn new(scene: &Scene, unscaled_m: f32, args: &CompareArgs) -> Result<Self, HarnessError> {
+    fn new(scene: &Scene, unscaled_m: f32, args: &StageArgs) -> Result<Self, HarnessError> {
         let is_posed = matches!(args.camera, Some(Camera::Pose(_)));
         let lens = scene.cameras.first().map(|camera| camera.lens).filter(|_| !is_posed);
         let view = view_of(scene, pose_of(scene, args), lens, [args.size.width, args.size.height]);
@@ -62,7 +62,7 @@ impl Set {
 
 impl Stage {
     /// Opens the scene, scatters the lights and uploads both.
-    pub fn new(gpu: &Gpu, args: &CompareArgs) -> Result<Self, HarnessError> {
+    pub fn new(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
         let unscaled_m = scene.core_bounds.diagonal();
         let scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
@@ -73,7 +73,7 @@ impl Stage {
             light_box: lit.bounds,
             own_lights: lit.own,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
-            area_model: args.area_model,
+            area_model: AreaModel::default(),
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
@@ -84,13 +84,12 @@ impl Stage {
 
     /// The same scene under the lights and from the camera of other arguments, which must name the
     /// same scene at the same scale.
-    pub fn set_up(&mut self, gpu: &Gpu, args: &CompareArgs) -> Result<(), HarnessError> {
+    pub fn set_up(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
         let Set { lens, view, radius_scale, lit } = Set::new(&self.scene, self.unscaled_m, args)?;
         self.radius_scale = radius_scale;
         self.light_box = lit.bounds;
         self.own_lights = lit.own;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
-        self.area_model = args.area_model;
         self.view = view;
         self.lens = lens;
         Ok(())
@@ -129,7 +128,7 @@ struct Lit {
 
 impl Lit {
     /// The scene's own lights and those that are scattered, with the range that a threshold gives.
-    fn new(scene: &Scene, radius_scale: f64, args: &CompareArgs) -> Result<Self, HarnessError> {
+    fn new(scene: &Scene, radius_scale: f64, args: &StageArgs) -> Result<Self, HarnessError> {
         let bounds = match args.light_box {
             LightBox::Core | LightBox::Cylinders => scene.core_bounds,
             LightBox::Bounds => scene.bounds,
@@ -171,7 +170,7 @@ impl Lit {
 }
 
 /// Scattered lights, those of each copy of the scene: the first lot first.
-fn copies(scene: &Scene, args: &CompareArgs, lights: &[Light]) -> Vec<Light> {
+fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
     let side = args.replicate;
     let step = (scene.bounds.max - scene.bounds.min) / side as f32;
     let offsets = (0..side).flat_map(|x| (0..side).map(move |z| (x as f32, z as f32)));
@@ -190,7 +189,7 @@ fn radius_scale_of(diagonal_m: f32) -> f64 {
 }
 
 /// The pose asked for, or the first of the scene's path.
-fn pose_of(scene: &Scene, args: &CompareArgs) -> Pose {
+fn pose_of(scene: &Scene, args: &StageArgs) -> Pose {
     match args.camera {
         None => scene.path.pose(0, 1),
         Some(Camera::OnPath { frame, count }) => scene.path.pose(frame, count),

@@ -1,12 +1,15 @@
 //! Studies: lists of comparisons, each a job of its own, so that a study goes on where it was
 //! interrupted and can be split over machines.
 //!
-//! A job is a `lightbench compare` command. Its folder, `jobs/NAME`, holds what that command writes;
+//! A job is a `lightbench compare` or a `lightbench truth` command. Its folder, `jobs/NAME`, holds what that command writes;
 //! a job whose `results.json` is there is done. `study.json` beside `jobs` lists all jobs, those of
 //! other shards too.
 
+mod against_truth;
+mod area;
 mod comparison;
 mod culling;
+mod endless;
 mod manifest;
 mod scene;
 mod views;
@@ -16,15 +19,23 @@ use std::time::Instant;
 
 use crate::{
     checks::check_writable,
-    cli::{self, CliError, CompareArgs, Invocation, StudyArgs, StudyName},
+    cli::{self, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
     compare::Bench,
     error::HarnessError,
     report,
     results::{Results, ResultsError},
+    truth::render,
 };
 
+pub use against_truth::{compare_with_truth, truth_of};
 pub use manifest::{Done, Job, Manifest};
 pub use scene::StudyScene;
+
+/// The section of a study whose jobs render the truth images of its scenes.
+pub const TRUTH: &str = "truth";
+
+/// The section whose images are compared with them.
+pub const MODELS: &str = "models";
 
 /// Runs a study, or a share of it, and writes its report; returns what to print.
 pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
@@ -49,6 +60,8 @@ pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
                 jobs.extend(match args.study {
                     StudyName::Comparison => comparison::jobs(&mut bench, args, scene)?,
                     StudyName::Culling => culling::jobs(args, scene),
+                    StudyName::Area => area::jobs(&mut bench, args, scene)?,
+                    StudyName::Endless => endless::jobs(&mut bench, args, scene)?,
                 });
             }
             let manifest = Manifest { identity: wanted, study: args.study.name().into(), jobs };
@@ -57,7 +70,9 @@ pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
         }
     };
     run(&mut bench, args, &manifest)?;
-    let done = Done::read(std::slice::from_ref(out))?;
+    let mut done = Done::read(std::slice::from_ref(out))?;
+    compare_with_truth(&mut done)?;
+    done.write()?;
     report::write_study(&done, out)
 }
 
@@ -83,13 +98,16 @@ fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), H
             began.elapsed().as_secs(),
             job.name
         );
-        let compare = job.arguments(&folder)?;
+        let asked = job.asked(&folder)?;
         // What an interrupted run left there is not this one's.
         if folder.is_dir() {
             std::fs::remove_dir_all(&folder)
                 .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
         }
-        let (results, _) = bench.compare(&compare, job.command.clone())?;
+        let results = match asked {
+            Asked::Compare(args) => bench.compare(&args, job.command.clone())?.0,
+            Asked::Truth(args) => render(bench, &args, job.command.clone())?,
+        };
         results.write(&folder.join("results.json"))?;
     }
     Ok(())
@@ -117,17 +135,32 @@ fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError
     .into())
 }
 
+/// What a job asks for.
+#[allow(clippy::large_enum_variant, reason = "one value a job")]
+enum Asked {
+    /// A comparison.
+    Compare(CompareArgs),
+    /// A truth image.
+    Truth(TruthArgs),
+}
+
 impl Job {
     /// The job's folder in that of its study.
     pub fn folder(&self, out: &Path) -> PathBuf {
         out.join("jobs").join(&self.name)
     }
 
-    /// The comparison that it asks for, written to `folder`.
-    fn arguments(&self, folder: &Path) -> Result<CompareArgs, CliError> {
+    /// What it asks for, written to `folder`.
+    fn asked(&self, folder: &Path) -> Result<Asked, CliError> {
+        let out = folder.to_owned();
         match cli::parse(&self.command)? {
-            Invocation::Compare(args) => Ok(CompareArgs { out: folder.to_owned(), ..args }),
-            _ => Err(CliError::new(format!("job {}: its command compares nothing", self.name))),
+            Invocation::Compare(args) => Ok(Asked::Compare(CompareArgs { out, ..args })),
+            Invocation::Truth(args) => Ok(Asked::Truth(TruthArgs { out, ..args })),
+            _ => Err(CliError::new(format!(
+                "job {}: its command must be compare or truth, `{}`",
+                self.name,
+                self.command.join(" ")
+            ))),
         }
     }
 }

@@ -84,12 +84,12 @@ impl CliError {
                 Self::unknown(
                     "command",
                     &name,
-                    &["compare", "study", "report", "advise", "fit-ltc", "list"],
+                    &["compare", "study", "report", "advise", "fit-ltc", "truth", "list"],
                 )
             }
             ErrorKind::MissingRequiredArgument => Self::new(match option {
                 "<DIR>..." => "report needs a folder: of a comparison or a study",
-                "<STUDY>" => "study needs which one: comparison or culling",
+                "<STUDY>" => "study needs which one: comparison, culling, area or endless",
                 _ => "list needs what to list: strategies, scenes or adapters",
             }),
             ErrorKind::ArgumentConflict => Self::new(conflict(error, option)),

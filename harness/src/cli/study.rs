@@ -14,6 +14,11 @@ pub enum StudyName {
     Comparison,
     /// The culling survey: 0 to 1,500 lights in spawn cylinders, along a path, in both modes
     Culling,
+    /// Models of area lights: their error against a truth image, their time, and area lights against
+    /// spots
+    Area,
+    /// Many polygon lights through clusters with normal cones: light operations and times
+    Endless,
 }
 
 impl StudyName {
@@ -22,6 +27,8 @@ impl StudyName {
         match self {
             Self::Comparison => "comparison",
             Self::Culling => "culling",
+            Self::Area => "area",
+            Self::Endless => "endless",
         }
     }
 }
@@ -73,7 +80,8 @@ pub struct StudyArgs {
     #[arg(long)]
     pub quick: bool,
 
-    /// Image size in pixels [default: the study's, 1920x1080 or 1280x720; 192x108 where quick]
+    /// Image size in pixels [default: the study's, 1920x1080 or 1280x720; 192x108 or
+    /// 96x54 where quick]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     pub size: Option<Size>,
 

@@ -33,17 +33,17 @@ fn the_definition_is_sound() {
 #[test]
 fn without_arguments_the_main_job_runs() {
     let args = compare("");
-    assert_eq!(args.scene, "atrium");
+    assert_eq!(args.stage.scene, "atrium");
     assert_eq!(args.strategies.0, ["None", "Sphere", "DC-I", "SC-E/bvh"]);
-    assert_eq!((args.lights, args.spots, args.seed), (1000, 0.0, 1));
-    assert_eq!((args.scene_scale, args.radius_scale), (1.0, None));
-    assert_eq!(args.size, Size { width: 640, height: 360 });
+    assert_eq!((args.stage.lights, args.stage.spots, args.stage.seed), (1000, 0.0, 1));
+    assert_eq!((args.stage.scene_scale, args.stage.radius_scale), (1.0, None));
+    assert_eq!(args.stage.size, Size { width: 640, height: 360 });
     assert_eq!((args.frames, args.warmup), (None, None));
     assert_eq!(args.mode.modes(), [Mode::Deferred]);
-    assert_eq!(args.light_box, LightBox::Core);
+    assert_eq!(args.stage.light_box, LightBox::Core);
     assert_eq!(args.out, PathBuf::from("out/compare"));
     assert_eq!(args.truth, TruthChoice::Full);
-    assert_eq!((args.camera, args.adapter, args.no_own_lights), (None, None, false));
+    assert_eq!((args.stage.camera, args.adapter, args.stage.no_own_lights), (None, None, false));
 }
 
 #[test]
@@ -54,8 +54,8 @@ fn compare_is_the_command_where_none_is_named() {
     let args = compare(line);
     assert_eq!(args, compare(&format!("compare {line}")));
     let pose = CameraPose { eye: [-1.0, 2.0, 3.5], target: [0.0, -1.0, 0.0] };
-    assert_eq!(args.camera, Some(Camera::Pose(pose)));
-    let on_path = compare("--camera path:3/12").camera;
+    assert_eq!(args.stage.camera, Some(Camera::Pose(pose)));
+    let on_path = compare("--camera path:3/12").stage.camera;
     assert_eq!(on_path, Some(Camera::OnPath { frame: 3, count: 12 }));
     assert_eq!(args.mode.modes(), [Mode::Deferred, Mode::Forward]);
     assert_eq!(TruthLevel::from(args.truth), TruthLevel::None);
@@ -86,7 +86,7 @@ fn every_value_out_of_range_is_named_with_its_range() {
         ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
         (
             "--area-model",
-            &["LTC", "disc", ""],
+            &["LTC", "disc", "monte-carlo:0"],
             "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples",
         ),
         ("--areas", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
@@ -158,9 +158,9 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
     assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, fit-ltc, list";
+    let known = "known are compare, study, report, advise, fit-ltc, truth, list";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
-    assert_eq!(refusal("study"), "study needs which one: comparison or culling");
+    assert_eq!(refusal("study"), "study needs which one: comparison, culling, area or endless");
     assert_eq!(refusal("report"), "report needs a folder: of a comparison or a study");
     assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
     assert!(refusal("study comparison --shard 3/2").contains("K from 1 to N"));

@@ -11,6 +11,7 @@ use super::MAX_LIGHTS;
 
 const MAX_SIDE: u32 = 16_384;
 const MAX_FRAMES: u32 = 100_000;
+const MAX_SAMPLES: u32 = 65_536;
 const SCALES: (f64, f64) = (1e-6, 1e6);
 
 /// An image size, pixels: `640x360`.
@@ -150,6 +151,14 @@ pub(super) fn lights(text: &str) -> Result<u32, String> {
 
 pub(super) fn frames(text: &str) -> Result<u32, String> {
     whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
+}
+
+pub(super) fn bounces(text: &str) -> Result<u32, String> {
+    whole(text, 0, 1).ok_or_else(|| "0 or 1".to_owned())
+}
+
+pub(super) fn samples(text: &str) -> Result<u32, String> {
+    whole(text, 1, MAX_SAMPLES).ok_or_else(|| "a whole number from 1 to 65,536".to_owned())
 }
 
 pub(super) fn table_size(text: &str) -> Result<usize, String> {

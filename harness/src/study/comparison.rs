@@ -147,21 +147,11 @@ impl Plan<'_> {
         let Size { width, height } = self.extent.size;
         let (lights, size, seed) =
             (lights.to_string(), format!("{width}x{height}"), self.seed.to_string());
-        let mut command = vec!["lightbench", "compare", "--scene", self.scene.scene.as_str()];
-        command.extend(["--scene-scale", scale, "--lights", &lights, "--size", &size]);
-        command.extend(["--seed", &seed, "--warmup", self.extent.warmup]);
-        command.extend(options);
-        let name = [self.scene.name.as_str(), section, variant]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join("-");
-        self.jobs.push(Job {
-            name,
-            scene: self.scene.name.clone(),
-            section: section.to_owned(),
-            command: command.into_iter().map(str::to_owned).collect(),
-        });
+        let mut words = vec!["compare", "--scene", self.scene.scene.as_str()];
+        words.extend(["--scene-scale", scale, "--lights", &lights, "--size", &size]);
+        words.extend(["--seed", &seed, "--warmup", self.extent.warmup]);
+        words.extend(options);
+        self.jobs.push(Job::new(self.scene, section, variant, &words));
     }
 
     /// Every strategy from both sources at the paper's counts of lights.
@@ -218,7 +208,7 @@ impl Plan<'_> {
             return Ok(());
         };
         let gpu = bench.gpu().clone();
-        let views = Views::find(&gpu, bench.stage(&args)?)?;
+        let views = Views::find(&gpu, bench.stage(&args.stage)?)?;
         let frames = self.extent.frames.to_string();
         let strategies = format!("None,{}", self.extent.views);
         for (name, frame) in [("low", views.low), ("high", views.high)] {

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::StudyScene;
 use crate::results::{Results, ResultsError, write_atomically};
 
 /// The file that lists a study's jobs.
 const FILE: &str = "study.json";
 
-/// One comparison of a study.
+/// One comparison or truth image of a study.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Job {
     /// Its name, that of its folder: `sponza-main-10000`.
@@ -21,6 +22,22 @@ pub struct Job {
     pub section: String,
     /// The command that it is, program name first, without `--out`.
     pub command: Vec<String>,
+}
+
+impl Job {
+    /// A job of a scene: its section, what tells it from others of the section, and its command without
+    /// the program's name.
+    pub(super) fn new(scene: &StudyScene, section: &str, variant: &str, words: &[&str]) -> Self {
+        let parts = [scene.name.as_str(), section, variant];
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        let command = std::iter::once("lightbench").chain(words.iter().copied());
+        Self {
+            name: parts.join("-"),
+            scene: scene.name.clone(),
+            section: section.to_owned(),
+            command: command.map(str::to_owned).collect(),
+        }
+    }
 }
 
 /// All jobs of a study: `study.json`.
@@ -119,6 +136,16 @@ impl Done {
         done.ok_or_else(|| ResultsError::Parse { path: PathBuf::new(), reason: "no folder".into() })
     }
 
+    /// Writes the results of all jobs to their folders.
+    pub fn write(&self) -> Result<(), ResultsError> {
+        for (job, results) in &self.results {
+            if let Some(folder) = self.folders.get(job) {
+                results.write(&folder.join("results.json"))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Whether results are a job's own, and may be compared with those that are known.
     fn check(&self, job: &Job, results: &Results) -> Result<(), String> {
         if results.command != job.command {
@@ -137,9 +164,11 @@ impl Done {
                 ));
             }
         }
-        let hash = |results: &Results| results.records.first().map(|r| r.scene_hash.clone());
-        let same =
-            |known: &&Job| known.scene == job.scene && command_scale(known) == command_scale(job);
+        let hash = |results: &Results| {
+            let record = results.records.first().map(|record| record.scene_hash.clone());
+            record.or_else(|| results.truth_image.as_ref().map(|truth| truth.scene_hash.clone()))
+        };
+        let same = |known: &&Job| known.scene == job.scene && scaled(known).eq(scaled(job));
         let other = self.manifest.jobs.iter().filter(same);
         let known = other.filter_map(|known| hash(self.results.get(&known.name)?)).next();
         match (known, hash(results)) {
@@ -181,8 +210,10 @@ impl Done {
     }
 }
 
-/// The scale of a job's scene, as its command has it.
-fn command_scale(job: &Job) -> Option<&String> {
-    let at = job.command.iter().position(|word| word == "--scene-scale")?;
-    job.command.get(at + 1)
+/// What a job's command makes of its scene: how large it is, and how often it is there.
+fn scaled(job: &Job) -> impl Iterator<Item = Option<&String>> {
+    ["--scene-scale", "--replicate"].into_iter().map(|option| {
+        let at = job.command.iter().position(|word| word == option)?;
+        job.command.get(at + 1)
+    })
 }

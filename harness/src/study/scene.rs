@@ -2,7 +2,13 @@
 
 use std::path::Path;
 
-use crate::cli::{CliError, StudyArgs};
+use scenes::Aabb;
+
+use crate::{
+    cli::{self, CliError, Invocation, StudyArgs},
+    compare::Bench,
+    error::HarnessError,
+};
 
 /// A scene with its scale.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,5 +49,15 @@ impl StudyScene {
             all.push(Self { scene: scene.clone(), name, scale });
         }
         Ok(all)
+    }
+
+    /// The boxes of its core and of all that is in it, metres.
+    pub(super) fn boxes(&self, bench: &mut Bench) -> Result<[Aabb; 2], HarnessError> {
+        let scale = self.scale.to_string();
+        let words = ["lightbench", "compare", "--scene", &self.scene, "--scene-scale", &scale];
+        let words = [&words[..], &["--size", "16x9", "--lights", "1"]].concat();
+        let Invocation::Compare(args) = cli::parse(words)? else { return Ok([Aabb::EMPTY; 2]) };
+        let scene = &bench.stage(&args.stage)?.scene;
+        Ok([scene.core_bounds, scene.bounds])
     }
 }

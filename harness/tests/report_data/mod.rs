@@ -108,6 +108,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         is_lossy: false,
         errors: BTreeMap::from([("rel_mse".to_owned(), Some(0.0))]),
         unbounded_errors: BTreeMap::new(),
+        truth_errors: BTreeMap::new(),
         light_order: Some("bvh".to_owned()),
         light_build_ms: Some(0.4),
         tolerance: None,

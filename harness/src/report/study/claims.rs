@@ -1,4 +1,4 @@
-//! The claims of the comparison paper (Enhuber 2019), each held against the study's figures.
+//! The claims of the papers, each held against a study's figures.
 
 use std::fmt::Write;
 
@@ -7,6 +7,7 @@ use super::super::rank::listed;
 use super::checks::{
     best_at_few, best_at_many, bounds, linear, models, steadiness, tests as intersection_tests,
 };
+use super::endless_checks::{assignment, best_cones, outer};
 use super::figure::table;
 use crate::study::Done;
 
@@ -71,7 +72,42 @@ impl Answer {
 /// A claim: what the page calls it, its words, and what decides it.
 type Check = (&'static str, &'static str, fn(&Done, &str) -> Answer);
 
-const CLAIMS: [Check; 7] = [
+/// What a paper claims, and how it came to it.
+pub(super) struct Paper {
+    /// What the page calls it: `the comparison paper`.
+    name: &'static str,
+    /// Author, year, device, and what decides its claims here.
+    about: &'static str,
+    checks: &'static [Check],
+}
+
+/// The paper that a study is held against, where it makes claims.
+pub(super) fn paper(study: &str) -> Option<Paper> {
+    match study {
+        "comparison" => Some(Paper {
+            name: "the comparison paper",
+            about: "Enhuber 2019 timed these strategies on a GTX 780. Claims are decided by the strategies \
+                    of that paper and the counts of lights this study has.",
+            checks: &COMPARISON,
+        }),
+        "endless" => Some(Paper {
+            name: "the polygon-light paper",
+            about: "Swarbrick 2025 timed polygon lights with normal cones on a GTX 1060, and says that 54 \
+                    cones leave out four fifths of the outer specular operations, and cost too much. Its \
+                    cones lose light; here settings without a loss and with a cut are told apart.",
+            checks: &ENDLESS,
+        }),
+        _ => None,
+    }
+}
+
+const ENDLESS: [Check; 3] = [
+    ("cones", "The best number of cones beats clusters by position in assign + shade.", best_cones),
+    ("outer", "54 cones leave out 80 % of outer specular operations.", outer),
+    ("assignment", "54 cones cost less than 1 ms of assignment.", assignment),
+];
+
+const COMPARISON: [Check; 7] = [
     ("linear", "Time grows linearly with the number of lights.", linear),
     ("bounds", "Explicit bounds lower the slope and raise the offset.", bounds),
     ("many", "SC-E is best at 10,000 lights.", best_at_many),
@@ -88,14 +124,14 @@ pub(super) struct Claim<'a> {
     answers: Vec<(&'a str, Answer)>,
 }
 
-/// All claims.
-pub(super) fn claims(done: &Done) -> Vec<Claim<'_>> {
+/// All claims of a paper.
+pub(super) fn claims<'a>(done: &'a Done, paper: &Paper) -> Vec<Claim<'a>> {
     let scenes = done.scenes();
     let claim = |&(id, words, check): &Check| {
         let answers = scenes.iter().map(|scene| (*scene, check(done, scene))).collect();
         Claim { id, words, answers }
     };
-    CLAIMS.iter().map(claim).collect()
+    paper.checks.iter().map(claim).collect()
 }
 
 impl Claim<'_> {
@@ -155,7 +191,7 @@ fn capitalised(text: &str) -> String {
 }
 
 /// All claims as a table.
-pub(super) fn claims_html(claims: &[Claim<'_>], is_software: bool) -> String {
+pub(super) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool) -> String {
     let Some(first) = claims.first() else { return String::new() };
     let mut heads = vec!["claim".to_owned()];
     heads.extend(first.answers.iter().map(|(scene, _)| escape(scene)));
@@ -202,10 +238,11 @@ pub(super) fn claims_html(claims: &[Claim<'_>], is_software: bool) -> String {
         ""
     };
     format!(
-        "<section class=\"claims\" aria-labelledby=\"claims\"><h2 id=\"claims\">What the comparison paper says, \
-         and what was measured</h2>\n<p class=\"note\">Enhuber 2019 timed these strategies on a GTX 780. Claims are \
-         decided by the strategies of that paper and the counts of lights this study has.{caveat}</p>\n{}</section>\n",
-        table("Claims of the comparison paper", &heads, &rows)
+        "<section class=\"claims\" aria-labelledby=\"claims\"><h2 id=\"claims\">What {} says, and what was \
+         measured</h2>\n<p class=\"note\">{}{caveat}</p>\n{}</section>\n",
+        paper.name,
+        paper.about,
+        table(&format!("Claims of {}", paper.name), &heads, &rows)
     )
 }
 

@@ -11,7 +11,10 @@ use super::super::page;
 use super::super::rank::listed;
 use super::figure::Charts;
 use super::shots::Shots;
-use super::{accuracy, claims, culling, overview, path, scaling, sizes, views};
+use super::{
+    accuracy, area, area_cost, area_pictures, claims, culling, endless, overview, path, scaling,
+    sizes, views,
+};
 use crate::chart::CHART_CSS;
 use crate::results::{DeviceType, Results, TruthLevel};
 use crate::study::Done;
@@ -51,7 +54,7 @@ pub(super) struct Page {
 pub(super) fn page(done: &Done) -> Page {
     let mut charts = Charts::default();
     let mut shots = Shots::new(done);
-    let is_comparison = done.manifest.study == "comparison";
+    let study = done.manifest.study.as_str();
     let mut body = String::new();
     let scenes = done.scenes();
     let found: Vec<Vec<String>> = scenes.iter().map(|scene| findings(done, scene)).collect();
@@ -65,8 +68,8 @@ pub(super) fn page(done: &Done) -> Page {
         found.iter().flat_map(|texts| texts.iter().take(most)).cloned().collect();
     let mut sections: Vec<String> = Vec::new();
     for (scene, texts) in scenes.iter().copied().zip(&found) {
-        let html = if is_comparison {
-            [
+        let html = match study {
+            "comparison" => [
                 accuracy::accuracy(done, scene, &mut charts, &mut shots),
                 scaling::scaling(done, scene, &mut charts),
                 path::path(done, scene, &mut charts),
@@ -74,22 +77,28 @@ pub(super) fn page(done: &Done) -> Page {
                 sizes::sizes(done, scene, &mut charts),
                 overview::overview(done, scene, &mut charts),
             ]
-            .concat()
-        } else {
-            culling::culling(done, scene, &mut charts)
+            .concat(),
+            "area" => [
+                area::area(done, scene, &mut charts, &mut shots),
+                area_pictures::pictures(done, scene, &mut shots),
+                area_cost::cost(done, scene, &mut charts),
+            ]
+            .concat(),
+            "endless" => endless::endless(done, scene, &mut charts, &mut shots),
+            _ => culling::culling(done, scene, &mut charts),
         };
         if !html.is_empty() {
             let texts = if several { page::paragraphs("said", texts) } else { String::new() };
             sections.push(section(scene, &texts, &html));
         }
     }
-    if is_comparison && !done.results.is_empty() {
-        let claims = claims::claims(done);
-        body += &claims::claims_html(&claims, is_software(done));
+    if let Some(paper) = claims::paper(study).filter(|_| !done.results.is_empty()) {
+        let claims = claims::claims(done, &paper);
+        body += &claims::claims_html(&paper, &claims, is_software(done));
         words.extend(claims.iter().map(claims::Claim::text));
     }
     body += &sections.concat();
-    if is_comparison {
+    if study == "comparison" {
         body += &sizes::best_overall(done);
     }
     let notices = notices(done, shots.left_out);
@@ -128,7 +137,8 @@ const READING: &str = "<p>Frames are drawn in rounds, every method once a round 
     random, so that what drifts hits all alike. Whiskers and small figures are intervals of the median \
     over rounds. Two methods <b>cannot be told apart</b> where the interval of their ratio, round by round, \
     holds 1. A <b>lossy</b> setting is shown at its error: culling error is against no culling with the same \
-    shader, the error of the lights\u{2019} range against lights without one. Every chart is a file in \
+    shader, the error of the lights\u{2019} range against lights without one, that of a \
+    model of area lights against a truth image. Every chart is a file in \
     <code>charts/</code> too.</p>";
 
 fn section(scene: &str, texts: &str, html: &str) -> String {
@@ -166,18 +176,24 @@ fn is_software(done: &Done) -> bool {
 fn headline(done: &Done) -> Option<String> {
     match done.manifest.study.as_str() {
         "comparison" => overview::headline(done),
+        "area" => area::headline(done),
+        "endless" => endless::headline(done),
         _ => culling::headline(done),
     }
 }
 
 /// What a scene found, a sentence each, the most important first.
 fn findings(done: &Done, scene: &str) -> Vec<String> {
-    if done.manifest.study != "comparison" {
-        return culling::findings(done, scene);
+    match done.manifest.study.as_str() {
+        "comparison" => {
+            let mut all = overview::findings(done, scene);
+            all.extend(accuracy::cheapest(done, scene, 1e-2));
+            all
+        }
+        "area" => [area::findings(done, scene), area_cost::findings(done, scene)].concat(),
+        "endless" => endless::findings(done, scene),
+        _ => culling::findings(done, scene),
     }
-    let mut all = overview::findings(done, scene);
-    all.extend(accuracy::cheapest(done, scene, 1e-2));
-    all
 }
 
 /// What a reader has to know before trusting a figure.

@@ -4,13 +4,23 @@
 //! measured is left out. The parts of the page, in the order in which a reader sees them: findings
 //! and notices, the [claims] of the comparison paper, then per scene [speed against
 //! accuracy](accuracy), [scaling], the [path], two [views], the [sizes] of groups, and [all
-//! strategies](overview); for the culling survey, [times against lights](culling).
+//! strategies](overview); for the culling survey, [times against lights](culling); for models of area
+//! lights, their [errors](area) against a truth image, [pictures](area_pictures) and [cost](area_cost);
+//! for many polygon lights, [light operations and times](endless) by normal cones.
 
 mod accuracy;
+mod area;
+mod area_cost;
+mod area_pictures;
 mod checks;
 mod claims;
 mod culling;
 mod data;
+mod endless;
+mod endless_charts;
+mod endless_checks;
+mod endless_data;
+mod errors_plot;
 mod figure;
 mod html;
 mod overview;

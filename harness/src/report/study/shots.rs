@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use shading::HdrImage;
 
 use super::data::Entry;
-use crate::study::Done;
+use crate::study::{Done, truth_of};
 
 /// Pictures are at most this wide, pixels: as wide as the page shows them.
 const WIDEST: u32 = 960;
@@ -22,8 +22,8 @@ const ROOM: usize = 48 << 20;
 /// Pictures of records, by key.
 pub(super) struct Shots<'a> {
     done: &'a Done,
-    /// The index in `uris` by file, and by the picture itself.
-    by_file: HashMap<String, Option<usize>>,
+    /// The index in `uris` by key, and by the picture itself.
+    by_key: HashMap<String, Option<usize>>,
     by_picture: HashMap<Vec<u8>, usize>,
     uris: Vec<String>,
     bytes: usize,
@@ -40,6 +40,8 @@ pub(super) enum Wanted {
     Pair,
     /// Its image beside that of lights without a range.
     Unbounded,
+    /// Its image beside the truth.
+    Truth,
 }
 
 impl<'a> Shots<'a> {
@@ -47,7 +49,7 @@ impl<'a> Shots<'a> {
     pub(super) fn new(done: &'a Done) -> Self {
         Self {
             done,
-            by_file: HashMap::new(),
+            by_key: HashMap::new(),
             by_picture: HashMap::new(),
             uris: Vec::new(),
             bytes: 0,
@@ -61,7 +63,14 @@ impl<'a> Shots<'a> {
     pub(super) fn keep(&mut self, entry: Entry<'_>, wanted: Wanted) -> Option<String> {
         let Entry { job, record } = entry;
         let images = &record.images;
-        let image = self.file(&job.name, images.image.as_deref()?)?;
+        let image = match wanted {
+            // Under the exposure of the truth, as the truth itself.
+            Wanted::Truth => {
+                let exposure = truth_of(self.done, &job.scene)?.1.exposure;
+                self.linear(&job.name, images.raw.as_deref()?, exposure)?
+            }
+            _ => self.file(&job.name, images.image.as_deref()?)?,
+        };
         let (reference, difference, text) = match wanted {
             Wanted::Pair => {
                 let baseline = images.baseline.as_deref();
@@ -75,15 +84,24 @@ impl<'a> Shots<'a> {
                 let reference = raw.and_then(|name| self.linear(&job.name, name, exposure));
                 (reference, None, "no range")
             }
+            Wanted::Truth => {
+                let (job, truth) = truth_of(self.done, &job.scene)?;
+                (self.linear(&job.name, &truth.raw, truth.exposure), None, "truth")
+            }
         };
         let key = format!("{}:{}", job.name, record.strategy);
         let errors = match wanted {
             Wanted::Pair => &record.errors,
             Wanted::Unbounded => &record.unbounded_errors,
+            Wanted::Truth => &record.truth_errors,
+        };
+        let name = match wanted {
+            Wanted::Truth => record.area_model.as_ref().unwrap_or(&record.strategy),
+            _ => &record.strategy,
         };
         let shot = json!({
             "scene": record.scene,
-            "strategy": record.strategy,
+            "strategy": name,
             "width": record.width,
             "height": record.height,
             "differing_channels": record.differing_channels,
@@ -121,7 +139,7 @@ impl<'a> Shots<'a> {
     }
 
     /// Keeps a linear image, tone-mapped as the others.
-    fn linear(&mut self, job: &str, name: &str, exposure: f64) -> Option<String> {
+    pub(super) fn linear(&mut self, job: &str, name: &str, exposure: f64) -> Option<String> {
         self.picture(job, name, |path| {
             let image = HdrImage::read_exr(path).ok()?;
             if image.width <= WIDEST {
@@ -147,12 +165,21 @@ impl<'a> Shots<'a> {
         let folder = self.done.folders.get(job)?;
         // No name leads out of its folder.
         Path::new(name).file_name().filter(|file| *file == name)?;
-        let key = format!("{job}/{name}");
-        if let Some(known) = self.by_file.get(&key) {
+        let path = folder.join(name);
+        self.drawn(format!("{job}/{name}"), || read(&path))
+    }
+
+    /// Keeps a picture under a key of its own, drawn where it is not known; the key.
+    pub(super) fn drawn(
+        &mut self,
+        key: String,
+        draw: impl FnOnce() -> Option<Vec<u8>>,
+    ) -> Option<String> {
+        if let Some(known) = self.by_key.get(&key) {
             return known.map(|_| key);
         }
-        let ix = read(&folder.join(name)).and_then(|png| self.store(png));
-        self.by_file.insert(key.clone(), ix);
+        let ix = draw().and_then(|png| self.store(png));
+        self.by_key.insert(key.clone(), ix);
         self.pictures.insert(key.clone(), ix?.into());
         Some(key)
     }

@@ -1,0 +1,35 @@
+//! The options of `truth`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{stage::StageArgs, values};
+
+/// The options of `lightbench truth`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct TruthArgs {
+    /// What is drawn.
+    #[command(flatten)]
+    pub stage: StageArgs,
+
+    /// Let surfaces cast shadows
+    #[arg(long)]
+    pub shadows: bool,
+
+    /// Times that light is reflected between surfaces before it is seen, 0 or 1
+    #[arg(long, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::bounces)]
+    pub bounces: u32,
+
+    /// Samples of each pixel where they are drawn, of shadows and of the bounce, 1 to 65,536
+    #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::samples)]
+    pub samples: u32,
+
+    /// Part of the adapter's name, where there are several
+    #[arg(long, value_name = "NAME", value_parser = values::text)]
+    pub adapter: Option<String>,
+
+    /// Folder for truth.exr, truth.png, error.png and results.json
+    #[arg(long, value_name = "DIR", default_value = "out/truth")]
+    pub out: PathBuf,
+}

@@ -1,0 +1,253 @@
+//! Models of area lights against the truth: errors, times, and what each gets wrong.
+
+use super::super::format::{ABSENT, difference, escape, percent, significant};
+use super::super::rank::listed;
+use super::data::{Entry, entries};
+use super::errors_plot::{Plot, frontier};
+use super::figure::{Charts, part, table};
+use super::shots::{Shots, Wanted};
+use crate::errors::ERROR_METRICS;
+use crate::results::{Record, TruthImage};
+use crate::study::{Done, MODELS, truth_of};
+
+/// The metric by which models are told apart in words.
+const METRIC: &str = "flip";
+
+/// What spots are called among models.
+pub(super) const SPOTS: &str = "spots";
+
+/// A family of models: what it leaves out by its construction.
+struct Family {
+    id: &'static str,
+    class: &'static str,
+    about: &'static str,
+}
+
+/// All families, in the order of their colours.
+const FAMILIES: [Family; 5] = [
+    Family {
+        id: "point",
+        class: "strategy-0",
+        about: "All light comes from the middle: no outline in highlights, too bright beside a large \
+                emitter, and edges of light where the middle sets.",
+    },
+    Family {
+        id: "mrp",
+        class: "strategy-1",
+        about: "One point stands for the emitter in each term: the highlight keeps the outline, and the \
+                angle under which the rest of the emitter is seen is only estimated.",
+    },
+    Family {
+        id: "ltc",
+        class: "strategy-2",
+        about: "The BRDF's lobe is replaced by a transformed cosine, whose integral is exact: no noise, \
+                off where the fit is, most at grazing views.",
+    },
+    Family {
+        id: "ltc-polynomial",
+        class: "strategy-3",
+        about: "The same with polynomials for the table: off by their fit, too.",
+    },
+    Family {
+        id: "monte-carlo",
+        class: "strategy-4",
+        about: "Right on average, and noisy: highlights on smooth surfaces need the most samples.",
+    },
+];
+
+/// The family of a model: `monte-carlo` of `monte-carlo:16`.
+pub(super) fn family(model: &str) -> &str {
+    model.split(':').next().unwrap_or(model)
+}
+
+/// The class that colours a model.
+pub(super) fn class(model: &str) -> String {
+    let known = FAMILIES.iter().find(|known| known.id == family(model));
+    known.map_or("strategy-none", |known| known.class).to_owned()
+}
+
+/// A record's model of area lights; spots where it has none.
+pub(super) fn model(record: &Record) -> &str {
+    record.area_model.as_deref().unwrap_or(SPOTS)
+}
+
+/// A model's name with the dot of its colour.
+pub(super) fn name(model: &str) -> String {
+    format!("<i class=\"dot {}\"></i>{}", class(model), escape(model))
+}
+
+/// An error against the truth, where it is finite.
+fn error(record: &Record, id: &str) -> Option<f64> {
+    record.truth_errors.get(id).copied().flatten()
+}
+
+/// Errors and times of all models, and what each gets wrong.
+pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> String {
+    let all = entries(done, scene, MODELS);
+    let known: Vec<Entry<'_>> =
+        all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
+    let truth = truth_of(done, scene).map(|(_, truth)| truth);
+    let mut html = String::new();
+    if let (Some(truth), false) = (truth, known.is_empty()) {
+        html += &part(
+            scene,
+            "models",
+            "Models of area lights against the truth",
+            &escape(&about(truth)),
+            &(errors_table(&known) + &words_table(&known)),
+        );
+    }
+    let plot = Plot {
+        slug: "models",
+        title: "Error of models against time",
+        entries: known,
+        errors: |record| &record.truth_errors,
+        series: |record| family(model(record)).to_owned(),
+        class: |record| class(model(record)),
+        shape: |_| None,
+        name: |record| model(record).to_owned(),
+        label: |record| model(record).split(':').nth(1).unwrap_or_default().to_owned(),
+        wanted: Wanted::Truth,
+        time: "Shade",
+    };
+    html + &part(
+        scene,
+        "model-times",
+        "Speed against accuracy: models",
+        "The error of shading against the truth image; no light is culled. Left and low is good. Monte \
+         Carlo is labelled with its samples. The staircase joins the models that none beats in both. A \
+         point opens its picture beside the truth.",
+        &plot.html(scene, charts, shots),
+    )
+}
+
+/// What the truth image is.
+fn about(truth: &TruthImage) -> String {
+    format!(
+        "{} area lights at {} x {}, every light at every sample. The truth is integrated on the CPU in {} s, {} \
+         shadows, {} bounces; its own standard error is {} % of the mean luminance. All errors are those of \
+         the model, none of culling.",
+        truth.lights,
+        truth.width,
+        truth.height,
+        significant(truth.seconds),
+        if truth.shadows { "with" } else { "without" },
+        truth.bounces,
+        percent(truth.standard_error)
+    )
+}
+
+fn errors_table(entries: &[Entry<'_>]) -> String {
+    let mut heads = vec!["model".to_owned(), "shade <span class=\"unit\">ms</span>".to_owned()];
+    heads.extend(ERROR_METRICS.iter().map(|metric| escape(metric.head)));
+    let rows: Vec<Vec<String>> = entries
+        .iter()
+        .map(|Entry { record, .. }| {
+            let mut row = vec![name(model(record)), significant(record.shade_ms)];
+            let cell = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), difference);
+            row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
+            row
+        })
+        .collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    table("Errors of models against the truth", &heads, &rows)
+}
+
+/// What each model leaves out, and what that comes to here.
+fn words_table(entries: &[Entry<'_>]) -> String {
+    let rows: Vec<Vec<String>> = entries
+        .iter()
+        .map(|Entry { record, .. }| {
+            let known = FAMILIES.iter().find(|known| known.id == family(model(record)));
+            let share = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), percent);
+            let measured = format!(
+                "{} % too {} in all; {} % of the light lacks where it is too dark; worst tile off by {} % of \
+                 the mean",
+                error(record, "bias").map_or_else(|| ABSENT.to_owned(), |bias| percent(bias.abs())),
+                if error(record, "bias").is_some_and(|bias| bias < 0.0) { "dark" } else { "bright" },
+                share("missing_energy"),
+                share("tile"),
+            );
+            vec![
+                name(model(record)),
+                format!("<span class=\"words\">{}</span>", known.map_or("", |known| known.about)),
+                format!("<span class=\"words\">{measured}</span>"),
+            ]
+        })
+        .collect();
+    table("What each model gets wrong", &["model", "what it leaves out", "measured"], &rows)
+}
+
+/// Which models lie on the frontier of time and error, and the table against its polynomials.
+pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
+    let all = entries(done, scene, MODELS);
+    let known: Vec<(&Record, f64)> = all
+        .iter()
+        .filter_map(|entry| Some((entry.record, error(entry.record, METRIC)?)))
+        .filter(|(record, _)| record.shade_ms.is_finite())
+        .collect();
+    let best = frontier(known.iter().map(|(record, error)| (record.shade_ms, *error)));
+    if best.is_empty() {
+        return Vec::new();
+    }
+    let on: Vec<String> = best
+        .iter()
+        .filter_map(|at| known.iter().find(|(record, error)| (record.shade_ms, *error) == *at))
+        .map(|(record, error)| {
+            format!(
+                "{} ({} ms, {})",
+                model(record),
+                significant(record.shade_ms),
+                difference(*error)
+            )
+        })
+        .collect();
+    let mut found = vec![format!(
+        "In {scene} no model is both faster and nearer to the truth by FLIP than {}.",
+        listed(&on)
+    )];
+    let of = |wanted: &str| known.iter().find(|(record, _)| model(record) == wanted);
+    if let (Some((table, error)), Some((polynomial, other))) = (of("ltc"), of("ltc-polynomial")) {
+        found.push(format!(
+            "In {scene} polynomials in place of the table take {} times as long, FLIP {} instead of {}.",
+            significant(polynomial.shade_ms / table.shade_ms),
+            difference(*other),
+            difference(*error)
+        ));
+    }
+    found
+}
+
+/// The model nearest to the truth, in the first scene that has one.
+pub(super) fn headline(done: &Done) -> Option<String> {
+    done.scenes().into_iter().find_map(|scene| {
+        let all = entries(done, scene, MODELS);
+        let known = all.iter().filter_map(|entry| {
+            let is_sampled = family(model(entry.record)) == "monte-carlo";
+            Some((entry.record, error(entry.record, METRIC)?)).filter(|_| !is_sampled)
+        });
+        let (record, error) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(format!(
+            "Without noise, {} is nearest to the truth in {scene}: FLIP {} in {} ms.",
+            model(record),
+            difference(error),
+            significant(record.shade_ms)
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_family_has_a_colour_of_its_own() {
+        let mut classes: Vec<String> = FAMILIES.iter().map(|known| class(known.id)).collect();
+        classes.push(class(SPOTS));
+        let count = classes.len();
+        classes.sort();
+        classes.dedup();
+        assert_eq!(classes.len(), count);
+        assert_eq!((family("monte-carlo:16"), family("ltc")), ("monte-carlo", "ltc"));
+    }
+}

@@ -1,0 +1,273 @@
+//! The pages of the studies of area lights, from made-up results and images.
+
+mod report_data;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use harness::report::write_study;
+use harness::results::{Mode, Operations, Record, Results, TruthImage};
+use harness::study::{Done, Job, Manifest, compare_with_truth};
+use report_data::{empty, record};
+use shading::HdrImage;
+
+fn study(name: &str) -> Done {
+    let identity = ["lightbench", "study", name].map(str::to_owned).to_vec();
+    let manifest = Manifest { identity, study: name.into(), jobs: Vec::new() };
+    Done { manifest, results: BTreeMap::new(), folders: BTreeMap::new() }
+}
+
+fn add(done: &mut Done, section: &str, variant: &str, results: Results, folder: &Path) {
+    let name = format!("atrium-{section}-{variant}");
+    done.manifest.jobs.push(Job {
+        name: name.clone(),
+        scene: "atrium".into(),
+        section: section.into(),
+        command: vec!["lightbench".into(), "compare".into()],
+    });
+    done.results.insert(name.clone(), results);
+    done.folders.insert(name, folder.to_owned());
+}
+
+struct Written {
+    text: String,
+    page: String,
+    charts: Vec<String>,
+}
+
+fn write(done: &Done) -> Written {
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let text = write_study(done, out.path()).expect("it is there");
+    let page = std::fs::read_to_string(out.path().join("index.html")).expect("it is there");
+    let files = std::fs::read_dir(out.path().join("charts")).into_iter().flatten().flatten();
+    let charts = files.map(|file| file.file_name().to_string_lossy().into_owned()).collect();
+    Written { text: text.split_whitespace().collect::<Vec<_>>().join(" "), page, charts }
+}
+
+const WIDTH: u32 = 80;
+const HEIGHT: u32 = 48;
+
+fn image(value: impl Fn(u32, u32) -> f32) -> HdrImage {
+    let at = |ix: u32| [value(ix % WIDTH, ix / WIDTH); 3];
+    HdrImage { width: WIDTH, height: HEIGHT, pixels: (0..WIDTH * HEIGHT).map(at).collect() }
+}
+
+fn true_value(x: u32, y: u32) -> f32 {
+    0.2 + 0.01 * x as f32 + 0.005 * y as f32
+}
+
+fn truth() -> TruthImage {
+    TruthImage {
+        scene: "atrium".into(),
+        scene_hash: "5f0c1b7e9ad24410".into(),
+        lights: 3,
+        width: WIDTH,
+        height: HEIGHT,
+        raw: "truth.exr".into(),
+        image: "truth.png".into(),
+        error_image: "error.png".into(),
+        exposure: 1.0,
+        standard_error: 0.0004,
+        shadows: false,
+        bounces: 0,
+        samples: 64,
+        seconds: 2.5,
+    }
+}
+
+/// Models with their times, ms, and what their images are.
+type Model = (&'static str, f64, fn(u32, u32) -> f32);
+
+const MODELS: [Model; 6] = [
+    // A quarter too dark, and nothing in one tile.
+    ("point", 1.0, |x, y| match (x / 16, y / 16) {
+        (2, 1) => 0.0,
+        _ => 0.75 * true_value(x, y),
+    }),
+    ("mrp", 1.5, |x, y| 1.1 * true_value(x, y)),
+    ("ltc", 2.0, |x, y| 1.01 * true_value(x, y)),
+    ("ltc-polynomial", 3.0, |x, y| 1.02 * true_value(x, y)),
+    ("monte-carlo:1", 4.0, |x, y| true_value(x, y) * if (x + y) % 2 == 0 { 0.5 } else { 1.5 }),
+    ("monte-carlo:16", 40.0, |x, y| true_value(x, y) * if (x + y) % 2 == 0 { 0.92 } else { 1.08 }),
+];
+
+/// A study of models, its images in a folder.
+fn area(folder: &Path) -> Done {
+    let mut done = study("area");
+    image(true_value).write_exr(&folder.join("truth.exr")).expect("writes");
+    add(&mut done, "truth", "", Results { truth_image: Some(truth()), ..empty() }, folder);
+    for (model, time, value) in MODELS {
+        let file = format!("{}.exr", model.replace(':', "-"));
+        image(value).write_exr(&folder.join(&file)).expect("writes");
+        let mut record = record("None", Mode::Deferred, 0.0, time);
+        record.area_model = Some(model.into());
+        record.images.raw = Some(file);
+        let variant = model.replace(':', "-");
+        add(&mut done, "models", &variant, Results { records: vec![record], ..empty() }, folder);
+    }
+    for lights in [1, 4, 16] {
+        for (model, each) in [(None, 0.5), (Some("ltc"), 1.0), (Some("point"), 0.75)] {
+            let mut record = record("None", Mode::Deferred, 0.0, each * lights as f64);
+            (record.lights, record.area_model) = (lights, model.map(str::to_owned));
+            let variant = format!("{lights}-{}", model.unwrap_or("spots"));
+            add(&mut done, "cost", &variant, Results { records: vec![record], ..empty() }, folder);
+        }
+    }
+    done
+}
+
+fn of<'a>(done: &'a Done, model: &str) -> &'a Record {
+    &done.results[&format!("atrium-models-{model}")].records[0]
+}
+
+#[test]
+fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut done = area(folder.path());
+    let before = write(&done);
+    assert!(!before.page.contains("data-part=\"models\""), "no errors, no table");
+    compare_with_truth(&mut done).expect("images");
+    let error = |model: &str, id: &str| of(&done, model).truth_errors[id].expect("finite");
+    assert!((error("ltc", "bias") - 0.01).abs() < 1e-4 && error("ltc", "missing_energy") == 0.0);
+    assert!((error("point", "bias") + 0.25).abs() < 0.1, "{}", error("point", "bias"));
+    assert!(error("monte-carlo-1", "rel_mse") > 10.0 * error("monte-carlo-16", "rel_mse"));
+    assert!(of(&done, "ltc").errors.get("flip").is_none(), "culling errors are left alone");
+
+    let Written { text, page, charts } = write(&done);
+    for part in ["models", "model-times", "pictures", "cost"] {
+        assert!(page.contains(&format!("data-part=\"{part}\"")), "{part}");
+    }
+    for chart in ["models-flip", "models-rel-mse", "cost"] {
+        let name = format!("atrium-{chart}.svg");
+        assert!(charts.contains(&name), "{name} of {charts:?}");
+    }
+    assert!(text.contains("Without noise, ltc is nearest to the truth in atrium"), "{text}");
+    assert!(
+        text.contains("no model is both faster and nearer to the truth by FLIP than"),
+        "{text}"
+    );
+    // The polynomials are slower and further off.
+    assert!(!text.contains("ltc-polynomial ("), "{text}");
+    assert!(text.contains("polynomials in place of the table take 1.5"), "{text}");
+    assert!(text.contains("at 16 lights, LTC takes 2."), "{text}");
+    // The dark tile is the worst, and cut out.
+    assert!(page.contains("around 32, 16: the truth on the left, point on the right"));
+    let panel = page.split("data-part=\"pictures\"").nth(1).expect("pictures");
+    assert_eq!(panel.matches("data-picture=").count(), MODELS.len() * 4);
+    // Pictures are stored once: the truth, and three of each model.
+    let uris = page.split("\"uris\":[").nth(1).and_then(|rest| rest.split(']').next());
+    assert_eq!(uris.expect("pictures").matches("data:image/png").count(), 1 + MODELS.len() * 3);
+    // Spots are those that have no model.
+    assert!(page.contains("area : spot") && page.contains("strategy-none\"></i>spots"));
+}
+
+#[test]
+fn an_image_that_equals_the_truth_has_no_error_and_one_of_another_size_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut done = area(folder.path());
+    image(true_value).write_exr(&folder.path().join("ltc.exr")).expect("writes");
+    compare_with_truth(&mut done).expect("images");
+    assert!(of(&done, "ltc").truth_errors.values().all(|error| *error == Some(0.0)));
+    assert!(of(&done, "mrp").truth_errors.values().any(|error| *error > Some(0.0)));
+    let small = HdrImage { width: 2, height: 1, pixels: vec![[1.0; 3]; 2] };
+    small.write_exr(&folder.path().join("ltc.exr")).expect("writes");
+    let error = compare_with_truth(&mut done).expect_err("refused").to_string();
+    assert!(error.contains("ltc.exr") && error.contains("2x1"), "{error}");
+    // Without a truth there is nothing to hold models against.
+    std::fs::remove_file(folder.path().join("truth.exr")).expect("removes");
+    compare_with_truth(&mut done).expect("nothing to do");
+}
+
+/// The claims of the polygon-light paper, by their ids.
+const CLAIMS: [&str; 3] = ["cones", "outer", "assignment"];
+
+/// What a setting costs and evaluates: its id behind that of clusters, assignment and shading, ms, outer
+/// specular operations.
+const SETTINGS: [(&str, f64, f64, u64); 6] = [
+    ("", 0.05, 2.0, 23_000_000),
+    ("/n1", 0.06, 1.9, 21_000_000),
+    ("/n6", 0.1, 1.5, 12_000_000),
+    ("/n54", 0.4, 1.3, 9_000_000),
+    ("/n54/s0.001", 0.45, 1.0, 4_000_000),
+    ("/n54/s0.01", 0.45, 0.9, 2_000_000),
+];
+
+/// A study of cones in which every claim holds but the one that is turned round.
+fn endless(turned: &str, folder: &Path) -> Done {
+    let mut done = study("endless");
+    for (place, lights) in [("a", 126), ("a", 2_016), ("c", 2_016)] {
+        let make = |&(suffix, assign, shade, outer): &(&str, f64, f64, u64)| {
+            let is_cone = !suffix.is_empty();
+            let assign = if turned == "assignment" && is_cone { assign + 1.0 } else { assign };
+            let shade = if turned == "cones" && is_cone { shade + 9.0 } else { shade + 2.0 };
+            let mut record =
+                record(&format!("SC-E/48x48x40/bvh{suffix}"), Mode::Deferred, assign, shade);
+            record.lights = lights;
+            record.is_lossy = suffix.contains("/s");
+            let outer = if turned == "outer" { outer / 2 + 11_500_000 } else { outer };
+            record.operations = Some(Operations {
+                diffuse: 21_000_000,
+                specular: 21_000_000 + outer,
+                outer_specular: outer,
+                perceptible: 22_000_000,
+            });
+            record.errors.insert("flip".into(), Some(if record.is_lossy { 1e-4 } else { 0.0 }));
+            record.images.baseline = Some("None.png".into());
+            record
+        };
+        let mut records: Vec<Record> = SETTINGS.iter().map(make).collect();
+        let mut none = record("None", Mode::Deferred, 0.0, 90.0);
+        none.lights = lights;
+        records.insert(0, none);
+        add(&mut done, place, &lights.to_string(), Results { records, ..empty() }, folder);
+    }
+    done
+}
+
+fn verdict<'a>(page: &'a str, claim: &str) -> &'a str {
+    let start = format!("data-claim=\"{claim}\" data-verdict=\"");
+    page.split_once(&start).expect("the claim").1.split('"').next().expect("it is there")
+}
+
+#[test]
+fn claims_of_the_polygon_light_paper_hold_where_figures_say_so_and_fail_turned_round() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = write(&endless("", folder.path()));
+    for claim in CLAIMS {
+        assert_eq!(verdict(&whole.page, claim), "holds", "{claim}");
+    }
+    for turned in CLAIMS {
+        let page = write(&endless(turned, folder.path())).page;
+        assert_eq!(verdict(&page, turned), "fails", "{turned}, turned round");
+        let others = CLAIMS.iter().filter(|claim| **claim != turned);
+        // Slower assignment is slower altogether, too.
+        for other in others.filter(|other| (turned, **other) != ("assignment", "cones")) {
+            assert_eq!(verdict(&page, other), "holds", "{other} where {turned} is turned round");
+        }
+    }
+    let mut part = endless("", folder.path());
+    part.results.clear();
+    assert!(!write(&part).page.contains("data-claim"));
+}
+
+#[test]
+fn the_papers_figures_stand_beside_ours_by_place_and_lights() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let Written { text, page, charts } = write(&endless("", folder.path()));
+    for place in ["a", "c"] {
+        assert!(page.contains(&format!("data-part=\"{place}\"")), "{place}");
+    }
+    assert!(!page.contains("data-part=\"b\""), "not measured");
+    // Table D.1 at location A with 126 lights, by position and with 54 cones.
+    for figure in ["(65,936,949)", "(47,590,904)", "(24.8)", "(73.0)"] {
+        assert!(page.contains(figure), "{figure}");
+    }
+    // The paper has none of one cone, and its cones are not said again beside cuts.
+    assert_eq!(page.matches("(47,590,904)").count(), 1);
+    for chart in ["times", "outer", "perceptible"] {
+        let name = format!("atrium-a-126-{chart}.svg");
+        assert!(charts.contains(&name), "{name} of {charts:?}");
+    }
+    assert!(text.contains("6 cones is fastest without a loss"), "{text}");
+    assert!(text.contains("54 cones, cut 0.001 82.6 %"), "{text}");
+}

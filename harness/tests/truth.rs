@@ -1,0 +1,134 @@
+//! Truth images and the studies that need them, as a user runs them.
+
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use harness::{
+    results::{Results, TruthImage},
+    study::Manifest,
+};
+use shading::HdrImage;
+
+fn lightbench(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lightbench")).args(arguments).output().expect("starts")
+}
+
+fn run(arguments: &[&str]) -> String {
+    let output = lightbench(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Renders a small truth image; returns what its results say, and the image.
+fn truth(out: &Path, more: &[&str]) -> (TruthImage, HdrImage) {
+    let text = out.to_str().expect("UTF-8");
+    let small = ["truth", "--lights", "4", "--radius-scale", "8", "--size", "32x18", "--out", text];
+    let printed = run(&[&small[..], more].concat());
+    assert!(printed.starts_with("truth    atrium, 4 lights, 32x18"), "{printed}");
+    let truth = Results::read(&out.join("results.json")).expect("results").truth_image;
+    let truth = truth.expect("a truth image");
+    for name in [&truth.image, &truth.error_image] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    let image = HdrImage::read_exr(&out.join(&truth.raw)).expect("an image");
+    (truth, image)
+}
+
+#[test]
+fn points_are_as_shading_has_them_and_shadows_take_light_away() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (exact, image) = truth(&folder.path().join("plain"), &[]);
+    assert_eq!((exact.standard_error, exact.shadows, exact.bounces), (0.0, false, 0));
+    // What no culling shows of the same view: models of area lights apart, shading is right.
+    let compared = folder.path().join("compared");
+    let out = compared.to_str().expect("UTF-8");
+    let view = ["compare", "--lights", "4", "--radius-scale", "8", "--size", "32x18"];
+    let timed = ["--strategies", "None", "--frames", "1", "--warmup", "0", "--truth", "none"];
+    run(&[&view[..], &timed, &["--out", out]].concat());
+    let shaded = HdrImage::read_exr(&compared.join("deferred-None.exr")).expect("an image");
+    let difference = shaded.difference(&image).expect("the same size");
+    assert!(difference.max_rel < 1e-2, "{difference:?}");
+
+    let sum = |image: &HdrImage| image.pixels.iter().flatten().map(|v| f64::from(*v)).sum::<f64>();
+    let (_, dark) = truth(&folder.path().join("shadows"), &["--shadows"]);
+    assert!(sum(&dark) < 0.99 * sum(&image), "{} of {}", sum(&dark), sum(&image));
+    let bounce = ["--shadows", "--bounces", "1", "--samples", "4"];
+    let (noisy, lit) = truth(&folder.path().join("bounce"), &bounce);
+    assert!(sum(&lit) > 1.01 * sum(&dark), "{} of {}", sum(&lit), sum(&dark));
+    assert!(noisy.standard_error > 0.0 && noisy.bounces == 1);
+}
+
+#[test]
+fn what_makes_no_truth_is_refused() {
+    let refused = |arguments: &[&str], wanted: &str| {
+        let output = lightbench(&[&["truth"], arguments].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+        assert!(stderr.contains(wanted) && stderr.lines().count() == 1, "{stderr}");
+    };
+    refused(&["--bounces", "1"], "--bounces is 1: it must be 0, or given with --shadows");
+    refused(&["--bounces", "2", "--shadows"], "--bounces is 2: it must be 0 or 1");
+    refused(&["--samples", "0"], "--samples is 0: it must be a whole number from 1 to 65,536");
+    refused(&["--strategies", "None"], "--strategies");
+}
+
+/// The folders of a study's jobs that are done, by the names of the jobs.
+fn done(out: &Path) -> Vec<String> {
+    let jobs = Manifest::find(out).expect("reads").expect("is there").jobs;
+    let is_done = |name: &String| out.join("jobs").join(name).join("results.json").is_file();
+    jobs.into_iter().map(|job| job.name).filter(is_done).collect()
+}
+
+#[test]
+fn a_study_runs_truths_and_comparisons_and_computes_their_errors_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    // The truth, one model and a few costs.
+    let study = ["study", "area", "--quick", "--size", "32x18", "--shard", "1/6", "--out", out];
+    run(&study);
+    let names = done(folder.path());
+    assert_eq!(names.first().map(String::as_str), Some("atrium-truth"));
+    let model = names.iter().find(|name| name.starts_with("atrium-models-")).expect("a model");
+    let path = folder.path().join("jobs").join(model).join("results.json");
+    let read = || Results::read(&path).expect("results");
+    let errors = read().records[0].truth_errors.clone();
+    assert!(errors["flip"] > Some(0.0) && errors["bias"].is_some(), "{errors:?}");
+    assert!(names.iter().any(|name| name.starts_with("atrium-cost-")), "{names:?}");
+    // Once more, from what is stored.
+    let mut results = read();
+    results.records[0].truth_errors.clear();
+    results.write(&path).expect("writes");
+    run(&["report", out]);
+    assert_eq!(read().records[0].truth_errors, errors);
+    // Nothing is rendered again where all is done.
+    let image = folder.path().join("jobs/atrium-truth/truth.exr");
+    let written = || std::fs::metadata(&image).and_then(|data| data.modified()).expect("a file");
+    let before = written();
+    run(&study);
+    assert_eq!(written(), before);
+}
+
+#[test]
+fn cones_are_counted_from_every_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let study = ["study", "endless", "--quick", "--size", "32x18", "--shard", "1/6", "--out", out];
+    let printed = run(&study);
+    assert!(printed.contains("1 of 6 jobs are done"), "{printed}");
+    let jobs = Manifest::find(folder.path()).expect("reads").expect("is there").jobs;
+    let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
+    for place in ["a", "b", "c"] {
+        for count in ["126", "2016"] {
+            assert!(names.contains(&format!("atrium-{place}-{count}").as_str()), "{names:?}");
+        }
+    }
+    let path = folder.path().join("jobs/atrium-a-126/results.json");
+    for record in Results::read(&path).expect("results").records {
+        let counted = record.operations.expect("counted");
+        assert!(counted.specular >= counted.diffuse && counted.diffuse > 0, "{counted:?}");
+        assert_eq!((record.lights, record.missed_pairs), (126, Some(0)), "{}", record.strategy);
+    }
+}
