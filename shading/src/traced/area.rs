@@ -51,7 +51,7 @@ impl<'a> SeenEmitter<'a> {
         let distance_2 = (emitter.closest(-center) + center).length_squared();
         let range_m = f64::from(light.range_m);
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
-        let vertices = emitter.vertices().iter().map(Vec3::as_dvec3);
+        let vertices = emitter.vertices().iter().map(|v| v.as_dvec3());
         let next = vertices.clone().cycle().skip(1);
         let seen = Self {
             light,
