@@ -2,6 +2,7 @@
 //! transformed cosines where a model of area lights looks it up.
 
 use assign::{Gpu, entry, storage_entry, uniform_entry};
+use bytemuck::{Pod, Zeroable};
 
 use crate::{AreaModel, LightingOptions, ShadingError, ltc};
 
@@ -10,6 +11,16 @@ pub(crate) const LIGHTING_BINDING: u32 = 6;
 
 /// Where the table is bound in group 2.
 pub(crate) const LTC_BINDING: u32 = 7;
+
+/// `lighting_uniform.wesl`, `struct LightingUniform`. 8 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct LightingRecord {
+    /// [`LightingOptions::exit_weight`].
+    pub exit_weight: f32,
+    /// Samples of each term of an area light; 0 where its model draws none.
+    pub area_samples: u32,
+}
 
 /// The resources of one set of options.
 #[derive(Debug)]
@@ -23,8 +34,9 @@ impl LightingInputs {
     pub(crate) fn new(gpu: &Gpu, options: LightingOptions) -> Result<Self, ShadingError> {
         let uniform = gpu.uniform("lighting", 16);
         options.area.check()?;
-        let numbers = [options.exit_weight.to_bits(), options.area.samples(), 0, 0];
-        gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&numbers));
+        let area_samples = options.area.samples();
+        let record = LightingRecord { exit_weight: options.exit_weight, area_samples };
+        gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&record));
         let table = match options.reads_table() {
             false => None,
             true => {

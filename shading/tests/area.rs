@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
-use assign::{Emitter, Light, LightBuffer};
+use assign::{Emitter, Light, LightBuffer, LightShape};
 use common::evaluate::{Query, evaluate};
 use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
@@ -135,7 +135,7 @@ fn models_are_as_far_from_the_truth_as_they_should_be() {
         [AreaModel::Point, AreaModel::Mrp, AreaModel::LtcTable, AreaModel::LtcPolynomial]
             .map(error);
     println!("point {point:.4}, MRP {mrp:.4}, table {table:.4}, polynomial {polynomial:.4}");
-    assert!(mrp < 0.4 * point && table < 0.2 * mrp, "{point} {mrp} {table}");
+    assert!(mrp < 0.2 * point && table < 0.3 * mrp, "{point} {mrp} {table}");
     assert!(table < 0.07 && polynomial < 0.08, "{table} {polynomial}");
     assert!(point > 4.0 * table, "{point} {table}");
 }
@@ -323,4 +323,84 @@ fn sides_are_alike_and_parts_add_up() {
             assert!((mirrored - whole).abs() < 1e-4 * whole + 1e-6, "{model}: {answer:?}");
         }
     }
+}
+
+/// A surface in the plane of a light, outside of it, however both are turned: rounding leaves the
+/// light's corners above and below the horizon at random.
+#[test]
+fn a_light_in_the_surfaces_own_plane_adds_nothing() {
+    let gpu = common::gpu();
+    let mut rng = Pcg64Mcg::seed_from_u64(9);
+    let lights: Vec<Light> = lights(40)
+        .into_iter()
+        .map(|light| match light.shape {
+            LightShape::Area(emitter) => {
+                Light { shape: LightShape::Area(emitter.two_sided()), ..light }
+            }
+            _ => light,
+        })
+        .collect();
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let queries: Vec<Query> = (0..4_000)
+        .map(|ix| {
+            let light = &buffer.lights()[ix % 40];
+            let LightShape::Area(emitter) = light.shape else { panic!("an area light") };
+            let normal = emitter.normal();
+            let across = direction(&mut rng).reject_from(normal).normalize();
+            let beside = across * emitter.radius() * rng.random_range(1.1..2.0);
+            let to_eye = direction(&mut rng);
+            let to_eye = if to_eye.dot(normal) < 0.0 { -to_eye } else { to_eye };
+            [
+                (light.position + beside).extend(f32::from_bits(ix as u32 % 40)).to_array(),
+                to_eye.extend(0.2 + 0.8 * rng.random::<f32>()).to_array(),
+                normal.extend(0.5).to_array(),
+                [1.0, 1.0, 1.0, 0.0],
+            ]
+        })
+        .collect();
+    for model in AreaModel::ALL {
+        let answers = evaluate(&gpu, &buffer, &queries, model);
+        let share = |(query, answer): (&Query, &[f32; 4])| {
+            let light = &buffer.lights()[light_of(query)];
+            let LightShape::Area(emitter) = light.shape else { panic!("an area light") };
+            answer[0] * emitter.area() / light.intensity.x
+        };
+        let lit = queries.iter().zip(&answers).map(share).filter(|share| *share > 1e-3).count();
+        assert_eq!(lit, 0, "{model}: lit by more than a thousandth of the light's radiance");
+    }
+}
+
+/// With many samples no error remains, whatever the emitter looks like: small, edge-on, long, near.
+#[test]
+fn sampling_is_without_bias() {
+    let gpu = common::gpu();
+    let lights = lights(40);
+    let buffer = LightBuffer::new(&gpu, &lights).unwrap();
+    let mut queries = queries(&lights, 1_500);
+    for query in &mut queries {
+        // Looking at the light, so that none of it is a sliver above the horizon.
+        let [x, y, z, _] = query[0];
+        let normal = (buffer.lights()[light_of(query)].position - Vec3::new(x, y, z)).normalize();
+        let to_eye = Vec3::new(query[1][0], query[1][1], query[1][2]);
+        let to_eye = if to_eye.dot(normal) < 0.0 { -to_eye } else { to_eye };
+        query[1] = to_eye.extend(1.0).to_array();
+        query[2] = normal.extend(query[2][3]).to_array();
+    }
+    let answers = evaluate(&gpu, &buffer, &queries, AreaModel::MonteCarlo { samples: 2048 });
+    let error = |(query, answer): (&Query, &[f32; 4])| {
+        let (position, surface, to_eye) = asked(query);
+        let light = &buffer.lights()[light_of(query)];
+        let truth = light_contribution(light, position, &surface, to_eye).x;
+        (truth > 1e-6).then(|| f64::from(answer[0]) / truth - 1.0)
+    };
+    let errors: Vec<f64> = queries.iter().zip(&answers).filter_map(error).collect();
+    let count = errors.len();
+    let bias = errors.iter().sum::<f64>() / count as f64;
+    let mut sizes: Vec<f64> = errors.into_iter().map(f64::abs).collect();
+    sizes.sort_by(f64::total_cmp);
+    let at = |share: f64| sizes[((count - 1) as f64 * share) as usize];
+    let [median, p95, most] = [0.5, 0.95, 1.0].map(at);
+    println!("{count} lit: bias {bias:.1e}, median {median:.1e}, p95 {p95:.1e}, most {most:.1e}");
+    assert!(bias.abs() < 5e-4 && p95 < 5e-3 && most < 0.03, "{bias} {p95} {most}");
+    assert!(count > 800, "{count}");
 }

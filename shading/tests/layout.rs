@@ -5,7 +5,7 @@
 
 use std::mem::offset_of;
 
-use shading::{InstanceRecord, MaterialRecord};
+use shading::{InstanceRecord, LightingRecord, MaterialRecord};
 
 /// Name and offset of every field of a Rust struct, in its order.
 macro_rules! fields {
@@ -15,14 +15,26 @@ macro_rules! fields {
 }
 
 /// A shader that reads instances and materials.
-fn shader() -> naga::Module {
+fn geometry() -> naga::Module {
     let shader = shading::lighting_shader().flag("gbuffer", true).flag("uv_transforms", true);
     naga::front::wgsl::parse_str(&shader.link("package::geometry").unwrap()).unwrap()
 }
 
-/// Checks the element of an array of structs: its size and stride, its fields and their offsets.
-fn check(name: &str, bytes: usize, fields: &[(&str, usize)]) {
-    let module = shader();
+/// A shader that lights by samples.
+fn lighting() -> naga::Module {
+    let look_up = include_str!("../../assign/src/shaders/everything.wesl");
+    let shader = shading::lighting_shader().flag("areas", true).flag("area_monte_carlo", true);
+    let shader = shader.module("package::strategy", look_up);
+    naga::front::wgsl::parse_str(&shader.link("package::deferred").unwrap()).unwrap()
+}
+
+/// Checks a struct: its size, its fields and their offsets.
+fn check(
+    module: &naga::Module,
+    name: &str,
+    bytes: usize,
+    fields: &[(&str, usize)],
+) -> naga::Handle<naga::Type> {
     // The linker prefixes names with their module.
     let is_named = |n: &str| n == name || n.ends_with(&format!("_{name}"));
     let (handle, ty) = module
@@ -37,11 +49,18 @@ fn check(name: &str, bytes: usize, fields: &[(&str, usize)]) {
         members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
     assert_eq!(wesl, fields, "{name}: fields of WESL, then of Rust");
     assert_eq!(*span as usize, bytes, "{name}: size");
+    handle
+}
+
+/// Checks the element of an array of structs, and the array's stride.
+fn check_element(name: &str, bytes: usize, fields: &[(&str, usize)]) {
+    let module = geometry();
+    let element = check(&module, name, bytes, fields);
     let strides: Vec<usize> = module
         .types
         .iter()
         .filter_map(|(_, ty)| match ty.inner {
-            naga::TypeInner::Array { base, stride, .. } if base == handle => Some(stride as usize),
+            naga::TypeInner::Array { base, stride, .. } if base == element => Some(stride as usize),
             _ => None,
         })
         .collect();
@@ -52,12 +71,18 @@ fn check(name: &str, bytes: usize, fields: &[(&str, usize)]) {
 fn instance() {
     let fields = fields!(InstanceRecord: object_to_world, normal_x, model_ix, normal_y,
         material_ix, normal_z, handedness);
-    check("Instance", size_of::<InstanceRecord>(), &fields);
+    check_element("Instance", size_of::<InstanceRecord>(), &fields);
 }
 
 #[test]
 fn material() {
     let fields = fields!(MaterialRecord: base_color, emissive, metallic, roughness, normal_scale,
         alpha_cutoff, unused, uv_transforms);
-    check("Material", size_of::<MaterialRecord>(), &fields);
+    check_element("Material", size_of::<MaterialRecord>(), &fields);
+}
+
+#[test]
+fn lighting_uniform() {
+    let fields = fields!(LightingRecord: exit_weight, area_samples);
+    check(&lighting(), "LightingUniform", size_of::<LightingRecord>(), &fields);
 }
