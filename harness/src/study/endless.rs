@@ -23,7 +23,7 @@ const DIFFUSE_SHARE: &str = "0.6667";
 /// The range of a light over the side of the cube that is as large as the scene's core: there the
 /// diffuse parts of about 20 lights reach a sample, as in the paper (42.9 million operations of two
 /// terms on 1280x720 pixels, table 5.1).
-const RANGE_SHARE: f32 = 0.75;
+const RANGE_SHARE: f32 = 0.55;
 
 /// Clusters through the hierarchy, by position alone.
 const CLUSTERS: &str = "SC-E/48x48x40/bvh";
