@@ -29,6 +29,8 @@ pub struct Clustered {
     bounds: Bounds,
     occupancy: Occupancy,
     normals: Normals,
+    /// 0 where no specular light is left out.
+    specular_threshold: f32,
     settings: CullSettings,
     clusters: wgpu::Buffer,
     gather: Option<Gather>,
@@ -59,6 +61,18 @@ pub const BINS_WESL: &str = concat!(
     "const WORDS: u32 = 12u;\n",
 );
 
+/// [`BINS_WESL`] of clusters that know how their samples reflect as well: `group_gloss`.
+pub const GLOSSY_BINS_WESL: &str = concat!(
+    include_str!("shaders/clusters.wesl"),
+    include_str!("shaders/by_bin.wesl"),
+    include_str!("shaders/explicit.wesl"),
+    include_str!("shaders/gloss_of_bin.wesl"),
+    "const WORDS: u32 = 15u;\n",
+);
+
+/// How far the specular cut goes.
+const THRESHOLDS: std::ops::RangeInclusive<f32> = 0.0..=1e18;
+
 impl Clustered {
     /// Makes the strategy; `size` is checked.
     pub fn new(
@@ -68,21 +82,28 @@ impl Clustered {
         occupancy: Occupancy,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
-        Self::with_normals(gpu, size, bounds, occupancy, Normals::None, settings)
+        Self::with_normals(gpu, size, bounds, occupancy, Normals::None, 0.0, settings)
     }
 
-    /// Makes the strategy with clusters split by normals; `size` and `normals` are checked. Only
-    /// sparse clusters with explicit bounds can be split.
+    /// Makes the strategy with clusters split by normals. Only sparse clusters with explicit bounds
+    /// can be split.
+    ///
+    /// A `specular_threshold` above 0, a radiance, is **lossy**: area lights lose their specular
+    /// term where less than that of it reaches the eye from any sample of a group. It takes normals.
+    /// All parameters are checked.
     pub fn with_normals(
         gpu: &Gpu,
         size: ClusterSize,
         bounds: Bounds,
         occupancy: Occupancy,
         normals: Normals,
+        specular_threshold: f32,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
         size.check()?;
         normals.check()?;
+        check_threshold(specular_threshold, normals)?;
+        let glossy = specular_threshold > 0.0;
         if normals.is_some() && (bounds, occupancy) != (Bounds::Explicit, Occupancy::Sparse) {
             return Err(AssignError::Unsupported {
                 strategy: family(bounds, occupancy).into(),
@@ -96,6 +117,7 @@ impl Clustered {
         let boxes = storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true);
         let (module, bindings) = match bounds {
             Bounds::Implicit => (IMPLICIT_WESL, vec![clusters]),
+            Bounds::Explicit if glossy => (GLOSSY_BINS_WESL, vec![clusters, boxes]),
             Bounds::Explicit if normals.is_some() => (BINS_WESL, vec![clusters, boxes]),
             Bounds::Explicit => (EXPLICIT_WESL, vec![clusters, boxes]),
         };
@@ -106,10 +128,11 @@ impl Clustered {
             bounds,
             occupancy,
             normals,
+            specular_threshold,
             settings,
             clusters: gpu.uniform("clusters", size_of::<ClustersUniform>() as u64),
             gather: match reads_samples {
-                true => Some(Gather::new(gpu, bounds, occupancy, normals)?),
+                true => Some(Gather::new(gpu, bounds, occupancy, normals, glossy)?),
                 false => None,
             },
             culler: Culler::new(
@@ -120,6 +143,7 @@ impl Clustered {
                     settings,
                     sparse,
                     facing: match normals.is_some() {
+                        true if glossy => Facing::HorizonAndGloss,
                         true => Facing::Horizon,
                         false => Facing::Unknown,
                     },
@@ -131,6 +155,24 @@ impl Clustered {
             )?,
         })
     }
+}
+
+fn check_threshold(threshold: f32, normals: Normals) -> Result<(), AssignError> {
+    let accepted = match normals {
+        Normals::None => 0.0..=0.0,
+        Normals::Bins(_) => THRESHOLDS,
+    };
+    if accepted.contains(&threshold) {
+        return Ok(());
+    }
+    Err(AssignError::Parameter {
+        field: "specular threshold".into(),
+        value: threshold.to_string(),
+        accepted: match normals {
+            Normals::None => "0 without bins of normals".into(),
+            Normals::Bins(_) => "a radiance from 0 to 1e18".into(),
+        },
+    })
 }
 
 fn family(bounds: Bounds, occupancy: Occupancy) -> &'static str {
@@ -153,12 +195,20 @@ impl Assignment for Clustered {
     fn id(&self) -> String {
         let suffix = self.settings.suffix(shape(self.bounds));
         let normals = self.normals.segment();
-        format!("{}/{}{normals}{suffix}", family(self.bounds, self.occupancy), self.size)
+        let cut = match self.specular_threshold > 0.0 {
+            true => format!("/s{}", self.specular_threshold),
+            false => String::new(),
+        };
+        format!("{}/{}{normals}{cut}{suffix}", family(self.bounds, self.occupancy), self.size)
     }
 
     fn needs(&self) -> Needs {
-        let normals = self.normals.is_some();
-        Needs { depth: self.gather.is_some(), normals, ..Needs::default() }
+        Needs {
+            depth: self.gather.is_some(),
+            normals: self.normals.is_some(),
+            materials: self.specular_threshold > 0.0,
+            ..Needs::default()
+        }
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
@@ -184,8 +234,13 @@ impl Assignment for Clustered {
                     Normals::None => None,
                     Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),
                 },
+                base_color: match self.specular_threshold > 0.0 {
+                    false => None,
+                    true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
+                },
             };
             clusters.surfaces_only = 1;
+            clusters.specular_threshold = self.specular_threshold;
             gather.prepare(gpu, frame, images, &self.clusters, count)?;
             if self.occupancy == Occupancy::Sparse {
                 groups = Groups::Live { count, live: gather.live() };

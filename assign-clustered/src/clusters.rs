@@ -98,8 +98,10 @@ pub struct ClustersUniform {
     pub surfaces_only: u32,
     /// Cells along an edge of a face of the cube of normals; 0: normals are not told apart.
     pub bin_side: u32,
+    /// Specular radiance of an area light that is left out; 0: none is.
+    pub specular_threshold: f32,
     /// Pads to 64 bytes.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }
 
 /// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
@@ -155,7 +157,8 @@ impl ClustersUniform {
             exponential: u32::from(exponential),
             surfaces_only: 0,
             bin_side: normals.side(),
-            padding: [0; 2],
+            specular_threshold: 0.0,
+            padding: 0,
         })
     }
 

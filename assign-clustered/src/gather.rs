@@ -6,7 +6,7 @@ use assign::{
     Shader, View, entry, storage_entry, uniform_entry,
 };
 
-use crate::{BINS_WESL, EXPLICIT_WESL, IMPLICIT_WESL, Normals, Occupancy};
+use crate::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL, Normals, Occupancy};
 
 /// Bind group of the pass's own resources, and of the clusters' uniform.
 const GATHER_GROUP: u32 = 1;
@@ -19,7 +19,7 @@ const BLOCK_PX: u32 = 32;
 const CLEARED: u64 = 256;
 const MAX_DISPATCH: u64 = 65_535;
 
-/// Reads the depth buffer once, and the normals where asked to.
+/// Reads the depth buffer once, and where asked to normals and base colours.
 #[derive(Debug)]
 pub(crate) struct Gather {
     words: u64,
@@ -41,6 +41,7 @@ impl Gather {
         bounds: Bounds,
         occupancy: Occupancy,
         normals: Normals,
+        glossy: bool,
     ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let bind_group_layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
@@ -57,10 +58,13 @@ impl Gather {
         if normals.is_some() {
             entries.push(texture_entry(2, TEXELS));
         }
+        if glossy {
+            entries.push(texture_entry(3, TEXELS));
+        }
         let layout = bind_group_layout("gather", &entries);
         let live_layout = bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
         let frame = FrameBindings::new(gpu);
-        let shader = gather_shader(bounds, occupancy, normals);
+        let shader = gather_shader(bounds, occupancy, normals, glossy);
         // SAFETY: loops count up to a constant, to the length of a buffer by a step of at least one
         // workgroup, or over slices, of which there are 1,024 at most, or over cells, of which an edge
         // has 3 at most.
@@ -89,6 +93,7 @@ impl Gather {
         Ok(Self {
             words: match bounds {
                 Bounds::Implicit => 1,
+                Bounds::Explicit if glossy => 15,
                 Bounds::Explicit if normals.is_some() => 12,
                 Bounds::Explicit => 6,
             },
@@ -132,6 +137,7 @@ impl Gather {
             entry(FIRST_STRATEGY_BINDING, clusters),
         ];
         entries.extend(images.normals.map(|view| texture(2, view)));
+        entries.extend(images.base_color.map(|view| texture(3, view)));
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("gather"),
             layout: &self.layout,
@@ -176,6 +182,8 @@ pub(crate) struct Images<'a> {
     pub(crate) depth: &'a wgpu::TextureView,
     /// Where the strategy was made with normals.
     pub(crate) normals: Option<&'a wgpu::TextureView>,
+    /// Where it was made with a specular threshold.
+    pub(crate) base_color: Option<&'a wgpu::TextureView>,
 }
 
 const TEXELS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
@@ -194,9 +202,15 @@ fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::Bi
 }
 
 /// The pass's shader.
-fn gather_shader<'a>(bounds: Bounds, occupancy: Occupancy, normals: Normals) -> Shader<'a> {
+fn gather_shader<'a>(
+    bounds: Bounds,
+    occupancy: Occupancy,
+    normals: Normals,
+    glossy: bool,
+) -> Shader<'a> {
     let strategy = match bounds {
         Bounds::Implicit => IMPLICIT_WESL,
+        Bounds::Explicit if glossy => GLOSSY_BINS_WESL,
         Bounds::Explicit if normals.is_some() => BINS_WESL,
         Bounds::Explicit => EXPLICIT_WESL,
     };
@@ -207,6 +221,7 @@ fn gather_shader<'a>(bounds: Bounds, occupancy: Occupancy, normals: Normals) -> 
         .flag("explicit_bounds", bounds == Bounds::Explicit)
         .flag("sparse", occupancy == Occupancy::Sparse)
         .flag("normals", normals.is_some())
+        .flag("glossy", glossy)
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.
@@ -214,6 +229,7 @@ pub fn gather_source(
     bounds: Bounds,
     occupancy: Occupancy,
     normals: Normals,
+    glossy: bool,
 ) -> Result<String, AssignError> {
-    gather_shader(bounds, occupancy, normals).link("package::gather")
+    gather_shader(bounds, occupancy, normals, glossy).link("package::gather")
 }

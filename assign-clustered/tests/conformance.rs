@@ -75,7 +75,7 @@ fn split(
     move |gpu| {
         let (size, normals) = (size.parse()?, Normals::Bins(bins));
         let (bounds, occupancy) = SC_E;
-        Ok(Box::new(Clustered::with_normals(gpu, size, bounds, occupancy, normals, settings)?))
+        Ok(Box::new(Clustered::with_normals(gpu, size, bounds, occupancy, normals, 0.0, settings)?))
     }
 }
 
@@ -99,7 +99,15 @@ fn only_sparse_explicit_clusters_are_split() {
         let size = "32x32x8".parse().unwrap();
         let make = |bins| {
             let settings = CullSettings::default();
-            Clustered::with_normals(&gpu, size, bounds, occupancy, Normals::Bins(bins), settings)
+            Clustered::with_normals(
+                &gpu,
+                size,
+                bounds,
+                occupancy,
+                Normals::Bins(bins),
+                0.0,
+                settings,
+            )
         };
         if (bounds, occupancy) == SC_E {
             assert_eq!(make(6).unwrap().id(), "SC-E/32x32x8/n6");

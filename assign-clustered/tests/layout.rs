@@ -7,7 +7,8 @@ use std::mem::offset_of;
 
 use assign::{Bounds, CullSettings, Culler, Facing, GroupShape, LightKinds, LightSource};
 use assign_clustered::{
-    BINS_WESL, ClustersUniform, EXPLICIT_WESL, IMPLICIT_WESL, Normals, Occupancy, gather_source,
+    BINS_WESL, ClustersUniform, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL, Normals, Occupancy,
+    gather_source,
 };
 
 fn validated(what: &str, source: &str) -> naga::Module {
@@ -53,8 +54,12 @@ fn kernels_that_know_normals_validate() {
     for source in [LightSource::Linear, LightSource::Hierarchy] {
         for kinds in LightKinds::ALL {
             let settings = CullSettings { source, ..CullSettings::default() };
-            let source = Culler::facing_kernel_source(settings, Facing::Horizon, BINS_WESL, kinds);
-            validated(&format!("{source:?}, {kinds:?}"), &source.unwrap());
+            for (facing, module) in
+                [(Facing::Horizon, BINS_WESL), (Facing::HorizonAndGloss, GLOSSY_BINS_WESL)]
+            {
+                let source = Culler::facing_kernel_source(settings, facing, module, kinds);
+                validated(&format!("{facing:?}, {settings:?}, {kinds:?}"), &source.unwrap());
+            }
         }
     }
 }
@@ -64,11 +69,14 @@ fn gathering_validates() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
         for occupancy in [Occupancy::Dense, Occupancy::Sparse] {
             let what = format!("{bounds:?}, {occupancy:?}");
-            validated(&what, &gather_source(bounds, occupancy, Normals::None).unwrap());
+            validated(&what, &gather_source(bounds, occupancy, Normals::None, false).unwrap());
         }
     }
-    let source = gather_source(Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6)).unwrap();
-    validated("with normals", &source);
+    for glossy in [false, true] {
+        let what = format!("with normals, glossy {glossy}");
+        let (bounds, occupancy, normals) = (Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6));
+        validated(&what, &gather_source(bounds, occupancy, normals, glossy).unwrap());
+    }
 }
 
 /// Name and offset of every field of a Rust struct, in its order.
@@ -93,7 +101,8 @@ fn clusters() {
     let wesl: Vec<_> =
         members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
     let rust = fields!(ClustersUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential, surfaces_only, bin_side);
+        near_m, far_m, exponential, surfaces_only, bin_side,
+        specular_threshold);
     assert_eq!(wesl, rust, "fields of WESL, then of Rust");
     assert_eq!(*span as usize, size_of::<ClustersUniform>());
 }

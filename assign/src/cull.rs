@@ -42,6 +42,9 @@ pub enum Facing {
     /// `group_facing(group: u32) -> NormalCone`, and lights that rise above no horizon are left
     /// out (`facing.wesl`).
     Horizon,
+    /// The same, and how they reflect: `group_gloss(group: u32) -> Gloss`. Specular terms of area
+    /// lights that add less than a threshold are left out (`gloss.wesl`). Lossy.
+    HorizonAndGloss,
 }
 
 /// Which groups get a list in a frame.
@@ -307,7 +310,9 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Sh
         .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
         .module("package::strategy", module)
-        .flag("facing", variant.facing == Facing::Horizon)
+        .module("package::gloss", include_str!("shaders/gloss.wesl"))
+        .flag("facing", variant.facing != Facing::Unknown)
+        .flag("gloss", variant.facing == Facing::HorizonAndGloss)
         .flag("hs", tests.hs)
         .flag("sat_e", tests.sat_e)
         .flag("sat_n", tests.sat_n)

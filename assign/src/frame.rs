@@ -23,6 +23,8 @@ pub struct Needs {
     pub depth: bool,
     /// Shading normals and roughness.
     pub normals: bool,
+    /// Base colour and metallic.
+    pub materials: bool,
     /// The models' boxes, and `ViewSample.model_ix` of every sample.
     pub models: bool,
     /// The scene's triangles.
@@ -45,6 +47,9 @@ pub struct Frame<'a> {
     /// Shading normals, world space, of unit length, and perceptual roughness in `w`:
     /// `texture_2d<f32>`, half floats or better, the size of the target.
     pub normals: Option<&'a wgpu::TextureView>,
+    /// Base colour, linear as it is read, and metallic in `w`: `texture_2d<f32>`, the size of the
+    /// target.
+    pub base_color: Option<&'a wgpu::TextureView>,
     /// The models' boxes; `ViewSample.model_ix` is an index here.
     pub models: Option<&'a [ModelBox]>,
     /// A box that holds all surfaces: lowest and highest corner, world space, metres.
@@ -60,6 +65,7 @@ impl<'a> Frame<'a> {
             samples: SampleDomain::default(),
             depth: None,
             normals: None,
+            base_color: None,
             models: None,
             surface_bounds: None,
         }
@@ -76,6 +82,13 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn with_normals(mut self, normals: &'a wgpu::TextureView) -> Self {
         self.normals = Some(normals);
+        self
+    }
+
+    /// Adds base colour and metallic.
+    #[must_use]
+    pub fn with_base_color(mut self, base_color: &'a wgpu::TextureView) -> Self {
+        self.base_color = Some(base_color);
         self
     }
 

@@ -105,6 +105,11 @@ impl Choice {
                         .filter(|normals| normals.check().is_ok())
                         .ok_or_else(|| choice.refuse(&segment))?;
                 }
+                Some(Axis::Specular) => {
+                    let threshold =
+                        threshold_of(&segment).ok_or_else(|| choice.refuse(&segment))?;
+                    choice.spec.specular_threshold = threshold;
+                }
                 Some(Axis::Cap) => {
                     let cap = number_of(&segment, CAP).ok_or_else(|| choice.refuse(&segment))?;
                     choice.spec.cap = Some(cap);
@@ -207,7 +212,7 @@ impl Choice {
                 }
                 Axis::Source => ("source", "linear".into()),
                 Axis::Box => ("box", format!("{:?}", self.spec.grid_box).to_lowercase()),
-                Axis::Normals | Axis::Cap | Axis::Reuse => continue,
+                Axis::Normals | Axis::Specular | Axis::Cap | Axis::Reuse => continue,
             };
             all.insert(name.to_owned(), value.into());
         }
@@ -220,12 +225,17 @@ impl Choice {
         for (name, value) in numbers {
             all.extend(value.map(|value| (name.to_owned(), value.into())));
         }
+        if self.spec.specular_threshold > 0.0 {
+            all.insert("specular_threshold".into(), self.spec.specular_threshold.into());
+        }
         all
     }
 
     /// Whether it may show another image than no culling of that many lights: a knob says so.
     pub fn is_lossy(&self, lights: u64) -> bool {
-        self.spec.cap.is_some_and(|most| u64::from(most) < lights) || self.is_reused()
+        self.spec.cap.is_some_and(|most| u64::from(most) < lights)
+            || self.is_reused()
+            || self.spec.specular_threshold > 0.0
     }
 
     /// The most lights of a list.
@@ -270,6 +280,14 @@ fn number_of(segment: &str, word: &str) -> Option<u32> {
     segment.strip_prefix(word)?.parse().ok().filter(|number| *number > 0)
 }
 
+/// How a segment begins that says the specular radiance that is left out.
+const SPECULAR: &str = "s";
+
+/// The radiance behind an `s`, above 0.
+fn threshold_of(segment: &str) -> Option<f32> {
+    segment.strip_prefix(SPECULAR)?.parse().ok().filter(|number: &f32| *number > 0.0)
+}
+
 /// The axis that a segment speaks of; `None` where it can only be parameters.
 fn axis_of(segment: &str) -> Option<Axis> {
     match segment {
@@ -277,6 +295,7 @@ fn axis_of(segment: &str) -> Option<Axis> {
         "lights" | "surfaces" => Some(Axis::Box),
         _ if segment.starts_with(CAP) => Some(Axis::Cap),
         _ if number_of(segment, NORMALS).is_some() => Some(Axis::Normals),
+        _ if threshold_of(segment).is_some() => Some(Axis::Specular),
         _ if segment.starts_with(REUSE) => Some(Axis::Reuse),
         _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
     }
@@ -309,7 +328,10 @@ mod tests {
         assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
         let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
         assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
-        assert_eq!(asked(&["--strategies", "sc-e/BVH/N6"]), ["SC-E/48x48x40/n6/bvh"]);
+        let normals = asked(&["--strategies", "sc-e/BVH/N6,SC-E/s0.001/n24"]);
+        assert_eq!(normals, ["SC-E/48x48x40/n6/bvh", "SC-E/48x48x40/n24/s0.001"]);
+        assert!(Choice::parse("SC-E/n24/s0.001").unwrap().is_lossy(1));
+        assert!(!Choice::parse("SC-E/n24").unwrap().is_lossy(1));
     }
 
     #[test]

@@ -46,6 +46,8 @@ pub enum Axis {
     Box,
     /// Bins of normals that clusters are split into: `n6`.
     Normals,
+    /// Specular radiance of area lights that is left out: `s0.001`. Lossy.
+    Specular,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
     /// Frames for which lists are used: `reuse4`. Lossy where groups or lights move.
@@ -60,6 +62,7 @@ impl Axis {
             Self::Source => "linear or bvh",
             Self::Box => "lights or surfaces",
             Self::Normals => "n and the bins of normals: n1, n6, n24 or n54",
+            Self::Specular => "s and the specular radiance that is left out, such as s0.001",
             Self::Cap => "cap and the most lights of a list, such as cap32",
             Self::Reuse => "reuse and the frames for which lists are used, such as reuse4",
         }
@@ -77,6 +80,8 @@ pub struct Spec {
     pub grid_box: GridBox,
     /// Bins of normals.
     pub normals: Normals,
+    /// Specular radiance of area lights that is left out.
+    pub specular_threshold: f32,
     /// The most lights of a list.
     pub cap: Option<u32>,
     /// Frames for which lists are used.
@@ -209,13 +214,19 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "SC-E",
         parameters: CLUSTER,
         default: "48x48x40",
-        axes: &[Axis::Normals, Axis::Source, Axis::Cap, Axis::Reuse],
+        axes: &[Axis::Normals, Axis::Specular, Axis::Source, Axis::Cap, Axis::Reuse],
         summary: "sparse clusters, explicit bounds: both at once",
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
-            let Spec { normals, settings, .. } = spec;
+            let Spec { normals, specular_threshold, settings, .. } = *spec;
             Ok(Method::lists(Clustered::with_normals(
-                gpu, size, Explicit, Sparse, *normals, *settings,
+                gpu,
+                size,
+                Explicit,
+                Sparse,
+                normals,
+                specular_threshold,
+                settings,
             )?))
         },
     },

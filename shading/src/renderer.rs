@@ -98,12 +98,13 @@ impl Renderer {
         &self.targets
     }
 
-    /// The frame a strategy gets: this view and these lights, with this renderer's depth and
-    /// normals, its models' boxes and the box around its surfaces.
+    /// The frame a strategy gets: this view and these lights, with this renderer's depth, normals
+    /// and base colours, its models' boxes and the box around its surfaces.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
         Frame::new(view, lights)
             .with_depth(&self.targets.depth)
             .with_normals(&self.targets.normal)
+            .with_base_color(&self.targets.base_color)
             .with_models(&self.models)
             .with_surface_bounds(self.surface_bounds.0, self.surface_bounds.1)
     }
@@ -255,11 +256,12 @@ pub fn record_before_lighting(
     passes: &mut dyn Passes,
 ) {
     renderer.record_depth(frame.view, passes);
-    if mode == Mode::Deferred || strategy.needs().normals {
+    let needs = strategy.needs();
+    if mode == Mode::Deferred || needs.normals || needs.materials {
         renderer.record_gbuffer(frame.view, passes);
     }
     // Fragments know their model; a pixel of the G-buffer does not.
-    if mode == Mode::Deferred && strategy.needs().models {
+    if mode == Mode::Deferred && needs.models {
         renderer.record_model_ids(frame.view, passes);
     }
     strategy.record(frame, passes);

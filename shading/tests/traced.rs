@@ -232,7 +232,8 @@ fn lights() -> Vec<Light> {
     let mut lights = common::lights(12);
     let [x, z] = [Vec3::X * 0.6, Vec3::Z * 0.4];
     let down = LightShape::Area(Emitter::rectangle(x, z).two_sided());
-    lights[0] = Light { shape: down, position: Vec3::new(0.5, 2.2, 0.0), ..lights[0] };
+    lights[0] =
+        Light { shape: down, position: Vec3::new(0.5, 2.2, 0.0), range_m: 5.0, ..lights[0] };
     lights[1] = Light { range_m: f32::NAN, ..lights[1] };
     lights
 }
@@ -325,7 +326,9 @@ fn truth_without_shadows_is_what_the_pipeline_shows() {
     let scene = common::showcase();
     let traced = TracedScene::new(&scene);
     let view = common::view([96, 64]);
-    let lights = common::lights(40);
+    let mut lights = common::lights(40);
+    // Far enough to throw shadows.
+    lights.iter_mut().for_each(|light| light.range_m += 4.0);
     let (gbuffer, image) = rasterise(&gpu, &scene, &view, &lights);
     let settings = TruthSettings::new(Transport::Unshadowed);
     let sample_of = |pixel| gbuffer.sample(pixel, &traced);

@@ -2,7 +2,8 @@
 //!
 //! The culling kernel runs these tests in WESL; here they are in Rust, f32 for f32, under the same
 //! names: [`Frustum`] is `bounds_frustum.wesl`, [`Aabb`] `bounds_box.wesl`, [`OrientedBox`]
-//! `bounds_oriented_box.wesl`, and [`LightVolume`] what they share, `lights.wesl` and
+//! `bounds_oriented_box.wesl`, [`NormalCone`] `facing.wesl`, [`SeenGroup`] `gloss.wesl`, and
+//! [`LightVolume`] what they share, `lights.wesl` and
 //! `volume.wesl`.
 //!
 //! # The tests
@@ -75,14 +76,18 @@
 //! fails where this table is off by more than 0.3.
 
 mod aabb;
+mod facing;
 mod frustum;
+mod gloss;
 mod oriented_box;
 mod volume;
 
 use glam::Vec3;
 
 pub use aabb::Aabb;
+pub use facing::NormalCone;
 pub use frustum::Frustum;
+pub use gloss::{Gloss, SeenGroup};
 pub use oriented_box::OrientedBox;
 pub use volume::LightVolume;
 

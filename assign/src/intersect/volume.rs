@@ -89,8 +89,14 @@ impl LightVolume {
     }
 
     /// How far the outline extends from the volume's centre along a unit vector, metres.
-    fn outline_extent(&self, axis: Vec3) -> f32 {
+    pub(super) fn outline_extent(&self, axis: Vec3) -> f32 {
         self.half_axes[0].dot(axis).abs() + self.half_axes[1].dot(axis).abs()
+    }
+
+    /// Distance of the outline's corners from the volume's centre, metres.
+    pub(super) fn outline_radius(&self) -> f32 {
+        let [x, y] = self.half_axes;
+        (x.length_squared() + y.length_squared()).sqrt()
     }
 
     /// The outline's point closest to `point`, world space.

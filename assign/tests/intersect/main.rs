@@ -7,6 +7,7 @@
 mod areas;
 mod balls;
 mod cases;
+mod facing;
 mod groups;
 mod oracle;
 mod rates;

@@ -1,8 +1,7 @@
 //! Area lights with shadows: radiance of a flat emitter, reflected at a sample.
 //!
-//! By pairs of directions: one uniform
-//! in the solid angle of the emitter's rectangle (Ureña et al. 2013), one drawn as the BRDF reflects,
-//! both weighted by the balance heuristic (Veach and Guibas 1995, equation 14): a direction counts
+//! By pairs of directions: one uniform in the solid angle of the emitter's rectangle (Ureña et al.
+//! 2013), one drawn as the BRDF reflects, both weighted by the balance heuristic (Veach and Guibas 1995, equation 14): a direction counts
 //! once over the sum of both densities, whichever drew it. So neither a mirror's small highlight nor
 //! a small emitter over a rough surface makes a rare, large value.
 
@@ -30,7 +29,8 @@ pub(super) struct SeenEmitter<'a> {
     sample: &'a SurfaceSample,
     /// Vector from the sample to the emitter's middle, metres.
     center: DVec3,
-    half_axes: [DVec3; 2],
+    /// Of the vertices, of any length: half axes and [`Emitter::normal`] are rounded.
+    normal: DVec3,
     /// Emitted radiance times the windows of diffuse and of specular light.
     diffuse: DVec3,
     specular: DVec3,
@@ -51,17 +51,24 @@ impl<'a> SeenEmitter<'a> {
         let distance_2 = (emitter.closest(-center) + center).length_squared();
         let range_m = f64::from(light.range_m);
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
+        let vertices = emitter.vertices().iter().map(|v| v.as_dvec3());
+        let next = vertices.clone().cycle().skip(1);
         let seen = Self {
             light,
             emitter,
             sample,
             center,
-            half_axes: emitter.half_axes().map(Vec3::as_dvec3),
+            normal: vertices.zip(next).map(|(a, b)| a.cross(b)).sum(),
             diffuse: radiance * window(distance_2, f64::from(light.diffuse_range_m())),
             specular: radiance * window(distance_2, range_m),
             range_m,
         };
         (seen.specular != DVec3::ZERO).then_some(seen)
+    }
+
+    /// Vector from the sample to a vertex.
+    fn vertex(&self, ix: usize) -> DVec3 {
+        self.emitter.vertices()[ix].as_dvec3() + self.center
     }
 
     /// Reflected radiance that nothing of the scene blocks, from `pairs` of directions.
@@ -71,7 +78,7 @@ impl<'a> SeenEmitter<'a> {
         pairs: u32,
         rng: &mut Pcg64Mcg,
     ) -> Estimate {
-        let [x, y] = self.half_axes;
+        let [x, y] = self.emitter.half_axes().map(Vec3::as_dvec3);
         let rectangle = SphericalRectangle::new(self.center - x - y, 2.0 * x, 2.0 * y);
         let Some(rectangle) = rectangle.filter(|r| r.solid_angle() > SMALL) else {
             let middle = self.sample.position + self.center;
@@ -108,8 +115,7 @@ impl<'a> SeenEmitter<'a> {
 
     /// The point of the emitter that a ray from the sample meets, world space.
     fn point_along(&self, direction: DVec3) -> Option<DVec3> {
-        let normal = self.half_axes[0].cross(self.half_axes[1]);
-        let distance_m = normal.dot(self.center) / normal.dot(direction);
+        let distance_m = self.normal.dot(self.vertex(0)) / self.normal.dot(direction);
         let offset = direction * distance_m - self.center;
         let is_inside = self.emitter.closest(offset).distance(offset) <= ROUNDING * self.range_m;
         (distance_m > 0.0 && is_inside).then(|| self.sample.position + direction * distance_m)

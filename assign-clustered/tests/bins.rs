@@ -1,0 +1,179 @@
+//! Bins of normals on the adapter: every direction lies in one, whose cone holds it, and is gathered into
+//! that one however the G-buffer rounds it.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use assign::{Gpu, Shader, View, entry, storage_entry, uniform_entry};
+use assign_clustered::{BINS_WESL, ClusterSize, ClustersUniform, Normals};
+use bytemuck::{bytes_of, cast_slice};
+use glam::Vec3;
+
+const DRIVER: &str = "
+import package::strategy::{
+  bin_count, bin_of, bin_of_cell, cells_near, cone_of_bin, greatest_of, NORMAL_MIN,
+};
+
+// A direction, and the same as the G-buffer rounds it.
+@group(2) @binding(0) var<storage, read> normals: array<vec4f>;
+// The bin; whether its cone holds the direction; whether the rounded one is gathered into it.
+@group(2) @binding(1) var<storage, read_write> found: array<vec4u>;
+
+@compute @workgroup_size(64)
+fn find(@builtin(global_invocation_id) id: vec3u) {
+  if id.x >= arrayLength(&found) {
+    return;
+  }
+  let normal = normals[2u * id.x].xyz;
+  let rounded = normals[2u * id.x + 1u].xyz;
+  let bin = bin_of(normal);
+  let cone = cone_of_bin(bin);
+  let holds = dot(cone.axis, normal) >= cone.cos_half - 1.0e-6;
+  var gathered = bin_count() == 1u;
+  for (var axis = 0u; axis < 3u; axis++) {
+    let cells = cells_near(rounded, axis);
+    for (var y = cells.low.y; y < cells.end.y; y++) {
+      for (var x = cells.low.x; x < cells.end.x; x++) {
+        gathered = gathered || bin == bin_of_cell(axis, cells.backwards, vec2u(x, y));
+      }
+    }
+  }
+  gathered = gathered && greatest_of(rounded) >= 0.99 * NORMAL_MIN;
+  found[id.x] = vec4u(bin, select(0u, 1u, holds), select(0u, 1u, gathered), 0u);
+}
+";
+
+struct Finder {
+    gpu: Gpu,
+    pipeline: wgpu::ComputePipeline,
+}
+
+/// What is found of a direction: its bin, whether the bin's cone holds it, whether it is gathered.
+type Found = (u32, bool, bool);
+
+impl Finder {
+    fn new() -> Self {
+        let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
+        let facing = include_str!("../../assign/src/shaders/facing.wesl");
+        let bounds = include_str!("../../assign/src/shaders/bounds_box.wesl");
+        let module = Shader::new(1)
+            .module("package::driver", DRIVER)
+            .module("package::facing", facing)
+            .module("package::bounds", bounds)
+            .module("package::strategy", BINS_WESL)
+            .create(&gpu.device, "package::driver")
+            .unwrap();
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries };
+            gpu.device.create_bind_group_layout(&descriptor)
+        };
+        let clusters = layout(&[uniform_entry(4, stages)]);
+        let own = layout(&[storage_entry(0, stages, true), storage_entry(1, stages, false)]);
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[None, Some(&clusters), Some(&own)],
+            immediate_size: 0,
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some("find"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Self { gpu, pipeline }
+    }
+
+    /// Looks directions up, each with its rounded one.
+    fn find(&self, bins: u32, normals: &[[Vec3; 2]]) -> Vec<Found> {
+        let gpu = &self.gpu;
+        let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 64]);
+        let size: ClusterSize = "32x32x8".parse().unwrap();
+        let clusters = ClustersUniform::new(size, Normals::Bins(bins), &view, None).unwrap();
+        let uniform = gpu.uniform("clusters", size_of::<ClustersUniform>() as u64);
+        gpu.queue.write_buffer(&uniform, 0, bytes_of(&clusters));
+        let vectors: Vec<[f32; 4]> =
+            normals.iter().flatten().map(|v| v.extend(0.0).to_array()).collect();
+        let input = gpu.storage("normals", size_of_val(&vectors[..]) as u64).unwrap();
+        gpu.queue.write_buffer(&input, 0, cast_slice(&vectors));
+        let bytes = 16 * normals.len() as u64;
+        let output = gpu.storage("found", bytes).unwrap();
+        let group = |index, entries: &[wgpu::BindGroupEntry<'_>]| {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: None,
+                layout: &self.pipeline.get_bind_group_layout(index),
+                entries,
+            })
+        };
+        let groups =
+            [group(1, &[entry(4, &uniform)]), group(2, &[entry(0, &input), entry(1, &output)])];
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(1, &groups[0], &[]);
+            pass.set_bind_group(2, &groups[1], &[]);
+            pass.dispatch_workgroups(normals.len().div_ceil(64) as u32, 1, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let words = gpu.read(&output, bytes).unwrap();
+        let found = cast_slice::<u8, [u32; 4]>(&words).iter();
+        found.map(|&[bin, holds, gathered, _]| (bin, holds == 1, gathered == 1)).collect()
+    }
+}
+
+/// A half float at its worst: cut off, and flushed to 0 where too small for a normal one.
+fn cut_off(normal: Vec3) -> Vec3 {
+    let cut = |x: f32| {
+        let kept = f32::from_bits(x.to_bits() & !0x1fff);
+        if kept.abs() < f32::powi(2.0, -14) { 0.0 } else { kept }
+    };
+    Vec3::new(cut(normal.x), cut(normal.y), cut(normal.z))
+}
+
+/// Directions on a lattice over the faces of the cube, many beside a border of some cell.
+fn directions() -> Vec<Vec3> {
+    let mut coordinates: Vec<f32> = (-20..=20).map(|i| i as f32 / 20.0).collect();
+    for border in [-1.0_f32, -1.0 / 3.0, 0.0, 1.0 / 3.0, 1.0] {
+        coordinates
+            .extend([-2e-3, -1e-3, -1e-4, -1e-6, 1e-6, 1e-4, 1e-3, 2e-3].map(|d| border + d));
+    }
+    let mut all = Vec::new();
+    for &u in &coordinates {
+        for &v in &coordinates {
+            for front in [-1.0, 1.0] {
+                let corner = Vec3::new(front, u, v);
+                all.extend([corner, Vec3::new(v, front, u), Vec3::new(u, v, front)]);
+            }
+        }
+    }
+    all.into_iter().map(Vec3::normalize).collect()
+}
+
+#[test]
+fn every_direction_lies_in_a_bin_that_it_is_gathered_into() {
+    let finder = Finder::new();
+    let normals: Vec<[Vec3; 2]> = directions().into_iter().map(|n| [n, cut_off(n)]).collect();
+    for bins in [1, 6, 24, 54] {
+        let mut seen = vec![false; bins as usize];
+        for ([normal, rounded], (bin, holds, gathered)) in
+            normals.iter().zip(finder.find(bins, &normals))
+        {
+            assert!(bin < bins, "{normal} lies in bin {bin} of {bins}");
+            assert!(holds, "{normal} lies outside the cone of bin {bin} of {bins}");
+            assert!(gathered, "{normal} as {rounded} is not gathered into bin {bin} of {bins}");
+            seen[bin as usize] = true;
+        }
+        assert!(seen.iter().all(|seen| *seen), "all of {bins} bins are used: {seen:?}");
+    }
+}
+
+#[test]
+fn what_turns_by_more_than_the_slack_is_noticed() {
+    let finder = Finder::new();
+    let turned = |n: Vec3| [n, (n + 4e-3 * n.any_orthonormal_vector()).normalize()];
+    let normals: Vec<[Vec3; 2]> = directions().into_iter().map(turned).collect();
+    let missed = |bins| finder.find(bins, &normals).iter().filter(|found| !found.2).count();
+    assert!(missed(6) > 0 && missed(54) > missed(6));
+}

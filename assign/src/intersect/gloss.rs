@@ -1,0 +1,117 @@
+//! How much specular radiance an area light may add to a group: `gloss.wesl`, where the bound is
+//! derived.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+
+use super::{Aabb, LightVolume, NormalCone, eye_world, facing::OFF_SQUARE};
+use crate::{Light, LightShape, View};
+
+/// As `brdf.wesl` has it.
+const MIN_ROUGHNESS: f32 = 0.045;
+/// acos may be off by 7e-5 (WGSL, accuracy of built-in functions), and so may each of four angles.
+const ANGLE_SLACK: f32 = 5e-4;
+
+/// What is known of how a group's surfaces reflect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gloss {
+    /// Least and greatest perceptual roughness.
+    pub roughness: [f32; 2],
+    /// Greatest reflectance at normal incidence.
+    pub f0: f32,
+}
+
+/// A group of glossy surfaces as the eye sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenGroup {
+    bounds: Aabb,
+    center: Vec3,
+    radius_m: f32,
+    /// From its middle, and the mirror direction of that about the cone's axis.
+    to_eye: Vec3,
+    mirror: Vec3,
+    /// Spreads, radians.
+    eye_spread: f32,
+    mirror_spread: f32,
+    alpha: [f32; 2],
+    f0: f32,
+    /// Greatest V cos.
+    visibility: f32,
+}
+
+impl SeenGroup {
+    /// The surfaces in a box whose normals lie in a cone.
+    pub fn new(view: &View, bounds: Aabb, cone: &NormalCone, gloss: Gloss) -> Self {
+        let uniform = view.uniform();
+        let center = 0.5 * (bounds.min_world + bounds.max_world);
+        let radius_m = center.distance(bounds.max_world) + bounds.slack_m;
+        let (to_eye, eye_spread) = if uniform.perspective > 0.5 {
+            let across = eye_world(&uniform) - center;
+            (across / across.length().max(1e-20), spread_of(radius_m, across.length()))
+        } else {
+            let [x, y, z, _] = uniform.view_to_world[2];
+            (Vec3::new(x, y, z), 0.0)
+        };
+        let half_angle = cone.sin_half.atan2(cone.cos_half);
+        let n_dot_v = cone.axis.dot(to_eye);
+        let alpha = gloss.roughness.map(|r| r.max(MIN_ROUGHNESS) * r.max(MIN_ROUGHNESS));
+        let farthest = n_dot_v.abs().min(1.0).acos() + half_angle + eye_spread + ANGLE_SLACK;
+        let cos_v = if farthest < 0.5 * PI { farthest.cos() } else { 0.0 };
+        let alpha_2 = alpha[0] * alpha[0];
+        Self {
+            bounds,
+            center,
+            radius_m,
+            to_eye,
+            mirror: 2.0 * n_dot_v * cone.axis - to_eye,
+            eye_spread,
+            mirror_spread: 2.0 * half_angle + eye_spread + ANGLE_SLACK,
+            alpha,
+            f0: gloss.f0,
+            visibility: 0.5 / (cos_v * cos_v * (1.0 - alpha_2) + alpha_2).sqrt(),
+        }
+    }
+
+    /// The greatest specular radiance that an area light adds to a sample of the group; infinite of
+    /// a point or a spot.
+    pub fn specular_bound(&self, light: &Light) -> f32 {
+        let LightShape::Area(emitter) = &light.shape else { return f32::INFINITY };
+        let volume = LightVolume::from(light);
+        let outline = OFF_SQUARE * volume.outline_radius();
+        let on_box = volume.center.clamp(self.bounds.min_world, self.bounds.max_world);
+        let slack = self.bounds.slack_m + self.bounds.slack_per_m * volume.radius_m;
+        let nearest = (volume.center.distance(on_box) - outline - slack).max(0.0);
+        let ratio_2 = nearest * nearest / (volume.range_m * volume.range_m);
+        let window = (1.0 - ratio_2 * ratio_2).max(0.0);
+        let solid_angle = (2.0 * PI).min(emitter.area() / (nearest * nearest).max(1e-20));
+
+        let across = volume.center - self.center;
+        let distance_m = across.length();
+        let to_light = across / distance_m.max(1e-20);
+        let light_spread = spread_of(self.radius_m + outline + slack, distance_m);
+
+        let off = angle_between(to_light, self.mirror) - self.mirror_spread - light_spread;
+        let tilt = 0.5 * off.max(0.0);
+        let sine_2 = tilt.sin() * tilt.sin();
+        let alpha = tilt.min(1.57).tan().clamp(self.alpha[0], self.alpha[1]);
+        let peak = alpha * alpha * (1.0 - sine_2) + sine_2;
+        let distribution = alpha * alpha / (PI * peak * peak);
+
+        let apart =
+            angle_between(to_light, self.to_eye) + self.eye_spread + light_spread + ANGLE_SLACK;
+        let fresnel = self.f0 + (1.0 - self.f0) * (1.0 - (0.5 * apart.min(PI)).cos()).powi(5);
+
+        let radiance = light.intensity.max_element() / emitter.area() * window * window;
+        radiance * solid_angle * distribution * self.visibility * fresnel
+    }
+}
+
+/// Half the angle that a ball fills, radians; pi from inside.
+fn spread_of(radius_m: f32, distance_m: f32) -> f32 {
+    if radius_m < distance_m { (radius_m / distance_m).asin() } else { PI }
+}
+
+fn angle_between(a: Vec3, b: Vec3) -> f32 {
+    a.dot(b).clamp(-1.0, 1.0).acos()
+}
