@@ -212,6 +212,27 @@ fn sampled_emitters_agree_with_the_quadrature() {
 }
 
 #[test]
+fn a_small_emitter_is_a_point_light_with_a_cosine() {
+    let at = sample(DVec3::ZERO, DVec3::Y, 0.4);
+    let position = Vec3::new(1.0, 2.0, 0.5);
+    let emitter = Emitter::rectangle(Vec3::X * 1e-3, Vec3::Z * 2e-3);
+    let radiance = |emitter: Emitter, surface: Surface| {
+        let light = Light::area(emitter, position, 3.0, Vec3::new(1.0, 2.0, 4.0));
+        direct_light(&light, &SurfaceSample { surface, ..at }, None, 1, &mut rng()).mean
+    };
+    let point = Light::point(position, 3.0, Vec3::new(1.0, 2.0, 4.0));
+    let reflected = |surface: &Surface| {
+        let cos = f64::from(position.y / position.length());
+        light_contribution(&point, DVec3::ZERO, surface, at.to_eye) * cos
+    };
+    let close = |a: DVec3, b: DVec3| assert!((a / b - 1.0).abs().max_element() < 2e-3, "{a} {b}");
+    close(radiance(emitter, at.surface), reflected(&at.surface));
+    // Beyond the range of its diffuse light a surface shines as a black one does.
+    let black = Surface { base_color: DVec3::ZERO, ..at.surface };
+    close(radiance(emitter.with_diffuse_share(0.7), at.surface), reflected(&black));
+}
+
+#[test]
 fn half_a_blocked_emitter_is_half_an_emitter() {
     let blocker = [Vec3::new(-5.0, 1.0, 0.0), Vec3::X * 5.0, Vec3::Z * 9.0];
     let scene = scene_of(&[blocker], grey(0.5), vec![]);
@@ -383,8 +404,9 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
             }
         }
         let off = off.map(|sum| sum / f64::from(seen));
-        println!("{name}: {seen} seen, {missing} by one alone, off by {off:?}");
         assert!(seen > 5000 && missing <= seen as usize / 500, "{name}: {seen}, {missing}");
+        // Mips and eight-bit colour: 0.0064 of base colour in the atrium, 0.0071 in the showcase; at
+        // silhouettes the two may see different surfaces.
         let most = [1e-3, 0.01, 0.01, 0.02, 0.02];
         assert!(off.iter().zip(most).all(|(off, most)| *off < most), "{name}: {off:?}");
     }
