@@ -16,6 +16,7 @@
 mod file;
 mod passes;
 mod stats;
+mod truth_image;
 
 use std::collections::BTreeMap;
 
@@ -25,6 +26,7 @@ pub use shading::Mode;
 pub use file::{ResultsError, write_atomically};
 pub use passes::{PassKind, PassTimes, Passes};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
+pub use truth_image::TruthImage;
 
 use crate::schedule::frames_of_round;
 use passes::nan_from_null;
@@ -128,40 +130,6 @@ pub struct Truth {
     /// Further remarks, one sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
-}
-
-/// What a view should look like, rendered on the CPU.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TruthImage {
-    /// The scene's id, or its file's name.
-    pub scene: String,
-    /// Hash of everything in the scene that reaches the GPU, hexadecimal.
-    pub scene_hash: String,
-    /// Lights that took part.
-    pub lights: u64,
-    /// Image width, pixels.
-    pub width: u32,
-    /// Image height, pixels.
-    pub height: u32,
-    /// The linear image, an EXR file of 32-bit floats beside `results.json`.
-    pub raw: String,
-    /// The tone-mapped image.
-    pub image: String,
-    /// The standard error of each channel over the mean luminance of the image: black at none, white
-    /// from a hundredth on.
-    pub error_image: String,
-    /// The factor before the tone curve.
-    pub exposure: f64,
-    /// Root mean square of the pixels' standard errors of luminance, over the mean luminance.
-    pub standard_error: f64,
-    /// Whether surfaces cast shadows.
-    pub shadows: bool,
-    /// Times that light is reflected between surfaces before it is seen.
-    pub bounces: u32,
-    /// Samples of each pixel, where samples were drawn.
-    pub samples: u32,
-    /// How long the CPU took, seconds.
-    pub seconds: f64,
 }
 
 /// How much of a run was checked against the truth.

@@ -151,7 +151,11 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
     assert!(text.contains("polynomials in place of the table take 1.5"), "{text}");
     assert!(text.contains("at 16 lights, LTC takes 2."), "{text}");
     // The dark tile is the worst, and cut out.
-    assert!(page.contains("around 32, 16: the truth on the left, point on the right"));
+    assert!(
+        page.contains(
+            "at 32, 16, and what is around it: the truth on the left, point on the right"
+        )
+    );
     let panel = page.split("data-part=\"pictures\"").nth(1).expect("pictures");
     assert_eq!(panel.matches("data-picture=").count(), MODELS.len() * 4);
     // Pictures are stored once: the truth, and three of each model.
@@ -269,5 +273,6 @@ fn the_papers_figures_stand_beside_ours_by_place_and_lights() {
         assert!(charts.contains(&name), "{name} of {charts:?}");
     }
     assert!(text.contains("6 cones is fastest without a loss"), "{text}");
+    assert!(text.contains("Fastest without a loss in atrium: 6 cones in 3 of 3 cases."), "{text}");
     assert!(text.contains("54 cones, cut 0.001 82.6 %"), "{text}");
 }

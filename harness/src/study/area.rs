@@ -17,7 +17,7 @@ use crate::{
 const RANGE_SHARE: f32 = 0.5;
 
 /// Lights of the one view of the truth.
-const FEW: &str = "3";
+const FEW: &str = "4";
 
 /// How much the study looks at.
 struct Extent {

@@ -115,8 +115,8 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
         "model-times",
         "Speed against accuracy: models",
         "The error of shading against the truth image; no light is culled. Left and low is good. Monte \
-         Carlo is labelled with its samples. The staircase joins the models that none beats in both. A \
-         point opens its picture beside the truth.",
+         Carlo is a curve over its samples; the tip of a point says how many. The staircase joins the models \
+         that none beats in both. A point opens its picture beside the truth.",
         &plot.html(scene, charts, shots),
     )
 }
@@ -175,7 +175,9 @@ fn words_table(entries: &[Entry<'_>]) -> String {
             ]
         })
         .collect();
-    table("What each model gets wrong", &["model", "what it leaves out", "measured"], &rows)
+    let heads = ["what it leaves out", "measured"];
+    let heads = heads.map(|head| format!("<span class=\"words\">{head}</span>"));
+    table("What each model gets wrong", &["model", &heads[0], &heads[1]], &rows)
 }
 
 /// Which models lie on the frontier of time and error, and the table against its polynomials.

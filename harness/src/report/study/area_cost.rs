@@ -1,7 +1,7 @@
 //! What area lights cost: times against the number of lights, by model, beside spots.
 
 use super::super::finding::lights;
-use super::super::format::{ABSENT, number, significant};
+use super::super::format::{ABSENT, significant};
 use super::area::{SPOTS, class, model, name};
 use super::data::{Line, counts, entries};
 use super::figure::{Charts, part, table};
@@ -94,9 +94,7 @@ fn times(done: &Done, scene: &str, lines: &[Line<'_>]) -> String {
         .collect();
     let mut heads = vec!["model".to_owned()];
     heads.extend(
-        counts
-            .iter()
-            .map(|count| format!("{} <span class=\"unit\">ms</span>", number(*count as f64))),
+        counts.iter().map(|count| format!("{} <span class=\"unit\">ms</span>", lights(*count))),
     );
     heads.push("a light <span class=\"unit\">\u{b5}s</span>".to_owned());
     heads.push("area : spot".to_owned());

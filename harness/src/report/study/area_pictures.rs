@@ -58,7 +58,7 @@ pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Strin
                 cut,
                 "The worst tile",
                 &format!(
-                    "in the middle of {CUT_PX} pixels around {}, {}: the truth on the left, {name} on the right",
+                    "of {TILE_PX} pixels, at {}, {}, and what is around it: the truth on the left, {name} on the right",
                     corner[0], corner[1]
                 ),
             );

@@ -134,13 +134,23 @@ fn best<'a>(case: &Case<'a>) -> Option<&'a Record> {
 
 fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
     let (best, position) = (best(case)?, case.position()?);
-    let mut text = format!(
-        "In {scene} at location {} under {}, {} is fastest without a loss: {} ms, position alone {} ms",
+    let time = |record: &Record| significant(record.assign_and_shade_ms());
+    let place = format!(
+        "In {scene} at location {} under {}",
         case.place.to_uppercase(),
-        lights(case.lights),
+        lights(case.lights)
+    );
+    if std::ptr::eq(best, position) {
+        return Some(format!(
+            "{place}, position alone is fastest without a loss: {} ms.",
+            time(best)
+        ));
+    }
+    let mut text = format!(
+        "{place}, {} is fastest without a loss: {} ms, position alone {} ms",
         setting(&best.strategy),
-        significant(best.assign_and_shade_ms()),
-        significant(position.assign_and_shade_ms()),
+        time(best),
+        time(position),
     );
     if let (Some(own), Some(all)) = (best.operations, position.operations) {
         let fewer = 1.0 - listed(&own) as f64 / listed(&all).max(1) as f64;
@@ -149,15 +159,23 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
     Some(text + ".")
 }
 
-/// The fastest setting of all cases of the first scene.
+/// How often each setting is the fastest, in the first scene that has figures.
 pub(super) fn headline(done: &Done) -> Option<String> {
     let scene = done.scenes().into_iter().find(|scene| !cases(done, scene).is_empty())?;
     let cases = cases(done, scene);
-    let best: Vec<String> = cases
-        .iter()
-        .filter_map(|case| Some(format!("{} at {}", setting(&best(case)?.strategy), case.name())))
-        .collect();
-    (!best.is_empty()).then(|| {
-        format!("Fastest without a loss in {scene}: {}.", super::super::rank::listed(&best))
+    let mut wins: Vec<(String, usize)> = Vec::new();
+    for best in cases.iter().filter_map(best) {
+        let name = setting(&best.strategy);
+        match wins.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count += 1,
+            None => wins.push((name, 1)),
+        }
+    }
+    wins.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let all: usize = wins.iter().map(|(_, count)| count).sum();
+    let parts: Vec<String> =
+        wins.iter().map(|(name, count)| format!("{name} in {count} of {all} cases")).collect();
+    (!parts.is_empty()).then(|| {
+        format!("Fastest without a loss in {scene}: {}.", super::super::rank::listed(&parts))
     })
 }

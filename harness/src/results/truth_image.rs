@@ -1,0 +1,37 @@
+//! What `lightbench truth` rendered.
+
+use serde::{Deserialize, Serialize};
+
+/// What a view should look like, rendered on the CPU.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TruthImage {
+    /// The scene's id, or its file's name.
+    pub scene: String,
+    /// Hash of everything in the scene that reaches the GPU, hexadecimal.
+    pub scene_hash: String,
+    /// Lights that took part.
+    pub lights: u64,
+    /// Image width, pixels.
+    pub width: u32,
+    /// Image height, pixels.
+    pub height: u32,
+    /// The linear image, an EXR file of 32-bit floats beside `results.json`.
+    pub raw: String,
+    /// The tone-mapped image.
+    pub image: String,
+    /// The standard error of each channel over the mean luminance of the image: black at none, white
+    /// from a hundredth on.
+    pub error_image: String,
+    /// The factor before the tone curve.
+    pub exposure: f64,
+    /// Root mean square of the pixels' standard errors of luminance, over the mean luminance.
+    pub standard_error: f64,
+    /// Whether surfaces cast shadows.
+    pub shadows: bool,
+    /// Times that light is reflected between surfaces before it is seen.
+    pub bounces: u32,
+    /// Samples of each pixel, where samples were drawn.
+    pub samples: u32,
+    /// How long the CPU took, seconds.
+    pub seconds: f64,
+}
