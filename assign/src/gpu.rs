@@ -87,11 +87,12 @@ impl Gpu {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// The most lights that one loop of a shader can sum here; `None` where nothing bounds it.
+    /// The most rounds that all loops of an invocation may take here together; `None` where nothing
+    /// bounds them.
     ///
     /// llvmpipe ends an invocation's loops after 65,535 rounds without a word: with more lights
     /// its image of no culling is wrong.
-    pub fn max_looped_lights(&self) -> Option<u32> {
+    pub fn max_loop_rounds(&self) -> Option<u32> {
         self.info.name.contains("llvmpipe").then_some(65_535)
     }
 

@@ -26,6 +26,7 @@ mod heat_map;
 mod image;
 mod lighting;
 mod lighting_inputs;
+mod loop_rounds;
 pub mod ltc;
 mod materials;
 mod mips;

@@ -125,9 +125,11 @@ impl Lighting {
         passes: &mut dyn Passes,
     ) -> Result<(), ShadingError> {
         let made = self.options.kinds;
-        if !made.cover(renderer.kinds) {
-            return Err(ShadingError::Kinds { made, lights: renderer.kinds });
+        let lights = renderer.lights;
+        if !made.cover(lights.kinds) {
+            return Err(ShadingError::Kinds { made, lights: lights.kinds });
         }
+        lights.check(&renderer.gpu, self.options)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(pipelines, scene) => {

@@ -12,6 +12,7 @@ use crate::{
     AreaModel, LightingOptions, Renderer, ShadingError,
     lighting::{TEXELS, texture, texture_entry},
     lighting_inputs::LightingInputs,
+    loop_rounds::LightTotals,
     raster::LISTS_GROUP,
     shaders,
     targets::{DEPTH_FORMAT, RADIANCE_FORMAT},
@@ -112,6 +113,10 @@ impl RasterSpheres {
         let made = self.options.kinds;
         if !made.cover(lights.kinds()) {
             return Err(ShadingError::Kinds { made, lights: lights.kinds() });
+        }
+        // A fragment adds one light.
+        for light in lights.lights() {
+            LightTotals::of(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
         }
         let targets = &renderer.targets;
         let mut entries = vec![

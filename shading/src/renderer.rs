@@ -1,8 +1,7 @@
 //! One scene drawn into one set of targets: the passes that all strategies share.
 
 use assign::{
-    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, LightKinds, ModelBox, Passes,
-    View,
+    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
 };
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
@@ -12,6 +11,7 @@ use crate::{
     LightingOptions, ShadingError,
     geometry::SceneGpu,
     lighting_inputs::LightingInputs,
+    loop_rounds::LightTotals,
     raster::{RasterPass, RasterPipelines},
     targets::Targets,
 };
@@ -46,8 +46,8 @@ pub struct Renderer {
     scene_group: wgpu::BindGroup,
     pub(crate) targets: Targets,
     pub(crate) depth_mapping: DepthMapping,
-    /// The kinds of the prepared lights.
-    pub(crate) kinds: LightKinds,
+    /// The prepared lights.
+    pub(crate) lights: LightTotals,
     models: Vec<ModelBox>,
     surface_bounds: (Vec3, Vec3),
     depth: RasterPipelines,
@@ -80,7 +80,7 @@ impl Renderer {
             clay: pipelines(RasterPass::Clay)?,
             gpu: gpu.clone(),
             depth_mapping: view.depth,
-            kinds: LightKinds::default(),
+            lights: LightTotals::default(),
             frame,
             scene_group: scene.bind_group(gpu, &inputs),
             scene,
@@ -115,18 +115,6 @@ impl Renderer {
         view: &View,
         lights: &assign::LightBuffer,
     ) -> Result<(), ShadingError> {
-        // A list may be all lights at any time.
-        if let Some(most) = self.gpu.max_looped_lights().filter(|most| lights.count() > *most) {
-            return Err(AssignError::Parameter {
-                field: "lights".into(),
-                value: lights.count().to_string(),
-                accepted: format!(
-                    "at most {most} on {}, which ends longer loops",
-                    self.gpu.info.name
-                ),
-            }
-            .into());
-        }
         let viewport = view.viewport;
         let [width, height] = self.targets.size;
         let fits = viewport.x.saturating_add(viewport.width) <= width
@@ -142,7 +130,7 @@ impl Renderer {
             }
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights))?;
-        self.kinds = lights.kinds();
+        self.lights = LightTotals::of(lights.lights());
         Ok(())
     }
 

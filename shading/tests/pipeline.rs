@@ -4,10 +4,12 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
-use assign::{Assignment, EncoderPasses, Everything, Gpu, LightBuffer, LightKinds, View};
+use assign::{
+    Assignment, Emitter, EncoderPasses, Everything, Gpu, Light, LightBuffer, LightKinds, View,
+};
 use glam::{DVec3, Vec3};
 use shading::{
-    HdrImage, LightBvh, Lighting, LightingOptions, Mode, Renderer, Samples, probe,
+    AreaModel, HdrImage, LightBvh, Lighting, LightingOptions, Mode, Renderer, Samples, probe,
     record_before_lighting, record_for_probe,
 };
 
@@ -177,20 +179,60 @@ fn every_pipeline_passes_validation_without_a_gpu() {
     }
 }
 
+/// The image of no culling under `count` copies of a light, or why there is none.
+fn copies(gpu: &Gpu, light: Light, count: u32, area: AreaModel) -> Result<HdrImage, String> {
+    let view = common::view([8, 8]);
+    let lights = LightBuffer::new(gpu, &vec![light; count as usize]).unwrap();
+    let mut renderer = Renderer::new(gpu, &common::showcase(), &view).unwrap();
+    renderer.prepare(&view, &lights).unwrap();
+    let mut strategy = Everything::new(gpu).unwrap();
+    let options = LightingOptions { area, ..options(lights.kinds()) };
+    let lighting = Lighting::new(&renderer, &strategy, Mode::Deferred, options).unwrap();
+    let frame = renderer.frame(&view, &lights);
+    strategy.prepare(gpu, &frame).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut passes = EncoderPasses { encoder: &mut encoder };
+    record_before_lighting(&renderer, Mode::Deferred, &mut strategy, &frame, &mut passes);
+    let recorded = lighting.record(&renderer, &view, &strategy, &mut passes);
+    gpu.queue.submit([encoder.finish()]);
+    recorded.map_err(|e| e.to_string())?;
+    Ok(HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap())
+}
+
 #[test]
 fn more_lights_than_a_loop_can_sum_are_an_error() {
     let gpu = common::gpu();
-    let Some(most) = gpu.max_looped_lights() else {
+    let Some(most) = gpu.max_loop_rounds() else {
         println!("skipped: nothing bounds a loop on {}", gpu.info.name);
         return;
     };
-    let view = common::view([8, 8]);
-    let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
-    let few = LightBuffer::new(&gpu, &common::lights(most)).unwrap();
-    renderer.prepare(&view, &few).unwrap();
-    let many = LightBuffer::new(&gpu, &common::lights(most + 1)).unwrap();
-    let error = renderer.prepare(&view, &many).unwrap_err().to_string();
+    let point = common::lights(1)[0];
+    copies(&gpu, point, most, AreaModel::default()).unwrap();
+    let error = copies(&gpu, point, most + 1, AreaModel::default()).unwrap_err();
     assert!(error.contains("65536"), "{error}");
+}
+
+/// As many area lights as are accepted light a sample as often as they should.
+#[test]
+fn as_many_area_lights_as_are_accepted_are_all_summed() {
+    let gpu = common::gpu();
+    let lamp = Emitter::rectangle(Vec3::X * 0.2, Vec3::Y * 0.2).two_sided();
+    let light = Light::area(lamp, Vec3::new(0.0, 1.5, 1.0), 20.0, Vec3::splat(0.01));
+    for model in AreaModel::ALL {
+        let sum = |count| -> Result<f64, String> {
+            let image = copies(&gpu, light, count, model)?;
+            Ok(image.pixels.iter().map(|p| f64::from(p[0])).sum())
+        };
+        let (mut most, mut refused) = (16, 65_536);
+        while refused - most > 64 {
+            let middle = (most + refused) / 2;
+            *if sum(middle).is_ok() { &mut most } else { &mut refused } = middle;
+        }
+        let dark = sum(0).unwrap();
+        let [one, all] = [1, most].map(|count| sum(count).unwrap() - dark);
+        let ratio = all / one / f64::from(most);
+        assert!(one > 1e-6 && (ratio - 1.0).abs() < 1e-2, "{model}: {most} lights, {ratio}");
+    }
 }
 
 #[test]

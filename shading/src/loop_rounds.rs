@@ -1,0 +1,83 @@
+//! Rounds of the loops that light a sample, where an adapter ends loops by their number.
+//!
+//! llvmpipe counts the rounds of all loops of an invocation together, and ends them without a word:
+//! its image would be wrong, and is refused instead.
+
+use assign::{AssignError, Gpu, Light, LightKinds, LightShape};
+
+use crate::{AreaModel, LightingOptions, ShadingError};
+
+/// What of some lights decides the rounds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LightTotals {
+    pub(crate) kinds: LightKinds,
+    count: u64,
+    areas: u64,
+    vertices: u64,
+}
+
+impl LightTotals {
+    pub(crate) fn of(lights: &[Light]) -> Self {
+        let areas = lights.iter().filter_map(|light| match &light.shape {
+            LightShape::Area(emitter) => Some(emitter.vertices().len() as u64),
+            LightShape::Point | LightShape::Spot { .. } => None,
+        });
+        let (areas, vertices) = areas.fold((0, 0), |(areas, sum), n| (areas + 1, sum + n));
+        Self { kinds: LightKinds::of(lights), count: lights.len() as u64, areas, vertices }
+    }
+
+    /// Rounds of lighting a sample by all of them: a round a light; of an area light one a vertex for
+    /// the closest point, one for the horizon, and one a vertex and another for each term, or a sample
+    /// and its test for each term. Every loop takes one more to end.
+    fn rounds(&self, model: AreaModel) -> u64 {
+        let walks = 2 * (self.vertices + self.areas);
+        let terms = match model {
+            AreaModel::Point => 0,
+            AreaModel::Mrp | AreaModel::LtcTable | AreaModel::LtcPolynomial => {
+                2 * (self.vertices + 2 * self.areas)
+            }
+            AreaModel::MonteCarlo { samples } => {
+                2 * u64::from(samples) * (self.vertices + 2 * self.areas)
+            }
+        };
+        self.count + walks + terms
+    }
+
+    /// Whether an adapter lights a sample by all of them: a list may be all lights at any time.
+    pub(crate) fn check(&self, gpu: &Gpu, options: LightingOptions) -> Result<(), ShadingError> {
+        let rounds = self.rounds(options.area);
+        match gpu.max_loop_rounds() {
+            Some(most) if rounds > u64::from(most) => Err(AssignError::Parameter {
+                field: "lights".into(),
+                value: format!("{}, {rounds} rounds of loops a sample", self.count),
+                accepted: format!(
+                    "at most {most} rounds on {}, which ends longer loops: fewer lights, fewer of \
+                     them area lights, or fewer samples",
+                    gpu.info.name
+                ),
+            }
+            .into()),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use assign::Emitter;
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn area_lights_take_more_rounds_than_points() {
+        let point = Light::point(Vec3::ZERO, 1.0, Vec3::ONE);
+        let square = Emitter::rectangle(Vec3::X, Vec3::Y);
+        let area = Light::area(square, Vec3::ZERO, 1.0, Vec3::ONE);
+        let rounds = |lights: &[Light], model| LightTotals::of(lights).rounds(model);
+        assert_eq!(rounds(&[point; 7], AreaModel::LtcTable), 7);
+        assert_eq!(rounds(&[point, area], AreaModel::Point), 2 + 10);
+        assert_eq!(rounds(&[area], AreaModel::LtcTable), 1 + 10 + 12);
+        assert_eq!(rounds(&[area], AreaModel::MonteCarlo { samples: 10 }), 1 + 10 + 120);
+    }
+}
