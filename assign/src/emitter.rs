@@ -73,7 +73,9 @@ impl Emitter {
     /// # Errors
     ///
     /// [`LightFault::OutOfRange`] where there are fewer than 3 vertices or more than
-    /// [`MAX_VERTICES`]. Everything else is for [`Light::check`](crate::Light::check).
+    /// [`MAX_VERTICES`], or one lies off the plane of the others by more than 1e-4 of their size;
+    /// below that it is moved into the plane. Everything else is for
+    /// [`Light::check`](crate::Light::check).
     pub fn polygon(vertices_world: &[Vec3]) -> Result<(Self, Vec3), LightFault> {
         let count = vertices_world.len();
         if !(3..=MAX_VERTICES).contains(&count) {
@@ -84,9 +86,19 @@ impl Emitter {
             });
         }
         let (center, half_x, half_y) = smallest_rectangle(vertices_world);
+        let normal = half_x.as_dvec3().cross(half_y.as_dvec3()).normalize_or_zero();
+        let size = half_x.length() + half_y.length();
         let mut vertices = [Vec3::ZERO; MAX_VERTICES];
         for (own, world) in vertices.iter_mut().zip(vertices_world) {
-            *own = world - center;
+            let offset = world.as_dvec3() - center.as_dvec3();
+            let off_plane = normal.dot(offset);
+            let value = (off_plane.abs() / f64::from(size)) as f32;
+            if value > FLATNESS {
+                let field = "polygon vertex off its plane over size";
+                return Err(LightFault::OutOfRange { field, value, accepted: "at most 1e-4" });
+            }
+            // Bounds are those of the rectangle: what sticks out of its plane would be lost.
+            *own = (offset - normal * off_plane).as_vec3();
         }
         let outline = Outline::Polygon;
         let count = count as u8;
@@ -305,6 +317,16 @@ mod tests {
     }
 
     #[test]
+    fn vertices_that_are_hardly_off_their_plane_are_moved_into_it() {
+        let bent = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 1e-4), Vec3::Y];
+        let (emitter, _) = Emitter::polygon(&bent).unwrap();
+        let [x, y] = emitter.half_axes();
+        let normal = x.cross(y).normalize();
+        assert!(emitter.vertices().iter().all(|v| normal.dot(*v).abs() < 1e-6));
+        emitter.check().unwrap();
+    }
+
+    #[test]
     fn the_closest_point_is_on_the_face_an_edge_or_a_corner() {
         let emitter = Emitter::rectangle(Vec3::X, 2.0 * Vec3::Y);
         let closest = |x, y, z| emitter.closest(DVec3::new(x, y, z)).to_array();
@@ -322,7 +344,8 @@ mod tests {
             "polygon vertex count is 2: it must be 3 to 10"
         );
         let bent = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.1), Vec3::Y];
-        assert!(fault_of(&bent).contains("off its plane"), "{}", fault_of(&bent));
+        let fault_of_bent = Emitter::polygon(&bent).unwrap_err().to_string();
+        assert!(fault_of_bent.contains("off its plane"), "{fault_of_bent}");
         let arrow = [Vec3::ZERO, Vec3::new(2.0, -1.0, 0.0), Vec3::X, Vec3::new(2.0, 1.0, 0.0)];
         assert!(fault_of(&arrow).contains("convex"), "{}", fault_of(&arrow));
         // Goes round twice: every corner turns the right way.

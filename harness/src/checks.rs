@@ -73,6 +73,10 @@ pub(crate) fn served(
         let check = || -> Result<(), HarnessError> {
             match choice.make(gpu)? {
                 Method::Lists { mut strategy, .. } => {
+                    if cut == Cut::Hard && choice.is_specular_cut() {
+                        let accepted = format!("windowed for {}", choice.id());
+                        return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
+                    }
                     strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
                 }
                 Method::RasterSphere => {

@@ -243,6 +243,11 @@ impl Choice {
         self.spec.cap.unwrap_or(u32::MAX)
     }
 
+    /// Whether area lights too dull over a group lose their specular term.
+    pub fn is_specular_cut(&self) -> bool {
+        self.spec.specular_threshold > 0.0
+    }
+
     /// Whether lists are used for several frames.
     pub fn is_reused(&self) -> bool {
         self.spec.reuse.is_some_and(|frames| frames > 1)

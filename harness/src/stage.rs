@@ -143,6 +143,13 @@ impl Lit {
             lights.extend(other.lights);
         }
         let own = lights.len();
+        let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
+        let total = (u64::from(args.lights) + lights.len() as u64) * copies_of;
+        if total > u64::from(scenes::MAX_LIGHTS) {
+            let value = format!("{} with {copies_of} copies: {total} lights", args.lights);
+            let accepted = format!("at most {} lights together", scenes::MAX_LIGHTS);
+            return Err(CliError::out_of_range("--lights", &value, &accepted).into());
+        }
         let scattered = scatter_lights(&LightSpec {
             count: args.lights,
             seed: args.seed,

@@ -108,6 +108,8 @@ fn trace(
         let settings = TruthSettings {
             bounce_samples: args.samples,
             area_samples: args.samples,
+            // Other numbers for each: their errors are independent.
+            seed: if transport == Transport::Bounce { 2 } else { 1 },
             ..TruthSettings::new(transport)
         };
         let bar = progress_bar(u64::from(samples.height));

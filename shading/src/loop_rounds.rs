@@ -45,7 +45,19 @@ impl LightTotals {
 
     /// Whether an adapter lights a sample by all of them: a list may be all lights at any time.
     pub(crate) fn check(&self, gpu: &Gpu, options: LightingOptions) -> Result<(), ShadingError> {
-        let rounds = self.rounds(options.area);
+        self.check_rounds(gpu, self.rounds(options.area))
+    }
+
+    /// The same where light operations are counted, which walks the vertices once more.
+    pub(crate) fn check_counted(
+        &self,
+        gpu: &Gpu,
+        options: LightingOptions,
+    ) -> Result<(), ShadingError> {
+        self.check_rounds(gpu, self.rounds(options.area) + self.vertices + self.areas)
+    }
+
+    fn check_rounds(&self, gpu: &Gpu, rounds: u64) -> Result<(), ShadingError> {
         match gpu.max_loop_rounds() {
             Some(most) if rounds > u64::from(most) => Err(AssignError::Parameter {
                 field: "lights".into(),

@@ -53,6 +53,7 @@ pub fn count_operations(
     exposure: f32,
 ) -> Result<Operations, ShadingError> {
     let gpu = &renderer.gpu;
+    renderer.lights.check_counted(gpu, options)?;
     let viewport = frame.view.viewport;
     let bytes = u64::from(viewport.width) * u64::from(viewport.height) * 16;
     let counts = gpu.storage("operations", bytes)?;

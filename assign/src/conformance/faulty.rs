@@ -118,6 +118,11 @@ impl Fault {
         )
     }
 
+    /// All that a strategy with groups may have: one that reads normals, or one that does not.
+    pub fn all(normals: bool) -> Vec<Self> {
+        Self::ALL.into_iter().filter(|fault| normals || !fault.needs_normals()).collect()
+    }
+
     /// Whether it is a fault only of strategies that read normals.
     pub fn needs_normals(self) -> bool {
         self == Self::HighHorizon

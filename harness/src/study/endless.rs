@@ -14,9 +14,6 @@ use crate::{
 /// Polygon lights of each copy of the scene.
 const LIGHTS: &str = "126";
 
-/// Copies along each side of the ground, with what jobs are called by: the lights of all.
-const COPIES: [(&str, &str); 2] = [("1", "126"), ("4", "2016")];
-
 /// Where diffuse light ends, as a share of the range of specular light: that is 50 % longer.
 const DIFFUSE_SHARE: &str = "0.6667";
 
@@ -31,6 +28,8 @@ const CLUSTERS: &str = "SC-E/48x48x40/bvh";
 /// How much the study looks at.
 struct Extent {
     size: Size,
+    /// Copies along each side of the ground, with what jobs are called by: the lights of all.
+    copies: [(&'static str, &'static str); 2],
     frames: &'static str,
     warmup: &'static str,
     /// Whether no culling is timed.
@@ -43,6 +42,7 @@ struct Extent {
 const FULL: Extent = Extent {
     // The paper's, for its counts of operations.
     size: Size { width: 1280, height: 720 },
+    copies: [("1", "126"), ("4", "2016")],
     frames: "32",
     warmup: "4",
     none: true,
@@ -52,6 +52,8 @@ const FULL: Extent = Extent {
 
 const QUICK: Extent = Extent {
     size: Size { width: 96, height: 54 },
+    // No more than a software adapter sums in one loop.
+    copies: [("1", "126"), ("3", "1134")],
     frames: "6",
     warmup: "1",
     none: false,
@@ -80,7 +82,7 @@ pub(super) fn jobs(
     let timed = ["--strategies", &strategies, "--frames", extent.frames, "--warmup", extent.warmup];
     let common = [&common[..], &lit, &shaped, &seen, &timed].concat();
     let mut jobs = Vec::new();
-    for (side, count) in COPIES {
+    for (side, count) in extent.copies {
         let far = afar(all, side.parse().unwrap_or(1));
         for (place, camera) in [("a", "path:0/12"), ("b", "path:7/12"), ("c", far.as_str())] {
             let own = ["--replicate", side, "--camera", camera];

@@ -92,6 +92,9 @@ pub(super) fn of_node(
     // A mirroring transform turns outlines round.
     let mirrored = to_world.determinant() < 0.0;
     let (emitter, position) = match (json.shape, json.width, json.height, json.vertices) {
+        (Shape::Rectangle, Some(width), Some(height), None) if !(width > 0.0 && height > 0.0) => {
+            return Err(refuse("a rectangle with width and height above 0".into()));
+        }
         (Shape::Rectangle, Some(width), Some(height), None) => {
             let x = to_world.transform_vector3(Vec3::X * 0.5 * width);
             let y = to_world.transform_vector3(Vec3::NEG_Y * 0.5 * height);

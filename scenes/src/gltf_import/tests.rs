@@ -437,6 +437,8 @@ fn area_lights_that_are_not_understood_name_the_field() {
     let missing = error(json!({ "shape": "rectangle", "width": 1.0 }));
     assert!(missing.contains("nodes[0].extras.lightbench_area_light"), "{missing}");
     assert!(missing.contains("width and height"), "{missing}");
+    let turned = error(json!({ "shape": "rectangle", "width": -1.0, "height": 1.0 }));
+    assert!(turned.contains("above 0"), "{turned}");
     let misspelt = error(json!({ "shape": "rectangle", "width": 1, "height": 1, "colour": 1 }));
     assert!(misspelt.contains("colour"), "{misspelt}");
     let disc = error(json!({ "shape": "disc" }));

@@ -104,7 +104,11 @@ pub(super) fn paper(study: &str) -> Option<Paper> {
 const ENDLESS: [Check; 3] = [
     ("cones", "The best number of cones beats clusters by position in assign + shade.", best_cones),
     ("outer", "54 cones leave out 80 % of outer specular operations.", outer),
-    ("assignment", "54 cones cost less than 1 ms of assignment.", assignment),
+    (
+        "assignment",
+        "54 cones cost less than 1 ms of assignment, where the paper\u{2019}s cost 72 ms at 2,016 lights.",
+        assignment,
+    ),
 ];
 
 const COMPARISON: [Check; 7] = [

@@ -3,6 +3,7 @@
 
 use super::super::finding::lights;
 use super::super::format::{ABSENT, difference, escape, number, percent, significant};
+use super::super::rank::Ratio;
 use super::data::Entry;
 use super::endless_charts::charts_of;
 use super::endless_data::{Case, PLACES, cases, cones, listed, paper, setting};
@@ -146,8 +147,14 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
             time(best)
         ));
     }
+    if !Ratio::of(best, position).is_some_and(|ratio| ratio.is_faster()) {
+        return Some(format!(
+            "{place}, no number of cones is faster without a loss than position alone, {} ms.",
+            time(position)
+        ));
+    }
     let mut text = format!(
-        "{place}, {} is fastest without a loss: {} ms, position alone {} ms",
+        "{place}, {} takes least time without a loss: {} ms, position alone {} ms",
         setting(&best.strategy),
         time(best),
         time(position),
@@ -176,6 +183,6 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     let parts: Vec<String> =
         wins.iter().map(|(name, count)| format!("{name} in {count} of {all} cases")).collect();
     (!parts.is_empty()).then(|| {
-        format!("Fastest without a loss in {scene}: {}.", super::super::rank::listed(&parts))
+        format!("Least time without a loss in {scene}: {}.", super::super::rank::listed(&parts))
     })
 }

@@ -28,7 +28,9 @@ pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> St
         html += &counted(&culled, title, "Outer specular operations", "%", share)
             .map_or_else(String::new, |chart| charts.bars(&slug("outer"), &chart));
     }
-    let waste = |operations: &Operations| match operations.perceptible {
+    // A cut may lose terms that would be seen: they count as seen all the same.
+    let seen = case.position().and_then(|record| record.operations).map(|all| all.perceptible);
+    let waste = |operations: &Operations| match seen.unwrap_or(operations.perceptible) {
         0 => f64::NAN,
         seen => listed(operations) as f64 / seen as f64,
     };
