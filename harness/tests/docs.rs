@@ -69,26 +69,35 @@ fn the_tables_of_the_readme_are_those_of_the_results() {
     check_fresh(&path, &refreshed(&readme, &root()));
 }
 
-/// Charts of the H200 study that documents show.
-const CHARTS: [&str; 4] = [
-    "sponza-caps-rel-mse.svg",
-    "sponza-reuse-rel-mse.svg",
-    "sponza-scaling-linear.svg",
-    "sponza-path-10000.svg",
+/// Charts of the H200 studies that documents show.
+const CHARTS: [(&str, &[&str]); 3] = [
+    (
+        "h200-study",
+        &[
+            "sponza-caps-rel-mse.svg",
+            "sponza-reuse-rel-mse.svg",
+            "sponza-scaling-linear.svg",
+            "sponza-path-10000.svg",
+        ],
+    ),
+    ("h200-area", &["atrium-models-flip.svg"]),
+    ("h200-endless", &["sponza-a-2016-times.svg"]),
 ];
 
 #[test]
-fn the_charts_of_the_documents_are_those_of_the_study() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let done = Done::read(&[root().join("results/h200-study")]).expect("the study");
-    assert!(done.missing().is_empty(), "missing: {:?}", done.missing());
-    write_study(&done, folder.path()).expect("writes");
+fn the_charts_of_the_documents_are_those_of_the_studies() {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
-    let methodology = std::fs::read_to_string(root().join("results/README.md")).expect("README");
-    for chart in CHARTS {
-        let fresh = std::fs::read_to_string(folder.path().join("charts").join(chart));
-        check_fresh(&root().join("docs").join(chart), &fresh.expect("the chart"));
-        assert!(readme.contains(chart) || methodology.contains(chart), "{chart} is shown nowhere");
+    let verdicts = std::fs::read_to_string(root().join("results/README.md")).expect("README");
+    for (study, charts) in CHARTS {
+        let folder = tempfile::tempdir().expect("a folder");
+        let done = Done::read(&[root().join("results").join(study)]).expect("the study");
+        assert!(done.missing().is_empty(), "missing: {:?}", done.missing());
+        write_study(&done, folder.path()).expect("writes");
+        for chart in charts {
+            let fresh = std::fs::read_to_string(folder.path().join("charts").join(chart));
+            check_fresh(&root().join("docs").join(chart), &fresh.expect("the chart"));
+            assert!(readme.contains(chart) || verdicts.contains(chart), "{chart} is shown nowhere");
+        }
     }
 }
 
