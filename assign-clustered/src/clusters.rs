@@ -133,8 +133,10 @@ impl ClustersUniform {
             return Err(AssignError::Parameter {
                 field: "cluster size".into(),
                 value: format!(
-                    "{size} at {}x{}, {bins} bins a cluster: {total} groups",
-                    viewport[0], viewport[1]
+                    "{size} at {}x{}: {} clusters of {bins} bins, {total} groups",
+                    viewport[0],
+                    viewport[1],
+                    total / bins
                 ),
                 accepted: format!(
                     "at most {MAX_GROUPS} groups: larger tiles, fewer slices or bins of normals"
@@ -246,7 +248,7 @@ mod tests {
         assert!(groups("1x1x1", Normals::None).is_err());
         assert_eq!(groups("16x16x8", Normals::None).unwrap(), 1 << 23);
         let error = groups("16x16x8", Normals::Bins(6)).unwrap_err().to_string();
-        assert!(error.contains("6 bins a cluster: 50331648 groups"), "{error}");
+        assert!(error.contains("8388608 clusters of 6 bins, 50331648 groups"), "{error}");
         assert_eq!(groups("128x128x8", Normals::Bins(54)).unwrap(), 54 << 17);
     }
 }
