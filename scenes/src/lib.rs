@@ -10,6 +10,7 @@
 mod aabb;
 mod atrium;
 mod bvh;
+mod emitters;
 mod error;
 mod fit;
 mod gltf_import;
@@ -22,11 +23,10 @@ mod scene;
 
 pub use aabb::Aabb;
 pub use atrium::atrium;
+pub use emitters::Outlines;
 pub use error::SceneError;
 pub use gltf_import::load_gltf;
-pub use lights::{
-    LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Outlines, Places, Radii, THRESHOLD, scatter_lights,
-};
+pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Places, Radii, THRESHOLD, scatter_lights};
 pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
 pub use path::{CameraPath, Pose};
 pub use registry::{SceneEntry, list, open};

@@ -2,14 +2,17 @@
 
 use std::f64::consts::TAU;
 
-use assign::{Emitter, Light, LightShape, MAX_VERTICES};
-use glam::{DQuat, DVec3, Vec3};
+use assign::{Light, LightShape};
+use glam::{DVec3, Vec3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::{Distribution, Gamma, LogNormal};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
-use crate::{Aabb, SceneError};
+use crate::{
+    Aabb, SceneError,
+    emitters::{Outlines, random_emitter},
+};
 
 /// The most lights [`scatter_lights`] makes.
 pub const MAX_LIGHTS: u32 = 1 << 24;
@@ -30,15 +33,6 @@ const SPOT_OUTER_DEGREES: (f64, f64) = (15.0, 60.0);
 
 /// Inner angle of spots as a share of the outer.
 const SPOT_INNER_SHARE: (f64, f64) = (0.5, 0.95);
-
-/// Half the longer side of emitters, as a share of their range.
-const HALF_SIZE_SHARE: (f64, f64) = (0.03, 0.15);
-
-/// The shorter side of emitters as a share of the longer.
-const ASPECT: (f64, f64) = (0.2, 1.0);
-
-/// Share of emitters that emit from both sides.
-const TWO_SIDED_SHARE: f64 = 0.25;
 
 /// Standard deviation of the logarithm of [`Radii::LogNormal`].
 const LOG_SPREAD: f64 = 1.0;
@@ -101,18 +95,6 @@ impl Places {
         let out = radius * z.sqrt();
         [0.5 + away * around.cos() + out * cos, y, 0.5 + away * around.sin() + out * sin]
     }
-}
-
-/// Outlines of scattered area lights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Outlines {
-    /// Half of each.
-    #[default]
-    Both,
-    /// Rectangles.
-    Rectangles,
-    /// Polygons of 3 to 10 vertices.
-    Polygons,
 }
 
 /// A distribution, ready to draw from.
@@ -291,40 +273,11 @@ fn random_color(rng: &mut impl Rng) -> Vec3 {
 }
 
 /// A unit vector, uniform on the sphere.
-fn random_direction(rng: &mut impl Rng) -> DVec3 {
+pub(crate) fn random_direction(rng: &mut impl Rng) -> DVec3 {
     let cos_theta: f64 = 1.0 - 2.0 * rng.random::<f64>();
     let phi = TAU * rng.random::<f64>();
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
     DVec3::new(sin_theta * phi.cos(), cos_theta, sin_theta * phi.sin()).normalize()
-}
-
-/// An emitter that faces anywhere, of a size that goes with its range: a rectangle, or a polygon
-/// with its vertices on an ellipse.
-fn random_emitter(rng: &mut impl Rng, outlines: Outlines, range_m: f32) -> Emitter {
-    let normal = random_direction(rng);
-    let x =
-        DQuat::from_axis_angle(normal, TAU * rng.random::<f64>()) * normal.any_orthonormal_vector();
-    let half = f64::from(range_m) * rng.random_range(HALF_SIZE_SHARE.0..HALF_SIZE_SHARE.1);
-    // The smallest range gives an emitter that is just large enough.
-    let x = x * half.max(2e-4);
-    let y = normal.cross(x) * rng.random_range(ASPECT.0..ASPECT.1);
-    let two_sided = rng.random::<f64>() < TWO_SIDED_SHARE;
-    let is_polygon = match outlines {
-        Outlines::Both => rng.random::<bool>(),
-        Outlines::Rectangles => false,
-        Outlines::Polygons => true,
-    };
-    let count = if is_polygon { rng.random_range(3..=MAX_VERTICES) } else { 0 };
-    let vertex = |ix: usize| {
-        let (sin, cos) = (TAU * ix as f64 / count as f64).sin_cos();
-        (x * cos + y * sin).as_vec3()
-    };
-    let vertices: Vec<Vec3> = (0..count).map(vertex).collect();
-    let emitter = match Emitter::polygon(&vertices) {
-        Ok((polygon, _)) => polygon,
-        Err(_) => Emitter::rectangle(x.as_vec3(), y.as_vec3()),
-    };
-    if two_sided { emitter.two_sided() } else { emitter }
 }
 
 /// A spot of random direction and angles.

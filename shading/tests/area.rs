@@ -108,6 +108,15 @@ fn linearly_transformed_cosines_are_those_of_f64() {
     assert!(lit > 1_500, "only {lit} are lit");
 }
 
+/// What the BRDF itself makes of each query.
+fn truth_of(buffer: &LightBuffer, queries: &[Query]) -> Vec<DVec3> {
+    let one = |query| {
+        let (position, surface, to_eye) = asked(query);
+        light_contribution(&buffer.lights()[light_of(query)], position, &surface, to_eye)
+    };
+    queries.iter().map(one).collect()
+}
+
 /// Share of the light that a model gets wrong: the sum of differences over the sum of the truth.
 fn error_of(answers: &[[f32; 4]], truth: &[DVec3]) -> f64 {
     let off = |(answer, truth): (&[f32; 4], &DVec3)| (f64::from(answer[0]) - truth.x).abs();
@@ -123,13 +132,7 @@ fn models_are_as_far_from_the_truth_as_they_should_be() {
     // Off the emitters and rough enough for the quadrature to be quick.
     let mut queries = queries(&lights, 1_500);
     queries.iter_mut().for_each(|query| query[1][3] = 0.2 + 0.8 * query[1][3]);
-    let truth: Vec<DVec3> = queries
-        .iter()
-        .map(|query| {
-            let (position, surface, to_eye) = asked(query);
-            light_contribution(&buffer.lights()[light_of(query)], position, &surface, to_eye)
-        })
-        .collect();
+    let truth = truth_of(&buffer, &queries);
     let error = |model| error_of(&evaluate(&gpu, &buffer, &queries, model), &truth);
     let [point, mrp, table, polynomial] =
         [AreaModel::Point, AreaModel::Mrp, AreaModel::LtcTable, AreaModel::LtcPolynomial]
@@ -148,13 +151,7 @@ fn sampling_converges_to_the_truth() {
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
     let mut queries = queries(&lights, 1_500);
     queries.iter_mut().for_each(|query| query[1][3] = 0.4 + 0.6 * query[1][3]);
-    let truth: Vec<DVec3> = queries
-        .iter()
-        .map(|query| {
-            let (position, surface, to_eye) = asked(query);
-            light_contribution(&buffer.lights()[light_of(query)], position, &surface, to_eye)
-        })
-        .collect();
+    let truth = truth_of(&buffer, &queries);
     let counts = [4, 16, 64, 256, 1024];
     let errors = counts.map(|samples| {
         let model = AreaModel::MonteCarlo { samples };

@@ -17,7 +17,8 @@ pub struct NormalCone {
 
 /// Half floats may make a unit vector longer or shorter by this share.
 const LENGTH_SLACK: f32 = 1.2e-3;
-/// How far vertices may lie off their emitter's plane, as a share of its size: twice what is let in.
+/// How far rounding may leave a vertex off its emitter's plane, as a share of the emitter's size: far
+/// less than this, twice what is let in.
 const OFF_PLANE: f32 = 2e-4;
 /// What half axes 1e-3 off a right angle add to an emitter's radius.
 pub(super) const OFF_SQUARE: f32 = 1.001;

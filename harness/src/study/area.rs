@@ -70,14 +70,11 @@ pub(super) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let extent = if args.quick { QUICK } else { FULL };
-    let Size { width, height } = args.size.unwrap_or(extent.size);
-    let size = format!("{width}x{height}");
-    let (scale, seed) = (scene.scale.to_string(), args.seed.to_string());
+    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let [core, _] = scene.boxes(bench)?;
     let range = format!("{:.3}", (core.diagonal() * RANGE_SHARE).clamp(1e-3, 1e5));
-    let common = ["--scene", &scene.scene, "--scene-scale", &scale, "--size", &size];
-    let lit = ["--seed", &seed, "--no-own-lights", "--radii", "equal", "--radius-scale", &range];
-    let common = [&common[..], &lit].concat();
+    let common = [&drawn[..], &["--radii", "equal", "--radius-scale", &range]].concat();
     let timed = ["--strategies", BASELINE, "--frames", extent.frames, "--warmup", extent.warmup];
     let timed = [&timed[..], &["--truth", "none"]].concat();
     let view = [&common[..], &["--lights", FEW, "--areas", "1"]].concat();

@@ -68,19 +68,17 @@ pub(super) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let extent = if args.quick { QUICK } else { FULL };
-    let Size { width, height } = args.size.unwrap_or(extent.size);
-    let size = format!("{width}x{height}");
-    let (scale, seed) = (scene.scale.to_string(), args.seed.to_string());
+    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let [core, all] = scene.boxes(bench)?;
     let range = format!("{:.3}", range_m(core));
     let strategies = strategies(&extent);
-    let common = ["compare", "--scene", &scene.scene, "--scene-scale", &scale, "--size", &size];
-    let lit = ["--seed", &seed, "--no-own-lights", "--lights", LIGHTS, "--areas", "1"];
+    let lit = ["--lights", LIGHTS, "--areas", "1"];
     let shaped = ["--outlines", "polygons", "--diffuse-share", DIFFUSE_SHARE, "--radii", "equal"];
     // Images say whether anything was lost; pairs in f64 would take minutes a job.
     let seen = ["--radius-scale", &range, "--area-model", "ltc", "--operations", "--truth", "none"];
     let timed = ["--strategies", &strategies, "--frames", extent.frames, "--warmup", extent.warmup];
-    let common = [&common[..], &lit, &shaped, &seen, &timed].concat();
+    let common = [&["compare"], &drawn[..], &lit, &shaped, &seen, &timed].concat();
     let mut jobs = Vec::new();
     for (side, count) in extent.copies {
         let far = afar(all, side.parse().unwrap_or(1));

@@ -5,7 +5,7 @@ use std::path::Path;
 use scenes::Aabb;
 
 use crate::{
-    cli::{self, CliError, Invocation, StudyArgs},
+    cli::{self, CliError, Invocation, Size, StudyArgs},
     compare::Bench,
     error::HarnessError,
 };
@@ -49,6 +49,14 @@ impl StudyScene {
             all.push(Self { scene: scene.clone(), name, scale });
         }
         Ok(all)
+    }
+
+    /// The options of jobs that draw it, under scattered lights alone.
+    pub(super) fn options(&self, Size { width, height }: Size, seed: u64) -> Vec<String> {
+        let (scale, size) = (self.scale.to_string(), format!("{width}x{height}"));
+        let scene = ["--scene", &self.scene, "--scene-scale", &scale, "--size", &size];
+        let lit = ["--seed", &seed.to_string(), "--no-own-lights"];
+        scene.into_iter().chain(lit).map(str::to_owned).collect()
     }
 
     /// The boxes of its core and of all that is in it, metres.
