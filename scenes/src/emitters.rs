@@ -1,0 +1,59 @@
+//! Emitters of scattered area lights, drawn from a seed.
+
+use std::f64::consts::TAU;
+
+use assign::{Emitter, MAX_VERTICES};
+use glam::{DQuat, Vec3};
+use rand::{Rng, RngExt};
+
+use crate::lights::random_direction;
+
+/// Outlines of scattered area lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outlines {
+    /// Half of each.
+    #[default]
+    Both,
+    /// Rectangles.
+    Rectangles,
+    /// Polygons of 3 to 10 vertices.
+    Polygons,
+}
+
+/// Half the longer side of emitters, as a share of their range.
+const HALF_SIZE_SHARE: (f64, f64) = (0.03, 0.15);
+
+/// The shorter side of emitters as a share of the longer.
+const ASPECT: (f64, f64) = (0.2, 1.0);
+
+/// Share of emitters that emit from both sides.
+const TWO_SIDED_SHARE: f64 = 0.25;
+
+/// An emitter that faces anywhere, of a size that goes with its range: a rectangle, or a polygon
+/// with its vertices on an ellipse.
+pub(crate) fn random_emitter(rng: &mut impl Rng, outlines: Outlines, range_m: f32) -> Emitter {
+    let normal = random_direction(rng);
+    let x =
+        DQuat::from_axis_angle(normal, TAU * rng.random::<f64>()) * normal.any_orthonormal_vector();
+    let half = f64::from(range_m) * rng.random_range(HALF_SIZE_SHARE.0..HALF_SIZE_SHARE.1);
+    // The smallest range gives an emitter that is just large enough.
+    let x = x * half.max(2e-4);
+    let y = normal.cross(x) * rng.random_range(ASPECT.0..ASPECT.1);
+    let two_sided = rng.random::<f64>() < TWO_SIDED_SHARE;
+    let is_polygon = match outlines {
+        Outlines::Both => rng.random::<bool>(),
+        Outlines::Rectangles => false,
+        Outlines::Polygons => true,
+    };
+    let count = if is_polygon { rng.random_range(3..=MAX_VERTICES) } else { 0 };
+    let vertex = |ix: usize| {
+        let (sin, cos) = (TAU * ix as f64 / count as f64).sin_cos();
+        (x * cos + y * sin).as_vec3()
+    };
+    let vertices: Vec<Vec3> = (0..count).map(vertex).collect();
+    let emitter = match Emitter::polygon(&vertices) {
+        Ok((polygon, _)) => polygon,
+        Err(_) => Emitter::rectangle(x.as_vec3(), y.as_vec3()),
+    };
+    if two_sided { emitter.two_sided() } else { emitter }
+}
