@@ -108,13 +108,14 @@ impl Stage {
     }
 
     /// Lights of each kind, by name.
-    pub fn light_kinds(&self) -> [(&'static str, u64); 4] {
+    pub fn light_kinds(&self) -> [(&'static str, u64); 5] {
         let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
         [
             ("point", count(LightKind::Point)),
             ("spot", count(LightKind::Spot)),
             ("rectangle", count(LightKind::Rectangle)),
             ("polygon", count(LightKind::Polygon)),
+            ("vpl", count(LightKind::Vpl)),
         ]
     }
 }
