@@ -32,6 +32,8 @@ pub struct Stage {
     pub lights: LightBuffer,
     /// How area lights are shaded.
     pub area_model: AreaModel,
+    /// Lights that add something to a sample of usual brightness, where brightness is compensated.
+    pub compensation: Option<f32>,
     /// The camera.
     pub view: View,
     /// The pipeline.
@@ -74,6 +76,7 @@ impl Stage {
             own_lights: lit.own,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
             area_model: AreaModel::default(),
+            compensation: None,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
