@@ -34,6 +34,8 @@ pub struct Stage {
     pub area_model: AreaModel,
     /// Lights that add something to a sample of usual brightness, where brightness is compensated.
     pub compensation: Option<f32>,
+    /// How the lights were made, where they are virtual point lights.
+    pub vpls: Option<Vpls>,
     /// The camera.
     pub view: View,
     /// The pipeline.
