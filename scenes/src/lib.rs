@@ -9,6 +9,7 @@
 
 mod aabb;
 mod atrium;
+mod builder;
 mod bvh;
 mod emitters;
 mod error;
@@ -17,9 +18,11 @@ mod gltf_import;
 mod hash;
 mod lights;
 mod material;
+mod noise;
 mod path;
 mod registry;
 mod scene;
+mod town;
 
 pub use aabb::Aabb;
 pub use atrium::atrium;
@@ -31,3 +34,4 @@ pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap}
 pub use path::{CameraPath, Pose};
 pub use registry::{SceneEntry, list, open};
 pub use scene::{Camera, Instance, Lens, Mesh, Model, Scene, Vertex};
+pub use town::{TownSize, town};
