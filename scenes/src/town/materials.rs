@@ -35,8 +35,9 @@ pub(super) enum Surface {
     Iron,
     /// Glowing glass of the lamps.
     Glow,
-    /// Setts of the streets.
+    /// Setts of the streets, in two colours.
     Sett,
+    SettDark,
     /// Flagstones of pavements and the square.
     Flag,
     /// Ground of the town.
@@ -108,6 +109,7 @@ pub(super) fn make() -> Vec<Material> {
             ..plain("lamp glass", [0.9, 0.75, 0.5], 0.4)
         },
         grained("setts", [0.40, 0.38, 0.36], 0.7, Texture::Grain, 2.3),
+        grained("dark setts", [0.27, 0.25, 0.25], 0.7, Texture::Grain, 2.3),
         grained("flagstones", [0.60, 0.56, 0.49], 0.75, Texture::Grain, 2.9),
         grained("earth", [0.24, 0.20, 0.15], 0.95, Texture::Grain, 1.9),
         grained("grass", [0.15, 0.25, 0.06], 0.95, Texture::Grain, 2.1),

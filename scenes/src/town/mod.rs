@@ -34,7 +34,7 @@ use crate::{Aabb, Instance, Mesh, Model, Scene, fit};
 pub enum TownSize {
     /// 7 by 7 blocks in full detail: 280 m across, some 7 million triangles drawn.
     Full,
-    /// 3 by 3 blocks in coarse detail, some 60 thousand triangles, for tests and software
+    /// 2 by 2 blocks in coarse detail, some 60 thousand triangles, for tests and software
     /// adapters.
     Small,
 }
@@ -44,7 +44,7 @@ impl TownSize {
     fn blocks(self) -> u32 {
         match self {
             Self::Full => 7,
-            Self::Small => 3,
+            Self::Small => 2,
         }
     }
 }

@@ -4,29 +4,33 @@ use glam::{Vec2, Vec3};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use super::land::Lot;
+use super::{kit::Parts, land::Lot, materials::Surface};
 use crate::builder::Builder;
 
 /// Side of a patch of setts, metres.
 pub(super) const PATCH_M: f32 = 4.0;
 
-/// A patch of setts around the origin, `count` along each side, in running bond; their tops are
-/// up to 3 cm apart. A single one is a slab.
-pub(super) fn patch(rng: &mut Pcg64Mcg, count: u32) -> Builder {
-    let mut b = Builder::default();
+/// A patch of setts around the origin, `count` along each side, every other row moved by half a
+/// sett; their tops are up to 3 cm apart. One is a slab.
+pub(super) fn patch(rng: &mut Pcg64Mcg, count: u32) -> Parts {
+    let mut parts = Parts::default();
     let size = PATCH_M / count as f32;
+    let half = 0.5 * PATCH_M;
     for row in 0..count {
-        for column in 0..count {
-            let corner = Vec2::new(column as f32, row as f32) * size - 0.5 * PATCH_M;
-            let jitter = |rng: &mut Pcg64Mcg| 0.04 * size * (rng.random::<f32>() - 0.5);
-            let low = corner + 0.02 + Vec2::new(jitter(rng), jitter(rng)).max(Vec2::splat(-0.01));
-            let high =
-                corner + size - 0.02 + Vec2::new(jitter(rng), jitter(rng)).min(Vec2::splat(0.01));
+        let shifted = row % 2 == 1;
+        let low_z = row as f32 * size - half;
+        for column in 0..count + u32::from(shifted) {
+            let from = column as f32 - if shifted { 0.5 } else { 0.0 };
+            let [x0, x1] = [from, from + 1.0].map(|x| (x * size - half).clamp(-half, half));
+            let joint = 0.012 + 0.02 * size * rng.random::<f32>();
+            let (low, high) = (Vec2::new(x0, low_z) + joint, Vec2::new(x1, low_z + size) - joint);
             let top = 0.05 + 0.03 * rng.random::<f32>();
-            stone(&mut b, low, high, top, 0.035_f32.min(0.2 * size));
+            let dark = count > 1 && rng.random::<f32>() < 0.4;
+            let surface = if dark { Surface::SettDark } else { Surface::Sett };
+            stone(parts.of(surface), low, high, top, 0.035_f32.min(0.2 * size));
         }
     }
-    b
+    parts
 }
 
 /// A stone from the ground up to `top`, its upper edges bevelled.

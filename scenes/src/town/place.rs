@@ -106,7 +106,7 @@ impl Town {
         let patches = (0..if fine { 3 } else { 1 })
             .map(|_| {
                 let patch = paving::patch(&mut self.rng, setts);
-                self.thing("setts", one(Surface::Sett, patch))
+                self.thing("setts", patch)
             })
             .collect();
         let block = Lot { min: [0.0; 2], max: [BLOCK_M; 2] };

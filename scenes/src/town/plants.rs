@@ -54,7 +54,7 @@ pub(super) fn broadleaf(rng: &mut Pcg64Mcg, surface: Surface, fine: bool) -> Par
         let tip = fork + Vec3::new(spread * turn.cos(), 0.9 + 3.4 * lift, spread * turn.sin());
         limb(parts.of(Surface::Bark), fork - Vec3::Y * 0.1, tip, 0.1, 5);
         let size = Vec3::new(1.5, 1.15, 1.5) * (0.85 + 0.3 * rng.random::<f32>());
-        let (leaves, length) = if fine { (130, 0.5) } else { (18, 1.1) };
+        let (leaves, length) = if fine { (160, 0.4) } else { (18, 1.1) };
         for _ in 0..leaves {
             let out = direction(rng);
             let depth = rng.random::<f32>().powf(0.4);

@@ -11,11 +11,10 @@ const STEP_M: f32 = 12.0;
 /// How far ahead the camera looks, metres.
 const AHEAD_M: f32 = 18.0;
 
-/// From the south end of the main street to the square, round it to the west, and back through the
-/// western streets: at eye height, but 6 m higher at the start, over the heads of the street.
+/// From the south end of the main street to the square, and back through other streets: at eye height, but 8 m higher at the start, over the heads of the street.
 pub(super) fn path(land: &Land) -> CameraPath {
     let (first, count) = land.square();
-    let (main, last) = (first + count / 2, land.blocks);
+    let (main, last) = (first + count.div_ceil(2), land.blocks);
     let corners: Vec<[u32; 2]> = if count > 1 {
         vec![
             [main, last],
@@ -28,7 +27,7 @@ pub(super) fn path(land: &Land) -> CameraPath {
             [first - 1, last],
         ]
     } else {
-        vec![[main, last], [main, first], [main - 1, first], [main - 1, last]]
+        vec![[main, last], [main, first], [last, first], [last, last]]
     };
     let corners: Vec<Vec2> =
         corners.iter().map(|[x, z]| Vec2::new(land.street(*x), land.street(*z))).collect();
@@ -38,12 +37,12 @@ pub(super) fn path(land: &Land) -> CameraPath {
     let knot = |i: u32| {
         let along = length * i as f32 / count;
         let from_start = along.min(length - along);
-        let lift = 6.0 * (-(from_start / 14.0).powi(2)).exp();
+        let lift = 8.0 * (-(from_start / 14.0).powi(2)).exp();
         let stand = |at: f32, height: f32| {
             let p = way.point(at);
             Vec3::new(p.x, land.height(p.x, p.y) + height, p.y)
         };
-        (stand(along, 1.75 + lift), stand(along + AHEAD_M, 2.6 + 0.7 * lift))
+        (stand(along, 1.75 + lift), stand(along + AHEAD_M, 2.6 + 0.5 * lift))
     };
     let knots: Vec<_> = (0..count as u32).map(knot).collect();
     let start = knots.first().map_or(Pose::new(Vec3::ZERO, Vec3::NEG_Z), |k| Pose::new(k.0, k.1));
