@@ -6,3 +6,11 @@
 //! A deep image keeps all depths of a pixel, not the nearest alone. A compound deep image is one for
 //! each of many directions over the hemisphere (Archer, Leach, Knowles 2019): a ray through the scene
 //! is then the list of one pixel.
+
+mod kernel;
+mod prefix_sum;
+mod sort;
+mod sort_network;
+
+pub use prefix_sum::PrefixSum;
+pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};

@@ -9,6 +9,7 @@
 
 mod aabb;
 mod atrium;
+mod builder;
 mod bvh;
 mod emitters;
 mod error;
@@ -17,9 +18,12 @@ mod gltf_import;
 mod hash;
 mod lights;
 mod material;
+mod noise;
 mod path;
+mod primary_light;
 mod registry;
 mod scene;
+mod town;
 
 pub use aabb::Aabb;
 pub use atrium::atrium;
@@ -29,5 +33,7 @@ pub use gltf_import::load_gltf;
 pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Places, Radii, THRESHOLD, scatter_lights};
 pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
 pub use path::{CameraPath, Pose};
+pub use primary_light::primary_light;
 pub use registry::{SceneEntry, list, open};
 pub use scene::{Camera, Instance, Lens, Mesh, Model, Scene, Vertex};
+pub use town::{TownSize, town};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Scene, SceneError, atrium, load_gltf};
+use crate::{Scene, SceneError, TownSize, atrium, load_gltf, town};
 
 /// A procedural scene.
 #[derive(Clone, Copy, Debug)]
@@ -17,11 +17,23 @@ pub struct SceneEntry {
 /// The seed of procedural scenes opened by name.
 const SEED: u64 = 1;
 
-static ENTRIES: &[SceneEntry] = &[SceneEntry {
-    id: "atrium",
-    summary: "two storeys of arcades around a court: marble, stone, cloth, bronze",
-    make: || atrium(SEED),
-}];
+static ENTRIES: &[SceneEntry] = &[
+    SceneEntry {
+        id: "atrium",
+        summary: "two storeys of arcades around a court: marble, stone, cloth, bronze",
+        make: || atrium(SEED),
+    },
+    SceneEntry {
+        id: "town",
+        summary: "streets of gabled houses, gardens, a square with a church: 7 million triangles",
+        make: || town(SEED, TownSize::Full),
+    },
+    SceneEntry {
+        id: "town-small",
+        summary: "a corner of the town in coarse detail, for software adapters",
+        make: || town(SEED, TownSize::Small),
+    },
+];
 
 /// All procedural scenes.
 pub fn list() -> &'static [SceneEntry] {

@@ -4,7 +4,6 @@
 //! columns on each storey. Everything is made from profiles, surfaces and boxes; repeated parts
 //! are instances of one mesh. X runs along the court, the floor is y = 0.
 
-mod builder;
 mod materials;
 mod parts;
 #[cfg(test)]
@@ -13,13 +12,16 @@ mod textures;
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use builder::{Builder, arc, sharp};
 use glam::{Mat4, Vec2, Vec3};
 use materials::Surface;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::{Aabb, CameraPath, Instance, Mesh, Model, Pose, Scene, fit};
+use crate::{
+    Aabb, CameraPath, Instance, Mesh, Model, Pose, Scene,
+    builder::{Builder, arc, sharp},
+    fit,
+};
 
 /// Half the court, and half of all inside the outer walls, along x and z, metres.
 const COURT: Vec2 = Vec2::new(11.0, 6.0);

@@ -4,7 +4,7 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
 
-use super::builder::{Builder, Frame, arc, sharp};
+use crate::builder::{Builder, Frame, arc, sharp};
 
 /// Thickness of the arcade walls, metres.
 pub(super) const WALL_M: f32 = 0.56;

@@ -3,30 +3,30 @@
 
 use std::f32::consts::TAU;
 
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 
 use crate::{Aabb, Mesh, Vertex};
 
 /// Where a profile point `(a, b)` lies along a sweep: `origin + a * x + b * y`. Its normal is
 /// taken in the plane of `normal_x` and `y`, which is that of `x` except at mitred ends.
 #[derive(Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) origin: Vec3,
-    pub(super) x: Vec3,
-    pub(super) y: Vec3,
-    pub(super) normal_x: Vec3,
+pub(crate) struct Frame {
+    pub(crate) origin: Vec3,
+    pub(crate) x: Vec3,
+    pub(crate) y: Vec3,
+    pub(crate) normal_x: Vec3,
 }
 
 /// A mesh in the making.
 #[derive(Clone, Default)]
-pub(super) struct Builder {
+pub(crate) struct Builder {
     vertices: Vec<Vertex>,
     indices: Vec<u32>,
 }
 
 impl Builder {
     /// The finished mesh.
-    pub(super) fn mesh(self, name: &str, material: u32) -> Mesh {
+    pub(crate) fn mesh(self, name: &str, material: u32) -> Mesh {
         let bounds = Aabb::from_points(self.vertices.iter().map(|v| Vec3::from(v.position)));
         Mesh { name: name.into(), vertices: self.vertices, indices: self.indices, material, bounds }
     }
@@ -67,7 +67,7 @@ impl Builder {
 
     /// A surface over the unit square, `columns` by `rows` quads, facing `du x dv`. uv is in
     /// metres, measured along the middle lines.
-    pub(super) fn surface(&mut self, columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) {
+    pub(crate) fn surface(&mut self, columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) {
         const H: f32 = 1e-3;
         let length = |along_u: bool| {
             let point = |i: u32| {
@@ -94,7 +94,7 @@ impl Builder {
 
     /// Sweeps a profile along frames. The profile's outside is on its right: going up, the
     /// outside is `+a`. A repeated point makes a sharp edge; other corners are smooth.
-    pub(super) fn sweep(&mut self, frames: &[Frame], profile: &[Vec2]) {
+    pub(crate) fn sweep(&mut self, frames: &[Frame], profile: &[Vec2]) {
         let mut length_v = 0.0;
         for run in profile.chunk_by(|a, b| a != b) {
             if run.len() < 2 {
@@ -133,7 +133,7 @@ impl Builder {
     }
 
     /// A solid of revolution about +Y: the profile is (radius, height), going up.
-    pub(super) fn lathe(&mut self, center: Vec3, segments: u32, profile: &[Vec2]) {
+    pub(crate) fn lathe(&mut self, center: Vec3, segments: u32, profile: &[Vec2]) {
         let frames: Vec<_> = (0..=segments)
             .map(|i| {
                 let (sin, cos) = (TAU * (i % segments) as f32 / segments as f32).sin_cos();
@@ -146,7 +146,7 @@ impl Builder {
 
     /// A straight moulding from `from` to `to`, its profile's `a` towards `out`; `mitre` shifts
     /// the ends along the run by that much per metre of `a`.
-    pub(super) fn moulding(
+    pub(crate) fn moulding(
         &mut self,
         from: Vec3,
         to: Vec3,
@@ -164,8 +164,52 @@ impl Builder {
         self.sweep(&[frame(from, -mitre), frame(to, mitre)], profile);
     }
 
+    /// Adds a copy of another mesh, moved and turned, not scaled.
+    pub(crate) fn append(&mut self, other: &Self, rigid: &Mat4) {
+        let first = self.vertices.len() as u32;
+        let turned = |v: [f32; 3]| rigid.transform_vector3(v.into());
+        self.vertices.extend(other.vertices.iter().map(|vertex| {
+            let [x, y, z, w] = vertex.tangent;
+            Vertex {
+                position: rigid.transform_point3(vertex.position.into()).to_array(),
+                normal: turned(vertex.normal).normalize_or(Vec3::Y).to_array(),
+                tangent: turned([x, y, z]).normalize_or(Vec3::X).extend(w).to_array(),
+                uv: vertex.uv,
+            }
+        }));
+        self.indices.extend(other.indices.iter().map(|ix| first + ix));
+    }
+
+    /// A flat quad with a normal of its own: `corner` and two edges, the face on the side of
+    /// `u x v`, which must be the normal's side.
+    pub(crate) fn card(&mut self, corner: Vec3, u: Vec3, v: Vec3, normal: Vec3) {
+        let first = self.vertices.len() as u32;
+        for (p, uv) in [
+            (corner, Vec2::ZERO),
+            (corner + u, Vec2::X),
+            (corner + v, Vec2::Y),
+            (corner + u + v, Vec2::ONE),
+        ] {
+            self.vertex(p, normal, u, uv);
+        }
+        self.strip(first, first + 2, 2);
+    }
+
+    /// A triangle, facing counter-clockwise.
+    pub(crate) fn gable(&mut self, corners: [Vec3; 3]) {
+        let first = self.vertices.len() as u32;
+        let [a, b, c] = corners;
+        let along = (b - a).normalize_or(Vec3::X);
+        let normal = along.cross(c - a).normalize_or(Vec3::Y);
+        let up = normal.cross(along);
+        for p in corners {
+            self.vertex(p, normal, along, Vec2::new(p.dot(along), -p.dot(up)));
+        }
+        self.triangle([first, first + 1, first + 2]);
+    }
+
     /// A flat quad: `corner`, and two edges with the face on the side of `u x v`.
-    pub(super) fn quad(&mut self, corner: Vec3, u: Vec3, v: Vec3) {
+    pub(crate) fn quad(&mut self, corner: Vec3, u: Vec3, v: Vec3) {
         let first = self.vertices.len() as u32;
         let normal = u.cross(v);
         // uv from world positions, so that neighbours continue each other's pattern.
@@ -177,7 +221,7 @@ impl Builder {
     }
 
     /// A box between two corners.
-    pub(super) fn block(&mut self, min: Vec3, max: Vec3) {
+    pub(crate) fn block(&mut self, min: Vec3, max: Vec3) {
         let d = max - min;
         let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);
         self.quad(min + z, x, y);
@@ -189,14 +233,14 @@ impl Builder {
     }
 
     /// A box given by the middle of its lower face and its size.
-    pub(super) fn block_on(&mut self, foot: Vec3, size: Vec3) {
+    pub(crate) fn block_on(&mut self, foot: Vec3, size: Vec3) {
         let half = Vec3::new(0.5 * size.x, 0.0, 0.5 * size.z);
         self.block(foot - half, foot + half + Vec3::Y * size.y);
     }
 }
 
 /// Points of a circular arc in a profile, from angle to angle in degrees.
-pub(super) fn arc(center: [f32; 2], radius: [f32; 2], from: f32, to: f32, steps: u32) -> Vec<Vec2> {
+pub(crate) fn arc(center: [f32; 2], radius: [f32; 2], from: f32, to: f32, steps: u32) -> Vec<Vec2> {
     let point = |i: u32| {
         let angle = (from + (to - from) * i as f32 / steps as f32).to_radians();
         Vec2::from(center) + Vec2::from(radius) * Vec2::new(angle.cos(), angle.sin())
@@ -205,7 +249,7 @@ pub(super) fn arc(center: [f32; 2], radius: [f32; 2], from: f32, to: f32, steps:
 }
 
 /// A polygon as a profile with sharp corners: inner points are doubled.
-pub(super) fn sharp(points: &[[f32; 2]]) -> Vec<Vec2> {
+pub(crate) fn sharp(points: &[[f32; 2]]) -> Vec<Vec2> {
     let last = points.len() - 1;
     let twice = |(i, p): (usize, &[f32; 2])| {
         let count = if i == 0 || i == last { 1 } else { 2 };

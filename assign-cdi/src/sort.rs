@@ -1,0 +1,273 @@
+//! Many lists of keys sorted at once.
+//!
+//! 1. `sort_short`: a thread a list of up to 32 keys, by a network of exchanges in registers (Archer
+//!    et al. 2019, section 3.1); longer lists are noted, in parts of 2048 keys.
+//! 2. `sort_parts`: a workgroup a part, by a bitonic network in workgroup memory.
+//! 3. `merge_round`, for lists of several parts: a workgroup writes 2048 keys of the merge of two
+//!    runs, which it finds by a search along the merge path. Rounds go to and fro between the entries
+//!    and a scratch buffer.
+//!
+//! Worked example: lists of 5, 100 and 5000 keys. The first is sorted by its thread; the second is
+//! one part; the third is parts of 2048, 2048 and 904, which round 0 merges to runs of 4096 and 904
+//! in the scratch buffer and round 1 to 5000 in the entries.
+
+use assign::{AssignError, Gpu, Passes, Shader};
+use bytemuck::{Pod, Zeroable, bytes_of};
+
+use crate::{
+    kernel::{self, Slot},
+    sort_network,
+};
+
+/// How the lists' ranges are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ListRanges {
+    /// `array<vec2u>`: first entry and count, as [`LightList`](assign::LightList).
+    Pairs,
+    /// `array<u32>`: list `i` is `offsets[i]` to `offsets[i + 1]`.
+    PrefixOffsets,
+}
+
+/// What to sort.
+#[derive(Clone, Copy, Debug)]
+pub struct SortInput<'a> {
+    /// The ranges, as [`ListRanges`] says; lists must be disjoint.
+    pub ranges: &'a wgpu::Buffer,
+    /// The keys: `array<u32>`.
+    pub entries: &'a wgpu::Buffer,
+    /// First list to sort, and how many follow.
+    pub first_list: u32,
+    /// Number of lists to sort.
+    pub list_count: u32,
+    /// Lists that begin before this entry are left alone, such as those of all lights.
+    pub first_entry: u32,
+    /// Entries that there are: lists that reach beyond are left alone.
+    pub entry_count: u32,
+    /// The most keys of a list; keys of longer lists come out in no order.
+    pub longest: u32,
+}
+
+/// What the kernels are told: `sort_keys.wesl`, `struct Sort`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct SortUniform {
+    first_list: u32,
+    list_count: u32,
+    first_entry: u32,
+    entry_count: u32,
+    part_capacity: u32,
+    block_capacity: u32,
+}
+
+/// The work left to workgroups: `sort_work.wesl`, `struct WorkHeader`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct SortWork {
+    part_groups: [u32; 3],
+    part_count: u32,
+    block_groups: [u32; 3],
+    block_count: u32,
+    /// Keys of the longest list of the last sort.
+    pub longest: u32,
+    padding: [u32; 3],
+}
+
+/// Keys that a workgroup sorts in its memory: `PART` of `sort_keys.wesl`.
+const PART: u32 = 2048;
+
+/// Sorts lists of keys, ascending, in place.
+#[derive(Debug)]
+pub struct ListSort {
+    short: wgpu::ComputePipeline,
+    parts: wgpu::ComputePipeline,
+    merge: wgpu::ComputePipeline,
+    layouts: [wgpu::BindGroupLayout; 4],
+    uniform: wgpu::Buffer,
+    /// The header before the first list.
+    empty_work: wgpu::Buffer,
+    work: wgpu::Buffer,
+    /// A `struct Round` every 256 bytes.
+    rounds: wgpu::Buffer,
+    scratch: wgpu::Buffer,
+    items: [wgpu::Buffer; 2],
+    groups: Option<[wgpu::BindGroup; 4]>,
+    list_count: u32,
+    round_count: u32,
+}
+
+/// The most entries of a buffer, 4 GiB, and the rounds that sort a list of so many.
+const MOST_ENTRIES: u32 = 1 << 30;
+const MOST_ROUNDS: u32 = MOST_ENTRIES.ilog2() - PART.ilog2() + 1;
+
+impl ListSort {
+    /// Makes the kernels. The top `flag_bits` of a key, at most 31, count less than the bits below:
+    /// light lists have two.
+    pub fn new(gpu: &Gpu, ranges: ListRanges, flag_bits: u32) -> Result<Self, AssignError> {
+        let shader = Self::shader(ranges, flag_bits)?;
+        let short = kernel::uncounted(gpu, &shader, "package::sort_short")?;
+        let long = kernel::uncounted(gpu, &shader, "package::sort_long")?;
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let layout = |slots: &[Slot]| kernel::layout(gpu, "sort", stages, slots);
+        let layouts = [
+            layout(&[Slot::Uniform, Slot::Read, Slot::Write, Slot::Write]),
+            layout(&[Slot::Write; 3]),
+            layout(&[Slot::Read; 3]),
+            layout(&[Slot::UniformAt]),
+        ];
+        let [keys, append, read, round] = &layouts;
+        let sort = Self {
+            short: kernel::compute(gpu, &short, "sort_short", &[keys, append]),
+            parts: kernel::compute(gpu, &long, "sort_parts", &[keys, read]),
+            merge: kernel::compute(gpu, &long, "merge_round", &[keys, read, round]),
+            uniform: gpu.uniform("sort", 32),
+            empty_work: gpu.storage("empty sort work", size_of::<SortWork>() as u64)?,
+            work: work_buffer(gpu)?,
+            rounds: gpu.uniform("sort rounds", u64::from(MOST_ROUNDS) * 256),
+            scratch: gpu.storage("sort scratch", 4)?,
+            items: [gpu.storage("sort parts", 8)?, gpu.storage("sort blocks", 8)?],
+            groups: None,
+            list_count: 0,
+            round_count: 0,
+            layouts,
+        };
+        let empty =
+            SortWork { part_groups: [0, 1, 1], block_groups: [0, 1, 1], ..SortWork::default() };
+        gpu.queue.write_buffer(&sort.empty_work, 0, bytes_of(&empty));
+        for round in 0..MOST_ROUNDS {
+            let words = [PART.ilog2() + round, round % 2];
+            gpu.queue.write_buffer(&sort.rounds, u64::from(round) * 256, bytes_of(&words));
+        }
+        Ok(sort)
+    }
+
+    /// The kernels' modules: roots are `package::sort_short` and `package::sort_long`.
+    pub fn shader(ranges: ListRanges, flag_bits: u32) -> Result<Shader<'static>, AssignError> {
+        if flag_bits > 31 {
+            return Err(AssignError::Parameter {
+                field: "flag_bits".into(),
+                value: flag_bits.to_string(),
+                accepted: "0 to 31".into(),
+            });
+        }
+        Ok(Shader::new(3)
+            .module("package::sort_flags", format!("const FLAG_BITS: u32 = {flag_bits}u;\n"))
+            .module("package::sort_network", sort_network::module(&[8, 16, 32]))
+            .module("package::sort_keys", include_str!("shaders/sort_keys.wesl"))
+            .module("package::sort_work", include_str!("shaders/sort_work.wesl"))
+            .module("package::sort_short", include_str!("shaders/sort_short.wesl"))
+            .module("package::sort_long", include_str!("shaders/sort_long.wesl"))
+            .flag("flags", flag_bits > 0)
+            .flag("prefix_offsets", ranges == ListRanges::PrefixOffsets))
+    }
+
+    /// Sizes the scratch buffers and binds the input's buffers; call whenever one is made anew.
+    pub fn prepare(&mut self, gpu: &Gpu, input: &SortInput<'_>) -> Result<(), AssignError> {
+        if input.entry_count > MOST_ENTRIES {
+            return Err(AssignError::TooLarge {
+                what: "entries of lists to sort".into(),
+                bytes: u64::from(input.entry_count) * 4,
+                limit: u64::from(MOST_ENTRIES) * 4,
+            });
+        }
+        let longest = input.longest.min(input.entry_count);
+        let is_merged = longest > PART;
+        // Every part holds more than 32 keys, every list of several more than 2048; a list's last
+        // part may be short.
+        let part_capacity = input.entry_count / 32 + 1;
+        let block_capacity = if is_merged { input.entry_count / (PART / 2) + 2 } else { 0 };
+        let scratch_bytes = if is_merged { u64::from(input.entry_count) * 4 } else { 0 };
+        let [parts, blocks] = &mut self.items;
+        grow(gpu, parts, "sort parts", u64::from(part_capacity) * 8)?;
+        grow(gpu, blocks, "sort blocks", u64::from(block_capacity) * 8)?;
+        grow(gpu, &mut self.scratch, "sort scratch", scratch_bytes)?;
+        let uniform = SortUniform {
+            first_list: input.first_list,
+            list_count: input.list_count,
+            first_entry: input.first_entry,
+            entry_count: input.entry_count,
+            part_capacity,
+            block_capacity,
+        };
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
+        self.list_count = input.list_count;
+        let merges = longest.div_ceil(PART).max(1).next_power_of_two().ilog2();
+        // One more takes lists home that end in the scratch buffer.
+        self.round_count = if is_merged { merges + 1 } else { 0 };
+        let [keys, append, read, round] = &self.layouts;
+        let key_buffers = [&self.uniform, input.ranges, input.entries, &self.scratch];
+        let item_buffers = [&self.work, &self.items[0], &self.items[1]];
+        let round_entry = wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &self.rounds,
+                offset: 0,
+                size: wgpu::BufferSize::new(8),
+            }),
+        };
+        self.groups = Some([
+            kernel::group(gpu, keys, &key_buffers),
+            kernel::group(gpu, append, &item_buffers),
+            kernel::group(gpu, read, &item_buffers),
+            kernel::group_of(gpu, round, &[round_entry]),
+        ]);
+        Ok(())
+    }
+
+    /// Records the whole sort as one pass.
+    pub fn record(&self, passes: &mut dyn Passes, name: &str) {
+        self.record_reset(passes.encoder());
+        passes.compute(name, &mut |pass| self.dispatch(pass));
+    }
+
+    /// Empties the work list; call before each [`dispatch`](Self::dispatch), in the same encoder.
+    pub fn record_reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        let bytes = size_of::<SortWork>() as u64;
+        encoder.copy_buffer_to_buffer(&self.empty_work, 0, &self.work, 0, bytes);
+    }
+
+    /// Records the sort into a pass that is open. Nothing, before [`prepare`](Self::prepare).
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let Some([keys, append, read, round]) = &self.groups else { return };
+        if self.list_count == 0 {
+            return;
+        }
+        pass.set_pipeline(&self.short);
+        pass.set_bind_group(0, keys, &[]);
+        pass.set_bind_group(1, append, &[]);
+        pass.dispatch_workgroups(kernel::workgroups(u64::from(self.list_count), 256), 1, 1);
+        pass.set_pipeline(&self.parts);
+        pass.set_bind_group(1, read, &[]);
+        pass.dispatch_workgroups_indirect(&self.work, 0);
+        pass.set_pipeline(&self.merge);
+        for ix in 0..self.round_count {
+            pass.set_bind_group(2, round, &[ix * 256]);
+            pass.dispatch_workgroups_indirect(&self.work, 16);
+        }
+    }
+
+    /// The header of the work list, [`SortWork`]: its longest list.
+    pub fn work(&self) -> &wgpu::Buffer {
+        &self.work
+    }
+
+    /// Bytes of its buffers on the GPU.
+    pub fn bytes(&self) -> u64 {
+        let items = self.items[0].size() + self.items[1].size();
+        let small = self.uniform.size() + self.empty_work.size() + self.rounds.size();
+        self.scratch.size() + items + self.work.size() + small
+    }
+}
+
+fn work_buffer(gpu: &Gpu) -> Result<wgpu::Buffer, AssignError> {
+    let copies = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | copies;
+    gpu.buffer("sort work", size_of::<SortWork>() as u64, usage)
+}
+
+/// Makes a storage buffer anew where it is smaller than `bytes`.
+fn grow(gpu: &Gpu, buffer: &mut wgpu::Buffer, label: &str, bytes: u64) -> Result<(), AssignError> {
+    if buffer.size() < bytes {
+        *buffer = gpu.storage(label, bytes)?;
+    }
+    Ok(())
+}

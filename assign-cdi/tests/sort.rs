@@ -1,0 +1,178 @@
+//! Sorts and prefix sums against the standard library's.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use assign::{EncoderPasses, Gpu};
+use assign_cdi::{ListRanges, ListSort, PrefixSum, SortInput, SortWork};
+use bytemuck::{cast_slice, pod_collect_to_vec};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+fn upload(gpu: &Gpu, words: &[u32]) -> wgpu::Buffer {
+    let buffer = gpu.storage("words", words.len() as u64 * 4).unwrap();
+    gpu.queue.write_buffer(&buffer, 0, cast_slice(words));
+    buffer
+}
+
+fn download(gpu: &Gpu, buffer: &wgpu::Buffer, count: usize) -> Vec<u32> {
+    pod_collect_to_vec(&gpu.read(buffer, count as u64 * 4).unwrap())
+}
+
+/// Lists of these lengths one behind the other, and their keys below `below`.
+struct Lists {
+    offsets: Vec<u32>,
+    keys: Vec<u32>,
+}
+
+impl Lists {
+    fn random(rng: &mut Pcg64Mcg, lengths: &[u32], below: u32) -> Self {
+        let mut offsets = vec![0];
+        for length in lengths {
+            offsets.push(offsets.last().unwrap() + length);
+        }
+        let keys = (0..*offsets.last().unwrap()).map(|_| rng.random_range(0..below)).collect();
+        Self { offsets, keys }
+    }
+
+    fn sorted(&self, key: impl Fn(&u32) -> u32) -> Vec<u32> {
+        let mut keys = self.keys.clone();
+        for ends in self.offsets.windows(2) {
+            keys[ends[0] as usize..ends[1] as usize].sort_by_key(&key);
+        }
+        keys
+    }
+
+    /// Sorts lists from `first_list` on.
+    fn on_gpu(&self, gpu: &Gpu, layout: ListRanges, flag_bits: u32, first_list: u32) -> Vec<u32> {
+        let lists = self.offsets.len() as u32 - 1;
+        let pairs = self.offsets.windows(2).flat_map(|ends| [ends[0], ends[1] - ends[0]]);
+        let ranges = match layout {
+            ListRanges::Pairs => upload(gpu, &pairs.collect::<Vec<_>>()),
+            ListRanges::PrefixOffsets => upload(gpu, &self.offsets),
+        };
+        let entries = upload(gpu, &self.keys);
+        let lengths = self.offsets.windows(2).map(|ends| ends[1] - ends[0]);
+        let longest = lengths.clone().max().unwrap_or(0);
+        let mut sort = ListSort::new(gpu, layout, flag_bits).unwrap();
+        let input = SortInput {
+            ranges: &ranges,
+            entries: &entries,
+            first_list,
+            list_count: lists - first_list,
+            first_entry: 0,
+            entry_count: self.keys.len() as u32,
+            longest,
+        };
+        sort.prepare(gpu, &input).unwrap();
+        // Twice: the second run sorts what is sorted, with work lists that the first one filled.
+        for _ in 0..2 {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            sort.record(&mut EncoderPasses { encoder: &mut encoder }, "sort");
+            gpu.queue.submit([encoder.finish()]);
+        }
+        let work = gpu.read(sort.work(), size_of::<SortWork>() as u64).unwrap();
+        let work: SortWork = bytemuck::pod_read_unaligned(&work);
+        assert_eq!(work.longest, lengths.skip(first_list as usize).max().unwrap_or(0));
+        download(gpu, &entries, self.keys.len())
+    }
+}
+
+const LENGTHS: [u32; 22] = [
+    0, 1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33, 64, 65, 0, 1000, 2047, 2048, 2049, 4097, 6144, 70_000,
+];
+
+#[test]
+fn lists_of_all_lengths() {
+    let gpu = Gpu::open(None).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    for layout in [ListRanges::Pairs, ListRanges::PrefixOffsets] {
+        // All keys, and many repeats.
+        for below in [u32::MAX, 50] {
+            let lists = Lists::random(&mut rng, &LENGTHS, below);
+            assert!(lists.on_gpu(&gpu, layout, 0, 0) == lists.sorted(|key| *key), "{layout:?}");
+        }
+    }
+}
+
+#[test]
+fn many_short_lists() {
+    let gpu = Gpu::open(None).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(2);
+    let lengths: Vec<u32> = (0..3000).map(|_| rng.random_range(0..60)).collect();
+    let lists = Lists::random(&mut rng, &lengths, 1 << 20);
+    assert!(lists.on_gpu(&gpu, ListRanges::PrefixOffsets, 0, 0) == lists.sorted(|key| *key));
+}
+
+#[test]
+fn flags_count_less_than_indices() {
+    let gpu = Gpu::open(None).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(3);
+    let lists = Lists::random(&mut rng, &LENGTHS, u32::MAX);
+    let sorted = lists.sorted(|key| key.rotate_left(2));
+    assert!(lists.on_gpu(&gpu, ListRanges::Pairs, 2, 0) == sorted);
+    assert!(lists.on_gpu(&gpu, ListRanges::Pairs, 0, 0) != sorted);
+}
+
+#[test]
+fn lists_before_the_first_are_left_alone() {
+    let gpu = Gpu::open(None).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(4);
+    let lists = Lists::random(&mut rng, &[40, 5, 3000, 12], 1000);
+    let sorted = lists.on_gpu(&gpu, ListRanges::Pairs, 0, 2);
+    assert_eq!(sorted[..45], lists.keys[..45]);
+    assert_eq!(sorted[45..], lists.sorted(|key| *key)[45..]);
+}
+
+#[test]
+fn lists_outside_are_left_alone() {
+    let gpu = Gpu::open(None).unwrap();
+    let keys: Vec<u32> = (0..100).rev().collect();
+    let entries = upload(&gpu, &keys);
+    // Before the first entry; beyond the last; beyond 32 bits; at the end, empty; inside.
+    let pairs = [0, 10, 95, 6, 99, u32::MAX, 100, 0, 20, 50];
+    let ranges = upload(&gpu, &pairs);
+    let mut sort = ListSort::new(&gpu, ListRanges::Pairs, 0).unwrap();
+    let input = SortInput {
+        ranges: &ranges,
+        entries: &entries,
+        first_list: 0,
+        list_count: 5,
+        first_entry: 10,
+        entry_count: 100,
+        longest: 100,
+    };
+    sort.prepare(&gpu, &input).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    sort.record(&mut EncoderPasses { encoder: &mut encoder }, "sort");
+    gpu.queue.submit([encoder.finish()]);
+    let mut sorted = keys;
+    sorted[20..70].sort_unstable();
+    assert_eq!(download(&gpu, &entries, 100), sorted);
+}
+
+#[test]
+fn too_many_flag_bits_are_refused() {
+    let message = ListSort::shader(ListRanges::Pairs, 32).unwrap_err().to_string();
+    assert_eq!(message, "flag_bits is 32: it must be 0 to 31");
+}
+
+#[test]
+fn prefix_sums() {
+    let gpu = Gpu::open(None).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(5);
+    let mut sum = PrefixSum::new(&gpu).unwrap();
+    for (count, below) in [(0, 2), (1, 9), (2047, 9), (2048, 9), (100_000, 9), (5_000_000, 5000)] {
+        let counts: Vec<u32> = (0..count).map(|_| rng.random_range(0..below)).collect();
+        let (from, to) = (upload(&gpu, &counts), upload(&gpu, &vec![7; count + 1]));
+        sum.prepare(&gpu, &from, count as u32, &to).unwrap();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        sum.record(&mut EncoderPasses { encoder: &mut encoder }, "scan");
+        gpu.queue.submit([encoder.finish()]);
+        let mut expected = vec![0_u32];
+        for count in counts {
+            // The last case passes 32 bits.
+            expected.push(expected.last().unwrap().saturating_add(count));
+        }
+        assert!(download(&gpu, &to, count + 1) == expected, "{count}");
+    }
+}

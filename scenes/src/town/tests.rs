@@ -1,0 +1,106 @@
+use std::time::Instant;
+
+use super::*;
+use crate::{Vertex, bvh::TriangleBvh};
+use glam::Vec3;
+
+const SMALL: TownSize = TownSize::Small;
+
+#[test]
+fn it_is_made_quickly_of_little_and_draws_much() {
+    let start = Instant::now();
+    let scene = town(1, TownSize::Full);
+    let seconds = start.elapsed().as_secs_f64();
+    let triangles = scene.triangle_count();
+    let bytes: usize =
+        scene.meshes.iter().map(|m| 48 * m.vertices.len() + 4 * m.indices.len()).sum();
+    // A second on an idle machine; tests share theirs.
+    assert!(seconds < 4.0, "{seconds} s");
+    assert!((6_500_000..7_500_000).contains(&triangles), "{triangles} triangles");
+    assert!(bytes < 60_000_000, "{bytes} bytes");
+    let small = town(1, SMALL).triangle_count();
+    assert!((40_000..100_000).contains(&small), "{small} triangles");
+}
+
+#[test]
+fn the_seed_decides_everything() {
+    let hash = town(1, SMALL).hash();
+    assert_eq!(hash, town(1, SMALL).hash());
+    assert_ne!(hash, town(2, SMALL).hash());
+}
+
+#[test]
+fn bounds_are_finite_and_hold_every_triangle() {
+    let scene = town(1, SMALL);
+    assert!(scene.bounds.min.is_finite() && scene.bounds.max.is_finite());
+    let held = scene.bounds.grown(1e-3);
+    for corner in scene.world_triangles().flatten() {
+        assert!(held.contains(corner), "{corner}");
+    }
+}
+
+#[test]
+fn normals_and_tangents_are_unit_and_perpendicular() {
+    for mesh in [SMALL, TownSize::Full].into_iter().flat_map(|size| town(1, size).meshes) {
+        for vertex in &mesh.vertices {
+            let normal = Vec3::from(vertex.normal);
+            let tangent = Vec3::from_slice(&vertex.tangent[..3]);
+            let ok = Vec3::from(vertex.position).is_finite()
+                && vertex.uv.iter().all(|x| x.is_finite())
+                && (normal.length() - 1.0).abs() < 1e-4
+                && (tangent.length() - 1.0).abs() < 1e-4
+                && normal.dot(tangent).abs() < 1e-3
+                && vertex.tangent[3].abs() == 1.0;
+            assert!(ok, "{}: {vertex:?}", mesh.name);
+        }
+    }
+}
+
+#[test]
+fn winding_agrees_with_normals() {
+    for mesh in town(1, TownSize::Full).meshes {
+        for corners in mesh.indices.chunks_exact(3) {
+            let [a, b, c] = [0, 1, 2].map(|i| mesh.vertices[corners[i] as usize]);
+            let position = |v: Vertex| Vec3::from(v.position);
+            let face = (position(b) - position(a)).cross(position(c) - position(a));
+            let normal = Vec3::from(a.normal) + Vec3::from(b.normal) + Vec3::from(c.normal);
+            assert!(face.dot(normal) >= 0.0, "{}: {a:?} {b:?} {c:?}", mesh.name);
+        }
+    }
+}
+
+/// Closed solids face outwards: walking the path, hardly a ray first meets the back of a
+/// single-sided triangle.
+#[test]
+fn the_camera_keeps_clear_and_sees_no_back_faces() {
+    let scene = town(1, SMALL);
+    let bvh = TriangleBvh::new(&scene, scene.bounds);
+    let (mut rays, mut backs) = (0, 0);
+    for frame in 0..600 {
+        let eye = scene.path.pose(frame, 600).eye;
+        let clear = bvh.clearance(eye, 0.5);
+        assert!(clear >= 0.3, "frame {frame}: {clear} m at {eye}");
+        if frame % 20 == 0 {
+            for i in 0..400 {
+                let y = 1.0 - (i as f32 + 0.5) / 200.0;
+                let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
+                let around = Vec3::new(cos, 0.0, sin) * (1.0 - y * y).sqrt();
+                if let Some(hit) = bvh.cast(eye, around + Vec3::Y * y, 100.0) {
+                    rays += 1;
+                    backs += usize::from(hit.is_back);
+                }
+            }
+        }
+    }
+    // Leaves are double-sided sheets.
+    assert!(backs * 40 < rays, "{backs} of {rays}");
+}
+
+#[test]
+fn the_first_frame_looks_down_a_street() {
+    let scene = town(1, SMALL);
+    let pose = scene.path.pose(0, 1200);
+    let bvh = TriangleBvh::new(&scene, scene.bounds);
+    let hit = bvh.cast(pose.eye, pose.forward(), 300.0).expect("the street rises");
+    assert!(hit.distance_m > 20.0, "{} m", hit.distance_m);
+}
