@@ -6,3 +6,11 @@
 //! A deep image keeps all depths of a pixel, not the nearest alone. A compound deep image is one for
 //! each of many directions over the hemisphere (Archer, Leach, Knowles 2019): a ray through the scene
 //! is then the list of one pixel.
+
+mod hybrid_cells;
+mod hybrid_grid;
+mod hybrid_passes;
+
+pub use hybrid_cells::{CellSize, CellsUniform};
+pub use hybrid_grid::{HYBRID_WESL, HybridGrid};
+pub use hybrid_passes::HybridShader;
