@@ -94,8 +94,9 @@ pub(crate) struct HybridPasses {
     kernel: ListsBindings,
     depth_layout: wgpu::BindGroupLayout,
     depth_bind_group: Option<wgpu::BindGroup>,
-    live_layout: wgpu::BindGroupLayout,
-    live_bind_group: Option<wgpu::BindGroup>,
+    /// Live cells, as `clear` and `reserve_lists` write them and as `sort` reads them.
+    live_layouts: [wgpu::BindGroupLayout; 2],
+    live_bind_groups: Option<[wgpu::BindGroup; 2]>,
     occupancy: wgpu::ComputePipeline,
     clear: wgpu::ComputePipeline,
     reserve: wgpu::ComputePipeline,
@@ -136,27 +137,30 @@ impl HybridPasses {
         let frame = FrameBindings::new(gpu);
         let cells_layout = layout(gpu, "hybrid cells", &with_cull);
         let depth_layout = layout(gpu, "hybrid depth", &[depth_entry()]);
-        let live_layout = layout(gpu, "hybrid live", &[storage_entry(0, stages, false)]);
+        let live_layouts = [false, true]
+            .map(|read_only| layout(gpu, "hybrid live", &[storage_entry(0, stages, read_only)]));
         let kernel = ListsBindings::of_kernel(gpu, "hybrid lists", &cells);
         let kinds = LightKinds::default();
         let read = HybridShader::Occupancy.create(gpu, kinds)?;
         let reserve = HybridShader::Reserve.create(gpu, kinds)?;
         let sort = HybridShader::Sort.create(gpu, kinds)?;
         let of_depth = [Some(frame.layout()), Some(&cells_layout), Some(&depth_layout)];
-        let of_lists = [None, Some(kernel.layout()), Some(&live_layout)];
+        let [written, read_only] = &live_layouts;
+        let of_lists = [None, Some(kernel.layout()), Some(written)];
+        let of_sort = [None, Some(kernel.layout()), Some(read_only)];
         Ok(Self {
             occupancy: pipeline(gpu, &of_depth, &read, "occupancy"),
             clear: pipeline(gpu, &of_lists, &reserve, "clear"),
             reserve: pipeline(gpu, &of_lists, &reserve, "reserve_lists"),
-            sort: pipeline(gpu, &of_lists, &sort, "sort_lists"),
+            sort: pipeline(gpu, &of_sort, &sort, "sort_lists"),
             frame,
             cells_layout,
             cells_bind_group: None,
             kernel,
             depth_layout,
             depth_bind_group: None,
-            live_layout,
-            live_bind_group: None,
+            live_layouts,
+            live_bind_groups: None,
             scatter: None,
             buffers: Buffers {
                 masks: gpu.storage("cell masks", 0)?,
@@ -211,7 +215,9 @@ impl HybridPasses {
         self.cells_bind_group =
             Some(bind_group(gpu, "hybrid cells", &self.cells_layout, &with_cull));
         let live = [entry(0, live.buffer())];
-        self.live_bind_group = Some(bind_group(gpu, "hybrid live", &self.live_layout, &live));
+        let [written, read] = &self.live_layouts;
+        self.live_bind_groups =
+            Some([written, read].map(|layout| bind_group(gpu, "hybrid live", layout, &live)));
         self.depth_bind_group = depth.map(|view| {
             let resource = wgpu::BindingResource::TextureView(view);
             let entries = [wgpu::BindGroupEntry { binding: 0, resource }];
@@ -243,6 +249,7 @@ impl HybridPasses {
         self.add_lights("fill", passes);
         passes.compute("sort", &mut |pass| {
             self.bind_lists(pass);
+            pass.set_bind_group(2, self.live_bind_groups.as_ref().map(|[_, read]| read), &[]);
             pass.set_pipeline(&self.sort);
             pass.dispatch_workgroups_indirect(self.buffers.live.buffer(), 0);
         });
@@ -268,7 +275,8 @@ impl HybridPasses {
 
     fn bind_lists(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(LISTS_GROUP, self.kernel.bind_group(), &[]);
-        pass.set_bind_group(2, self.live_bind_group.as_ref(), &[]);
+        let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
+        pass.set_bind_group(2, live, &[]);
     }
 }
 

@@ -30,7 +30,7 @@ fn odd_cells_conform() {
 
 #[test]
 fn fine_cells_conform() {
-    conforms("3x3x200");
+    conforms("9x7x200");
 }
 
 #[test]
