@@ -7,10 +7,16 @@
 //! each of many directions over the hemisphere (Archer, Leach, Knowles 2019): a ray through the scene
 //! is then the list of one pixel.
 
+mod hybrid_cells;
+mod hybrid_grid;
+mod hybrid_passes;
 mod kernel;
 mod prefix_sum;
 mod sort;
 mod sort_network;
 
+pub use hybrid_cells::{CellSize, CellsUniform};
+pub use hybrid_grid::{HYBRID_WESL, HybridGrid};
+pub use hybrid_passes::HybridShader;
 pub use prefix_sum::PrefixSum;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
