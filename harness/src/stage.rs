@@ -40,6 +40,7 @@ pub struct Stage {
     pub view: View,
     /// The pipeline.
     pub renderer: Renderer,
+    vpl_maker: VplMaker,
     lens: Option<Lens>,
     /// The diagonal of the scene's core before it was scaled, metres.
     unscaled_m: f32,
@@ -65,8 +66,14 @@ impl Set {
 }
 
 impl Stage {
-    /// Opens the scene, scatters the lights and uploads both.
+    /// Opens the scene, makes the lights and uploads both.
     pub fn new(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
+        let mut stage = Self::under_scattered_lights(gpu, args)?;
+        stage.bounce(gpu, args)?;
+        Ok(stage)
+    }
+
+    fn under_scattered_lights(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
         let unscaled_m = scene.core_bounds.diagonal();
         let scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
@@ -79,6 +86,8 @@ impl Stage {
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
             area_model: AreaModel::default(),
             compensation: None,
+            vpls: None,
+            vpl_maker: VplMaker::default(),
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
@@ -97,6 +106,26 @@ impl Stage {
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
         self.view = view;
         self.lens = lens;
+        self.bounce(gpu, args)
+    }
+
+    /// Puts the primary light, or what surfaces reflect of it, in place of the lights, where options
+    /// ask for it.
+    fn bounce(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
+        self.vpls = None;
+        if !args.bounce.primary && args.bounce.vpls == 0 {
+            return Ok(());
+        }
+        let primary = primary_light(&self.scene);
+        let lights = if args.bounce.primary {
+            vec![primary]
+        } else {
+            let made = self.vpl_maker.make(gpu, &self.scene, &self.renderer, primary, args)?;
+            self.vpls = Some(made.figures);
+            made.lights
+        };
+        self.own_lights = 0;
+        self.lights = LightBuffer::ordered(gpu, &lights, args.light_order)?;
         Ok(())
     }
 
@@ -139,6 +168,9 @@ impl Lit {
             LightBox::Core | LightBox::Cylinders => scene.core_bounds,
             LightBox::Bounds => scene.bounds,
         };
+        if args.bounce.primary || args.bounce.vpls > 0 {
+            return Ok(Self { lights: Vec::new(), bounds, own: 0 });
+        }
         let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
         if let Some(file) = &args.lights_from {
             let other = scenes::open(file)?.scaled(args.scene_scale as f32)?;
