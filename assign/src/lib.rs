@@ -70,6 +70,7 @@ pub use lists_bindings::{FIRST_STRATEGY_BINDING, ListsBindings};
 pub use live_groups::LiveGroups;
 pub use models::ModelBox;
 pub use passes::{EncoderPasses, Passes};
+pub use readback::Readback;
 pub use reuse::Reuse;
 pub use shader::Shader;
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};
