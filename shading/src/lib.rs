@@ -39,6 +39,8 @@ mod renderer;
 mod shaders;
 mod targets;
 pub mod traced;
+mod rsm;
+mod world_triangles;
 mod truth;
 
 pub use area_model::{AreaModel, MAX_AREA_SAMPLES};
@@ -55,4 +57,6 @@ pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};
 pub use renderer::{Mode, Renderer, record_before_lighting};
 pub use shaders::lighting_shader;
 pub use targets::Targets;
+pub use rsm::{MAX_RSM_ANGLE, rsm_view};
+pub use world_triangles::WorldTriangles;
 pub use truth::{EDGE, LightBvh, ListsTruth};

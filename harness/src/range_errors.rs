@@ -1,0 +1,1 @@
+//! Rays through deep images against exact ones.
