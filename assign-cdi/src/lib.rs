@@ -15,16 +15,22 @@ mod directions;
 mod image_space;
 mod kernel;
 mod prefix_sum;
+mod random_ranges;
+mod ranges;
 mod snapshot;
 mod sort;
 mod sort_network;
 
 pub use build_kernels::{ROOTS, build_shader};
 pub use deep_buffers::DeepImageCounters;
-pub use deep_images::{DeepImages, DispatchSizes, StageUniform};
+pub use deep_images::{DeepImages, DispatchSizes, RAY_CAST_WESL, StageUniform};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
 pub use directions::{Directions, MAX_DIRECTIONS, Spread};
 pub use image_space::{ImagesUniform, Triangles};
 pub use prefix_sum::PrefixSum;
+pub use random_ranges::{RandomRanges, RandomUniform};
+pub use ranges::{
+    Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform, Threads,
+};
 pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
