@@ -51,8 +51,8 @@ pub(crate) struct DrawKey {
     pub(crate) mirrored: bool,
 }
 
-/// A scene's geometry and materials on the GPU, bind group 2.
-#[derive(Debug)]
+/// A scene's geometry and materials on the GPU, bind group 2. Cloning shares them.
+#[derive(Clone, Debug)]
 pub struct SceneGpu {
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,

@@ -59,7 +59,7 @@ impl MaterialKey {
 }
 
 /// A scene's materials on the GPU.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Materials {
     keys: Vec<MaterialKey>,
     groups: Vec<wgpu::BindGroup>,

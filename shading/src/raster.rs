@@ -41,8 +41,8 @@ pub(crate) struct Lists<'a> {
 /// Bind group of the lists in lighting shaders.
 pub(crate) const LISTS_GROUP: u32 = 1;
 
-/// The pipelines of one pass.
-#[derive(Debug)]
+/// The pipelines of one pass. Cloning shares them.
+#[derive(Clone, Debug)]
 pub(crate) struct RasterPipelines {
     pipelines: HashMap<DrawKey, wgpu::RenderPipeline>,
 }

@@ -88,6 +88,34 @@ impl Renderer {
         })
     }
 
+    /// A renderer of the same scene for a second view in the same frame, such as a light's: with a
+    /// view, lights and targets of its own, and the uploaded scene and pipelines shared.
+    pub fn beside(&self, view: &View) -> Result<Self, ShadingError> {
+        view.check().map_err(AssignError::from)?;
+        let frame = FrameBindings::new(&self.gpu);
+        let targets = Targets::new(&self.gpu, view, self.scene.has_emissive())?;
+        let depth = if view.depth == self.depth_mapping {
+            self.depth.clone()
+        } else {
+            RasterPipelines::new(&self.gpu, &frame, &self.scene, view.depth, RasterPass::Depth)?
+        };
+        Ok(Self {
+            gpu: self.gpu.clone(),
+            frame,
+            scene: self.scene.clone(),
+            scene_group: self.scene_group.clone(),
+            targets,
+            depth_mapping: view.depth,
+            lights: LightTotals::default(),
+            models: self.models.clone(),
+            surface_bounds: self.surface_bounds,
+            depth,
+            model_ids: self.model_ids.clone(),
+            gbuffer: self.gbuffer.clone(),
+            clay: self.clay.clone(),
+        })
+    }
+
     /// The device it draws on.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
