@@ -3,8 +3,9 @@
 use std::process::Command;
 
 /// What the program is built from, relative to the workspace.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     "assign",
+    "assign-cdi",
     "assign-clustered",
     "assign-grid",
     "assign-model",

@@ -7,10 +7,30 @@
 //! each of many directions over the hemisphere (Archer, Leach, Knowles 2019): a ray through the scene
 //! is then the list of one pixel.
 
+mod build_kernels;
+mod deep_buffers;
+mod deep_images;
+mod deep_settings;
+mod directions;
+mod hybrid_cells;
+mod hybrid_grid;
+mod hybrid_passes;
+mod image_space;
 mod kernel;
 mod prefix_sum;
+mod snapshot;
 mod sort;
 mod sort_network;
 
+pub use build_kernels::{build_shader, ROOTS};
+pub use deep_buffers::DeepImageCounters;
+pub use deep_images::{DeepImages, DispatchSizes, StageUniform};
+pub use deep_settings::{Build, Coverage, DeepImageSettings, Raster, Storage, MAX_FRAGMENTS};
+pub use directions::{Directions, Spread, MAX_DIRECTIONS};
+pub use hybrid_cells::{CellSize, CellsUniform};
+pub use hybrid_grid::{HybridGrid, HYBRID_WESL};
+pub use hybrid_passes::HybridShader;
+pub use image_space::{ImagesUniform, Triangles};
 pub use prefix_sum::PrefixSum;
+pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};

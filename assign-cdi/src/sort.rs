@@ -245,6 +245,9 @@ impl ListSort {
         }
     }
 
+    /// Byte of [`SortWork::longest`] in [`work`](Self::work).
+    pub const LONGEST_AT: u64 = 32;
+
     /// The header of the work list, [`SortWork`]: its longest list.
     pub fn work(&self) -> &wgpu::Buffer {
         &self.work

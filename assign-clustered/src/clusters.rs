@@ -4,7 +4,7 @@ use std::{fmt, str::FromStr};
 
 use assign::{AssignError, Projection, View};
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use crate::Normals;
 
@@ -144,7 +144,7 @@ impl ClustersUniform {
             });
         }
         let near = view.near_m;
-        let last = view.far_m.unwrap_or_else(|| deepest(view, light_bounds).max(2.0 * near));
+        let last = view.far_m.unwrap_or_else(|| light_bounds.map_or(0.0, |(min, max)| view.deepest_m(min, max)).max(2.0 * near));
         let exponential = matches!(view.projection, Projection::Perspective { .. });
         let last = if exponential { last.min(near * MAX_DEPTH_RATIO) } else { last };
         let span = if exponential { (last / near).log2() } else { last - near };
@@ -169,20 +169,6 @@ impl ClustersUniform {
         let bins = (6 * self.bin_side * self.bin_side).max(1);
         self.counts.iter().product::<u32>() * bins
     }
-}
-
-/// The greatest view depth inside a world-space box, metres; 0 without a box.
-fn deepest(view: &View, bounds: Option<(Vec3, Vec3)>) -> f32 {
-    let Some((min, max)) = bounds else { return 0.0 };
-    // View depth is linear in position: each coordinate's better end, one by one.
-    let depth = -Vec4::new(
-        view.world_to_view.x_axis.z,
-        view.world_to_view.y_axis.z,
-        view.world_to_view.z_axis.z,
-        view.world_to_view.w_axis.z,
-    );
-    let axis = depth.truncate();
-    (axis * min).max(axis * max).element_sum() + depth.w
 }
 
 #[cfg(test)]

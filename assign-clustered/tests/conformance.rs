@@ -67,6 +67,14 @@ fn sparse_explicit_conforms() {
     conforms(SC_E, "3x3x200", CullSettings::default());
 }
 
+#[test]
+fn one_sparse_cluster_conforms() {
+    for variant in [SC_I, SC_E] {
+        let make = clustered(variant, "4096x4096x1", CullSettings::default());
+        conformance::run_case("33-lights", &make).expect("conforms");
+    }
+}
+
 fn split(
     size: &str,
     bins: u32,

@@ -5,8 +5,8 @@
 
 use crate::{
     AssignError, CullSettings, Frame, FrameBindings, Gpu, LightKinds, LightLists, LightSource,
-    LiveGroups, Lookup, Passes, Shader, StrategyModule,
-    frame::{entry, storage_entry, uniform_entry},
+    ListsBindings, LiveGroups, Lookup, Passes, Shader, StrategyModule,
+    frame::{entry, storage_entry},
 };
 
 /// Bind group of the lists inside the driver's own kernels.
@@ -14,9 +14,6 @@ const LISTS_GROUP: u32 = 1;
 
 /// Bind group of what is culled: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
-
-/// First binding of a strategy's own resources, in the kernel and in the look-up alike.
-pub const FIRST_STRATEGY_BINDING: u32 = 4;
 
 /// Workgroups a dispatch may have along one axis; each takes several groups where there are more.
 const MAX_DISPATCH: u32 = 65_535;
@@ -151,8 +148,8 @@ impl Culler {
             module,
             kernel: None,
             frame: FrameBindings::new(gpu),
-            cull: ListsBindings::new(cull_layout(gpu, label, bindings)),
-            look_up: ListsBindings::new(lookup_layout(gpu, label, bindings)),
+            cull: ListsBindings::of_kernel(gpu, label, bindings),
+            look_up: ListsBindings::of_look_up(gpu, label, bindings),
             source_layout: source_layout(gpu, variant),
             source: None,
             lists: LightLists::new(gpu)?,
@@ -170,10 +167,7 @@ impl Culler {
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
         self.lists.prepare(gpu, frame.lights.count(), groups.count())?;
-        let counters = entry(2, self.lists.counters());
-        let uniform = entry(3, self.lists.uniform());
-        let kernel_entries = [&[counters, uniform], resources].concat();
-        self.cull.bind(gpu, &self.lists, &kernel_entries);
+        self.cull.bind(gpu, &self.lists, resources);
         self.look_up.bind(gpu, &self.lists, resources);
         self.bind_source(gpu, frame, groups);
         let kinds = frame.lights.kinds();
@@ -336,73 +330,5 @@ fn source_layout(gpu: &Gpu, variant: Variant) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("cull source"),
         entries: &entries,
-    })
-}
-
-/// Lists and a strategy's resources in one bind group.
-#[derive(Debug)]
-pub(crate) struct ListsBindings {
-    layout: wgpu::BindGroupLayout,
-    bind_group: Option<wgpu::BindGroup>,
-}
-
-impl ListsBindings {
-    pub(crate) fn new(layout: wgpu::BindGroupLayout) -> Self {
-        Self { layout, bind_group: None }
-    }
-
-    pub(crate) fn bind(
-        &mut self,
-        gpu: &Gpu,
-        lists: &LightLists,
-        resources: &[wgpu::BindGroupEntry<'_>],
-    ) {
-        let both = [entry(0, lists.lists()), entry(1, lists.entries())];
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("lists"),
-            layout: &self.layout,
-            entries: &[&both, resources].concat(),
-        }));
-    }
-
-    pub(crate) fn layout(&self) -> &wgpu::BindGroupLayout {
-        &self.layout
-    }
-
-    pub(crate) fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.bind_group.as_ref()
-    }
-}
-
-/// Layout of the look-up: lists and entries, then the strategy's resources.
-pub(crate) fn lookup_layout(
-    gpu: &Gpu,
-    label: &str,
-    bindings: &[wgpu::BindGroupLayoutEntry],
-) -> wgpu::BindGroupLayout {
-    let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-    let both = [storage_entry(0, stages, true), storage_entry(1, stages, true)];
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &[&both, bindings].concat(),
-    })
-}
-
-/// Layout of the kernel: lists, entries, counters, parameters, then the strategy's resources.
-fn cull_layout(
-    gpu: &Gpu,
-    label: &str,
-    bindings: &[wgpu::BindGroupLayoutEntry],
-) -> wgpu::BindGroupLayout {
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let own = [
-        storage_entry(0, stages, false),
-        storage_entry(1, stages, false),
-        storage_entry(2, stages, false),
-        uniform_entry(3, stages),
-    ];
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &[&own, bindings].concat(),
     })
 }

@@ -2,8 +2,8 @@
 //! the comparison.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, StrategyModule,
-    cull::{ListsBindings, lookup_layout},
+    AssignError, Assignment, Frame, Gpu, LightLists, ListsBindings, Lookup, Needs, Passes,
+    StrategyModule,
 };
 
 /// Assigns every light to every sample.
@@ -18,7 +18,7 @@ impl Everything {
     pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
         Ok(Self {
             lists: LightLists::new(gpu)?,
-            bindings: ListsBindings::new(lookup_layout(gpu, "None", &[])),
+            bindings: ListsBindings::of_look_up(gpu, "None", &[]),
         })
     }
 }

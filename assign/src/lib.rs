@@ -38,6 +38,7 @@ mod light_buffer;
 mod light_nodes;
 mod light_order;
 mod lists;
+mod lists_bindings;
 mod live_groups;
 mod models;
 mod passes;
@@ -47,7 +48,7 @@ mod shader;
 mod view;
 
 pub use assignment::{Assignment, Lookup, StrategyModule};
-pub use cull::{Culler, CullerDescriptor, FIRST_STRATEGY_BINDING, Facing, GroupShape, Groups};
+pub use cull::{Culler, CullerDescriptor, Facing, GroupShape, Groups};
 pub use cull_settings::{Bounds, CullSettings, FrustumTests, LightSource};
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use error::AssignError;
@@ -65,9 +66,11 @@ pub use lists::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
     LightLists, ListsSnapshot,
 };
+pub use lists_bindings::{FIRST_STRATEGY_BINDING, ListsBindings};
 pub use live_groups::LiveGroups;
 pub use models::ModelBox;
 pub use passes::{EncoderPasses, Passes};
+pub use readback::Readback;
 pub use reuse::Reuse;
 pub use shader::Shader;
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};

@@ -2,8 +2,8 @@
 //!
 //! Every light's contribution is multiplied by the window `(1 - (d / range)^4)^2`, clamped at 0,
 //! with `d` the distance to the closest point of the emitter, so its *support*, the set of points
-//! it can reach, is exact: a ball, a ball cut by a cone, or a rounded rectangle or polygon, cut by
-//! its plane where one-sided. Culling and shading read the same `range`.
+//! it can reach, is exact: a ball, a ball cut by a cone, half a ball, or a rounded rectangle or
+//! polygon, cut by its plane where one-sided. Culling and shading read the same `range`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -28,6 +28,15 @@ pub enum LightShape {
     },
     /// Emits the same radiance from every point of a flat emitter, in all directions in front.
     Area(Emitter),
+    /// Emits from a point into the half space in front as a matte surface does, by the cosine to its
+    /// normal: a virtual point light.
+    Vpl {
+        /// The surface's normal, of unit length, world space. The light's intensity is that along it.
+        normal: Vec3,
+        /// Its inverse-square fall-off grows no further within this distance, metres, 0 to
+        /// [`MAX_RANGE_M`]: light from a point close by is not what a surface would send.
+        min_distance_m: f32,
+    },
 }
 
 /// One light, in world space.
@@ -69,7 +78,6 @@ pub enum LightFault {
 }
 
 /// The kinds of light, as stored in the top four bits of [`LightEmission::kind_and_shape`].
-/// The number 4 is kept for hemispherical VPLs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum LightKind {
@@ -81,12 +89,14 @@ pub enum LightKind {
     Rectangle = 2,
     /// [`LightShape::Area`] with a polygon.
     Polygon = 3,
+    /// [`LightShape::Vpl`].
+    Vpl = 4,
 }
 
 /// The kinds beside points that some lights are of: shaders are compiled for what there is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct LightKinds {
-    /// Spots: the flag `spots`.
+    /// Spots or virtual point lights, whose supports are cones: the flag `spots`.
     pub spots: bool,
     /// Rectangles or polygons: the flag `areas`.
     pub areas: bool,
@@ -104,7 +114,9 @@ impl LightKinds {
     /// The kinds of some lights.
     pub fn of(lights: &[Light]) -> Self {
         Self {
-            spots: lights.iter().any(|light| light.kind() == LightKind::Spot),
+            spots: lights
+                .iter()
+                .any(|light| matches!(light.kind(), LightKind::Spot | LightKind::Vpl)),
             areas: lights.iter().any(|light| matches!(light.shape, LightShape::Area(_))),
         }
     }
@@ -147,6 +159,12 @@ impl Light {
         Self { position, range_m, intensity, shape: LightShape::Area(emitter) }
     }
 
+    /// A virtual point light.
+    pub fn vpl(position: Vec3, normal: Vec3, range_m: f32, intensity: Vec3) -> Self {
+        let shape = LightShape::Vpl { normal, min_distance_m: 0.0 };
+        Self { position, range_m, intensity, shape }
+    }
+
     /// The range at which an unbounded light's unoccluded intensity over squared distance falls
     /// to `threshold`: `sqrt(max(intensity) / threshold)` (Watrous 2024, "Light volumes").
     pub fn range_from_threshold(intensity: Vec3, threshold: f32) -> f32 {
@@ -158,6 +176,7 @@ impl Light {
         match self.shape {
             LightShape::Point => LightKind::Point,
             LightShape::Spot { .. } => LightKind::Spot,
+            LightShape::Vpl { .. } => LightKind::Vpl,
             LightShape::Area(emitter) => match emitter.outline() {
                 Outline::Rectangle => LightKind::Rectangle,
                 Outline::Polygon => LightKind::Polygon,
@@ -169,7 +188,7 @@ impl Light {
     pub fn radius_m(&self) -> f32 {
         match &self.shape {
             LightShape::Area(emitter) => (self.range_m + emitter.radius()).next_up(),
-            LightShape::Point | LightShape::Spot { .. } => self.range_m,
+            LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => self.range_m,
         }
     }
 
@@ -177,7 +196,7 @@ impl Light {
     pub fn diffuse_range_m(&self) -> f32 {
         match &self.shape {
             LightShape::Area(emitter) => self.range_m * emitter.diffuse_share,
-            LightShape::Point | LightShape::Spot { .. } => self.range_m,
+            LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => self.range_m,
         }
     }
 
@@ -222,6 +241,17 @@ impl Light {
         if let LightShape::Area(emitter) = &self.shape {
             emitter.check()?;
         }
+        if let LightShape::Vpl { normal, min_distance_m } = self.shape {
+            finite("VPL normal", normal)?;
+            finite("VPL minimum distance", Vec3::splat(min_distance_m))?;
+            let length = normal.length();
+            if (length - 1.0).abs() > 1e-3 {
+                return out("VPL normal", length, "of length 1");
+            }
+            if !(0.0..=MAX_RANGE_M).contains(&min_distance_m) {
+                return out("VPL minimum distance", min_distance_m, "between 0 and 1e9 metres");
+            }
+        }
         Ok(())
     }
 
@@ -232,15 +262,16 @@ impl Light {
         let to_point = point - self.position.as_dvec3();
         let distance = to_point.length();
         let ball = 1.0 - distance / f64::from(self.range_m);
+        let cone = |axis: Vec3, cos_outer: f64| match distance {
+            0.0 => ball,
+            _ => ball.min(axis.as_dvec3().normalize().dot(to_point) / distance - cos_outer),
+        };
         match self.shape {
             LightShape::Point => ball,
             LightShape::Spot { direction, outer_angle, .. } => {
-                if distance == 0.0 {
-                    return ball;
-                }
-                let cos = direction.as_dvec3().normalize().dot(to_point) / distance;
-                ball.min(cos - f64::from(outer_angle).cos())
+                cone(direction, f64::from(outer_angle).cos())
             }
+            LightShape::Vpl { normal, .. } => cone(normal, 0.0),
             LightShape::Area(emitter) => {
                 let range = f64::from(self.range_m);
                 let window = 1.0 - to_point.distance(emitter.closest(to_point)) / range;
@@ -268,7 +299,7 @@ impl Light {
                 let heights = emitter.vertices().iter().map(|v| normal.dot(v.as_dvec3()));
                 heights.fold(f64::NEG_INFINITY, f64::max)
             }
-            LightShape::Point | LightShape::Spot { .. } => 0.0,
+            LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => 0.0,
         };
         (height + rise) / f64::from(self.range_m)
     }
@@ -281,7 +312,8 @@ impl Light {
     /// The light's record for shading; appends what its kind needs to `shapes`.
     ///
     /// Shape vectors: a point light has none; a spot has `(direction, cos outer)` and
-    /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`; an area light has `(normal,
+    /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`; a virtual point light has
+    /// `(normal, cos outer = 0)` and `(0, sin outer = 1, least distance squared, 0)`; an area light has `(normal,
     /// range)`, `(half x, diffuse range)`, `(half y, vertex count)` with the count negative where
     /// two-sided, `(area, 0, 0, 0)`, and its vertices relative to its position, `(vertex, 0)` each.
     pub(crate) fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
@@ -292,6 +324,11 @@ impl Light {
             let scale = 1.0 / (inner_angle.cos() - cos_outer).max(1e-3);
             shapes.push([direction.x, direction.y, direction.z, cos_outer]);
             shapes.push([scale, outer_angle.sin().max(0.0), 0.0, 0.0]);
+        }
+        if let LightShape::Vpl { normal, min_distance_m } = self.shape {
+            let normal = normal.normalize();
+            shapes.push([normal.x, normal.y, normal.z, 0.0]);
+            shapes.push([0.0, 1.0, min_distance_m * min_distance_m, 0.0]);
         }
         if let LightShape::Area(emitter) = &self.shape {
             let [half_x, half_y] = emitter.half_axes();

@@ -20,7 +20,7 @@ pub const ENTRY_LIGHT: u32 = ENTRY_DIFFUSE - 1;
 /// What `group_of` returns for a sample outside all groups: its list holds all lights.
 pub const ALL_LIGHTS: u32 = u32::MAX;
 
-/// The most entries of the pool, 4 GiB: `CAREFUL` of `cull.wesl` counts on it.
+/// The most entries of the pool, 4 GiB: `CAREFUL` of `reserve.wesl` counts on it.
 const MAX_POOL: u64 = 1 << 30;
 
 /// The most entries that the pool begins with: 64 MiB.
@@ -36,7 +36,7 @@ pub struct LightList {
     pub count: u32,
 }
 
-/// The counters as the GPU writes them: `cull.wesl`, `struct Counters`.
+/// The counters as the GPU writes them: `reserve.wesl`, `struct Counters`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Counters {
@@ -61,7 +61,7 @@ impl Counters {
     }
 }
 
-/// What the culling kernel is told: `cull.wesl`, `struct Cull`.
+/// What the culling kernel is told: `reserve.wesl`, `struct Cull`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct CullUniform {

@@ -46,5 +46,6 @@ impl LiveGroups {
 
 fn allocate(gpu: &Gpu, most: u32) -> Result<wgpu::Buffer, AssignError> {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-    gpu.buffer("live groups", HEADER + u64::from(most) * 4, usage)
+    // Read with a vector of three for workgroup counts, the struct is a multiple of 16 bytes.
+    gpu.buffer("live groups", HEADER + u64::from(most.max(4)) * 4, usage)
 }

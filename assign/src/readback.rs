@@ -20,9 +20,9 @@ enum State {
     Mapping(u64, Receiver<bool>),
 }
 
-/// Reads a `T` back from the GPU, a frame or more late.
+/// Reads a `T`, the first bytes of a buffer, back from the GPU without waiting, a frame or more late.
 #[derive(Debug)]
-pub(crate) struct Readback<T> {
+pub struct Readback<T> {
     slots: Vec<(wgpu::Buffer, State)>,
     /// The newest value, and the number of its record.
     latest: Option<(u64, T)>,
@@ -31,7 +31,8 @@ pub(crate) struct Readback<T> {
 }
 
 impl<T: Pod> Readback<T> {
-    pub(crate) fn new(gpu: &Gpu, label: &str) -> Self {
+    /// Nothing read yet.
+    pub fn new(gpu: &Gpu, label: &str) -> Self {
         let slot = || {
             let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -50,7 +51,7 @@ impl<T: Pod> Readback<T> {
     }
 
     /// Copies the value; skipped while all slots are in flight.
-    pub(crate) fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer) {
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer) {
         let free = self.slots.iter_mut().find(|(_, state)| matches!(state, State::Free));
         if let Some((buffer, state)) = free {
             encoder.copy_buffer_to_buffer(source, 0, buffer, 0, size_of::<T>() as u64);
@@ -60,7 +61,7 @@ impl<T: Pod> Readback<T> {
     }
 
     /// Takes what has arrived. Call after the recorded encoder was submitted.
-    pub(crate) fn poll(&mut self, gpu: &Gpu) {
+    pub fn poll(&mut self, gpu: &Gpu) {
         for (buffer, state) in &mut self.slots {
             if let State::Recorded(number) = *state {
                 let (sender, receiver) = channel();
@@ -91,7 +92,8 @@ impl<T: Pod> Readback<T> {
         }
     }
 
-    pub(crate) fn latest(&self) -> Option<T> {
+    /// The newest value that has arrived.
+    pub fn latest(&self) -> Option<T> {
         self.latest.map(|(_, value)| value)
     }
 }

@@ -9,7 +9,8 @@ use crate::{AssignError, LightKinds};
 /// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
 ///
 /// It starts with the contract's own modules: `package::view`, `package::sample`,
-/// `package::lights`, `package::volume` and `package::lists`.
+/// `package::lights`, `package::volume`, `package::lists` and, for kernels that make lists,
+/// `package::reserve`.
 #[derive(Clone, Debug)]
 pub struct Shader<'a> {
     modules: Vec<(String, Cow<'a, str>)>,
@@ -27,6 +28,7 @@ impl<'a> Shader<'a> {
             .module("package::lights", include_str!("shaders/lights.wesl"))
             .module("package::volume", include_str!("shaders/volume.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
+            .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .light_kinds(LightKinds::default())
     }
 

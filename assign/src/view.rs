@@ -278,6 +278,14 @@ impl View {
         if rebuilt.is_finite() { self.near_m.min(rebuilt - slack) } else { 0.0 }
     }
 
+    /// The greatest view depth inside a world-space box, metres.
+    pub fn deepest_m(&self, min_world: Vec3, max_world: Vec3) -> f32 {
+        // View depth is linear in position: each coordinate's better end, one by one.
+        let depth = -self.world_to_view.row(2);
+        let axis = depth.truncate();
+        (axis * min_world).max(axis * max_world).element_sum() + depth.w
+    }
+
     /// View depth of a clip depth as `view.wesl` computes it, metres.
     fn rebuilt_m(&self, depth_clip: f32) -> f32 {
         let clip = self.view_to_clip();

@@ -15,7 +15,7 @@ use harness::{
     cli::{self, CompareArgs, Invocation},
     clock::PassClock,
     error::HarnessError,
-    measure::pass_kind,
+    pass_samples::pass_kind,
     painter::Painter,
     results::PassKind,
     stage::Stage,

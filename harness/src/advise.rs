@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// The strategies of the first round.
-const FAMILIES: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2";
+const FAMILIES: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2";
 
 /// Families that go on to the second round.
 const FINALISTS: usize = 3;
@@ -156,7 +156,7 @@ fn variants(id: &str) -> Vec<String> {
     let source = if id.split('/').any(|segment| segment == "bvh") { "/bvh" } else { "" };
     let sizes: &[&str] = match family(id) {
         "T-I" | "T-E" => &["16x16", "20x20", "24x24", "32x32", "48x48"],
-        "DC-I" | "DC-E" | "SC-I" | "SC-E" => {
+        "DC-I" | "DC-E" | "SC-I" | "SC-E" | "HG" => {
             &["32x32x40", "32x32x64", "40x40x64", "48x48x64", "64x64x64", "96x96x64", "128x128x32"]
         }
         "G" => &["12x12x12", "16x16x16", "28x28x28", "40x40x40"],
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn variants_keep_family_and_source() {
-        for id in ["T-E/28x28/bvh", "SC-E/48x48x40", "G/20x20x20/bvh", "M/2"] {
+        for id in ["T-E/28x28/bvh", "SC-E/48x48x40", "G/20x20x20/bvh", "M/2", "HG/48x48x40"] {
             let all = variants(id);
             assert!(all.len() >= 4);
             for variant in all {

@@ -4,6 +4,7 @@
 //! ([`CliError`]), and exit code [`BAD_INPUT`]. Names of scenes and strategies are passed on as
 //! they are; whoever looks them up offers the [`nearest`] ones.
 
+mod cdi;
 mod error;
 mod fit_ltc;
 mod names;
@@ -11,6 +12,7 @@ mod stage;
 mod study;
 mod truth;
 mod values;
+mod vpl;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -20,13 +22,15 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use shading::{AreaModel, Cut};
 
+pub use cdi::CdiArgs;
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
 pub use names::{did_you_mean, nearest};
 pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
-pub use values::{Camera, CameraPose, Size, Strategies};
+pub use values::{Camera, CameraPose, DirectionCounts, Size, Sizes, Span, Strategies};
+pub use vpl::{BuildChoice, DeepArgs, RangeChoice, VplArgs};
 
 use crate::results::{Mode, TruthLevel};
 
@@ -79,6 +83,8 @@ pub enum Invocation {
     FitLtc(FitLtcArgs),
     /// Render what a view should look like.
     Truth(TruthArgs),
+    /// Build deep images and cast rays through them.
+    Cdi(CdiArgs),
     /// List what can be named on the command line.
     List(Listing),
     /// Print this text (help or version) and end well.
@@ -121,6 +127,8 @@ enum Command {
     FitLtc(FitLtcArgs),
     /// Render on the CPU what a view should look like, with shadows or a bounce where asked for
     Truth(TruthArgs),
+    /// Build the deep images of a scene, cast rays through them, and compare those with exact ones
+    Cdi(CdiArgs),
     /// List the strategies, scenes or adapters that can be named
     List {
         /// What to list
@@ -200,6 +208,11 @@ pub struct CompareArgs {
     /// Which pictures to keep
     #[arg(long, value_name = "WHICH", default_value = "all")]
     pub pictures: PicturesChoice,
+
+    /// Multiply each sample by this number of lights over the number of those that light it, within a
+    /// factor of 4: hides where virtual point lights lie thick or thin, and errors with them
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::compensation)]
+    pub compensate: Option<f64>,
 
     /// Count the light operations of every method with lists: the terms that are evaluated, and those
     /// that would be seen
@@ -307,6 +320,7 @@ where
         Ok(Cli { command: Some(Command::Advise(args)), .. }) => Ok(Invocation::Advise(args)),
         Ok(Cli { command: Some(Command::FitLtc(args)), .. }) => Ok(Invocation::FitLtc(args)),
         Ok(Cli { command: Some(Command::Truth(args)), .. }) => Ok(Invocation::Truth(args)),
+        Ok(Cli { command: Some(Command::Cdi(args)), .. }) => Ok(Invocation::Cdi(args)),
         Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
         Err(shown)
             if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>

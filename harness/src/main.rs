@@ -8,6 +8,7 @@ use std::{
 use harness::{
     advise::advise,
     again::again,
+    cdi::cdi,
     cli::{self, CliError, Invocation, Listing},
     compare::compare,
     error::HarnessError,
@@ -43,6 +44,7 @@ fn run() -> Result<(), HarnessError> {
         Invocation::Advise(args) => advise(&args, command)?,
         Invocation::FitLtc(args) => fit_ltc(&args)?,
         Invocation::Truth(args) => truth(&args, command)?,
+        Invocation::Cdi(args) => cdi(&args, command)?,
     };
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         // Whoever read has read enough.

@@ -16,8 +16,9 @@ use crate::{
     error::HarnessError,
     list_lengths::ListLengths,
     painter::Painter,
+    pass_samples::PassSamples,
     registry::Method,
-    results::{PassKind, PassTimes, Passes},
+    results::Passes,
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
 };
@@ -90,8 +91,7 @@ const SETTLING_POSES: [u32; 2] = [24, 6];
 /// One method on its way.
 struct Contender<'a> {
     painter: Painter<'a>,
-    samples: Vec<(String, PassKind, Vec<f64>)>,
-    frames: usize,
+    samples: PassSamples,
     overflowed_frames: u32,
 }
 
@@ -120,8 +120,7 @@ impl<'a> Contest<'a> {
         for method in methods {
             contenders.push(Contender {
                 painter: Painter::new(stage, method, mode, plan.cut)?,
-                samples: Vec::new(),
-                frames: 0,
+                samples: PassSamples::default(),
                 overflowed_frames: 0,
             });
         }
@@ -265,7 +264,7 @@ impl<'a> Contest<'a> {
         let contender = &mut self.contenders[method];
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
         let times = self.clock.finish()?;
-        contender.collect(times);
+        contender.samples.collect(times);
         contender.overflowed_frames += u32::from(!settled);
         Ok(())
     }
@@ -276,34 +275,9 @@ impl<'a> Contest<'a> {
             .into_iter()
             .map(|contender| Timed {
                 overflowed_frames: contender.overflowed_frames,
-                passes: contender
-                    .samples
-                    .into_iter()
-                    .map(|(name, kind, samples)| (name, PassTimes::new(kind, samples)))
-                    .collect(),
+                passes: contender.samples.finish(),
             })
             .collect()
-    }
-}
-
-impl Contender<'_> {
-    /// Adds a frame's times; a pass that a frame did without took 0 ms.
-    fn collect(&mut self, times: Vec<(String, f64)>) {
-        for (name, ms) in times {
-            match self.samples.iter_mut().find(|(known, ..)| *known == name) {
-                Some((.., list)) => list.push(ms),
-                None => {
-                    let mut list = vec![0.0; self.frames];
-                    list.push(ms);
-                    let kind = pass_kind(&name);
-                    self.samples.push((name, kind, list));
-                }
-            }
-        }
-        self.frames += 1;
-        for (.., list) in &mut self.samples {
-            list.resize(self.frames, 0.0);
-        }
     }
 }
 
@@ -346,15 +320,6 @@ fn draw_unclocked(
     gpu.queue.submit([encoder.finish()]);
     gpu.wait()?;
     Ok(settled)
-}
-
-/// Which bill a pass is on: what the pipeline does not know is a strategy's own.
-pub fn pass_kind(name: &str) -> PassKind {
-    match name {
-        "depth" | "gbuffer" => PassKind::Scene,
-        "shade" | "clay" => PassKind::Shade,
-        _ => PassKind::Assign,
-    }
 }
 
 /// Reads the lists of the last frame back and checks them; `seen` asks for light operations.

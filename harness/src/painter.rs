@@ -34,7 +34,13 @@ impl<'a> Painter<'a> {
         Ok(match method {
             Method::Lists { strategy, early_exit } => {
                 let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
-                let options = LightingOptions { kinds, exit_weight, cut, area: stage.area_model };
+                let options = LightingOptions {
+                    kinds,
+                    exit_weight,
+                    cut,
+                    area: stage.area_model,
+                    compensation: stage.compensation,
+                };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
             }

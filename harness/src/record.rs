@@ -125,6 +125,8 @@ pub fn record(
         errors: stored(errors.into_iter().map(|(id, all)| (id, mean(&all)))),
         unbounded_errors: stored(unbounded_errors),
         truth_errors: Errors::new(),
+        vpls: stage.vpls.clone(),
+        compensation: args.compensate,
         seed: args.stage.seed,
         clock: clock_of(gpu),
         passes: timed.passes,

@@ -6,6 +6,7 @@ use assign::{
     Bounds::{Explicit, Implicit},
     CullSettings, Everything, Gpu,
 };
+use assign_cdi::HybridGrid;
 use assign_clustered::{
     Clustered, Normals,
     Occupancy::{Dense, Sparse},
@@ -119,7 +120,7 @@ const TILE: &[&str] = &["tile_width_px", "tile_height_px"];
 const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source, Axis::Cap, Axis::Reuse];
 const BOXES: &[Axis] = &[Axis::Source, Axis::Cap, Axis::Reuse];
 
-/// All methods, at the comparison paper's parameters (Enhuber 2019, table 4.3).
+/// All methods; those of the comparison paper at its parameters (Enhuber 2019, table 4.3).
 pub const STRATEGIES: &[StrategyEntry] = &[
     StrategyEntry {
         family: "None",
@@ -250,6 +251,14 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         make: |gpu, spec| {
             Ok(Method::lists(PerModel::new(gpu, part_size(&spec.parameters)?, spec.settings)?))
         },
+    },
+    StrategyEntry {
+        family: "HG",
+        parameters: CLUSTER,
+        default: "48x48x40",
+        axes: &[Axis::Cap, Axis::Reuse],
+        summary: "the grid of hybrid lighting: lights add themselves to the cells that hold samples",
+        make: |gpu, spec| Ok(Method::lists(HybridGrid::new(gpu, spec.parameters.parse()?)?)),
     },
 ];
 

@@ -14,6 +14,7 @@
 //! ```
 
 mod file;
+mod indirect;
 mod passes;
 mod stats;
 mod truth_image;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 pub use shading::Mode;
 
 pub use file::{ResultsError, write_atomically};
+pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use passes::{PassKind, PassTimes, Passes};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
@@ -59,6 +61,9 @@ pub struct Results {
     /// The truth image, where this is a run of `lightbench truth`.
     #[serde(default)]
     pub truth_image: Option<TruthImage>,
+    /// Deep images and rays, where this is a run of `lightbench cdi`.
+    #[serde(default)]
+    pub deep_images: Option<DeepImageRun>,
     /// Lights left out because a field was NaN, infinite or out of range.
     #[serde(default)]
     pub rejected_lights: Vec<RejectedLight>,
@@ -208,7 +213,7 @@ pub struct Record {
     pub mode: Mode,
     /// Lights that took part.
     pub lights: u64,
-    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`.
+    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`, `vpl`.
     #[serde(default)]
     pub light_kinds: BTreeMap<String, u64>,
     /// How area lights were shaded: `ltc`; absent where there was none.
@@ -241,6 +246,12 @@ pub struct Record {
     pub warmup_frames: u32,
     /// The seed of the scattered lights.
     pub seed: u64,
+    /// The virtual point lights that took part, where there were any.
+    #[serde(default)]
+    pub vpls: Option<Vpls>,
+    /// Lights of usual brightness, where brightness was compensated.
+    #[serde(default)]
+    pub compensation: Option<f64>,
     /// What took the times.
     pub clock: Clock,
     /// The passes of a frame, in the order in which they ran.
@@ -392,6 +403,7 @@ impl Results {
             truth,
             records: Vec::new(),
             truth_image: None,
+            deep_images: None,
             rejected_lights: Vec::new(),
             warnings: Vec::new(),
         }

@@ -32,10 +32,15 @@ pub struct Stage {
     pub lights: LightBuffer,
     /// How area lights are shaded.
     pub area_model: AreaModel,
+    /// Lights that add something to a sample of usual brightness, where brightness is compensated.
+    pub compensation: Option<f32>,
+    /// How the lights were made, where they are virtual point lights.
+    pub vpls: Option<Vpls>,
     /// The camera.
     pub view: View,
     /// The pipeline.
     pub renderer: Renderer,
+    vpl_maker: VplMaker,
     lens: Option<Lens>,
     /// The diagonal of the scene's core before it was scaled, metres.
     unscaled_m: f32,
@@ -61,8 +66,14 @@ impl Set {
 }
 
 impl Stage {
-    /// Opens the scene, scatters the lights and uploads both.
+    /// Opens the scene, makes the lights and uploads both.
     pub fn new(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
+        let mut stage = Self::under_scattered_lights(gpu, args)?;
+        stage.bounce(gpu, args)?;
+        Ok(stage)
+    }
+
+    fn under_scattered_lights(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
         let unscaled_m = scene.core_bounds.diagonal();
         let scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
@@ -74,6 +85,9 @@ impl Stage {
             own_lights: lit.own,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
             area_model: AreaModel::default(),
+            compensation: None,
+            vpls: None,
+            vpl_maker: VplMaker::default(),
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
@@ -92,6 +106,26 @@ impl Stage {
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
         self.view = view;
         self.lens = lens;
+        self.bounce(gpu, args)
+    }
+
+    /// Puts the primary light, or what surfaces reflect of it, in place of the lights, where options
+    /// ask for it.
+    fn bounce(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
+        self.vpls = None;
+        if !args.bounce.primary && args.bounce.vpls == 0 {
+            return Ok(());
+        }
+        let primary = primary_light(&self.scene);
+        let lights = if args.bounce.primary {
+            vec![primary]
+        } else {
+            let made = self.vpl_maker.make(gpu, &self.scene, &self.renderer, primary, args)?;
+            self.vpls = Some(made.figures);
+            made.lights
+        };
+        self.own_lights = 0;
+        self.lights = LightBuffer::ordered(gpu, &lights, args.light_order)?;
         Ok(())
     }
 
@@ -108,13 +142,14 @@ impl Stage {
     }
 
     /// Lights of each kind, by name.
-    pub fn light_kinds(&self) -> [(&'static str, u64); 4] {
+    pub fn light_kinds(&self) -> [(&'static str, u64); 5] {
         let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
         [
             ("point", count(LightKind::Point)),
             ("spot", count(LightKind::Spot)),
             ("rectangle", count(LightKind::Rectangle)),
             ("polygon", count(LightKind::Polygon)),
+            ("vpl", count(LightKind::Vpl)),
         ]
     }
 }
@@ -133,6 +168,9 @@ impl Lit {
             LightBox::Core | LightBox::Cylinders => scene.core_bounds,
             LightBox::Bounds => scene.bounds,
         };
+        if args.bounce.primary || args.bounce.vpls > 0 {
+            return Ok(Self { lights: Vec::new(), bounds, own: 0 });
+        }
         let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
         if let Some(file) = &args.lights_from {
             let other = scenes::open(file)?.scaled(args.scene_scale as f32)?;

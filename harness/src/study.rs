@@ -1,12 +1,13 @@
 //! Studies: lists of comparisons, each a job of its own, so that a study goes on where it was
 //! interrupted and can be split over machines.
 //!
-//! A job is a `lightbench compare` or a `lightbench truth` command. Its folder, `jobs/NAME`, holds what that command writes;
+//! A job is a `lightbench compare`, `truth` or `cdi` command. Its folder, `jobs/NAME`, holds what that command writes;
 //! a job whose `results.json` is there is done. `study.json` beside `jobs` lists all jobs, those of
 //! other shards too.
 
 mod against_truth;
 mod area;
+pub mod cdi;
 mod comparison;
 mod culling;
 mod endless;
@@ -18,8 +19,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::{
+    cdi::measure,
     checks::check_writable,
-    cli::{self, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
+    cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
     compare::Bench,
     error::HarnessError,
     report,
@@ -62,6 +64,7 @@ pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
                     StudyName::Culling => culling::jobs(args, scene),
                     StudyName::Area => area::jobs(&mut bench, args, scene)?,
                     StudyName::Endless => endless::jobs(&mut bench, args, scene)?,
+                    StudyName::Cdi => cdi::jobs(&mut bench, args, scene)?,
                 });
             }
             let manifest = Manifest { identity: wanted, study: args.study.name().into(), jobs };
@@ -107,6 +110,7 @@ fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), H
         let results = match asked {
             Asked::Compare(args) => bench.compare(&args, job.command.clone())?.0,
             Asked::Truth(args) => render(bench, &args, job.command.clone())?,
+            Asked::Cdi(args) => measure(bench, &args, job.command.clone())?,
         };
         results.write(&folder.join("results.json"))?;
     }
@@ -142,6 +146,8 @@ enum Asked {
     Compare(CompareArgs),
     /// A truth image.
     Truth(TruthArgs),
+    /// Deep images.
+    Cdi(CdiArgs),
 }
 
 impl Job {
@@ -156,8 +162,9 @@ impl Job {
         match cli::parse(&self.command)? {
             Invocation::Compare(args) => Ok(Asked::Compare(CompareArgs { out, ..args })),
             Invocation::Truth(args) => Ok(Asked::Truth(TruthArgs { out, ..args })),
+            Invocation::Cdi(args) => Ok(Asked::Cdi(CdiArgs { out, ..args })),
             _ => Err(CliError::new(format!(
-                "job {}: its command must be compare or truth, `{}`",
+                "job {}: its command must be compare, truth or cdi, `{}`",
                 self.name,
                 self.command.join(" ")
             ))),

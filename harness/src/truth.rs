@@ -46,19 +46,24 @@ fn check(args: &TruthArgs) -> Result<(), CliError> {
         let accepted = "0, or given with --shadows: what is reflected is shadowed";
         return Err(CliError::out_of_range("--bounces", &args.bounces.to_string(), accepted));
     }
+    if args.indirect && args.bounces == 0 {
+        let accepted = "given with --bounces 1: nothing else would be left";
+        return Err(CliError::new(format!("--indirect: it must be {accepted}")));
+    }
     Ok(())
 }
 
 /// `truth    atrium, 3 lights, 640x360, no shadows, 0 bounces: standard error 0 % of the mean, 12.3 s`.
 fn summary(image: &TruthImage) -> String {
     format!(
-        "truth    {}, {} lights, {}x{}, {}, {} bounces: standard error {:.3} % of the mean, {:.1} s\n",
+        "truth    {}, {} lights, {}x{}, {}, {} bounces{}: standard error {:.3} % of the mean, {:.1} s\n",
         image.scene,
         image.lights,
         image.width,
         image.height,
         if image.shadows { "shadows" } else { "no shadows" },
         image.bounces,
+        if image.is_indirect { ", indirect light alone" } else { "" },
         image.standard_error * 100.0,
         image.seconds
     )
@@ -122,10 +127,14 @@ fn trace(
         image
     };
     let direct = if args.shadows { Transport::Direct } else { Transport::Unshadowed };
+    let bounce = || render(Transport::Bounce, "one bounce");
+    if args.indirect {
+        return Ok(bounce());
+    }
     let image = render(direct, "direct light");
     match args.bounces {
         0 => Ok(image),
-        _ => Ok(image.plus(&render(Transport::Bounce, "one bounce"))?),
+        _ => Ok(image.plus(&bounce())?),
     }
 }
 
@@ -166,6 +175,7 @@ fn keep(
         standard_error: over_mean(error),
         shadows: args.shadows,
         bounces: args.bounces,
+        is_indirect: args.indirect,
         samples: args.samples,
         seconds,
     })

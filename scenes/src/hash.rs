@@ -116,6 +116,7 @@ impl Scene {
                 }
                 LightShape::Point => (0, Vec3::ZERO, [0.0; 2]),
                 LightShape::Area(_) => (2, Vec3::ZERO, [0.0; 2]),
+                LightShape::Vpl { normal, min_distance_m } => (4, normal, [min_distance_m, 0.0]),
             };
             feed.int(kind);
             feed.floats(&light.position.to_array());

@@ -258,6 +258,9 @@ impl Scene {
             if let LightShape::Area(emitter) = &mut light.shape {
                 *emitter = emitter.scaled(factor);
             }
+            if let LightShape::Vpl { min_distance_m, .. } = &mut light.shape {
+                *min_distance_m *= factor;
+            }
         }
         for camera in &mut self.cameras {
             camera.pose = camera.pose.scaled(factor);

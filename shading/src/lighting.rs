@@ -32,6 +32,11 @@ pub struct LightingOptions {
     pub cut: Cut,
     /// How the light of area lights is integrated.
     pub area: AreaModel,
+    /// Brightness compensation (Archer, Leach, Knowles 2019, section 3.2): a sample's radiance times
+    /// this number over that of the lights that add something to it, within a factor of 4. It hides
+    /// where virtual point lights lie thick or thin, and is no light that anything sends: `None`,
+    /// which changes no bit, wherever errors are measured.
+    pub compensation: Option<f32>,
 }
 
 /// How a light's fall-off ends at its range.
@@ -64,6 +69,7 @@ impl LightingOptions {
         shader
             .light_kinds(self.kinds)
             .flag("hard_cut", self.cut == Cut::Hard)
+            .flag("compensation", self.compensation.is_some())
             .flag(self.area.flag(), self.kinds.areas)
     }
 }
@@ -87,6 +93,14 @@ impl Lighting {
                 field: "exit_weight".into(),
                 value: options.exit_weight.to_string(),
                 accepted: "a finite number: 0, or -1 to evaluate every light".into(),
+            }
+            .into());
+        }
+        if let Some(lights) = options.compensation.filter(|lights| !(1.0..=1e9).contains(lights)) {
+            return Err(AssignError::Parameter {
+                field: "compensation".into(),
+                value: lights.to_string(),
+                accepted: "a number of lights, 1 to 1e9".into(),
             }
             .into());
         }

@@ -12,7 +12,7 @@ pub(crate) const LIGHTING_BINDING: u32 = 6;
 /// Where the table is bound in group 2.
 pub(crate) const LTC_BINDING: u32 = 7;
 
-/// `lighting_uniform.wesl`, `struct LightingUniform`. 8 bytes.
+/// `lighting_uniform.wesl`, `struct LightingUniform`. 12 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct LightingRecord {
@@ -20,6 +20,8 @@ pub struct LightingRecord {
     pub exit_weight: f32,
     /// Samples of each term of an area light; 0 where its model draws none.
     pub area_samples: u32,
+    /// [`LightingOptions::compensation`]; 0 where it is off.
+    pub applicable_lights: f32,
 }
 
 /// The resources of one set of options.
@@ -35,7 +37,11 @@ impl LightingInputs {
         let uniform = gpu.uniform("lighting", 16);
         options.area.check()?;
         let area_samples = options.area.samples();
-        let record = LightingRecord { exit_weight: options.exit_weight, area_samples };
+        let record = LightingRecord {
+            exit_weight: options.exit_weight,
+            area_samples,
+            applicable_lights: options.compensation.unwrap_or(0.0),
+        };
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&record));
         let table = match options.reads_table() {
             false => None,

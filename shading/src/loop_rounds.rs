@@ -20,7 +20,7 @@ impl LightTotals {
     pub(crate) fn of(lights: &[Light]) -> Self {
         let areas = lights.iter().filter_map(|light| match &light.shape {
             LightShape::Area(emitter) => Some(emitter.vertices().len() as u64),
-            LightShape::Point | LightShape::Spot { .. } => None,
+            LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
         });
         let (areas, vertices) = areas.fold((0, 0), |(areas, sum), n| (areas + 1, sum + n));
         Self { kinds: LightKinds::of(lights), count: lights.len() as u64, areas, vertices }

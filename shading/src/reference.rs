@@ -72,7 +72,13 @@ pub(crate) fn window(distance_2: f64, range_m: f64) -> f64 {
 
 /// Inverse-square fall-off times the window `(1 - (d / range)^4)^2`, clamped at 0.
 pub fn fall_off(distance_2: f64, range_m: f64) -> f64 {
-    window(distance_2, range_m) / distance_2.max(MIN_DISTANCE_2)
+    fall_off_beyond(distance_2, range_m, 0.0)
+}
+
+/// The same, growing no further within a distance.
+fn fall_off_beyond(distance_2: f64, range_m: f64, min_distance_m: f64) -> f64 {
+    window(distance_2, range_m)
+        / distance_2.max(min_distance_m * min_distance_m).max(MIN_DISTANCE_2)
 }
 
 /// Radiance that one light adds at `position`: of an area light the BRDF's integral over its emitter,
@@ -107,7 +113,7 @@ pub fn ltc_contribution(
     seen.map_or(DVec3::ZERO, |seen| seen.ltc(&entry))
 }
 
-/// A point or a spot; an area light counts as a point at its middle that faces all ways.
+/// A point, a spot or a VPL; an area light counts as a point at its middle that faces all ways.
 fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye: DVec3) -> DVec3 {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
@@ -117,6 +123,11 @@ fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye:
         let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-3);
         let cos = direction.as_dvec3().normalize().dot(-to_light);
         weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);
+    }
+    if let LightShape::Vpl { normal, min_distance_m } = light.shape {
+        let (distance_2, min_m) = (offset.length_squared(), f64::from(min_distance_m));
+        weight = fall_off_beyond(distance_2, f64::from(light.range_m), min_m)
+            * normal.as_dvec3().normalize().dot(-to_light).max(0.0);
     }
     light.intensity.as_dvec3() * weight * reflect_light(surface, to_eye, to_light)
 }

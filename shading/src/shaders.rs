@@ -17,6 +17,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "write_model_ids",
         "model_ids",
         "hard_cut",
+        "compensation",
         "area_point",
         "area_mrp",
         "area_monte_carlo",

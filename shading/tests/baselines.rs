@@ -66,10 +66,22 @@ fn everything(
     mode: Mode,
     exit_weight: f32,
 ) -> HdrImage {
-    renderer.prepare(view, lights).unwrap();
-    let mut strategy = Everything::new(gpu).unwrap();
     let options =
         LightingOptions { kinds: lights.kinds(), exit_weight, ..LightingOptions::default() };
+    image_of(gpu, renderer, view, lights, mode, options)
+}
+
+/// The image of no culling with some options.
+fn image_of(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    view: &View,
+    lights: &LightBuffer,
+    mode: Mode,
+    options: LightingOptions,
+) -> HdrImage {
+    renderer.prepare(view, lights).unwrap();
+    let mut strategy = Everything::new(gpu).unwrap();
     let lighting = Lighting::new(renderer, &strategy, mode, options).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -99,6 +111,32 @@ fn an_early_exit_changes_no_bit() {
             // The number reaches the shader: a greater one leaves out what adds something.
             assert!(differs(0.1) > 0, "{name}, {mode:?}");
         }
+    }
+}
+
+#[test]
+fn compensation_divides_by_the_number_of_lights() {
+    let gpu = common::gpu();
+    let view = common::view([48, 32]);
+    let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+    let light = Light::vpl(Vec3::new(0.0, 3.0, 1.0), Vec3::NEG_Y, 30.0, Vec3::ONE);
+    for mode in [Mode::Deferred, Mode::Forward] {
+        let mut image = |count: usize, compensation| {
+            let lights = LightBuffer::new(&gpu, &vec![light; count]).unwrap();
+            let options =
+                LightingOptions { kinds: lights.kinds(), compensation, ..Default::default() };
+            image_of(&gpu, &mut renderer, &view, &lights, mode, options)
+        };
+        let one = image(1, None);
+        assert!(one.pixels.iter().flatten().sum::<f32>() > 1.0, "{mode:?}");
+        for (count, target) in [(1, 1.0), (2, 1.0), (4, 1.0)] {
+            let difference = image(count, Some(target)).difference(&one).unwrap();
+            assert!(difference.max_rel < 1e-5, "{mode:?}, {count}: {difference:?}");
+        }
+        // No more than by a factor of four, and nothing where it is off.
+        let eight = image(8, Some(1.0)).difference(&one).unwrap();
+        assert!((eight.max_rel - 1.0).abs() < 1e-5, "{mode:?}: {eight:?}");
+        assert!(image(2, None).difference(&one).unwrap().max_rel > 0.9, "{mode:?}");
     }
 }
 

@@ -83,6 +83,6 @@ fn material() {
 
 #[test]
 fn lighting_uniform() {
-    let fields = fields!(LightingRecord: exit_weight, area_samples);
+    let fields = fields!(LightingRecord: exit_weight, area_samples, applicable_lights);
     check(&lighting(), "LightingUniform", size_of::<LightingRecord>(), &fields);
 }

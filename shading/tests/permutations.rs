@@ -182,7 +182,9 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in with_areas(subsets(&["emissive", "spots", "model_ids", "hard_cut"])) {
+        for flags in
+            with_areas(subsets(&["emissive", "spots", "model_ids", "hard_cut", "compensation"]))
+        {
             let mut images = vec![0, 1, 2, 4, 6];
             images.extend(flags.contains("emissive").then_some(3));
             images.extend(flags.contains("model_ids").then_some(5));

@@ -357,7 +357,7 @@ fn counts_change(rng: &mut Rng) -> Plan {
 }
 
 fn quarantine(rng: &mut Rng) -> Plan {
-    let clean = lit(rng, &default_view(), 200, default_mix);
+    let clean = lit(rng, &default_view(), 300, default_mix);
     let mut dirty = clean.clone();
     let mut bad = Vec::new();
     for (ix, light) in bad_lights(&clean.lights).into_iter().enumerate() {

@@ -98,8 +98,9 @@ fn at_sample(rng: &mut Rng, stage: &Stage, range_m: (f64, f64), kinds: Kinds, sh
         Kinds::Points => light,
         Kinds::Spots(low, high) => aimed(rng, light, point, low, high),
         Kinds::Areas => spread(rng, light, point),
-        Kinds::Mixed => match rng.below(3) {
+        Kinds::Mixed => match rng.below(4) {
             0 => light,
+            3 => half(rng, light, point),
             1 => aimed(rng, light, point, 0.02, std::f64::consts::PI),
             _ => spread(rng, light, point),
         },
@@ -177,6 +178,15 @@ fn aimed(rng: &mut Rng, light: Light, point: DVec3, low: f64, high: f64) -> Ligh
     }
 }
 
+/// Turns a light into a virtual point light whose half ball holds `point`: half of them by little.
+fn half(rng: &mut Rng, light: Light, point: DVec3) -> Light {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let aimed = aimed(rng, light, point, quarter, quarter);
+    let LightShape::Spot { direction, .. } = aimed.shape else { return light };
+    let min_distance_m = light.range_m * rng.range(0.0, 0.5) as f32;
+    Light { shape: LightShape::Vpl { normal: direction, min_distance_m }, ..light }
+}
+
 /// One light of each fault, otherwise like the first of `lights`.
 pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
     let Some(&sound) = lights.first() else {
@@ -184,6 +194,10 @@ pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
     };
     let spot = |direction, inner_angle, outer_angle| Light {
         shape: LightShape::Spot { direction, inner_angle, outer_angle },
+        ..sound
+    };
+    let vpl = |normal, min_distance_m| Light {
+        shape: LightShape::Vpl { normal, min_distance_m },
         ..sound
     };
     let ranged = |range_m| Light { range_m, ..sound };
@@ -202,6 +216,9 @@ pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
         spot(Vec3::ZERO, 0.1, 0.5),
         spot(Vec3::X, 0.1, f32::NAN),
         spot(Vec3::X, 0.0, 0.0),
+        vpl(Vec3::ZERO, 0.0),
+        vpl(Vec3::Y, -1.0),
+        vpl(Vec3::Y, f32::NAN),
         Light { shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::ZERO)), ..sound },
         Light { shape: LightShape::Area(Emitter::rectangle(Vec3::X, Vec3::X)), ..sound },
         Light {

@@ -44,6 +44,9 @@ impl From<&Light> for LightVolume {
                 sin_outer: outer_angle.sin().max(0.0),
                 ..ball
             },
+            LightShape::Vpl { normal, .. } => {
+                Self { axis: normal.normalize(), cos_outer: 0.0, sin_outer: 1.0, ..ball }
+            }
             LightShape::Area(emitter) => {
                 let sheet = Self { axis: emitter.normal(), half_axes: emitter.half_axes(), ..ball };
                 // One-sided: the half ball in front.

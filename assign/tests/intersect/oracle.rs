@@ -138,6 +138,7 @@ pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
             return [front, -front][..sides].iter().map(|n| half(*n, outline.clone())).collect();
         }
         LightShape::Spot { direction, outer_angle, .. } => (direction, outer_angle),
+        LightShape::Vpl { normal, .. } => return vec![half(normal.as_dvec3(), vec![])],
     };
     let axis = direction.as_dvec3().normalize();
     let outer = f64::from(*outer_angle);

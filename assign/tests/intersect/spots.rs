@@ -23,6 +23,7 @@ fn is_lit(light: &Light, sample: Vec3) -> bool {
         LightShape::Spot { direction, outer_angle, .. } => {
             direction.normalize().dot(-to_light) > outer_angle.cos()
         }
+        LightShape::Vpl { normal, .. } => normal.normalize().dot(-to_light) > 0.0,
     };
     1.0 - ratio_2 * ratio_2 > 0.0 && in_cone
 }

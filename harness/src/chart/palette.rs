@@ -10,7 +10,7 @@ const VARIABLES: [Colour; 4] = [
     ("--line", "#dcdcd5", "#33383d"),
 ];
 
-const CLASSES: [Colour; 25] = [
+const CLASSES: [Colour; 26] = [
     ("strategy-none", "#8a8f93", "#8d9398"),
     ("strategy-0", "#0f8a77", "#45bda9"),
     ("strategy-1", "#8b3a8f", "#cf84d2"),
@@ -20,6 +20,7 @@ const CLASSES: [Colour; 25] = [
     ("strategy-5", "#117733", "#63bd80"),
     ("strategy-6", "#c25a66", "#ee949e"),
     ("strategy-7", "#5b8fa8", "#9ccbe0"),
+    ("strategy-8", "#6e4a26", "#c79b6b"),
     ("pass-scene-0", "#c3c5c4", "#5a5f63"),
     ("pass-scene-1", "#a2a6a7", "#777d81"),
     ("pass-scene-2", "#848a8c", "#949a9e"),

@@ -4,7 +4,10 @@ use assign::LightOrder;
 use clap::{Args, ValueEnum};
 use scenes::{Outlines, Radii};
 
-use super::values::{self, Camera, Size};
+use super::{
+    values::{self, Camera, Size},
+    vpl::VplArgs,
+};
 
 /// What is drawn: the options that comparisons and truth images share.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -84,6 +87,10 @@ pub struct StageArgs {
     /// Seed of the scattered lights
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
     pub seed: u64,
+
+    /// Indirect light.
+    #[command(flatten)]
+    pub bounce: VplArgs,
 }
 
 /// Where lights are scattered.

@@ -19,6 +19,9 @@ pub enum StudyName {
     Area,
     /// Many polygon lights through clusters with normal cones: light operations and times
     Endless,
+    /// Compound deep images: times of every step, ranges against exact rays, and indirect light by
+    /// virtual point lights against a path-traced image
+    Cdi,
 }
 
 impl StudyName {
@@ -29,6 +32,7 @@ impl StudyName {
             Self::Culling => "culling",
             Self::Area => "area",
             Self::Endless => "endless",
+            Self::Cdi => "cdi",
         }
     }
 }

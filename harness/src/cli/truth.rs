@@ -21,6 +21,10 @@ pub struct TruthArgs {
     #[arg(long, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::bounces)]
     pub bounces: u32,
 
+    /// Leave out light that comes straight from lights
+    #[arg(long)]
+    pub indirect: bool,
+
     /// Samples of each pixel where they are drawn, of shadows and of the bounce, 1 to 65,536
     #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::samples)]
     pub samples: u32,

@@ -12,6 +12,8 @@ use super::MAX_LIGHTS;
 const MAX_SIDE: u32 = 16_384;
 const MAX_FRAMES: u32 = 100_000;
 const MAX_SAMPLES: u32 = 65_536;
+/// The largest side of a reflective shadow map, pixels.
+const MAX_RSM: u32 = 2048;
 const SCALES: (f64, f64) = (1e-6, 1e6);
 
 /// An image size, pixels: `640x360`.
@@ -117,6 +119,109 @@ impl FromStr for Strategies {
             Err("ids separated by commas, none empty and none twice".to_owned())
         }
     }
+}
+
+/// Directions of deep images over the hemisphere: `13x13`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DirectionCounts {
+    /// Rings between the horizon and the pole.
+    pub stacks: u32,
+    /// Directions of a ring.
+    pub slices: u32,
+}
+
+impl FromStr for DirectionCounts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| whole(text, 1, 64);
+        text.split_once(['x', 'X'])
+            .and_then(|(stacks, slices)| {
+                Some(Self { stacks: side(stacks)?, slices: side(slices)? })
+            })
+            .ok_or_else(|| "STACKSxSLICES, each from 1 to 64".to_owned())
+    }
+}
+
+impl std::fmt::Display for DirectionCounts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}x{}", self.stacks, self.slices)
+    }
+}
+
+/// Two numbers of metres, the second no less than the first: `0.5,20`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// The least.
+    pub low_m: f64,
+    /// The greatest.
+    pub high_m: f64,
+}
+
+impl FromStr for Span {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (low, high) = text.split_once(',').unwrap_or((text, ""));
+        let metres = |text: &str| number(text.trim(), 0.0, 1e9);
+        metres(low)
+            .zip(metres(high))
+            .filter(|(low, high)| low <= high && *high > 0.0)
+            .map(|(low_m, high_m)| Self { low_m, high_m })
+            .ok_or_else(|| {
+                "LOW,HIGH in metres, each from 0 to 1e9, LOW at most HIGH, HIGH above 0".to_owned()
+            })
+    }
+}
+
+/// Sides of reflective shadow maps: `256,512`, or `none`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sizes(pub Vec<u32>);
+
+impl FromStr for Sizes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Self(Vec::new()));
+        }
+        let all: Option<Vec<u32>> =
+            text.split(',').map(|size| whole(size.trim(), 16, MAX_RSM)).collect();
+        all.map(Self).ok_or_else(|| "none, or sizes from 16 to 2,048 separated by commas".to_owned())
+    }
+}
+
+pub(super) fn rsm(text: &str) -> Result<u32, String> {
+    let size = whole(text, 0, MAX_RSM).filter(|size| *size == 0 || *size >= 16);
+    size.ok_or_else(|| "0, or a whole number from 16 to 2,048".to_owned())
+}
+
+pub(super) fn compensation(text: &str) -> Result<f64, String> {
+    number(text, 1.0, 1e9).ok_or_else(|| "a number from 1 to 1e9".to_owned())
+}
+
+pub(super) fn rays(text: &str) -> Result<u32, String> {
+    whole(text, 1, 16).ok_or_else(|| "a whole number from 1 to 16".to_owned())
+}
+
+pub(super) fn compared_rays(text: &str) -> Result<u32, String> {
+    whole(text, 0, 1 << 20).ok_or_else(|| "a whole number from 0 to 1,048,576".to_owned())
+}
+
+pub(super) fn deep_size(text: &str) -> Result<u32, String> {
+    whole(text, 4, 1024).ok_or_else(|| "a whole number from 4 to 1,024".to_owned())
+}
+
+pub(super) fn oversampling(text: &str) -> Result<u32, String> {
+    whole(text, 1, 8).ok_or_else(|| "a whole number from 1 to 8".to_owned())
+}
+
+pub(super) fn range_scale(text: &str) -> Result<f64, String> {
+    number(text, 0.1, 100.0).ok_or_else(|| "a number from 0.1 to 100".to_owned())
+}
+
+pub(super) fn metres(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 1e6).ok_or_else(|| "a number of metres from 0 to 1e6".to_owned())
 }
 
 pub(super) fn scale(text: &str) -> Result<f64, String> {

@@ -30,6 +30,9 @@ pub struct TruthImage {
     pub shadows: bool,
     /// Times that light is reflected between surfaces before it is seen.
     pub bounces: u32,
+    /// Whether what comes straight from lights is left out.
+    #[serde(default)]
+    pub is_indirect: bool,
     /// Samples of each pixel, where samples were drawn.
     pub samples: u32,
     /// How long the CPU took, seconds.

@@ -9,17 +9,17 @@ use crate::{
 };
 
 /// Every strategy at the paper's parameters, M also in parts.
-const ALL: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2";
+const ALL: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2";
 /// Those whose groups are cut from the view or the world.
-const CUT: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2";
+const CUT: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M/2";
 /// One of each kind, for the lossy knobs, through the hierarchy.
 const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
 
-/// Every strategy from both sources.
-const BOTH: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2,\
+/// Every strategy from both sources, but HG, which has one.
+const BOTH: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,\
      T-I/bvh,T-E/bvh,DC-I/bvh,DC-E/bvh,SC-I/bvh,SC-E/bvh,G/bvh,M/bvh,M/2/bvh";
 /// Every strategy, and one of each kind through the hierarchy.
-const SOME: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2,T-E/bvh,SC-E/bvh,G/bvh";
+const SOME: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,T-E/bvh,SC-E/bvh,G/bvh";
 
 /// How much a study looks at.
 struct Extent {
@@ -84,8 +84,8 @@ const QUICK: Extent = Extent {
     size: Size { width: 192, height: 108 },
     warmup: "1",
     main: SOME,
-    views: "T-E,SC-E,G,M/2",
-    many: "T-E,DC-E,SC-E,G",
+    views: "T-E,SC-E,G,HG,M/2",
+    many: "T-E,DC-E,SC-E,G,HG",
     counts: &[100, 500],
     most: 500,
     scaling: &[100, 300, 1_000],
@@ -184,7 +184,7 @@ impl Plan<'_> {
         let (cells, parts) = (owned(self.extent.cells), owned(self.extent.parts));
         let families = [("T-I", &tiles), ("T-E", &tiles)]
             .into_iter()
-            .chain(["DC-I", "DC-E", "SC-I", "SC-E"].map(|family| (family, &clusters)))
+            .chain(["DC-I", "DC-E", "SC-I", "SC-E", "HG"].map(|family| (family, &clusters)))
             .chain([("G", &cells), ("M", &parts)]);
         for (family, sizes) in families {
             let strategies = each(family, sizes);

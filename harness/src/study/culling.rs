@@ -4,8 +4,9 @@
 use super::{Job, StudyScene};
 use crate::cli::{Size, StudyArgs};
 
-/// Clay, no culling, bounding spheres, rasterised spheres and clusters.
-const STRATEGIES: &str = "Clay,None,Sphere,RasterSphere,DC-I,SC-E/bvh";
+/// Clay, no culling, bounding spheres, rasterised spheres, clusters, and cells that lights add
+/// themselves to.
+const STRATEGIES: &str = "Clay,None,Sphere,RasterSphere,DC-I,SC-E/bvh,HG";
 
 /// The jobs of one scene: a mode and a number of lights each.
 pub(super) fn jobs(args: &StudyArgs, scene: &StudyScene) -> Vec<Job> {

@@ -91,6 +91,13 @@ impl<'a> TracedScene<'a> {
         !self.triangles.any(origin, direction, end_m, |hit| self.is_solid(hit))
     }
 
+    /// How far a ray goes before it meets a triangle, from either side, metres; `None` where it meets
+    /// none. Holes of alpha masks count as surface, as in deep images.
+    pub fn distance_m(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let hit = self.triangles.first(origin, direction, f64::INFINITY, |_| true)?;
+        Some(hit.distance_m)
+    }
+
     /// What a ray from a sample meets first; `None` where it leaves the scene, or meets the back of
     /// a surface that has none.
     pub fn bounce(&self, from: &SurfaceSample, direction: DVec3) -> Option<SurfaceSample> {

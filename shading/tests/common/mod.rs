@@ -136,7 +136,7 @@ pub(crate) fn view(size: [u32; 2]) -> View {
     View::look_at(Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 1.2, 0.0), 1.0, 0.1, size)
 }
 
-/// Lights in the showcase, every third one a spot.
+/// Lights in the showcase, every third one a spot, every sixth a virtual point light.
 pub(crate) fn lights(count: u32) -> Vec<Light> {
     (0..count)
         .map(|i| {
@@ -154,6 +154,10 @@ pub(crate) fn lights(count: u32) -> Vec<Light> {
                     inner_angle: 0.2,
                     outer_angle: 0.4 + 0.1 * (f % 12.0),
                 };
+            }
+            if i % 6 == 4 {
+                let normal = Vec3::new(f.sin(), (f * 1.1).cos(), (f * 0.7).sin()).normalize();
+                light.shape = LightShape::Vpl { normal, min_distance_m: 0.1 * (f % 5.0) };
             }
             light
         })

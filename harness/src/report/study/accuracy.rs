@@ -31,6 +31,7 @@ pub(super) fn accuracy(
         label,
         wanted: Wanted::Pair,
         time: "Assign + shade",
+        ms: Record::assign_and_shade_ms,
     };
     let reuse = Plot {
         slug: "reuse",
@@ -65,6 +66,7 @@ pub(super) fn accuracy(
         label: |record| record.threshold.map_or_else(String::new, |t| t.to_string()),
         wanted: Wanted::Unbounded,
         time: "Assign + shade",
+        ms: Record::assign_and_shade_ms,
     };
     html + &part(
         scene,

@@ -109,6 +109,7 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
         label: |record| model(record).split(':').nth(1).unwrap_or_default().to_owned(),
         wanted: Wanted::Truth,
         time: "Shade",
+        ms: Record::assign_and_shade_ms,
     };
     html + &part(
         scene,

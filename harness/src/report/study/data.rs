@@ -1,6 +1,6 @@
 //! What the parts of the page ask of a study's records.
 
-use crate::registry::STRATEGIES;
+use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
 use crate::results::{Record, Results};
 use crate::study::{Done, Job};
 
@@ -102,7 +102,7 @@ pub(super) fn class(id: &str) -> String {
     let family = family(id);
     let cutting = || STRATEGIES.iter().filter(|entry| !entry.axes.is_empty());
     match cutting().position(|entry| entry.family == family) {
-        Some(ix) => format!("strategy-{}", ix % 8),
+        Some(ix) => format!("strategy-{}", ix % STRATEGY_COLOURS),
         // These have no groups: None and Clay are grey, as in every chart.
         None => match family {
             "Sphere" => "strategy-6",
@@ -114,11 +114,11 @@ pub(super) fn class(id: &str) -> String {
 }
 
 /// Whether the comparison paper has a strategy: those that cut samples into groups, from the list of
-/// all lights, and models whole.
+/// all lights, and models whole; not the grid of hybrid lighting.
 pub(super) fn is_of_the_paper(record: &Record) -> bool {
     let id = record.strategy.as_str();
     let is_parted = family(id) == "M" && !parameters(id).is_empty();
-    let is_plain = !is_bvh(id) && !is_parted && !record.is_lossy;
+    let is_plain = !is_bvh(id) && !is_parted && !record.is_lossy && family(id) != "HG";
     is_plain && STRATEGIES.iter().any(|entry| entry.family == family(id) && !entry.axes.is_empty())
 }
 

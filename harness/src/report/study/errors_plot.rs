@@ -29,6 +29,8 @@ pub(super) struct Plot<'a> {
     pub(super) label: fn(&Record) -> String,
     pub(super) wanted: Wanted,
     pub(super) time: &'a str,
+    /// That time of a record, ms: assigning and shading, or more.
+    pub(super) ms: fn(&Record) -> f64,
 }
 
 impl Plot<'_> {
@@ -151,7 +153,8 @@ impl Plot<'_> {
     }
 
     fn point(&self, record: &Record, metric: &ErrorMetric, y: f64, key: Option<String>) -> Point {
-        let x = record.assign_and_shade_ms();
+        let x = (self.ms)(record);
+        let before = x - record.assign_and_shade_ms();
         let mut tip = format!(
             "{}\n{} ms\n{} {}",
             (self.name)(record),
@@ -165,7 +168,9 @@ impl Plot<'_> {
         Point {
             x,
             y,
-            x_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
+            x_range: record
+                .interval_ms()
+                .map(|interval| [before + interval.low, before + interval.high]),
             y_range: None,
             label: (self.label)(record),
             key: key.unwrap_or_default(),

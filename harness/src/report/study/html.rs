@@ -12,7 +12,7 @@ use super::super::rank::listed;
 use super::figure::Charts;
 use super::shots::Shots;
 use super::{
-    accuracy, area, area_cost, area_pictures, claims, culling, endless, overview, path, scaling,
+    accuracy, area, area_cost, area_pictures, cdi, claims, culling, endless, overview, path, scaling,
     sizes, views,
 };
 use crate::chart::CHART_CSS;
@@ -85,6 +85,7 @@ pub(super) fn page(done: &Done) -> Page {
             ]
             .concat(),
             "endless" => endless::endless(done, scene, &mut charts, &mut shots),
+            "cdi" => cdi::cdi_parts(done, scene, &mut charts, &mut shots),
             _ => culling::culling(done, scene, &mut charts),
         };
         if !html.is_empty() {
@@ -178,6 +179,7 @@ fn headline(done: &Done) -> Option<String> {
         "comparison" => overview::headline(done),
         "area" => area::headline(done),
         "endless" => endless::headline(done),
+        "cdi" => cdi::headline(done),
         _ => culling::headline(done),
     }
 }
@@ -192,6 +194,7 @@ fn findings(done: &Done, scene: &str) -> Vec<String> {
         }
         "area" => [area::findings(done, scene), area_cost::findings(done, scene)].concat(),
         "endless" => endless::findings(done, scene),
+        "cdi" => cdi::findings(done, scene),
         _ => culling::findings(done, scene),
     }
 }

@@ -6,12 +6,17 @@
 //! accuracy](accuracy), [scaling], the [path], two [views], the [sizes] of groups, and [all
 //! strategies](overview); for the culling survey, [times against lights](culling); for models of area
 //! lights, their [errors](area) against a truth image, [pictures](area_pictures) and [cost](area_cost);
-//! for many polygon lights, [light operations and times](endless) by normal cones.
+//! for many polygon lights, [light operations and times](endless) by normal cones; for deep images, the
+//! [paper's tables](cdi), [builds](cdi_builds), [ranges](cdi_ranges) and [indirect light](cdi_light).
 
 mod accuracy;
 mod area;
 mod area_cost;
 mod area_pictures;
+mod cdi;
+mod cdi_builds;
+mod cdi_light;
+mod cdi_ranges;
 mod checks;
 mod claims;
 mod culling;

@@ -1,0 +1,381 @@
+//! Compound deep images on the GPU: built from triangles, read by rays.
+
+use assign::{AssignError, Gpu, Passes, Readback, Shader};
+use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+
+use crate::{
+    Build, DeepImageCounters, DeepImageSettings, DeepImagesSnapshot, ImagesUniform, ListRanges,
+    ListSort, PrefixSum, SortInput, Storage, Triangles,
+    build_kernels::{BuildKernels, Finders, Samplers},
+    deep_buffers::{DeepBuffers, LONGEST_AT},
+    kernel::{self, Slot, workgroups},
+};
+
+/// One dispatch over directions: `build.wesl`, `struct Stage`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct StageUniform {
+    first_direction: u32,
+    mode: u32,
+}
+
+/// Bytes from one `Stage` to the next.
+const STAGE_STRIDE: u32 = 256;
+/// Modes of a stage: `build.wesl`.
+const COUNT: u32 = 0;
+const FILL: u32 = 1;
+
+/// Sizes of indirect dispatches: `plan.wesl`, `struct Dispatches`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct DispatchSizes {
+    samples: [u32; 3],
+    padding: u32,
+    large: [u32; 3],
+    padding_end: u32,
+}
+
+/// Byte of the dispatch over large triangles.
+const LARGE_AT: u64 = 16;
+
+/// Deep images of a scene from many directions.
+#[derive(Debug)]
+pub struct DeepImages {
+    settings: DeepImageSettings,
+    kernels: BuildKernels,
+    buffers: DeepBuffers,
+    uniform: wgpu::Buffer,
+    space: ImagesUniform,
+    stages: wgpu::Buffer,
+    plan: wgpu::Buffer,
+    dispatches: wgpu::Buffer,
+    sums: PrefixSum,
+    sort: ListSort,
+    ray_layout: wgpu::BindGroupLayout,
+    groups: Option<Groups>,
+    readback: Readback<DeepImageCounters>,
+}
+
+#[derive(Debug)]
+struct Groups {
+    build: wgpu::BindGroup,
+    stage: wgpu::BindGroup,
+    plan: wgpu::BindGroup,
+    draw: Option<[wgpu::BindGroup; 2]>,
+    rays: wgpu::BindGroup,
+}
+
+impl DeepImages {
+    /// Makes the kernels; `settings` are checked.
+    pub fn new(gpu: &Gpu, settings: DeepImageSettings) -> Result<Self, AssignError> {
+        settings.check()?;
+        let stages: Vec<StageUniform> = [COUNT, FILL]
+            .into_iter()
+            .flat_map(|mode| {
+                first_directions(&settings)
+                    .map(move |first_direction| StageUniform { first_direction, mode })
+            })
+            .collect();
+        let stage_buffer = gpu.uniform("stages", stages.len() as u64 * u64::from(STAGE_STRIDE));
+        for (at, stage) in (0_u64..).zip(&stages) {
+            gpu.queue.write_buffer(&stage_buffer, at * u64::from(STAGE_STRIDE), bytes_of(stage));
+        }
+        let plan = gpu.uniform("plan", 16);
+        let large_directions = match settings.build {
+            Build::SinglePass { .. } => 1,
+            Build::PerDirection { at_once, .. } => at_once,
+        };
+        gpu.queue.write_buffer(&plan, 0, cast_slice(&[large_directions, 0, 0, 0]));
+        let copies = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | copies;
+        let slots = [Slot::Uniform, Slot::Read, Slot::Read, Slot::Read, Slot::Read];
+        let rays = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        Ok(Self {
+            kernels: BuildKernels::new(gpu, &settings)?,
+            buffers: DeepBuffers::new(gpu, &settings)?,
+            uniform: gpu.uniform("deep images", size_of::<ImagesUniform>() as u64),
+            space: ImagesUniform::zeroed(),
+            stages: stage_buffer,
+            plan,
+            dispatches: gpu.buffer("dispatches", size_of::<DispatchSizes>() as u64, usage)?,
+            sums: PrefixSum::new(gpu)?,
+            sort: ListSort::new(gpu, ListRanges::PrefixOffsets, 0)?,
+            ray_layout: kernel::layout(gpu, "rays through deep images", rays, &slots),
+            groups: None,
+            readback: Readback::new(gpu, "deep image counters"),
+            settings,
+        })
+    }
+
+    /// Its settings.
+    pub fn settings(&self) -> &DeepImageSettings {
+        &self.settings
+    }
+
+    /// Where the images of the last prepared frame lie.
+    pub fn space(&self) -> &ImagesUniform {
+        &self.space
+    }
+
+    /// Sizes the buffers for a frame, grows them to what earlier frames asked for, and binds the
+    /// triangles.
+    pub fn prepare(&mut self, gpu: &Gpu, triangles: &Triangles<'_>) -> Result<(), AssignError> {
+        self.readback.poll(gpu);
+        let mut space = ImagesUniform::new(&self.settings, triangles)?;
+        let asked = self.readback.latest().unwrap_or_default();
+        let grown = self.buffers.prepare(gpu, &self.settings, triangles.count, asked)?;
+        space.sample_capacity = self.buffers.sample_capacity;
+        space.fragment_capacity = self.buffers.fragment_capacity;
+        self.space = space;
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&space));
+        let is_first = self.groups.is_none();
+        if self.settings.storage == Storage::Arrays && (grown || is_first) {
+            self.prepare_lists(gpu)?;
+        }
+        self.groups = Some(self.bind(gpu, triangles.positions));
+        Ok(())
+    }
+
+    /// Binds counts, offsets and fragments for scan and sort.
+    fn prepare_lists(&mut self, gpu: &Gpu) -> Result<(), AssignError> {
+        let pixels = self.settings.pixel_count();
+        let buffers = &self.buffers;
+        self.sums.prepare(gpu, &buffers.counts, pixels, &buffers.offsets)?;
+        // A sample is in a pixel once, of each direction.
+        let longest = match self.settings.build {
+            Build::SinglePass { .. } => buffers.sample_capacity,
+            Build::PerDirection { .. } => buffers.fragment_capacity,
+        };
+        self.sort.prepare(
+            gpu,
+            &SortInput {
+                ranges: &buffers.offsets,
+                entries: &buffers.fragments,
+                first_list: 0,
+                list_count: pixels,
+                first_entry: 0,
+                entry_count: buffers.fragment_capacity,
+                longest,
+            },
+        )
+    }
+
+    fn bind(&self, gpu: &Gpu, positions: &wgpu::Buffer) -> Groups {
+        let b = &self.buffers;
+        let build = [
+            &self.uniform, &b.frames, positions, &b.header, &b.samples, &b.large, &b.counts,
+            &b.offsets, &b.fragments,
+        ];
+        let plan = [&self.uniform, &self.plan, &b.header, &b.offsets, &self.dispatches];
+        let stage = wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &self.stages,
+                offset: 0,
+                size: wgpu::BufferSize::new(size_of::<StageUniform>() as u64),
+            }),
+        };
+        let draw = match &self.kernels.finders {
+            Finders::SinglePass { samplers: Samplers::Fragment(draw), .. } => Some([
+                kernel::group(gpu, &draw.read_layout, &[&self.uniform, positions]),
+                kernel::group(gpu, &draw.write_layout, &[&b.header, &b.samples]),
+            ]),
+            _ => None,
+        };
+        let starts = match self.settings.storage {
+            Storage::Arrays => &b.offsets,
+            Storage::LinkedLists => &b.counts,
+        };
+        let rays = [&self.uniform, &b.frames, &b.header, starts, &b.fragments];
+        Groups {
+            build: kernel::group(gpu, &self.kernels.build_layout, &build),
+            stage: kernel::group_of(gpu, &self.kernels.stage_layout, &[stage]),
+            plan: kernel::group(gpu, &self.kernels.plan_layout, &plan),
+            draw,
+            rays: kernel::group(gpu, &self.ray_layout, &rays),
+        }
+    }
+
+    /// Records the build of a frame; nothing before [`prepare`](Self::prepare). Passes are
+    /// `cdi-samples`, `cdi-count`, `cdi-scan`, `cdi-fill` and `cdi-sort`, or those of them that the
+    /// settings ask for.
+    pub fn record(&mut self, passes: &mut dyn Passes) {
+        let Some(groups) = &self.groups else { return };
+        let encoder = passes.encoder();
+        encoder.clear_buffer(&self.buffers.header, 0, None);
+        encoder.clear_buffer(&self.buffers.counts, 0, None);
+        self.record_samples(groups, passes);
+        match self.settings.storage {
+            Storage::LinkedLists => {
+                passes.compute("cdi-fill", &mut |pass| {
+                    self.before_stages(groups, pass);
+                    self.put(groups, pass, FILL);
+                    if matches!(self.settings.build, Build::PerDirection { .. }) {
+                        self.run_plan(groups, pass, &self.kernels.check_links);
+                    }
+                });
+            }
+            Storage::Arrays => {
+                passes.compute("cdi-count", &mut |pass| {
+                    self.before_stages(groups, pass);
+                    self.put(groups, pass, COUNT);
+                });
+                passes.compute("cdi-scan", &mut |pass| {
+                    self.sums.dispatch(pass);
+                    if matches!(self.settings.build, Build::PerDirection { .. }) {
+                        self.run_plan(groups, pass, &self.kernels.check_total);
+                    }
+                });
+                passes.compute("cdi-fill", &mut |pass| self.put(groups, pass, FILL));
+                self.sort.record(passes, "cdi-sort");
+                let encoder = passes.encoder();
+                let (from, to) = (self.sort.work(), &self.buffers.header);
+                encoder.copy_buffer_to_buffer(from, ListSort::LONGEST_AT, to, LONGEST_AT, 4);
+            }
+        }
+        self.readback.record(passes.encoder(), &self.buffers.header);
+    }
+
+    fn triangle_groups(&self) -> u32 {
+        workgroups(u64::from(self.space.triangle_count), 256)
+    }
+
+    fn record_samples(&self, groups: &Groups, passes: &mut dyn Passes) {
+        let Finders::SinglePass { samplers, .. } = &self.kernels.finders else { return };
+        match (samplers, &groups.draw) {
+            (Samplers::Compute { small, large }, _) => {
+                passes.compute("cdi-samples", &mut |pass| {
+                    pass.set_bind_group(0, &groups.build, &[]);
+                    pass.set_pipeline(small);
+                    pass.dispatch_workgroups(self.triangle_groups(), 1, 1);
+                    self.run_plan(groups, pass, &self.kernels.plan_large);
+                    pass.set_bind_group(0, &groups.build, &[]);
+                    pass.set_pipeline(large);
+                    pass.dispatch_workgroups_indirect(&self.dispatches, LARGE_AT);
+                });
+            }
+            (Samplers::Fragment(draw), Some(bound)) => {
+                let attachment = wgpu::RenderPassColorAttachment {
+                    view: &draw.target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Discard,
+                    },
+                };
+                let descriptor = wgpu::RenderPassDescriptor {
+                    color_attachments: &[Some(attachment)],
+                    ..Default::default()
+                };
+                passes.render("cdi-samples", &descriptor, &mut |pass| {
+                    pass.set_pipeline(&draw.pipeline);
+                    pass.set_bind_group(0, &bound[0], &[]);
+                    pass.set_bind_group(1, &bound[1], &[]);
+                    pass.draw(0..self.space.triangle_count.saturating_mul(3), 0..1);
+                });
+            }
+            (Samplers::Fragment(_), None) => {}
+        }
+    }
+
+    /// What is to be known before fragments are found.
+    fn before_stages(&self, groups: &Groups, pass: &mut wgpu::ComputePass<'_>) {
+        match &self.kernels.finders {
+            Finders::SinglePass { .. } => {
+                self.run_plan(groups, pass, &self.kernels.plan_samples);
+            }
+            Finders::PerDirection { find_large, .. } => {
+                pass.set_pipeline(find_large);
+                pass.set_bind_group(0, &groups.build, &[]);
+                pass.dispatch_workgroups(self.triangle_groups(), 1, 1);
+                self.run_plan(groups, pass, &self.kernels.plan_large);
+            }
+        }
+    }
+
+    /// Counts the fragments of all directions, or fills them in.
+    fn put(&self, groups: &Groups, pass: &mut wgpu::ComputePass<'_>, mode: u32) {
+        pass.set_bind_group(0, &groups.build, &[]);
+        let stage_count = first_directions(&self.settings).count() as u32;
+        let first = mode * stage_count;
+        match &self.kernels.finders {
+            Finders::SinglePass { spread, .. } => {
+                pass.set_pipeline(spread);
+                pass.set_bind_group(1, &groups.stage, &[first * STAGE_STRIDE]);
+                pass.dispatch_workgroups_indirect(&self.dispatches, 0);
+            }
+            Finders::PerDirection { small, large, .. } => {
+                for stage in first..first + stage_count {
+                    pass.set_bind_group(1, &groups.stage, &[stage * STAGE_STRIDE]);
+                    pass.set_pipeline(small);
+                    pass.dispatch_workgroups(self.triangle_groups(), at_once(&self.settings), 1);
+                    pass.set_pipeline(large);
+                    pass.dispatch_workgroups_indirect(&self.dispatches, LARGE_AT);
+                }
+            }
+        }
+    }
+
+    fn run_plan(
+        &self,
+        groups: &Groups,
+        pass: &mut wgpu::ComputePass<'_>,
+        pipeline: &wgpu::ComputePipeline,
+    ) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &groups.plan, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// The newest counters that have come back, which may be a few frames old.
+    pub fn stats(&self) -> Option<DeepImageCounters> {
+        self.readback.latest()
+    }
+
+    /// Reads the lists of the last submitted frame back, blocking.
+    pub fn snapshot(&self, gpu: &Gpu) -> Result<DeepImagesSnapshot, AssignError> {
+        DeepImagesSnapshot::read(gpu, &self.settings, &self.buffers)
+    }
+
+    /// Bytes of all its buffers on the GPU.
+    pub fn bytes(&self) -> u64 {
+        let own = self.uniform.size() + self.stages.size() + self.plan.size();
+        own + self.dispatches.size() + self.buffers.bytes() + self.sums.bytes() + self.sort.bytes()
+    }
+
+    /// Layout of [`bind_group`](Self::bind_group), for compute and fragment shaders: the images'
+    /// uniform, direction frames, counters, where lists begin, and fragments.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.ray_layout
+    }
+
+    /// What rays are cast with; `None` before [`prepare`](Self::prepare), and new after each.
+    pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.groups.as_ref().map(|groups| &groups.rays)
+    }
+
+    /// Mounts `package::ray_cast` and what it imports, with [`bind_group`](Self::bind_group) as bind
+    /// group `group`.
+    pub fn mount<'a>(settings: &DeepImageSettings, shader: Shader<'a>, group: u32) -> Shader<'a> {
+        let shader = shader
+            .module("package::ray_slots", format!("const RAY_GROUP: u32 = {group}u;\n"))
+            .module("package::deep_images", include_str!("shaders/deep_images.wesl"))
+            .module("package::ray_cast", include_str!("shaders/ray_cast.wesl"))
+            .flag("linked", settings.storage == Storage::LinkedLists);
+        settings.directions.mount(shader)
+    }
+}
+
+/// Directions of a stage.
+fn at_once(settings: &DeepImageSettings) -> u32 {
+    match settings.build {
+        Build::SinglePass { .. } => settings.directions.count(),
+        Build::PerDirection { at_once, .. } => at_once,
+    }
+}
+
+/// First direction of each stage.
+fn first_directions(settings: &DeepImageSettings) -> impl Iterator<Item = u32> {
+    (0..settings.directions.count()).step_by(at_once(settings).max(1) as usize)
+}

@@ -1,0 +1,78 @@
+//! Deep images copied to the CPU.
+
+use assign::{AssignError, Gpu};
+use bytemuck::pod_collect_to_vec;
+use glam::UVec2;
+
+use crate::{DeepImageCounters, DeepImageSettings, Storage, deep_buffers::DeepBuffers};
+
+/// Every pixel's depths, as a frame left them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeepImagesSnapshot {
+    /// The counters of the frame.
+    pub counters: DeepImageCounters,
+    size_px: u32,
+    offsets: Vec<u32>,
+    depths_m: Vec<f32>,
+}
+
+impl DeepImagesSnapshot {
+    pub(crate) fn read(
+        gpu: &Gpu,
+        settings: &DeepImageSettings,
+        buffers: &DeepBuffers,
+    ) -> Result<Self, AssignError> {
+        let header = gpu.read(&buffers.header, size_of::<DeepImageCounters>() as u64)?;
+        let counters: DeepImageCounters = bytemuck::pod_read_unaligned(&header);
+        let used = u64::from(counters.fragment_count.min(buffers.fragment_capacity));
+        let pixels = u64::from(settings.pixel_count());
+        let (offsets, depths_m) = match settings.storage {
+            Storage::Arrays => {
+                let offsets = pod_collect_to_vec(&gpu.read(&buffers.offsets, (pixels + 1) * 4)?);
+                (offsets, pod_collect_to_vec(&gpu.read(&buffers.fragments, used * 4)?))
+            }
+            Storage::LinkedLists => {
+                let heads: Vec<u32> = pod_collect_to_vec(&gpu.read(&buffers.counts, pixels * 4)?);
+                let nodes: Vec<[u32; 2]> =
+                    pod_collect_to_vec(&gpu.read(&buffers.fragments, used * 8)?);
+                follow(&heads, &nodes)
+            }
+        };
+        Ok(Self { counters, size_px: settings.size_px, offsets, depths_m })
+    }
+
+    /// Depths of a pixel, metres from the near end of its image: ascending where lists are arrays.
+    /// `None` where there is no such pixel, or its list did not fit.
+    pub fn list(&self, direction: u32, pixel: UVec2) -> Option<&[f32]> {
+        if pixel.max_element() >= self.size_px {
+            return None;
+        }
+        let row = direction.checked_mul(self.size_px)?.checked_add(pixel.y)?;
+        let ix = row.checked_mul(self.size_px)?.checked_add(pixel.x)? as usize;
+        let ends = self.offsets.get(ix..=ix.checked_add(1)?)?;
+        self.depths_m.get(ends[0] as usize..ends[1] as usize)
+    }
+
+    /// Depths of all pixels together.
+    pub fn fragment_count(&self) -> usize {
+        self.depths_m.len()
+    }
+}
+
+/// Offsets and depths of linked lists; a list that leaves the nodes, or turns in a circle, ends there.
+fn follow(heads: &[u32], nodes: &[[u32; 2]]) -> (Vec<u32>, Vec<f32>) {
+    let mut offsets = vec![0];
+    let mut depths_m = Vec::with_capacity(nodes.len());
+    for &head in heads {
+        let mut next = head;
+        while let Some(&[depth, then]) = nodes.get((next as usize).wrapping_sub(1)) {
+            if depths_m.len() == nodes.len() {
+                break;
+            }
+            depths_m.push(f32::from_bits(depth));
+            next = then;
+        }
+        offsets.push(depths_m.len() as u32);
+    }
+    (offsets, depths_m)
+}

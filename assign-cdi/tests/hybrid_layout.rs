@@ -1,0 +1,83 @@
+//! The shaders of the hybrid-lighting grid, linked without a GPU: they validate, and what they share
+//! with Rust has the same size and the same offsets there.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use std::mem::offset_of;
+
+use assign::{LightKinds, LiveGroups};
+use assign_cdi::{CellsUniform, HybridShader};
+
+fn validated(shader: HybridShader, kinds: LightKinds) -> naga::Module {
+    let source = shader.source(kinds).unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {e}"));
+    let module = naga::front::wgsl::parse_str(&source)
+        .unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {}", e.emit_to_string(&source)));
+    // What WebGPU has without any optional feature.
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {}", e.emit_to_string(&source)));
+    module
+}
+
+#[test]
+fn all_permutations_validate() {
+    for shader in HybridShader::ALL {
+        for kinds in LightKinds::ALL {
+            validated(shader, kinds);
+        }
+    }
+}
+
+/// Fields and offsets, and size, of the struct whose linked name ends in `name`.
+fn members(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    let is_named = |n: &str| n == name || n.ends_with(&format!("_{name}"));
+    let (_, ty) =
+        module.types.iter().find(|(_, ty)| ty.name.as_deref().is_some_and(is_named)).unwrap();
+    let naga::TypeInner::Struct { members, span } = &ty.inner else {
+        panic!("{name}: not a struct");
+    };
+    let fields = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
+    (fields, *span as usize)
+}
+
+/// Name and offset of every field of a Rust struct, in its order.
+macro_rules! fields {
+    ($name:ty: $($field:ident),+) => {
+        vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+]
+    };
+}
+
+#[test]
+fn cells() {
+    let rust = fields!(CellsUniform: counts, slices_per_unit, tile_px, origin_px, first_m, near_m,
+        exponential, surfaces_only, mask_words, tiles_per_part);
+    for shader in HybridShader::ALL {
+        // `sort` knows lists alone.
+        if shader == HybridShader::Sort {
+            continue;
+        }
+        let (wesl, bytes) = members(&validated(shader, LightKinds::ALL[3]), "Cells");
+        assert_eq!(wesl, rust, "{shader:?}: fields of WESL, then of Rust");
+        // A vector of three makes the struct a multiple of 16 bytes.
+        assert_eq!(bytes, size_of::<CellsUniform>(), "{shader:?}");
+    }
+}
+
+/// The live cells as `reserve` writes them, and as `sort` reads them.
+#[test]
+fn live_cells() {
+    assert!(LiveGroups::WESL.contains("struct LiveGroups"));
+    let kinds = LightKinds::default();
+    let (written, _) = members(&validated(HybridShader::Reserve, kinds), "LiveGroups");
+    let (read, _) = members(&validated(HybridShader::Sort, kinds), "LiveGroups");
+    let offsets = |fields: Vec<(String, usize)>| {
+        let known = ["dispatch", "dispatch_x", "count", "ids"];
+        let known = fields.into_iter().filter(|(name, _)| known.contains(&name.as_str()));
+        known.map(|(_, offset)| offset).collect::<Vec<_>>()
+    };
+    assert_eq!(offsets(written), [0, 12, 16]);
+    assert_eq!(offsets(read), [0, 12, 16]);
+}

@@ -1,0 +1,90 @@
+//! Lists and a strategy's own resources in one bind group: in kernels that make lists, and where
+//! shading looks them up.
+
+use crate::{
+    Gpu, LightLists,
+    frame::{entry, storage_entry, uniform_entry},
+};
+
+/// First binding of a strategy's own resources, in the kernel and in the look-up alike.
+pub const FIRST_STRATEGY_BINDING: u32 = 4;
+
+/// A bind group of lists and of what a strategy reads beside them.
+///
+/// | binding | WESL | kernel | look-up |
+/// |---|---|---|---|
+/// | 0 | `lists` | written | read |
+/// | 1 | `entries` | written | read |
+/// | 2 | `reserve::counters` | written | |
+/// | 3 | `reserve::cull` | uniform | |
+/// | from [`FIRST_STRATEGY_BINDING`] | the strategy's own | | |
+#[derive(Debug)]
+pub struct ListsBindings {
+    layout: wgpu::BindGroupLayout,
+    in_kernel: bool,
+    bind_group: Option<wgpu::BindGroup>,
+}
+
+impl ListsBindings {
+    /// For kernels that make lists; `bindings` are the strategy's own.
+    pub fn of_kernel(gpu: &Gpu, label: &str, bindings: &[wgpu::BindGroupLayoutEntry]) -> Self {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let own = [
+            storage_entry(0, stages, false),
+            storage_entry(1, stages, false),
+            storage_entry(2, stages, false),
+            uniform_entry(3, stages),
+        ];
+        Self::new(gpu, label, true, &[&own, bindings].concat())
+    }
+
+    /// For the look-up: [`Lookup::layout`](crate::Lookup::layout).
+    pub fn of_look_up(gpu: &Gpu, label: &str, bindings: &[wgpu::BindGroupLayoutEntry]) -> Self {
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        let own = [storage_entry(0, stages, true), storage_entry(1, stages, true)];
+        Self::new(gpu, label, false, &[&own, bindings].concat())
+    }
+
+    fn new(
+        gpu: &Gpu,
+        label: &str,
+        in_kernel: bool,
+        entries: &[wgpu::BindGroupLayoutEntry],
+    ) -> Self {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(label),
+            entries,
+        });
+        Self { layout, in_kernel, bind_group: None }
+    }
+
+    /// Binds the lists and the strategy's resources: after each
+    /// [`LightLists::prepare`], which may make buffers anew.
+    pub fn bind(
+        &mut self,
+        gpu: &Gpu,
+        lists: &LightLists,
+        resources: &[wgpu::BindGroupEntry<'_>],
+    ) {
+        let mut entries = vec![entry(0, lists.lists()), entry(1, lists.entries())];
+        if self.in_kernel {
+            entries.extend([entry(2, lists.counters()), entry(3, lists.uniform())]);
+        }
+        entries.extend_from_slice(resources);
+        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("lists"),
+            layout: &self.layout,
+            entries: &entries,
+        }));
+    }
+
+    /// The layout.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    /// The bind group; `None` before the first [`bind`](Self::bind).
+    pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.bind_group.as_ref()
+    }
+}

@@ -1,0 +1,87 @@
+//! Deep images of a scene, as options ask for them.
+
+use assign::{AssignError, EncoderPasses, Gpu};
+use assign_cdi::{
+    Build, Coverage, DeepImageSettings, DeepImages, Directions, Raster, Spread, Storage, Triangles,
+};
+
+use crate::{
+    cli::{BuildChoice, DeepArgs},
+    error::HarnessError,
+    results,
+};
+
+/// Builds in which buffers may grow to what they ask for.
+const MAX_SETTLING: u32 = 8;
+
+/// The settings that options ask for.
+pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
+    let single = |raster| Build::SinglePass { oversampling: args.oversampling, raster };
+    let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
+    let directions =
+        Directions::new(Spread::StacksAndSlices, args.directions.stacks, args.directions.slices)?;
+    let settings = DeepImageSettings {
+        directions,
+        size_px: args.deep_size,
+        build: match args.build {
+            BuildChoice::Compute | BuildChoice::LinkedLists => single(Raster::Compute),
+            BuildChoice::Fragment => single(Raster::Fragment),
+            BuildChoice::PerDirection => each(Coverage::Centres, 1),
+            BuildChoice::Conservative => each(Coverage::Conservative, directions.count()),
+        },
+        storage: match args.build {
+            BuildChoice::LinkedLists => Storage::LinkedLists,
+            _ => Storage::Arrays,
+        },
+        ..DeepImageSettings::default()
+    };
+    settings.check()?;
+    Ok(settings)
+}
+
+/// Builds until nothing overflows.
+///
+/// # Errors
+///
+/// Where the images do not fit, with what they would need.
+pub fn settle(
+    gpu: &Gpu,
+    images: &mut DeepImages,
+    triangles: &Triangles<'_>,
+) -> Result<(), HarnessError> {
+    for built in 0..=MAX_SETTLING {
+        images.prepare(gpu, triangles)?;
+        // The counters of a build come back with the next.
+        if built > 1 && images.stats().is_some_and(|stats| stats.is_overflowed == 0) {
+            return Ok(());
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        images.record(&mut EncoderPasses { encoder: &mut encoder });
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+    }
+    let fragments = images.stats().map_or(0, |stats| stats.fragment_count);
+    Err(AssignError::TooLarge {
+        what: format!("deep images of {fragments} fragments"),
+        bytes: u64::from(fragments) * 4,
+        limit: gpu.max_storage_bytes(),
+    }
+    .into())
+}
+
+/// What is stored of deep images.
+pub fn figures(images: &DeepImages, args: &DeepArgs) -> results::DeepImages {
+    let stats = images.stats().unwrap_or_default();
+    results::DeepImages {
+        stacks: args.directions.stacks,
+        slices: args.directions.slices,
+        size_px: args.deep_size,
+        oversampling: args.oversampling,
+        build: args.build.name().to_owned(),
+        footprint_m: f64::from(images.space().footprint_m),
+        samples: u64::from(stats.sample_count),
+        fragments: u64::from(stats.fragment_count),
+        longest_list: u64::from(stats.longest),
+        bytes: images.bytes(),
+    }
+}

@@ -1,0 +1,213 @@
+//! Compound deep images: the paper's three tables with ours, memory, and ranges against exact rays.
+
+use super::super::format::{ABSENT, escape, number, significant};
+use super::cdi_builds::{builds, runs};
+use super::cdi_light::{indirect, quietest};
+use super::cdi_ranges::ranges;
+use super::data::entries;
+use super::figure::{Charts, name, part, table};
+use super::shots::Shots;
+use crate::results::{DeepImageRun, PassKind, Record, median};
+use crate::study::{Done, cdi};
+
+/// The paper's card, for every figure of its own.
+pub(super) const PAPER: &str = "Archer, Leach and Knowles 2019, on a GTX 1060";
+
+/// All parts of a scene.
+pub(super) fn cdi_parts(
+    done: &Done,
+    scene: &str,
+    charts: &mut Charts,
+    shots: &mut Shots<'_>,
+) -> String {
+    [
+        indirect(done, scene, charts, shots),
+        steps(done, scene),
+        builds(done, scene, charts),
+        casts(done, scene, charts),
+        ranges(done, scene, charts),
+        strategies(done, scene),
+    ]
+    .concat()
+}
+
+/// A step: its name, whether a pass belongs to it, and the paper's times in its atrium and its town.
+type Step = (&'static str, fn(&str) -> bool, [f64; 2]);
+
+/// The paper's table 1, by our passes.
+const STEPS: [Step; 6] = [
+    (
+        "capture deep images",
+        |pass| pass.starts_with("cdi-") && !["cdi-sort", "cdi-ranges"].contains(&pass),
+        [3.5, 18.8],
+    ),
+    ("sort deep images", |pass| pass == "cdi-sort", [2.0, 3.3]),
+    ("render RSM", |pass| pass.starts_with("rsm-"), [0.5, 5.9]),
+    ("build VPL buffer, without rays", |pass| pass.starts_with("vpl-"), [f64::NAN; 2]),
+    ("cast rays", |pass| pass.ends_with("ranges"), [f64::NAN; 2]),
+    ("build VPL buffer, rays and all", |pass| pass.starts_with("vpl-") || pass.ends_with("ranges"), [0.15, 0.4]),
+];
+
+/// The paper's table 1 with our times.
+fn steps(done: &Done, scene: &str) -> String {
+    let all = entries(done, scene, cdi::STEPS);
+    let Some((record, vpls)) =
+        all.first().and_then(|entry| Some((entry.record, entry.record.vpls.as_ref()?)))
+    else {
+        return String::new();
+    };
+    let theirs = |ms: f64| if ms.is_finite() { significant(ms) } else { ABSENT.to_owned() };
+    let row = |name: &str, ms: f64, paper: [f64; 2]| {
+        vec![name.to_owned(), significant(ms), theirs(paper[0]), theirs(paper[1])]
+    };
+    let mut rows: Vec<Vec<String>> = STEPS
+        .iter()
+        .map(|(name, is_own, paper)| {
+            let own = vpls.passes.iter().filter(|(pass, _)| is_own(pass));
+            row(name, own.map(|(_, times)| times.median_ms).sum(), *paper)
+        })
+        .collect();
+    let scene_ms = record.passes.median_ms(Some(PassKind::Scene));
+    rows.insert(2, row("render G-buffer", scene_ms, [1.3, 8.0]));
+    rows.push(row("build light grid", record.assign_ms, [0.7, 0.5]));
+    rows.push(row("apply lighting", record.shade_ms, [12.0, 6.1]));
+    let total = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
+    rows.push(row("total", total, [20.6, 43.5]));
+    let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
+    let heads = ["step".to_owned(), unit("here"), unit("paper, Atrium"), unit("paper, Rungholt")];
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let text = format!(
+        "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
+         paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding.",
+        escape(&record.scene),
+        record.width,
+        record.height,
+        number(vpls.kept as f64),
+        vpls.rsm_px,
+        vpls.rsm_px,
+        escape(&record.strategy)
+    );
+    part(scene, "steps", "Time of each step", &text, &table("Time of each step", &heads, &rows))
+}
+
+/// The paper's table 3: sides of the shadow map, and its times in its atrium, its town, and of random
+/// ranges.
+const PAPER_CASTS: [(u32, [f64; 3]); 4] = [
+    (256, [0.5, 0.6, 0.04]),
+    (512, [1.8, 2.1, 0.14]),
+    (1024, [6.0, 6.9, 0.5]),
+    (2048, [20.2, 23.5, 2.1]),
+];
+
+/// The paper's table 3 with ours.
+fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
+    let all = runs(done, scene, cdi::CASTS);
+    let of = |build: fn(&DeepImageRun) -> bool| all.iter().copied().find(|run| build(run));
+    let Some(run) = of(|run| run.deep.build != "linked-lists") else { return String::new() };
+    let linked = of(|run| run.deep.build == "linked-lists");
+    let mut rows = Vec::new();
+    for cast in &run.casts {
+        let (ms, random) = (median(&cast.cast_ms), median(&cast.random_ms));
+        let list = linked.and_then(|run| run.casts.iter().find(|other| other.rsm_px == cast.rsm_px));
+        let paper = PAPER_CASTS.iter().find(|(side, _)| *side == cast.rsm_px);
+        let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
+        let rays = cast.lights as f64 * f64::from(cast.rays);
+        rows.push(vec![
+            format!("{0} x {0}", cast.rsm_px),
+            number(rays),
+            significant(ms),
+            significant(rays / ms / 1e6),
+            list.map_or(ABSENT.to_owned(), |list| significant(median(&list.cast_ms))),
+            significant(random),
+            theirs(0),
+            theirs(1),
+            theirs(2),
+        ]);
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
+    let heads = [
+        "shadow map".to_owned(),
+        "rays".to_owned(),
+        unit("cast", "ms"),
+        unit("rate", "10\u{2079} rays/s"),
+        unit("through linked lists", "ms"),
+        unit("random", "ms"),
+        unit("paper, Atrium", "ms"),
+        unit("paper, Rungholt", "ms"),
+        unit("paper, random", "ms"),
+    ];
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let chart = charts.xy(&format!("{scene}-casts"), &super::cdi_builds::cast_chart(run, linked));
+    part(
+        scene,
+        "casts",
+        "Rays from every pixel of the shadow map",
+        &format!(
+            "Every pixel is a virtual point light, none is discarded; {} rays each through {} directions of \
+             {} x {} pixels. The paper\u{2019}s figures: {PAPER}.",
+            run.casts.first().map_or(0, |cast| cast.rays),
+            run.deep.directions(),
+            run.deep.size_px,
+            run.deep.size_px
+        ),
+        &(chart + &table("Rays from every pixel of the shadow map", &heads, &rows)),
+    )
+}
+
+/// Every strategy under the same virtual point lights.
+fn strategies(done: &Done, scene: &str) -> String {
+    let all = entries(done, scene, cdi::STRATEGIES);
+    let rows: Vec<Vec<String>> = all.iter().map(|entry| row_of(entry.record)).collect();
+    let Some(first) = all.first() else { return String::new() };
+    let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
+    let heads = [
+        "strategy".to_owned(),
+        unit("assign + shade"),
+        unit("assign"),
+        unit("shade"),
+        "differing channels".to_owned(),
+        "lists <span class=\"unit\">MiB</span>".to_owned(),
+    ];
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let text = format!(
+        "{} virtual point lights at {} x {}; none of their ranges is known to a strategy before.",
+        number(first.record.lights as f64),
+        first.record.width,
+        first.record.height
+    );
+    let title = "Strategies under virtual point lights";
+    part(scene, "vpl-strategies", title, &text, &table(title, &heads, &rows))
+}
+
+fn row_of(record: &Record) -> Vec<String> {
+    vec![
+        name(&record.strategy),
+        significant(record.assign_and_shade_ms()),
+        significant(record.assign_ms),
+        significant(record.shade_ms),
+        record.differing_channels.map_or(ABSENT.to_owned(), |count| number(count as f64)),
+        super::super::format::mebibytes(record.lists_bytes as f64),
+    ]
+}
+
+/// What a scene found, a sentence each.
+pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
+    let mut found = quietest(done, scene);
+    found.extend(super::cdi_builds::findings(done, scene));
+    let casts = runs(done, scene, cdi::CASTS);
+    let cast = casts.iter().flat_map(|run| &run.casts).max_by_key(|cast| cast.lights);
+    found.extend(cast.map(|cast| {
+        let (ms, rays) = (median(&cast.cast_ms), cast.lights as f64 * f64::from(cast.rays));
+        format!("In {scene} {} million rays take {} ms.", significant(rays / 1e6), significant(ms))
+    }));
+    found.extend(super::cdi_ranges::findings(done, scene));
+    found
+}
+
+/// What stands above all.
+pub(super) fn headline(done: &Done) -> Option<String> {
+    done.scenes().into_iter().find_map(|scene| findings(done, scene).into_iter().next())
+}

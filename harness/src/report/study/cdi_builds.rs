@@ -1,0 +1,239 @@
+//! Building deep images: times by directions and by build, and memory.
+
+use super::super::format::{ABSENT, escape, mebibytes, number, significant};
+use super::figure::{Charts, part, table};
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::results::{CastTimes, DeepImageRun, median};
+use crate::study::{Done, cdi};
+
+/// The paper's table 2: directions, and times in its atrium and its town; of 169 from the text.
+const PAPER_BUILDS: [(u32, [f64; 2]); 6] = [
+    (8, [1.5, 18.0]),
+    (16, [1.8, 18.4]),
+    (32, [2.0, 18.6]),
+    (64, [3.2, 19.7]),
+    (128, [4.7, 21.3]),
+    (169, [5.5, 22.1]),
+];
+
+/// The paper's factors of one pass over one a direction, at 169 directions: atrium and town.
+const PAPER_FACTORS: [f64; 2] = [20.0, 100.0];
+
+/// The runs of `lightbench cdi` of a section.
+pub(super) fn runs<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> Vec<&'a DeepImageRun> {
+    done.of(scene, section).filter_map(|(_, results)| results.deep_images.as_ref()).collect()
+}
+
+/// Time of a whole build, ms: the median over frames of its passes' sum.
+pub(super) fn build_ms(run: &DeepImageRun) -> f64 {
+    median(&run.passes.per_frame_ms(None))
+}
+
+/// Whether an image is of the size and sampling that directions and builds are compared at.
+fn is_plain(run: &DeepImageRun, first: &DeepImageRun) -> bool {
+    run.deep.size_px == first.deep.size_px && run.deep.oversampling == 1
+}
+
+/// Builds that are charted against the number of directions: id, name, class.
+const BUILDS: [(&str, &str, &str); 3] = [
+    ("compute", "one pass, compute", "strategy-0"),
+    ("fragment", "one pass, rasterised", "strategy-1"),
+    ("per-direction", "a pass a direction", "strategy-2"),
+];
+
+/// Times, factors and memory.
+pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
+    let all = runs(done, scene, cdi::BUILDS);
+    let Some(first) = all.first().copied() else { return String::new() };
+    let plain: Vec<&DeepImageRun> = all.iter().copied().filter(|run| is_plain(run, first)).collect();
+    let of = |build: &str, directions: u32| {
+        plain.iter().copied().find(|run| run.deep.build == build && run.deep.directions() == directions)
+    };
+    let mut counts: Vec<u32> = plain.iter().map(|run| run.deep.directions()).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    let ms = |run: Option<&DeepImageRun>| run.map_or(ABSENT.to_owned(), |run| significant(build_ms(run)));
+    let rows: Vec<Vec<String>> = counts
+        .iter()
+        .map(|&count| {
+            let [compute, fragment, each] = BUILDS.map(|(id, ..)| of(id, count));
+            let factor = compute.zip(each).map(|(one, all)| build_ms(all) / build_ms(one));
+            let paper = PAPER_BUILDS.iter().find(|(known, _)| *known == count);
+            let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
+            let mut row = vec![number(f64::from(count)), ms(compute), ms(fragment), ms(each)];
+            row.push(factor.map_or(ABSENT.to_owned(), significant));
+            row.extend([theirs(0), theirs(1)]);
+            row
+        })
+        .collect();
+    let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
+    let heads = [
+        "directions".to_owned(),
+        unit("one pass, compute"),
+        unit("one pass, rasterised"),
+        unit("a pass a direction"),
+        "factor".to_owned(),
+        unit("paper, Atrium"),
+        unit("paper, Rungholt"),
+    ];
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let chart = charts.xy(&format!("{scene}-builds"), &build_chart(&plain));
+    let body = chart
+        + &table("Build time against directions", &heads, &rows)
+        + &passes(of("compute", counts.last().copied().unwrap_or(0)))
+        + &memory(&all);
+    let text = format!(
+        "{} triangles, {1} x {1} pixels a direction. All of a build is on the clock: sampling or drawing, \
+         counting, prefix sum, filling and sorting. The paper\u{2019}s figures: {2}.",
+        number(first.triangles as f64),
+        first.deep.size_px,
+        super::cdi::PAPER
+    );
+    part(scene, "builds", "Building deep images", &text, &body)
+}
+
+fn build_chart(plain: &[&DeepImageRun]) -> XyChart {
+    let series = BUILDS
+        .iter()
+        .map(|(id, name, class)| {
+            let own = plain.iter().filter(|run| run.deep.build == *id);
+            let mut points: Vec<Point> = own
+                .map(|run| {
+                    let (x, y) = (f64::from(run.deep.directions()), build_ms(run));
+                    let tip = format!("{name}\n{} directions\n{} ms", number(x), significant(y));
+                    Point { x, y, tip, ..Point::default() }
+                })
+                .collect();
+            points.sort_by(|a, b| a.x.total_cmp(&b.x));
+            let (name, class) = ((*name).to_owned(), (*class).to_owned());
+            Series { name, class, marks: Marks::LineAndPoints, points, ..Series::default() }
+        })
+        .filter(|series| !series.points.is_empty())
+        .collect();
+    XyChart {
+        title: "Build time against directions".to_owned(),
+        x: Axis { label: "Directions".to_owned(), unit: String::new(), scale: Scale::Log },
+        y: Axis { label: "Build".to_owned(), unit: "ms".to_owned(), scale: Scale::Log },
+        series,
+        note: String::new(),
+    }
+}
+
+/// Times of casting rays and of random ranges against the number of lights.
+pub(super) fn cast_chart(run: &DeepImageRun, linked: Option<&DeepImageRun>) -> XyChart {
+    let line = |run: &DeepImageRun, name: &str, class: &str, of: fn(&CastTimes) -> &[f64]| Series {
+        name: name.to_owned(),
+        class: class.to_owned(),
+        marks: Marks::LineAndPoints,
+        points: run
+            .casts
+            .iter()
+            .map(|cast| {
+                let (x, y) = (cast.lights as f64, median(of(cast)));
+                let tip = format!("{name}\n{} lights\n{} ms", number(x), significant(y));
+                Point { x, y, tip, ..Point::default() }
+            })
+            .collect(),
+        ..Series::default()
+    };
+    let mut series = vec![
+        line(run, "rays through arrays", "strategy-0", |cast| &cast.cast_ms),
+        line(run, "random ranges", "strategy-3", |cast| &cast.random_ms),
+    ];
+    series.extend(linked.map(|linked| {
+        line(linked, "rays through linked lists", "strategy-2", |cast| &cast.cast_ms)
+    }));
+    XyChart {
+        title: "Time to find the ranges of all lights".to_owned(),
+        x: Axis {
+            label: "Virtual point lights".to_owned(),
+            unit: String::new(),
+            scale: Scale::Log,
+        },
+        y: Axis { label: "Ranges".to_owned(), unit: "ms".to_owned(), scale: Scale::Log },
+        series,
+        note: String::new(),
+    }
+}
+
+/// The passes of a build.
+fn passes(run: Option<&DeepImageRun>) -> String {
+    let Some(run) = run else { return String::new() };
+    let rows: Vec<Vec<String>> = run
+        .passes
+        .iter()
+        .map(|(pass, times)| {
+            vec![escape(pass), significant(times.median_ms), significant(times.p95_ms)]
+        })
+        .collect();
+    let title = format!("The passes of {} directions", run.deep.directions());
+    format!("<h4>{title}</h4>\n")
+        + &table(
+            &title,
+            &[
+                "pass",
+                "median <span class=\"unit\">ms</span>",
+                "p95 <span class=\"unit\">ms</span>",
+            ],
+            &rows,
+        )
+}
+
+/// What every setting takes.
+fn memory(all: &[&DeepImageRun]) -> String {
+    let rows: Vec<Vec<String>> = all
+        .iter()
+        .map(|run| {
+            let deep = &run.deep;
+            vec![
+                format!(
+                    "{} x {}\u{b2}{}, {}",
+                    deep.directions(),
+                    deep.size_px,
+                    if deep.oversampling > 1 { ", oversampled" } else { "" },
+                    escape(&deep.build)
+                ),
+                significant(deep.footprint_m),
+                number(deep.samples as f64),
+                number(deep.fragments as f64),
+                number(deep.longest_list as f64),
+                mebibytes(deep.bytes as f64),
+                significant(build_ms(run)),
+            ]
+        })
+        .collect();
+    let heads = [
+        "deep images",
+        "pixel <span class=\"unit\">m</span>",
+        "samples",
+        "fragments",
+        "longest list",
+        "memory <span class=\"unit\">MiB</span>",
+        "build <span class=\"unit\">ms</span>",
+    ];
+    "<h4>Memory</h4>\n".to_owned() + &table("Memory of deep images", &heads, &rows)
+}
+
+/// How much one pass over the triangles saves at the most directions.
+pub(super) fn findings(done: &Done, scene: &str) -> Option<String> {
+    let all = runs(done, scene, cdi::BUILDS);
+    let first = all.first().copied()?;
+    let most = all.iter().map(|run| run.deep.directions()).max()?;
+    let best = |is_one: fn(&str) -> bool| {
+        let own = all.iter().filter(|run| {
+            is_plain(run, first) && run.deep.directions() == most && is_one(&run.deep.build)
+        });
+        own.map(|run| build_ms(run)).filter(|ms| ms.is_finite()).min_by(f64::total_cmp)
+    };
+    let one = best(|build| build == "compute" || build == "fragment")?;
+    let each = best(|build| build == "per-direction")?;
+    Some(format!(
+        "In {scene} one pass over the triangles builds {most} directions in {} ms, {} times as fast as a pass a \
+         direction, {} ms; the paper says {} times in its atrium and {} in its town.",
+        significant(one),
+        significant(each / one),
+        significant(each),
+        PAPER_FACTORS[0],
+        PAPER_FACTORS[1]
+    ))
+}

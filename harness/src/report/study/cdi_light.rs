@@ -1,0 +1,265 @@
+//! Indirect light by virtual point lights against the path-traced image: errors by how ranges are found,
+//! pictures, and what is best at equal numbers of lights and at equal time.
+
+use std::rc::Rc;
+
+use shading::HdrImage;
+
+use super::super::format::{ABSENT, difference, escape, number, percent, significant};
+use super::data::{Entry, entries};
+use super::errors_plot::Plot;
+use super::figure::{Charts, panels, part, table};
+use super::shots::{Shots, Wanted};
+use crate::errors::ERROR_METRICS;
+use crate::results::{Record, TruthImage, Vpls};
+use crate::stored::Store;
+use crate::study::{Done, MODELS, cdi, truth_of};
+
+/// The metric by which rules are told apart in words.
+const METRIC: &str = "rel_mse";
+
+/// Gain of pictures of differences over that of the images.
+const GAIN: f32 = 4.0;
+
+/// Rules of ranges, in the order of their colours, and what each is.
+const RULES: [(&str, &str, &str); 4] = [
+    ("average", "strategy-0", "rays, average"),
+    ("maximum", "strategy-1", "rays, maximum"),
+    ("random", "strategy-3", "random"),
+    ("infinite", "strategy-none", "infinite"),
+];
+
+fn rule(record: &Record) -> &'static str {
+    let ranges = record.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
+    RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
+}
+
+fn class(record: &Record) -> String {
+    RULES
+        .iter()
+        .find(|(_, _, name)| *name == rule(record))
+        .map_or("strategy-none", |(_, class, _)| class)
+        .to_owned()
+}
+
+/// Everything that a frame takes: lights, lists and shading, ms.
+fn total_ms(record: &Record) -> f64 {
+    record.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
+}
+
+/// What is set otherwise than usual: `× 3`, `0.4 to 8 m`, `8 directions`.
+fn setting(record: &Record) -> String {
+    let Some(vpls) = &record.vpls else { return String::new() };
+    let mut parts = Vec::new();
+    match vpls.random_m {
+        Some([low, high]) => parts.push(format!("{} to {} m", significant(low), significant(high))),
+        None if vpls.ranges != "infinite" => {
+            parts.push(format!("\u{d7} {}", significant(vpls.range_scale)));
+        }
+        None => {}
+    }
+    if let Some(deep) = &vpls.deep {
+        parts.push(format!("{} directions of {2} x {2}, {1} rays", deep.directions(), vpls.rays, deep.size_px));
+    }
+    parts.push(format!("{} lights", number(vpls.kept as f64)));
+    parts.join(", ")
+}
+
+fn title(record: &Record) -> String {
+    format!("{}: {}", rule(record), setting(record))
+}
+
+fn error(record: &Record) -> Option<f64> {
+    record.truth_errors.get(METRIC).copied().flatten().filter(|error| error.is_finite())
+}
+
+/// Errors, times and pictures.
+pub(super) fn indirect(
+    done: &Done,
+    scene: &str,
+    charts: &mut Charts,
+    shots: &mut Shots<'_>,
+) -> String {
+    let all = entries(done, scene, MODELS);
+    let known: Vec<Entry<'_>> =
+        all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
+    let Some((_, truth)) = truth_of(done, scene) else { return String::new() };
+    if known.is_empty() {
+        return String::new();
+    }
+    let rows = errors_table(&known);
+    let plot = Plot {
+        slug: "indirect",
+        title: "Error of indirect light against time",
+        entries: known,
+        errors: |record| &record.truth_errors,
+        series: |record| rule(record).to_owned(),
+        class,
+        shape: |_| None,
+        name: title,
+        label: |record| {
+            record.vpls.as_ref().map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
+        },
+        wanted: Wanted::Truth,
+        time: "Lights, assign and shade",
+        ms: total_ms,
+    };
+    let body = plot.html(scene, charts, shots) + &rows;
+    part(scene, "indirect", "Indirect light against the truth", &about(truth), &body)
+        + &pictures(done, scene, shots)
+}
+
+fn about(truth: &TruthImage) -> String {
+    format!(
+        "One bounce of the primary light at {} x {}, without what comes straight from it: path-traced on the CPU \
+         in {} s, standard error {} % of the mean. Times are those of the shadow map, the deep images, the lights, \
+         their lists and shading; the number beside a point is the side of the shadow map, with a light a pixel. \
+         No brightness is compensated.",
+        truth.width,
+        truth.height,
+        significant(truth.seconds),
+        percent(truth.standard_error)
+    )
+}
+
+fn errors_table(entries: &[Entry<'_>]) -> String {
+    let mut heads = vec![
+        "ranges".to_owned(),
+        "mean range <span class=\"unit\">m</span>".to_owned(),
+        "lights <span class=\"unit\">ms</span>".to_owned(),
+        "assign + shade <span class=\"unit\">ms</span>".to_owned(),
+    ];
+    heads.extend(ERROR_METRICS.iter().map(|metric| escape(metric.head)));
+    let rows: Vec<Vec<String>> = entries
+        .iter()
+        .map(|Entry { record, .. }| {
+            let vpls = record.vpls.as_ref();
+            let of = |value: fn(&Vpls) -> f64| {
+                vpls.map_or(ABSENT.to_owned(), |vpls| significant(value(vpls)))
+            };
+            let mut row = vec![
+                format!("<i class=\"dot {}\"></i>{}", class(record), escape(&title(record))),
+                of(|vpls| vpls.mean_range_m),
+                of(Vpls::total_ms),
+                significant(record.assign_and_shade_ms()),
+            ];
+            let cell = |id: &str| {
+                let error = record.truth_errors.get(id).copied().flatten();
+                error.map_or_else(|| ABSENT.to_owned(), difference)
+            };
+            row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
+            row
+        })
+        .collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    table("Errors of indirect light against the truth", &heads, &rows)
+}
+
+/// The best of each rule at the usual size of the shadow map, beside the truth.
+fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
+    let Some((truth_job, truth)) = truth_of(done, scene) else { return String::new() };
+    let exposure = truth.exposure;
+    let Some(reference) = linear(done, &truth_job.name, Some(&truth.raw)) else {
+        return String::new();
+    };
+    let truth_key = shots.linear(&truth_job.name, &truth.raw, exposure);
+    let direct = done
+        .of(scene, cdi::DIRECT)
+        .find_map(|(job, results)| Some((job, results.truth_image.as_ref()?)))
+        .and_then(|(job, image)| shots.file(&job.name, &image.image));
+    let mut shown = Vec::new();
+    for (_, _, name) in RULES {
+        let Some(Entry { job, record }) = best(&entries(done, scene, MODELS), name, |_| true) else {
+            continue;
+        };
+        let raw = record.images.raw.as_deref();
+        let Some(image) = linear(done, &job.name, raw) else { continue };
+        let own = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
+        let gain = GAIN * exposure as f32;
+        let apart = shots.drawn(format!("{}:difference", job.name), || {
+            image.difference_png(&reference, gain).ok()
+        });
+        let worse = |text: &str| format!("{text}, {}", setting(record));
+        let body = figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself")
+            + &figure(truth_key.clone(), "One bounce alone, path-traced", "the truth of indirect light")
+            + &figure(own, &format!("One bounce by lights with {name} ranges"), &setting(record))
+            + &figure(
+                apart,
+                &format!("Difference \u{d7} {}", significant(f64::from(gain))),
+                &worse("absolute, linear; black is none; light behind walls is a leak"),
+            );
+        shown.push((name.to_owned(), format!("<div class=\"views\">{body}</div>\n")));
+    }
+    let text = "Of each rule the setting of least relMSE. Indirect images are under the exposure of the truth.";
+    part(scene, "pictures", "What ranges look like", text, &panels("Ranges", &shown))
+}
+
+fn linear(done: &Done, job: &str, name: Option<&str>) -> Option<Rc<HdrImage>> {
+    Store::new(done.folders.get(job)?).image(name).ok().flatten()
+}
+
+fn figure(key: Option<String>, title: &str, text: &str) -> String {
+    let Some(key) = key else { return String::new() };
+    let title = escape(title);
+    format!(
+        "<figure><img data-picture=\"{}\" alt=\"{title}\"><figcaption><b>{title}</b>: {}.</figcaption></figure>\n",
+        escape(&key),
+        escape(text)
+    )
+}
+
+/// The record of least error of a rule among some.
+fn best<'a>(
+    entries: &[Entry<'a>],
+    name: &str,
+    among: impl Fn(&Record) -> bool,
+) -> Option<Entry<'a>> {
+    let own = entries.iter().filter(|entry| rule(entry.record) == name && among(entry.record));
+    own.filter(|entry| error(entry.record).is_some())
+        .min_by(|a, b| error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0)))
+        .copied()
+}
+
+/// Rays against random ranges: at as many lights, and at the time of the rays.
+pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
+    let all = entries(done, scene, MODELS);
+    let rays = ["rays, average", "rays, maximum"];
+    let mut found = Vec::new();
+    let cast = rays.iter().filter_map(|name| best(&all, name, |_| true)).min_by(|a, b| {
+        error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0))
+    });
+    let Some(cast) = cast else { return found };
+    let (Some(own), Some(vpls)) = (error(cast.record), cast.record.vpls.as_ref()) else {
+        return found;
+    };
+    let same_count = best(&all, "random", |record| {
+        record.vpls.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
+    });
+    let say = |other: Entry<'_>, what: &str| {
+        let theirs = error(other.record).unwrap_or(f64::NAN);
+        format!(
+            "In {scene} ranges by rays ({}) err by relMSE {} in {} ms; the best random ranges {what} ({}) by {} in \
+             {} ms: {}.",
+            setting(cast.record),
+            difference(own),
+            significant(total_ms(cast.record)),
+            setting(other.record),
+            difference(theirs),
+            significant(total_ms(other.record)),
+            if own < theirs { "rays are nearer to the truth" } else { "random ranges are nearer" }
+        )
+    };
+    found.extend(same_count.map(|other| say(other, "of as many lights")));
+    let limit = total_ms(cast.record);
+    let same_time = best(&all, "random", |record| total_ms(record) <= limit);
+    found.extend(same_time.map(|other| say(other, "in no more time")));
+    if let Some(other) = best(&all, "infinite", |_| true) {
+        let theirs = error(other.record).unwrap_or(f64::NAN);
+        found.push(format!(
+            "In {scene} lights of infinite range err by relMSE {} and take {} ms.",
+            difference(theirs),
+            significant(total_ms(other.record))
+        ));
+    }
+    found
+}

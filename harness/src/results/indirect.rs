@@ -1,0 +1,152 @@
+//! What is stored of indirect light: virtual point lights, deep images, and rays through them.
+
+use serde::{Deserialize, Serialize};
+
+use super::Passes;
+
+/// The virtual point lights of a record, and what it took to make them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Vpls {
+    /// Side of the reflective shadow map, pixels.
+    pub rsm_px: u32,
+    /// Where ranges come from: `average`, `maximum`, `random` or `infinite`.
+    pub ranges: String,
+    /// Rays of each light; 0 where none was cast.
+    pub rays: u32,
+    /// Factor on the ranges that were found.
+    pub range_scale: f64,
+    /// Bounds of random ranges, metres.
+    #[serde(default)]
+    pub random_m: Option<[f64; 2]>,
+    /// Pixels were gathered into blocks no wider than this, metres; 0 where none were.
+    pub spacing_m: f64,
+    /// Distance within which light grows no further, metres.
+    pub clamp_m: f64,
+    /// Lights before any was left out for its range.
+    pub candidates: u64,
+    /// Lights left out because their range was too short.
+    pub too_small: u64,
+    /// Lights left out because their range was too long, or because no ray met a surface.
+    pub too_large: u64,
+    /// Lights that are left.
+    pub kept: u64,
+    /// Mean range of the lights that are left, metres.
+    pub mean_range_m: f64,
+    /// The deep images, where rays were cast.
+    #[serde(default)]
+    pub deep: Option<DeepImages>,
+    /// The passes and their times: the shadow map, the lights, and the deep images.
+    pub passes: Passes,
+}
+
+impl Vpls {
+    /// All steps together, ms: the sum of their medians.
+    pub fn total_ms(&self) -> f64 {
+        self.passes.iter().map(|(_, times)| times.median_ms).sum()
+    }
+}
+
+/// Deep images: what they were asked to be, and what they came to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DeepImages {
+    /// Rings of directions over the hemisphere.
+    pub stacks: u32,
+    /// Directions of a ring.
+    pub slices: u32,
+    /// Side of an image, pixels.
+    pub size_px: u32,
+    /// Samples of surfaces along each side of a pixel.
+    pub oversampling: u32,
+    /// How they were built: `compute`, `fragment`, `per-direction`, `linked-lists`, `conservative`.
+    pub build: String,
+    /// Side of a pixel, metres.
+    pub footprint_m: f64,
+    /// Points of surfaces that were sampled; 0 where a build has none.
+    pub samples: u64,
+    /// Depths in all lists together.
+    pub fragments: u64,
+    /// Depths in the longest list.
+    pub longest_list: u64,
+    /// GPU memory, bytes.
+    pub bytes: u64,
+}
+
+impl DeepImages {
+    /// Directions over the hemisphere.
+    pub fn directions(&self) -> u32 {
+        self.stacks * self.slices
+    }
+}
+
+/// What `lightbench cdi` measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeepImageRun {
+    /// The scene's id, or its file's name.
+    pub scene: String,
+    /// Hash of everything in the scene that reaches the GPU, hexadecimal.
+    pub scene_hash: String,
+    /// Triangles drawn, instances counted each.
+    pub triangles: u64,
+    /// The deep images.
+    pub deep: DeepImages,
+    /// The passes that build them, with their times.
+    pub passes: Passes,
+    /// Rays cast from every pixel of reflective shadow maps.
+    #[serde(default)]
+    pub casts: Vec<CastTimes>,
+    /// Rays compared with exact ones.
+    #[serde(default)]
+    pub range_errors: Option<RangeErrors>,
+}
+
+/// Times of finding the ranges of virtual point lights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CastTimes {
+    /// Side of the reflective shadow map, pixels.
+    pub rsm_px: u32,
+    /// Virtual point lights.
+    pub lights: u64,
+    /// Rays of each.
+    pub rays: u32,
+    /// Times of casting them, ms, one a frame.
+    pub cast_ms: Vec<f64>,
+    /// Times of giving as many lights random ranges, ms.
+    pub random_ms: Vec<f64>,
+}
+
+/// How far rays through deep images are from exact ones, in footprints: sides of a pixel.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RangeErrors {
+    /// Rays that were compared.
+    pub rays: u64,
+    /// Rays of which both or neither met a surface.
+    pub agree: u64,
+    /// Rays that met a surface, and none in the deep images.
+    pub lost: u64,
+    /// Rays that met none, and one in the deep images.
+    pub invented: u64,
+    /// Absolute errors of the distances of rays that met one in both, in footprints: at every 20th of
+    /// them, from the least to the greatest.
+    pub error_quantiles: Vec<f64>,
+    /// Of those rays, how many err by less than 1/4, 1/2, 1, 2, 4, 8 footprints, and by more: one count
+    /// a bin.
+    pub histogram: Vec<u64>,
+    /// Of those rays, how many found a surface nearer, by more than a footprint, than the exact one.
+    pub too_near: u64,
+    /// How many found one farther, by more than a footprint.
+    pub too_far: u64,
+    /// Median of the errors of ranges over their lights: the average of a light's rays against that of
+    /// exact ones, in footprints.
+    pub median_range_error: f64,
+}
+
+impl RangeErrors {
+    /// Upper ends of the bins of [`histogram`](Self::histogram), the last open.
+    pub const BINS: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
+
+    /// The median of the absolute errors, in footprints; NaN without any.
+    pub fn median(&self) -> f64 {
+        let middle = self.error_quantiles.len() / 2;
+        self.error_quantiles.get(middle).copied().unwrap_or(f64::NAN)
+    }
+}

@@ -1,0 +1,230 @@
+//! Compound deep images (Archer, Leach, Knowles 2019): time of every step, ranges against exact rays,
+//! and indirect light by virtual point lights against a path-traced image.
+
+use super::{Job, MODELS, StudyScene, TRUTH};
+use crate::{
+    cli::{Size, StudyArgs},
+    compare::Bench,
+    error::HarnessError,
+};
+
+/// The section whose job is timed step by step.
+pub const STEPS: &str = "steps";
+/// The section of what light comes straight from the primary light: the paper's zero bounces.
+pub const DIRECT: &str = "direct";
+/// The section of deep images, by directions, sizes and builds.
+pub const BUILDS: &str = "builds";
+/// The section of rays from every pixel of reflective shadow maps.
+pub const CASTS: &str = "casts";
+/// The section of strategies that share the virtual point lights.
+pub const STRATEGIES: &str = "strategies";
+
+/// The strategy that errors and steps are measured with: the paper's.
+const GRID: &str = "HG/48x48x40";
+
+/// How much the study looks at.
+struct Extent {
+    /// Of the images that are compared with the truth.
+    size: Size,
+    /// Of the steps and of the strategies.
+    timed_size: Size,
+    /// Directions of a pixel's bounce in the truth.
+    samples: &'static str,
+    frames: &'static str,
+    warmup: &'static str,
+    /// Side of the reflective shadow map.
+    rsm: &'static str,
+    /// Sides at which the number of lights is varied.
+    rsms: &'static [&'static str],
+    directions: &'static [&'static str],
+    deep_sizes: &'static [&'static str],
+    rays: &'static [&'static str],
+    /// Factors on ranges that were found.
+    scales: &'static [&'static str],
+    /// Longest random ranges, as shares of the diagonal of the scene's core.
+    random: &'static [f32],
+    /// Sides of shadow maps to cast from.
+    casts: &'static str,
+    compared: &'static str,
+    strategies: &'static str,
+}
+
+const FULL: Extent = Extent {
+    size: Size { width: 960, height: 540 },
+    timed_size: Size { width: 1920, height: 1080 },
+    samples: "256",
+    frames: "32",
+    warmup: "4",
+    rsm: "256",
+    rsms: &["64", "128", "256", "512"],
+    directions: &["2x4", "4x4", "4x8", "8x8", "8x16", "13x13"],
+    deep_sizes: &["32", "64", "128", "256"],
+    rays: &["1", "3", "6", "12"],
+    scales: &["1", "1.5", "2", "3", "4"],
+    random: &[0.05, 0.1, 0.2, 0.4, 0.8],
+    casts: "256,512,1024,2048",
+    compared: "200000",
+    strategies: "None,T-E,DC-E,SC-E,G,M/2,HG",
+};
+
+const QUICK: Extent = Extent {
+    size: Size { width: 96, height: 54 },
+    timed_size: Size { width: 192, height: 108 },
+    samples: "16",
+    frames: "3",
+    warmup: "1",
+    rsm: "32",
+    rsms: &["16", "32"],
+    directions: &["2x4", "4x8"],
+    deep_sizes: &["16", "32"],
+    rays: &["1", "6"],
+    scales: &["1", "2"],
+    random: &[0.1, 0.4],
+    casts: "16,32",
+    compared: "2000",
+    strategies: "None,SC-E,HG",
+};
+
+/// The jobs of one scene.
+pub(super) fn jobs(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scene: &StudyScene,
+) -> Result<Vec<Job>, HarnessError> {
+    let extent = if args.quick { QUICK } else { FULL };
+    let [core, _] = scene.boxes(bench)?;
+    let mut jobs = images(args, scene, &extent, core.diagonal());
+    jobs.extend(steps(args, scene, &extent));
+    jobs.extend(deep_images(args, scene, &extent));
+    Ok(jobs)
+}
+
+/// The truth, and indirect light by each setting against it.
+fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32) -> Vec<Job> {
+    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
+    let traced = [&["truth"], &drawn[..], &["--primary", "--shadows"]].concat();
+    let bounced = ["--bounces", "1", "--indirect", "--samples", extent.samples];
+    let mut jobs = vec![
+        Job::new(scene, TRUTH, "", &[&traced[..], &bounced].concat()),
+        Job::new(scene, DIRECT, "", &traced),
+    ];
+    let timed = ["--strategies", GRID, "--frames", extent.frames, "--warmup", extent.warmup];
+    let common = [&["compare"], &drawn[..], &timed, &["--truth", "none"]].concat();
+    let mut add = |variant: &str, rsm: &str, words: &[&str]| {
+        let words = [&common[..], &["--vpls", rsm], words].concat();
+        jobs.push(Job::new(scene, MODELS, variant, &words));
+    };
+    // How ranges are found.
+    for scale in extent.scales {
+        for rule in ["average", "maximum"] {
+            let words = ["--ranges", rule, "--range-scale", scale];
+            add(&format!("{rule}-x{scale}"), extent.rsm, &words);
+        }
+    }
+    let random: Vec<String> =
+        extent.random.iter().map(|share| format!("0,{:.4}", share * diagonal_m)).collect();
+    let random_words = |span| ["--ranges", "random", "--random-ranges", span];
+    for (share, span) in extent.random.iter().zip(&random) {
+        add(&format!("random-{share}"), extent.rsm, &random_words(span));
+    }
+    add("infinite", extent.rsm, &["--ranges", "infinite"]);
+    // More and fewer lights.
+    for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
+        add(&format!("average-rsm{rsm}"), rsm, &["--ranges", "average"]);
+        for (share, span) in extent.random.iter().zip(&random) {
+            add(&format!("random-{share}-rsm{rsm}"), rsm, &random_words(span));
+        }
+    }
+    // What the deep images are like, and how many rays go through them.
+    for directions in extent.directions.iter().filter(|directions| **directions != "13x13") {
+        add(&format!("directions-{directions}"), extent.rsm, &["--directions", directions]);
+    }
+    for size in extent.deep_sizes.iter().filter(|size| **size != "64") {
+        add(&format!("size-{size}"), extent.rsm, &["--deep-size", size]);
+    }
+    for rays in extent.rays.iter().filter(|rays| **rays != "6") {
+        add(&format!("rays-{rays}"), extent.rsm, &["--rays", rays]);
+    }
+    jobs
+}
+
+/// The paper's pipeline step by step, and every strategy under its lights.
+fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
+    let drawn = scene.options(args.size.unwrap_or(extent.timed_size), args.seed);
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
+    let timed = ["--frames", extent.frames, "--warmup", extent.warmup, "--pictures", "none"];
+    let common = [&["compare"], &drawn[..], &timed, &["--vpls", extent.rsm]].concat();
+    let own = ["--strategies", GRID, "--truth", "none"];
+    // Pairs in f64 would take minutes: images say whether anything was lost.
+    let all = ["--strategies", extent.strategies, "--source", "both", "--truth", "none"];
+    vec![
+        Job::new(scene, STEPS, "", &[&common[..], &own].concat()),
+        Job::new(scene, STRATEGIES, "", &[&common[..], &all].concat()),
+    ]
+}
+
+/// Deep images by directions, sizes and builds, and rays through them.
+fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
+    let (scale, seed) = (scene.scale.to_string(), args.seed.to_string());
+    let drawn = ["cdi", "--scene", &scene.scene, "--scene-scale", &scale, "--seed", &seed];
+    let common = [&drawn[..], &["--frames", extent.frames]].concat();
+    let mut jobs = Vec::new();
+    let mut add = |variant: &str, words: &[&str]| {
+        let words = [&common[..], words].concat();
+        jobs.push(Job::new(scene, BUILDS, variant, &words));
+    };
+    let compared = ["--casts", "none", "--compared", extent.compared];
+    let only_built = ["--casts", "none", "--compared", "0"];
+    for directions in extent.directions {
+        let words = [&["--directions", directions], &compared[..]].concat();
+        add(&format!("compute-{directions}"), &words);
+        for build in ["fragment", "per-direction"] {
+            let words = [&["--directions", directions, "--build", build], &only_built[..]].concat();
+            add(&format!("{build}-{directions}"), &words);
+        }
+    }
+    for size in extent.deep_sizes.iter().filter(|size| **size != "64") {
+        add(&format!("size-{size}"), &[&["--deep-size", size], &compared[..]].concat());
+    }
+    add("oversampled", &[&["--oversampling", "2"], &compared[..]].concat());
+    for build in ["linked-lists", "conservative"] {
+        add(build, &[&["--build", build], &compared[..]].concat());
+    }
+    let cast = ["--casts", extent.casts, "--compared", "0"];
+    jobs.push(Job::new(scene, CASTS, "", &[&common[..], &cast].concat()));
+    let linked = [&cast[..], &["--build", "linked-lists"]].concat();
+    jobs.push(Job::new(scene, CASTS, "linked-lists", &[&common[..], &linked].concat()));
+    jobs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{self, Invocation};
+
+    #[test]
+    fn every_job_is_a_command() {
+        let Ok(Invocation::Study(args)) = cli::parse(["lightbench", "study", "cdi"]) else {
+            panic!("a study");
+        };
+        let scene = StudyScene { scene: "atrium".into(), name: "atrium".into(), scale: 1.0 };
+        for extent in [&FULL, &QUICK] {
+            let mut all = images(&args, &scene, extent, 40.0);
+            all.extend(steps(&args, &scene, extent));
+            all.extend(deep_images(&args, &scene, extent));
+            let mut names: Vec<&String> = all.iter().map(|job| &job.name).collect();
+            names.sort();
+            names.dedup();
+            assert_eq!(names.len(), all.len(), "every job has a name of its own");
+            for job in &all {
+                let asked = cli::parse(&job.command).unwrap_or_else(|e| panic!("{}: {e}", job.name));
+                let is_known = matches!(
+                    asked,
+                    Invocation::Compare(_) | Invocation::Truth(_) | Invocation::Cdi(_)
+                );
+                assert!(is_known, "{}", job.name);
+            }
+        }
+    }
+}
