@@ -23,18 +23,25 @@ mod ranges;
 mod snapshot;
 mod sort;
 mod sort_network;
+mod vpl;
 
-pub use build_kernels::{build_shader, ROOTS};
+pub use build_kernels::{ROOTS, build_shader};
 pub use deep_buffers::DeepImageCounters;
-pub use deep_images::{DeepImages, DispatchSizes, StageUniform, RAY_CAST_WESL};
-pub use deep_settings::{Build, Coverage, DeepImageSettings, Raster, Storage, MAX_FRAGMENTS};
-pub use directions::{Directions, Spread, MAX_DIRECTIONS};
+pub use deep_images::{DeepImages, DispatchSizes, RAY_CAST_WESL, StageUniform};
+pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
+pub use directions::{Directions, MAX_DIRECTIONS, Spread};
 pub use hybrid_cells::{CellSize, CellsUniform};
-pub use hybrid_grid::{HybridGrid, HYBRID_WESL};
+pub use hybrid_grid::{HYBRID_WESL, HybridGrid};
 pub use hybrid_passes::HybridShader;
 pub use image_space::{ImagesUniform, Triangles};
 pub use prefix_sum::PrefixSum;
 pub use random_ranges::{RandomRanges, RandomUniform};
-pub use ranges::{Combine, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform, Threads, MAX_RAYS};
+pub use ranges::{
+    Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform, Threads,
+};
 pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
+pub use vpl::{
+    KeepUniform, Large, MAX_RSM_SIDE, Rsm, RsmUniform, VplBuffer, VplCounts, VplSettings,
+    choose_shader, keep_shader,
+};

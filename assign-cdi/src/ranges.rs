@@ -215,8 +215,7 @@ impl RangeCaster {
             *ray = self.rule.ray(ix).extend(0.0).into();
         }
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
-        let bound =
-            [&self.uniform, points.positions, points.normals, primaries, points.ranges_m];
+        let bound = [&self.uniform, points.positions, points.normals, primaries, points.ranges_m];
         self.group = Some(kernel::group(gpu, &self.layout, &bound));
         self.count = points.count;
         Ok(())

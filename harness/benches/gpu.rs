@@ -15,8 +15,8 @@ use harness::{
     cli::{self, CompareArgs, Invocation},
     clock::PassClock,
     error::HarnessError,
-    pass_samples::pass_kind,
     painter::Painter,
+    pass_samples::pass_kind,
     results::PassKind,
     stage::Stage,
 };

@@ -1,9 +1,9 @@
 //! `lightbench cdi`: deep images of a scene, built, timed, and compared with exact rays.
 
-use assign::{EncoderPasses, Gpu};
-use assign_cdi::{DeepImages, Triangles};
-use scenes::Scene;
-use shading::{EDGE, WorldTriangles};
+use assign::{EncoderPasses, Gpu, Light};
+use assign_cdi::{DeepImages, RandomRanges, RangeCaster, RangeRule, Triangles};
+use scenes::{Scene, primary_light};
+use shading::{EDGE, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
 
 use crate::{
     checks::{check_writable, remove_stale},
@@ -14,7 +14,9 @@ use crate::{
     error::HarnessError,
     machine::machine,
     pass_samples::PassSamples,
-    results::{DeepImageRun, Results, Truth, TruthLevel, median},
+    range_errors::range_errors,
+    results::{CastTimes, DeepImageRun, Results, Truth, TruthLevel, median},
+    vpls::{all_texels, points_of},
 };
 
 /// Builds before the clock starts, on a GPU.
@@ -48,14 +50,24 @@ pub fn measure(
     settle(&gpu, &mut images, &triangles)?;
     let frames = args.frames.unwrap_or(DEFAULT_FRAMES[usize::from(gpu.is_software())]);
     let passes = time(&gpu, &mut images, &triangles, frames)?;
+    let primary = primary_light(scene);
+    let casts = casts(&gpu, scene, primary, &images, args, frames)?;
+    let rule = RangeRule { rays: args.rays, ..RangeRule::default() };
+    let range_errors = match args.compared {
+        0 => None,
+        rays => {
+            let traced = TracedScene::new(scene);
+            Some(range_errors(&gpu, &images, &traced, &primary, rule, (rays, args.seed))?)
+        }
+    };
     let run = DeepImageRun {
         scene: scene.name.clone(),
         scene_hash: scene.hash(),
         triangles: scene.triangle_count(),
         deep: figures(&images, &args.deep),
         passes: passes.finish(),
-        casts: Vec::new(),
-        range_errors: None,
+        casts,
+        range_errors,
     };
     let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes: Vec::new() };
     let mut results = Results::new(machine(&gpu), command, level);
@@ -97,6 +109,42 @@ fn time(
     Ok(samples)
 }
 
+/// Times of giving a range to a light a pixel of shadow maps, by rays and at random.
+fn casts(
+    gpu: &Gpu,
+    scene: &Scene,
+    primary: Light,
+    images: &DeepImages,
+    args: &CdiArgs,
+    frames: u32,
+) -> Result<Vec<CastTimes>, HarnessError> {
+    let Some(&first) = args.casts.0.first() else { return Ok(Vec::new()) };
+    let view = rsm_view(&primary, first, (scene.bounds.min, scene.bounds.max))?;
+    let renderer = Renderer::new(gpu, scene, &view)?;
+    let mut all = Vec::new();
+    for &rsm_px in &args.casts.0 {
+        let vpls = all_texels(gpu, scene, &renderer, primary, rsm_px)?;
+        let rule = RangeRule { rays: args.rays, ..RangeRule::default() };
+        let mut caster = RangeCaster::new(gpu, images, rule)?;
+        caster.prepare(gpu, &points_of(&vpls))?;
+        let mut random = RandomRanges::new(gpu)?;
+        random.prepare(gpu, vpls.ranges_m(), vpls.capacity(), (0.0, 1.0), args.seed as u32)?;
+        let (mut cast_ms, mut random_ms) = (Vec::new(), Vec::new());
+        let mut clock = PassClock::new(gpu);
+        let warmup = if gpu.is_software() { 0 } else { WARMUP };
+        for frame in 0..warmup + frames {
+            random.record(&mut clock);
+            caster.record(images, &mut clock);
+            for (name, ms) in clock.finish()?.into_iter().filter(|_| frame >= warmup) {
+                if name == "random-ranges" { random_ms.push(ms) } else { cast_ms.push(ms) }
+            }
+        }
+        let lights = u64::from(vpls.read_counts(gpu)?.chosen);
+        all.push(CastTimes { rsm_px, lights, rays: args.rays, cast_ms, random_ms });
+    }
+    Ok(all)
+}
+
 /// What was built, and what it took.
 fn summary(run: &DeepImageRun) -> String {
     let deep = &run.deep;
@@ -114,9 +162,20 @@ fn summary(run: &DeepImageRun) -> String {
     for (pass, times) in run.passes.iter() {
         text += &format!("         {pass:<14} {:.4} ms\n", times.median_ms);
     }
-    text += &format!("         {:<14} {:.4} ms\n", "together", median(&run.passes.per_frame_ms(None)));
+    let together = median(&run.passes.per_frame_ms(None));
+    text += &format!("         {:<14} {together:.4} ms\n", "together");
+    for cast in &run.casts {
+        let rays = cast.lights * u64::from(cast.rays);
+        let ms = median(&cast.cast_ms);
+        text += &format!("casts    {rays} rays of {} lights: {ms:.4} ms\n", cast.lights);
+    }
+    if let Some(errors) = &run.range_errors {
+        text += &format!(
+            "ranges   {} rays: median error {:.3} of a pixel, of lights {:.3}, {:.1} % lost {:?}\n",
+            errors.rays,
+            errors.median(),errors.median_range_error,
+            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0, errors.histogram
+        );
+    }
     text
 }
-
-#[allow(unused)]
-fn unused(_: &Scene) {}

@@ -19,7 +19,7 @@ pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
     let single = |raster| Build::SinglePass { oversampling: args.oversampling, raster };
     let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
     let directions =
-        Directions::new(Spread::StacksAndSlices, args.directions.stacks, args.directions.slices)?;
+        Directions::new(Spread::Squares, args.directions.stacks, args.directions.slices)?;
     let settings = DeepImageSettings {
         directions,
         size_px: args.deep_size,

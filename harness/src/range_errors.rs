@@ -1,10 +1,8 @@
 //! Rays through deep images against exact ones: how far off their lengths are.
 
 use assign::{EncoderPasses, Gpu, Light, LightShape};
-use assign_cdi::{
-    DeepImages, Primary, RangeCaster, RangePoints, RangeRule,
-};
-use glam::{DVec3, Quat, Vec3};
+use assign_cdi::{DeepImages, Primary, RangeCaster, RangePoints, RangeRule};
+use glam::{Quat, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;

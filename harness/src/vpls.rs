@@ -1,14 +1,43 @@
-//! The virtual point lights of a stage.
+//! The virtual point lights of a stage: from the primary light's view to lights with ranges.
 
-use assign::{Gpu, Light};
+use assign::{EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M, MIN_RANGE_M, Passes, View};
+use assign_cdi::{
+    Combine, DeepImages, Large, RandomRanges, RangeCaster, RangePoints, RangeRule, Rsm, Triangles,
+    VplBuffer, VplSettings,
+};
 use scenes::Scene;
-use shading::Renderer;
+use shading::{Renderer, WorldTriangles, rsm_view};
 
-use crate::{cli::StageArgs, error::HarnessError, results::Vpls};
+use crate::{
+    cdi::triangles_of,
+    cli::{RangeChoice, Span, StageArgs, VplArgs},
+    clock::PassClock,
+    deep::{figures, settings_of, settle},
+    error::HarnessError,
+    pass_samples::PassSamples,
+    results::Vpls,
+};
 
-/// Makes virtual point lights, and keeps what does not change from one set to the next.
+/// Frames in which the steps are timed: on a GPU, and on a software adapter.
+const FRAMES: [u32; 2] = [32, 1];
+
+/// Frames before the clock starts, likewise.
+const WARMUP: [u32; 2] = [8, 0];
+
+/// The clamp of a light's fall-off as a share of the diagonal of the scene's core.
+const CLAMP_SHARE: f32 = 0.01;
+
+/// The longest random range as a share of it.
+const RANDOM_SHARE: f32 = 0.25;
+
+/// Infinite ranges are as many diagonals of the scene: the window is above 0.9999 in it.
+const INFINITE_DIAGONALS: f32 = 20.0;
+
+/// Makes virtual point lights, and keeps the scene's triangles from one set to the next.
 #[derive(Default)]
-pub struct VplMaker {}
+pub struct VplMaker {
+    triangles: Option<WorldTriangles>,
+}
 
 /// Lights and what they took.
 pub struct Made {
@@ -19,15 +48,258 @@ pub struct Made {
 }
 
 impl VplMaker {
-    /// Makes them.
+    /// Makes what surfaces reflect of `primary` into lights, as options ask for. The scene must be the
+    /// same in every call.
+    ///
+    /// # Errors
+    ///
+    /// Where the light has no shadow map, deep images do not fit, or the device refuses.
     pub fn make(
         &mut self,
-        _gpu: &Gpu,
-        _scene: &Scene,
-        _renderer: &Renderer,
-        _primary: Light,
-        _args: &StageArgs,
+        gpu: &Gpu,
+        scene: &Scene,
+        renderer: &Renderer,
+        primary: Light,
+        args: &StageArgs,
     ) -> Result<Made, HarnessError> {
-        Ok(Made { lights: Vec::new(), figures: Vpls::default() })
+        let bounds = (scene.bounds.min, scene.bounds.max);
+        let view = rsm_view(&primary, args.bounce.vpls, bounds)?;
+        let mut map = renderer.beside(&view)?;
+        map.prepare(&view, &LightBuffer::new(gpu, &[primary])?)?;
+        let mut vpls = VplBuffer::new(gpu, settings(scene, &args.bounce))?;
+        vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
+        if args.bounce.ranges.casts() && self.triangles.is_none() {
+            self.triangles = Some(WorldTriangles::new(gpu, scene)?);
+        }
+        let triangles = self.triangles.as_ref().map(triangles_of);
+        let mut ranges = Ranges::new(gpu, scene, args, &vpls, triangles)?;
+        let kind = usize::from(gpu.is_software());
+        let mut samples = PassSamples::default();
+        let mut clock = PassClock::new(gpu);
+        for frame in 0..WARMUP[kind] + FRAMES[kind] {
+            vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
+            ranges.prepare(gpu, &vpls)?;
+            record(&map, &view, &mut vpls, &mut ranges, &mut clock);
+            let times = clock.finish()?;
+            if frame >= WARMUP[kind] {
+                samples.collect(times);
+            }
+        }
+        let counts = vpls.read_counts(gpu)?;
+        let lights = vpls.read(gpu)?;
+        let sum: f64 = lights.iter().map(|light| f64::from(light.range_m)).sum();
+        let set = vpls.settings();
+        let casts = args.bounce.ranges.casts();
+        let figures = Vpls {
+            rsm_px: args.bounce.vpls,
+            ranges: args.bounce.ranges.name().to_owned(),
+            rays: if casts { args.bounce.rays } else { 0 },
+            range_scale: f64::from(set.range_scale),
+            random_m: (args.bounce.ranges == RangeChoice::Random).then(|| {
+                let span = random_span(scene, &args.bounce);
+                [span.low_m, span.high_m]
+            }),
+            spacing_m: f64::from(set.spacing_m),
+            clamp_m: f64::from(set.min_distance_m),
+            candidates: u64::from(counts.chosen),
+            too_small: u64::from(counts.too_small),
+            too_large: u64::from(counts.too_large),
+            kept: u64::from(counts.kept),
+            mean_range_m: if lights.is_empty() { 0.0 } else { sum / lights.len() as f64 },
+            deep: ranges.deep().map(|images| figures(images, &args.bounce.deep)),
+            passes: samples.finish(),
+        };
+        Ok(Made { lights, figures })
     }
+}
+
+/// The map that virtual point lights come from.
+pub fn rsm_of<'a>(map: &'a Renderer, view: &'a View, light: &'a Light) -> Rsm<'a> {
+    let targets = map.targets();
+    Rsm {
+        depth: &targets.depth,
+        normals: &targets.normal,
+        base_color: &targets.base_color,
+        view,
+        light,
+    }
+}
+
+/// Draws the map and chooses the lights that come of it.
+pub fn record_map(map: &Renderer, view: &View, vpls: &VplBuffer, passes: &mut dyn Passes) {
+    let mut named = OfMap(passes);
+    map.record_depth(view, &mut named);
+    map.record_gbuffer(view, &mut named);
+    vpls.record_choose(passes);
+}
+
+/// Every step of a frame.
+fn record(
+    map: &Renderer,
+    view: &View,
+    vpls: &mut VplBuffer,
+    ranges: &mut Ranges,
+    passes: &mut dyn Passes,
+) {
+    record_map(map, view, vpls, passes);
+    ranges.record(passes);
+    vpls.record_keep(passes);
+}
+
+/// How lights are kept.
+fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
+    let core_m = scene.core_bounds.diagonal();
+    let scene_m = scene.bounds.diagonal().clamp(1e-3, 1e6);
+    let is_infinite = args.ranges == RangeChoice::Infinite;
+    let longest_m = if is_infinite { INFINITE_DIAGONALS * scene_m } else { scene_m };
+    let (low_m, high_m) = args
+        .keep_ranges
+        .map_or((MIN_RANGE_M, longest_m), |span| (span.low_m as f32, span.high_m as f32));
+    let high_m = high_m.clamp(MIN_RANGE_M, MAX_RANGE_M);
+    VplSettings {
+        spacing_m: args.vpl_spacing as f32,
+        limit: None,
+        // Random ranges are ranges, not distances.
+        range_scale: if args.ranges.casts() { args.range_scale as f32 } else { 1.0 },
+        min_range_m: low_m.clamp(MIN_RANGE_M, high_m),
+        max_range_m: high_m,
+        large: if args.keep_ranges.is_some() { Large::Discard } else { Large::Clamp },
+        min_distance_m: args.vpl_clamp.map_or(CLAMP_SHARE * core_m, |clamp| clamp as f32),
+    }
+}
+
+/// The bounds of random ranges.
+fn random_span(scene: &Scene, args: &VplArgs) -> Span {
+    args.random_ranges.unwrap_or(Span {
+        low_m: 0.0,
+        high_m: f64::from((RANDOM_SHARE * scene.core_bounds.diagonal()).clamp(1e-3, 1e6)),
+    })
+}
+
+/// Where ranges come from.
+enum Ranges<'a> {
+    Cast { images: Box<DeepImages>, triangles: Triangles<'a>, caster: RangeCaster },
+    Random(RandomRanges),
+    Infinite,
+}
+
+impl<'a> Ranges<'a> {
+    fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        args: &StageArgs,
+        vpls: &VplBuffer,
+        triangles: Option<Triangles<'a>>,
+    ) -> Result<Self, HarnessError> {
+        let args = (&args.bounce, args.seed);
+        if let (true, Some(triangles)) = (args.0.ranges.casts(), triangles) {
+            let mut images = DeepImages::new(gpu, settings_of(&args.0.deep)?)?;
+            settle(gpu, &mut images, &triangles)?;
+            let caster = RangeCaster::new(gpu, &images, rule_of(args.0))?;
+            return Ok(Self::Cast { images: Box::new(images), triangles, caster });
+        }
+        if args.0.ranges == RangeChoice::Random {
+            let mut random = RandomRanges::new(gpu)?;
+            let Span { low_m, high_m } = random_span(scene, args.0);
+            let bounds = (low_m as f32, high_m as f32);
+            let (ranges, count) = (vpls.ranges_m(), vpls.capacity());
+            random.prepare(gpu, ranges, count, bounds, args.1 as u32)?;
+            return Ok(Self::Random(random));
+        }
+        let all = vec![f32::MAX; vpls.capacity() as usize];
+        gpu.queue.write_buffer(vpls.ranges_m(), 0, bytemuck::cast_slice(&all));
+        Ok(Self::Infinite)
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, vpls: &VplBuffer) -> Result<(), HarnessError> {
+        if let Self::Cast { images, triangles, caster } = self {
+            images.prepare(gpu, triangles)?;
+            caster.prepare(gpu, &points_of(vpls))?;
+        }
+        Ok(())
+    }
+
+    fn record(&mut self, passes: &mut dyn Passes) {
+        match self {
+            Self::Cast { images, caster, .. } => {
+                images.record(passes);
+                caster.record(images, passes);
+            }
+            Self::Random(random) => random.record(passes),
+            Self::Infinite => {}
+        }
+    }
+
+    fn deep(&self) -> Option<&DeepImages> {
+        match self {
+            Self::Cast { images, .. } => Some(images),
+            Self::Random(_) | Self::Infinite => None,
+        }
+    }
+}
+
+/// The rays of a light.
+fn rule_of(args: &VplArgs) -> RangeRule {
+    let combine = match args.ranges {
+        RangeChoice::Maximum => Combine::Maximum,
+        _ => Combine::Average,
+    };
+    RangeRule { rays: args.rays, combine, ..RangeRule::default() }
+}
+
+/// The lights whose ranges are wanted.
+pub fn points_of(vpls: &VplBuffer) -> RangePoints<'_> {
+    RangePoints {
+        positions: vpls.positions(),
+        normals: vpls.normals(),
+        primaries: None,
+        count: vpls.capacity(),
+        ranges_m: vpls.ranges_m(),
+    }
+}
+
+/// Records passes under the name of the map.
+struct OfMap<'a>(&'a mut dyn Passes);
+
+impl Passes for OfMap<'_> {
+    fn compute(&mut self, name: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)) {
+        self.0.compute(&format!("rsm-{name}"), record);
+    }
+
+    fn render(
+        &mut self,
+        name: &str,
+        descriptor: &wgpu::RenderPassDescriptor<'_>,
+        record: &mut dyn FnMut(&mut wgpu::RenderPass<'_>),
+    ) {
+        self.0.render(&format!("rsm-{name}"), descriptor, record);
+    }
+
+    fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        self.0.encoder()
+    }
+}
+
+/// Draws the map once and chooses its lights: their positions and normals are there then.
+///
+/// # Errors
+///
+/// As [`VplMaker::make`].
+pub fn all_texels(
+    gpu: &Gpu,
+    scene: &Scene,
+    renderer: &Renderer,
+    primary: Light,
+    size_px: u32,
+) -> Result<VplBuffer, HarnessError> {
+    let view = rsm_view(&primary, size_px, (scene.bounds.min, scene.bounds.max))?;
+    let mut map = renderer.beside(&view)?;
+    map.prepare(&view, &LightBuffer::new(gpu, &[primary])?)?;
+    let mut vpls = VplBuffer::new(gpu, VplSettings::default())?;
+    vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    record_map(&map, &view, &vpls, &mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait()?;
+    Ok(vpls)
 }

@@ -187,7 +187,8 @@ impl FromStr for Sizes {
         }
         let all: Option<Vec<u32>> =
             text.split(',').map(|size| whole(size.trim(), 16, MAX_RSM)).collect();
-        all.map(Self).ok_or_else(|| "none, or sizes from 16 to 2,048 separated by commas".to_owned())
+        all.map(Self)
+            .ok_or_else(|| "none, or sizes from 16 to 2,048 separated by commas".to_owned())
     }
 }
 

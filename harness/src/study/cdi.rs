@@ -90,7 +90,11 @@ const QUICK: Extent = Extent {
 
 impl Extent {
     /// Options of deep images; `None` is the usual.
-    fn deep(&self, directions: Option<&'static str>, size: Option<&'static str>) -> [&'static str; 4] {
+    fn deep(
+        &self,
+        directions: Option<&'static str>,
+        size: Option<&'static str>,
+    ) -> [&'static str; 4] {
         let usual = |all: Option<&&'static str>| all.copied().unwrap_or_default();
         let directions = directions.unwrap_or_else(|| usual(self.directions.last()));
         let size = size.unwrap_or_else(|| usual(self.deep_sizes.first()));
@@ -235,7 +239,8 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), all.len(), "every job has a name of its own");
             for job in &all {
-                let asked = cli::parse(&job.command).unwrap_or_else(|e| panic!("{}: {e}", job.name));
+                let asked =
+                    cli::parse(&job.command).unwrap_or_else(|e| panic!("{}: {e}", job.name));
                 let is_known = matches!(
                     asked,
                     Invocation::Compare(_) | Invocation::Truth(_) | Invocation::Cdi(_)

@@ -45,7 +45,11 @@ const STEPS: [Step; 6] = [
     ("render RSM", |pass| pass.starts_with("rsm-"), [0.5, 5.9]),
     ("build VPL buffer, without rays", |pass| pass.starts_with("vpl-"), [f64::NAN; 2]),
     ("cast rays", |pass| pass.ends_with("ranges"), [f64::NAN; 2]),
-    ("build VPL buffer, rays and all", |pass| pass.starts_with("vpl-") || pass.ends_with("ranges"), [0.15, 0.4]),
+    (
+        "build VPL buffer, rays and all",
+        |pass| pass.starts_with("vpl-") || pass.ends_with("ranges"),
+        [0.15, 0.4],
+    ),
 ];
 
 /// The paper's table 1 with our times.
@@ -108,7 +112,8 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let mut rows = Vec::new();
     for cast in &run.casts {
         let (ms, random) = (median(&cast.cast_ms), median(&cast.random_ms));
-        let list = linked.and_then(|run| run.casts.iter().find(|other| other.rsm_px == cast.rsm_px));
+        let list =
+            linked.and_then(|run| run.casts.iter().find(|other| other.rsm_px == cast.rsm_px));
         let paper = PAPER_CASTS.iter().find(|(side, _)| *side == cast.rsm_px);
         let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
         let rays = cast.lights as f64 * f64::from(cast.rays);

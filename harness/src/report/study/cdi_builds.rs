@@ -45,14 +45,20 @@ const BUILDS: [(&str, &str, &str); 3] = [
 pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let all = runs(done, scene, cdi::BUILDS);
     let Some(first) = all.first().copied() else { return String::new() };
-    let plain: Vec<&DeepImageRun> = all.iter().copied().filter(|run| is_plain(run, first)).collect();
+    let plain: Vec<&DeepImageRun> =
+        all.iter().copied().filter(|run| is_plain(run, first)).collect();
     let of = |build: &str, directions: u32| {
-        plain.iter().copied().find(|run| run.deep.build == build && run.deep.directions() == directions)
+        plain
+            .iter()
+            .copied()
+            .find(|run| run.deep.build == build && run.deep.directions() == directions)
     };
     let mut counts: Vec<u32> = plain.iter().map(|run| run.deep.directions()).collect();
     counts.sort_unstable();
     counts.dedup();
-    let ms = |run: Option<&DeepImageRun>| run.map_or(ABSENT.to_owned(), |run| significant(build_ms(run)));
+    let ms = |run: Option<&DeepImageRun>| {
+        run.map_or(ABSENT.to_owned(), |run| significant(build_ms(run)))
+    };
     let rows: Vec<Vec<String>> = counts
         .iter()
         .map(|&count| {

@@ -59,7 +59,12 @@ fn setting(record: &Record) -> String {
         None => {}
     }
     if let Some(deep) = &vpls.deep {
-        parts.push(format!("{} directions of {2} x {2}, {1} rays", deep.directions(), vpls.rays, deep.size_px));
+        parts.push(format!(
+            "{} directions of {2} x {2}, {1} rays",
+            deep.directions(),
+            vpls.rays,
+            deep.size_px
+        ));
     }
     parts.push(format!("{} lights", number(vpls.kept as f64)));
     parts.join(", ")
@@ -169,7 +174,8 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
         .and_then(|(job, image)| shots.file(&job.name, &image.image));
     let mut shown = Vec::new();
     for (_, _, name) in RULES {
-        let Some(Entry { job, record }) = best(&entries(done, scene, MODELS), name, |_| true) else {
+        let Some(Entry { job, record }) = best(&entries(done, scene, MODELS), name, |_| true)
+        else {
             continue;
         };
         let raw = record.images.raw.as_deref();
@@ -180,14 +186,23 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
             image.difference_png(&reference, gain).ok()
         });
         let worse = |text: &str| format!("{text}, {}", setting(record));
-        let body = figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself")
-            + &figure(truth_key.clone(), "One bounce alone, path-traced", "the truth of indirect light")
-            + &figure(own, &format!("One bounce by lights with {name} ranges"), &setting(record))
-            + &figure(
-                apart,
-                &format!("Difference \u{d7} {}", significant(f64::from(gain))),
-                &worse("absolute, linear; black is none; light behind walls is a leak"),
-            );
+        let body =
+            figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself")
+                + &figure(
+                    truth_key.clone(),
+                    "One bounce alone, path-traced",
+                    "the truth of indirect light",
+                )
+                + &figure(
+                    own,
+                    &format!("One bounce by lights with {name} ranges"),
+                    &setting(record),
+                )
+                + &figure(
+                    apart,
+                    &format!("Difference \u{d7} {}", significant(f64::from(gain))),
+                    &worse("absolute, linear; black is none; light behind walls is a leak"),
+                );
         shown.push((name.to_owned(), format!("<div class=\"views\">{body}</div>\n")));
     }
     let text = "Of each rule the setting of least relMSE. Indirect images are under the exposure of the truth.";
@@ -225,9 +240,10 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let all = entries(done, scene, MODELS);
     let rays = ["rays, average", "rays, maximum"];
     let mut found = Vec::new();
-    let cast = rays.iter().filter_map(|name| best(&all, name, |_| true)).min_by(|a, b| {
-        error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0))
-    });
+    let cast = rays
+        .iter()
+        .filter_map(|name| best(&all, name, |_| true))
+        .min_by(|a, b| error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0)));
     let Some(cast) = cast else { return found };
     let (Some(own), Some(vpls)) = (error(cast.record), cast.record.vpls.as_ref()) else {
         return found;

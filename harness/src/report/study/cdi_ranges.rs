@@ -154,7 +154,9 @@ fn errors_table(all: &[(&DeepImageRun, &RangeErrors)]) -> String {
 /// The median error at the most directions.
 pub(super) fn findings(done: &Done, scene: &str) -> Option<String> {
     let all = compared(done, scene);
-    let own = all.iter().filter(|(run, _)| is_paper_build(run) && run.deep.size_px == all[0].0.deep.size_px);
+    let own = all
+        .iter()
+        .filter(|(run, _)| is_paper_build(run) && run.deep.size_px == all[0].0.deep.size_px);
     let (run, errors) = own.max_by_key(|(run, _)| run.deep.directions())?;
     errors.median().is_finite().then(|| {
         format!(

@@ -12,8 +12,8 @@ use super::super::rank::listed;
 use super::figure::Charts;
 use super::shots::Shots;
 use super::{
-    accuracy, area, area_cost, area_pictures, cdi, claims, culling, endless, overview, path, scaling,
-    sizes, views,
+    accuracy, area, area_cost, area_pictures, cdi, claims, culling, endless, overview, path,
+    scaling, sizes, views,
 };
 use crate::chart::CHART_CSS;
 use crate::results::{DeviceType, Results, TruthLevel};
