@@ -21,6 +21,7 @@ mod prefix_sum;
 mod snapshot;
 mod sort;
 mod sort_network;
+mod vpl;
 
 pub use build_kernels::{build_shader, ROOTS};
 pub use deep_buffers::DeepImageCounters;
@@ -34,3 +35,7 @@ pub use image_space::{ImagesUniform, Triangles};
 pub use prefix_sum::PrefixSum;
 pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
+pub use vpl::{
+    KeepUniform, Large, MAX_RSM_SIDE, Rsm, RsmUniform, VplBuffer, VplCounts, VplSettings, choose_shader,
+    keep_shader,
+};
