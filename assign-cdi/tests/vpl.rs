@@ -243,10 +243,25 @@ fn total(lights: &[Light]) -> DVec3 {
     lights.iter().map(|light| light.intensity.as_dvec3()).sum()
 }
 
+/// The room's surfaces: which coordinate has which value, and the diffuse albedo.
+const SURFACES: [(usize, f32, Vec3); 5] = [
+    (1, 0.0, Vec3::new(0.8, 0.7, 0.6)),
+    (0, -HALF_WALL_M, Vec3::new(0.9, 0.1, 0.1)),
+    (0, HALF_WALL_M, Vec3::new(0.05, 0.45, 0.05)),
+    (2, -HALF_WALL_M, Vec3::new(0.5, 0.5, 0.9)),
+    (2, HALF_WALL_M, Vec3::ZERO),
+];
+
 /// Off the room's surfaces, metres.
 fn off_surface(p: Vec3) -> f32 {
-    let off = [p.y, p.x - HALF_WALL_M, p.x + HALF_WALL_M, p.z - HALF_WALL_M, p.z + HALF_WALL_M];
-    off.map(f32::abs).into_iter().fold(f32::INFINITY, f32::min)
+    let off = |(axis, at, _): (usize, f32, Vec3)| (p[axis] - at).abs();
+    SURFACES.map(off).into_iter().fold(f32::INFINITY, f32::min)
+}
+
+/// Of the surface nearest to a point.
+fn albedo(p: Vec3) -> Vec3 {
+    let off = |(axis, at, _): &(usize, f32, Vec3)| (p[*axis] - at).abs();
+    SURFACES.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap().2
 }
 
 #[test]
@@ -255,6 +270,12 @@ fn choice_conserves_light_and_stays_on_surfaces() {
         let light = spot(1.2);
         let map = Map::new(size, light, room(&light));
         let all = map.lights(VplSettings::default());
+        for vpl in &all {
+            let color = albedo(vpl.position) * light.intensity;
+            let ratio = vpl.intensity / color.max(Vec3::splat(1e-9));
+            let mean = ratio.element_sum() / 3.0;
+            assert!((ratio / mean - Vec3::ONE).abs().max_element() < 1e-3, "{vpl:?} {color}");
+        }
         let (mut last, texels) = (all.len(), (size[0] * size[1]) as usize);
         // The black wall and what lies outside the cone reflect nothing.
         assert!(last > texels / 2 && last < texels * 4 / 5, "{last} of {texels}");
@@ -329,9 +350,16 @@ fn order_is_fixed_and_neighbours_are_near() {
     let first = buffer.read(&map.gpu).unwrap();
     map.run(&mut buffer, |_| 1.0);
     assert!(first == buffer.read(&map.gpu).unwrap());
-    let step = |pair: &[Light]| pair[0].position.distance(pair[1].position);
-    let mean = first.windows(2).map(step).sum::<f32>() / first.len() as f32;
-    assert!(mean < 0.8, "{mean} m");
+    // Sixteen texels of a row are some 2.5 m long.
+    let spread = |run: &[Light]| {
+        let ends = run.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), light| {
+            (low.min(light.position), high.max(light.position))
+        });
+        ends.0.distance(ends.1)
+    };
+    let runs: Vec<f32> = first.chunks(16).map(spread).collect();
+    let mean = runs.iter().sum::<f32>() / runs.len() as f32;
+    assert!(mean < 1.6, "{mean} m");
     let reversed: Vec<Light> = first.iter().rev().copied().collect();
     assert!(first != reversed);
 }
@@ -414,6 +442,23 @@ fn a_limit_that_is_passed_is_an_error() {
     buffer.set_settings(limited(all.len() as u32)).unwrap();
     map.run(&mut buffer, |_| 0.5);
     assert!(buffer.read(&map.gpu).unwrap() == all);
+}
+
+#[test]
+fn normals_behind_the_last_are_zero() {
+    let light = spot(0.9);
+    let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
+    let mut buffer = VplBuffer::new(&map.gpu, VplSettings::default()).unwrap();
+    for spacing_m in [0.0, 0.8] {
+        buffer.set_settings(VplSettings { spacing_m, ..VplSettings::default() }).unwrap();
+        map.run(&mut buffer, |_| 1.0);
+        let count = buffer.read_counts(&map.gpu).unwrap().chosen as usize;
+        let bytes = map.gpu.read(buffer.normals(), u64::from(buffer.capacity()) * 16).unwrap();
+        let normals: Vec<[f32; 4]> = pod_collect_to_vec(&bytes);
+        let used = normals.iter().take_while(|normal| **normal == [0.0, 1.0, 0.0, 0.0]).count();
+        assert_eq!(used, count, "{spacing_m}");
+        assert!(count < normals.len() && normals[count..].iter().all(|normal| *normal == [0.0; 4]));
+    }
 }
 
 #[test]
