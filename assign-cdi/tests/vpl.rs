@@ -264,6 +264,50 @@ fn albedo(p: Vec3) -> Vec3 {
     SURFACES.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap().2
 }
 
+/// Area of a texel on the plane of view depth 1, square metres.
+fn texel_area(map: &Map, size: [u32; 2]) -> f32 {
+    let Projection::Perspective { min, max } = map.view.projection else { panic!("perspective") };
+    (max - min).element_product() / (size[0] * size[1]) as f32
+}
+
+/// Intensity that a texel of the room reflects whose surface is at `position`.
+fn reflected(map: &Map, size: [u32; 2], position: Vec3) -> Vec3 {
+    let LightShape::Spot { outer_angle, .. } = map.light.shape else { panic!("a spot") };
+    let to = position - map.light.position;
+    let cos = -to.y / to.length();
+    let ramp = (cos - outer_angle.cos()) / (1.0 - outer_angle.cos());
+    let solid_angle = texel_area(map, size) * cos.powi(3);
+    map.light.intensity * albedo(position) * (ramp * ramp * solid_angle / PI)
+}
+
+#[test]
+fn the_brightest_texel_stands_for_its_block() {
+    let light = spot(0.9);
+    let size = [13, 9];
+    for lucky in (0..size[0] * size[1]).step_by(11) {
+        let texel = std::cell::Cell::new(0);
+        let map = Map::new(size, light, |ray| {
+            let bright = texel.replace(texel.get() + 1) == lucky;
+            let color = Vec3::splat(if bright { 1.0 } else { 1e-6 }).extend(0.0);
+            // A slope, so that depths differ.
+            Some((light.position.y / (0.2 * ray.x - ray.y), Vec3::new(-0.2, 1.0, 0.0), color))
+        });
+        let all = map.lights(VplSettings::default());
+        let brightest = all.iter().max_by(|a, b| a.intensity.x.total_cmp(&b.intensity.x)).unwrap();
+        // In the corners, outside the cone, none is bright.
+        if brightest.intensity.x < 1e-3 * light.intensity.x / (size[0] * size[1]) as f32 {
+            continue;
+        }
+        let one = map.lights(VplSettings { spacing_m: 1e3, ..VplSettings::default() });
+        assert_eq!(one.len(), 1);
+        assert_eq!(
+            (one[0].position, one[0].shape),
+            (brightest.position, brightest.shape),
+            "{lucky}"
+        );
+    }
+}
+
 #[test]
 fn choice_conserves_light_and_stays_on_surfaces() {
     for size in [[64, 64], [50, 37]] {
@@ -271,10 +315,9 @@ fn choice_conserves_light_and_stays_on_surfaces() {
         let map = Map::new(size, light, room(&light));
         let all = map.lights(VplSettings::default());
         for vpl in &all {
-            let color = albedo(vpl.position) * light.intensity;
-            let ratio = vpl.intensity / color.max(Vec3::splat(1e-9));
-            let mean = ratio.element_sum() / 3.0;
-            assert!((ratio / mean - Vec3::ONE).abs().max_element() < 1e-3, "{vpl:?} {color}");
+            let expected = reflected(&map, size, vpl.position);
+            let off = (vpl.intensity - expected).abs().max_element();
+            assert!(off < 2e-3 * expected.max_element() + 1e-9, "{vpl:?}, not {expected}");
         }
         let (mut last, texels) = (all.len(), (size[0] * size[1]) as usize);
         // The black wall and what lies outside the cone reflect nothing.
@@ -303,14 +346,21 @@ fn choice_conserves_light_and_stays_on_surfaces() {
 fn spacing_is_even_where_texels_allow_it() {
     let light = spot(0.9);
     let map = Map::new([128, 128], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
+    let widths = |spacing_m| -> Vec<[f32; 4]> {
+        let settings = VplSettings { spacing_m, ..VplSettings::default() };
+        let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
+        map.run(&mut buffer, |_| 1.0);
+        let count = u64::from(buffer.read_counts(&map.gpu).unwrap().chosen);
+        pod_collect_to_vec(&map.gpu.read(buffer.positions(), count * 16).unwrap())
+    };
+    for [x, y, z, width] in widths(0.0) {
+        let to = Vec3::new(x, y, z) - light.position;
+        let area = texel_area(&map, [128, 128]) * to.length() * light.position.y;
+        assert!((width * width / area - 1.0).abs() < 1e-3, "{width}, not {}", area.sqrt());
+    }
     let spacing_m = 0.3;
-    let mut buffer =
-        VplBuffer::new(&map.gpu, VplSettings { spacing_m, ..VplSettings::default() }).unwrap();
-    map.run(&mut buffer, |_| 1.0);
-    let count = buffer.read_counts(&map.gpu).unwrap().chosen as usize;
-    let bytes = map.gpu.read(buffer.positions(), count as u64 * 16).unwrap();
-    let positions: Vec<[f32; 4]> = pod_collect_to_vec(&bytes);
-    let widths: Vec<f32> = positions.iter().map(|p| p[3]).collect();
+    let widths: Vec<f32> = widths(spacing_m).iter().map(|position| position[3]).collect();
+    let count = widths.len();
     assert!(widths.iter().all(|w| *w > 0.0 && *w <= spacing_m), "{widths:?}");
     // Twice as wide would be too wide for the widest texel of most blocks.
     let wide = widths.iter().filter(|w| **w > 0.4 * spacing_m).count();
@@ -410,10 +460,11 @@ fn what_drops_out_is_counted() {
 fn records_are_those_of_lights() {
     let light = spot(1.2);
     let map = Map::new([32, 32], light, room(&light));
-    let settings = VplSettings { min_distance_m: 0.5, ..VplSettings::default() };
+    let settings = VplSettings { min_distance_m: 0.5, min_range_m: 20.0, ..VplSettings::default() };
     let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
     map.run(&mut buffer, |ix| 0.1 + ix as f32);
     let lights = buffer.read(&map.gpu).unwrap();
+    assert!(buffer.read_counts(&map.gpu).unwrap().too_small > 0);
     let uploaded = assign::LightBuffer::new(&map.gpu, &lights).unwrap();
     let count = lights.len() as u64;
     let same = |a, b, bytes| map.gpu.read(a, bytes).unwrap() == map.gpu.read(b, bytes).unwrap();
