@@ -15,9 +15,14 @@ use crate::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct StageUniform {
-    first_direction: u32,
-    mode: u32,
+    /// First direction of the dispatch.
+    pub first_direction: u32,
+    /// 0 counts, 1 fills in.
+    pub mode: u32,
 }
+
+/// The module that casts rays, `package::ray_cast`: [`DeepImages::mount`] mounts it.
+pub const RAY_CAST_WESL: &str = include_str!("shaders/ray_cast.wesl");
 
 /// Bytes from one `Stage` to the next.
 const STAGE_STRIDE: u32 = 256;
@@ -29,10 +34,14 @@ const FILL: u32 = 1;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct DispatchSizes {
-    samples: [u32; 3],
-    padding: u32,
-    large: [u32; 3],
-    padding_end: u32,
+    /// Workgroups over samples.
+    pub samples: [u32; 3],
+    /// Pads to a multiple of 16 bytes.
+    pub padding: u32,
+    /// Workgroups over large triangles.
+    pub large: [u32; 3],
+    /// Pads to a multiple of 16 bytes.
+    pub padding_end: u32,
 }
 
 /// Byte of the dispatch over large triangles.
@@ -361,7 +370,7 @@ impl DeepImages {
         let shader = shader
             .module("package::ray_slots", format!("const RAY_GROUP: u32 = {group}u;\n"))
             .module("package::deep_images", include_str!("shaders/deep_images.wesl"))
-            .module("package::ray_cast", include_str!("shaders/ray_cast.wesl"))
+            .module("package::ray_cast", RAY_CAST_WESL)
             .flag("linked", settings.storage == Storage::LinkedLists);
         settings.directions.mount(shader)
     }

@@ -18,6 +18,8 @@ mod hybrid_passes;
 mod image_space;
 mod kernel;
 mod prefix_sum;
+mod random_ranges;
+mod ranges;
 mod snapshot;
 mod sort;
 mod sort_network;
@@ -25,7 +27,7 @@ mod vpl;
 
 pub use build_kernels::{build_shader, ROOTS};
 pub use deep_buffers::DeepImageCounters;
-pub use deep_images::{DeepImages, DispatchSizes, StageUniform};
+pub use deep_images::{DeepImages, DispatchSizes, StageUniform, RAY_CAST_WESL};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, Raster, Storage, MAX_FRAGMENTS};
 pub use directions::{Directions, Spread, MAX_DIRECTIONS};
 pub use hybrid_cells::{CellSize, CellsUniform};
@@ -33,6 +35,8 @@ pub use hybrid_grid::{HybridGrid, HYBRID_WESL};
 pub use hybrid_passes::HybridShader;
 pub use image_space::{ImagesUniform, Triangles};
 pub use prefix_sum::PrefixSum;
+pub use random_ranges::{RandomRanges, RandomUniform};
+pub use ranges::{Combine, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform, Threads, MAX_RAYS};
 pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
 pub use vpl::{

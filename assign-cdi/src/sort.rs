@@ -51,25 +51,36 @@ pub struct SortInput<'a> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct SortUniform {
-    first_list: u32,
-    list_count: u32,
-    first_entry: u32,
-    entry_count: u32,
-    part_capacity: u32,
-    block_capacity: u32,
+    /// First list to sort.
+    pub first_list: u32,
+    /// Lists to sort.
+    pub list_count: u32,
+    /// Lists that begin before it are left alone.
+    pub first_entry: u32,
+    /// Entries that there are.
+    pub entry_count: u32,
+    /// Most parts.
+    pub part_capacity: u32,
+    /// Most blocks.
+    pub block_capacity: u32,
 }
 
 /// The work left to workgroups: `sort_work.wesl`, `struct WorkHeader`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct SortWork {
-    part_groups: [u32; 3],
-    part_count: u32,
-    block_groups: [u32; 3],
-    block_count: u32,
+    /// Workgroups over parts.
+    pub part_groups: [u32; 3],
+    /// Parts.
+    pub part_count: u32,
+    /// Workgroups over blocks.
+    pub block_groups: [u32; 3],
+    /// Blocks.
+    pub block_count: u32,
     /// Keys of the longest list of the last sort.
     pub longest: u32,
-    padding: [u32; 3],
+    /// Pads to a multiple of 16 bytes.
+    pub padding: [u32; 3],
 }
 
 /// Keys that a workgroup sorts in its memory: `PART` of `sort_keys.wesl`.

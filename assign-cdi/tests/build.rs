@@ -116,12 +116,12 @@ fn rasterisers_take_the_same_samples() {
     assert!((counts[0] / counts[1] - 1.0).abs() < 0.005, "{counts:?}");
     // Rasterisers may round corners to 1/256 of a cell, here of half a metre.
     let share = alike(&computed, &drawn, 0.005);
-    assert!(share > 0.97, "{share} alike");
+    assert!(share > 0.99, "{share} alike");
     // A check that tells scenes apart.
     let other = Scene::new(&gpu, room(3, 6, 100));
     let other = lists(&gpu, &other, settings(DRAWN, Storage::Arrays));
     let share = alike(&computed, &other, 0.005);
-    assert!(share < 0.7, "{share} alike");
+    assert!(share < 0.9, "{share} alike");
 }
 
 #[test]

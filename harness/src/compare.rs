@@ -5,7 +5,8 @@ use std::{path::Path, sync::Arc, time::Duration};
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use shading::{EDGE, HdrImage, LightBvh, Mode};
+use scenes::Scene;
+use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
     checks::{RASTER_SPHERE, check_modes, check_writable, checked, remove_stale, served},
@@ -23,7 +24,7 @@ use crate::{
 };
 
 /// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
-const DEFAULT_FRAMES: [u32; 2] = [64, 3];
+pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
 /// The same along a path.
 const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames before the clock, likewise.
@@ -37,6 +38,7 @@ pub struct Bench {
     gpu: Gpu,
     machine: Machine,
     stage: Option<(String, Stage)>,
+    triangles: Option<(String, Scene, WorldTriangles)>,
 }
 
 /// Runs a comparison, writes its report, and returns what to print. `command` is the command
@@ -74,7 +76,7 @@ impl Bench {
         end_on_device_error(&gpu);
         let machine = machine(&gpu);
         eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
-        Ok(Self { gpu, machine, stage: None })
+        Ok(Self { gpu, machine, stage: None, triangles: None })
     }
 
     /// The machine that results come from.
@@ -102,6 +104,25 @@ impl Bench {
             }
         };
         Ok(stage)
+    }
+
+    /// A scene and its triangles on the GPU; opened once while it stays the same.
+    pub fn triangles(
+        &mut self,
+        scene: &str,
+        scale: f64,
+    ) -> Result<(&Scene, &WorldTriangles), HarnessError> {
+        let key = format!("{scene} {scale}");
+        let known = self.triangles.take().filter(|(known, ..)| *known == key);
+        let (_, scene, triangles) = match known {
+            Some(known) => self.triangles.insert(known),
+            None => {
+                let scene = scenes::open(scene)?.scaled(scale as f32)?;
+                let triangles = WorldTriangles::new(&self.gpu, &scene)?;
+                self.triangles.insert((key, scene, triangles))
+            }
+        };
+        Ok((scene, triangles))
     }
 
     /// Runs a comparison; returns its results and the pictures that they name.

@@ -2,12 +2,14 @@
 
 use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, Projection, View};
 use glam::{Vec2, Vec3};
-use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, scatter_lights};
+use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, primary_light, scatter_lights};
 use shading::{AreaModel, Renderer};
 
 use crate::{
     cli::{Camera, CliError, LightBox, StageArgs},
     error::HarnessError,
+    results::Vpls,
+    vpls::VplMaker,
 };
 
 /// Vertical field of view where the scene names none, radians.

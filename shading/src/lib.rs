@@ -40,6 +40,8 @@ mod rsm;
 mod shaders;
 mod targets;
 pub mod traced;
+mod rsm;
+mod world_triangles;
 mod truth;
 mod world_triangles;
 
@@ -58,5 +60,7 @@ pub use renderer::{Mode, Renderer, record_before_lighting};
 pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use targets::Targets;
+pub use rsm::{MAX_RSM_ANGLE, rsm_view};
+pub use world_triangles::WorldTriangles;
 pub use truth::{EDGE, LightBvh, ListsTruth};
 pub use world_triangles::WorldTriangles;

@@ -36,8 +36,11 @@ struct Extent {
     rsm: &'static str,
     /// Sides at which the number of lights is varied.
     rsms: &'static [&'static str],
+    /// Directions of the deep images, the usual last.
     directions: &'static [&'static str],
+    /// Pixels along their sides, the usual first.
     deep_sizes: &'static [&'static str],
+    /// Rays of a light, the usual first.
     rays: &'static [&'static str],
     /// Factors on ranges that were found.
     scales: &'static [&'static str],
@@ -58,8 +61,8 @@ const FULL: Extent = Extent {
     rsm: "256",
     rsms: &["64", "128", "256", "512"],
     directions: &["2x4", "4x4", "4x8", "8x8", "8x16", "13x13"],
-    deep_sizes: &["32", "64", "128", "256"],
-    rays: &["1", "3", "6", "12"],
+    deep_sizes: &["64", "32", "128", "256"],
+    rays: &["6", "1", "3", "12"],
     scales: &["1", "1.5", "2", "3", "4"],
     random: &[0.05, 0.1, 0.2, 0.4, 0.8],
     casts: "256,512,1024,2048",
@@ -76,14 +79,24 @@ const QUICK: Extent = Extent {
     rsm: "32",
     rsms: &["16", "32"],
     directions: &["2x4", "4x8"],
-    deep_sizes: &["16", "32"],
-    rays: &["1", "6"],
+    deep_sizes: &["32", "16"],
+    rays: &["6", "1"],
     scales: &["1", "2"],
     random: &[0.1, 0.4],
     casts: "16,32",
     compared: "2000",
     strategies: "None,SC-E,HG",
 };
+
+impl Extent {
+    /// Options of deep images; `None` is the usual.
+    fn deep(&self, directions: Option<&'static str>, size: Option<&'static str>) -> [&'static str; 4] {
+        let usual = |all: Option<&&'static str>| all.copied().unwrap_or_default();
+        let directions = directions.unwrap_or_else(|| usual(self.directions.last()));
+        let size = size.unwrap_or_else(|| usual(self.deep_sizes.first()));
+        ["--directions", directions, "--deep-size", size]
+    }
+}
 
 /// The jobs of one scene.
 pub(super) fn jobs(
@@ -118,8 +131,8 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     // How ranges are found.
     for scale in extent.scales {
         for rule in ["average", "maximum"] {
-            let words = ["--ranges", rule, "--range-scale", scale];
-            add(&format!("{rule}-x{scale}"), extent.rsm, &words);
+            let words = [&extent.deep(None, None)[..], &["--ranges", rule, "--range-scale", scale]];
+            add(&format!("{rule}-x{scale}"), extent.rsm, &words.concat());
         }
     }
     let random: Vec<String> =
@@ -131,20 +144,21 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     add("infinite", extent.rsm, &["--ranges", "infinite"]);
     // More and fewer lights.
     for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
-        add(&format!("average-rsm{rsm}"), rsm, &["--ranges", "average"]);
+        add(&format!("average-rsm{rsm}"), rsm, &extent.deep(None, None));
         for (share, span) in extent.random.iter().zip(&random) {
             add(&format!("random-{share}-rsm{rsm}"), rsm, &random_words(span));
         }
     }
     // What the deep images are like, and how many rays go through them.
-    for directions in extent.directions.iter().filter(|directions| **directions != "13x13") {
-        add(&format!("directions-{directions}"), extent.rsm, &["--directions", directions]);
+    for directions in extent.directions.iter().rev().skip(1) {
+        add(&format!("directions-{directions}"), extent.rsm, &extent.deep(Some(directions), None));
     }
-    for size in extent.deep_sizes.iter().filter(|size| **size != "64") {
-        add(&format!("size-{size}"), extent.rsm, &["--deep-size", size]);
+    for size in extent.deep_sizes.iter().skip(1) {
+        add(&format!("size-{size}"), extent.rsm, &extent.deep(None, Some(size)));
     }
-    for rays in extent.rays.iter().filter(|rays| **rays != "6") {
-        add(&format!("rays-{rays}"), extent.rsm, &["--rays", rays]);
+    for rays in extent.rays.iter().skip(1) {
+        let words = [&extent.deep(None, None)[..], &["--rays", rays]].concat();
+        add(&format!("rays-{rays}"), extent.rsm, &words);
     }
     jobs
 }
@@ -154,7 +168,8 @@ fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
     let drawn = scene.options(args.size.unwrap_or(extent.timed_size), args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let timed = ["--frames", extent.frames, "--warmup", extent.warmup, "--pictures", "none"];
-    let common = [&["compare"], &drawn[..], &timed, &["--vpls", extent.rsm]].concat();
+    let deep = extent.deep(None, None);
+    let common = [&["compare"], &drawn[..], &timed, &["--vpls", extent.rsm], &deep].concat();
     let own = ["--strategies", GRID, "--truth", "none"];
     // Pairs in f64 would take minutes: images say whether anything was lost.
     let all = ["--strategies", extent.strategies, "--source", "both", "--truth", "none"];
@@ -177,21 +192,23 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
     let compared = ["--casts", "none", "--compared", extent.compared];
     let only_built = ["--casts", "none", "--compared", "0"];
     for directions in extent.directions {
-        let words = [&["--directions", directions], &compared[..]].concat();
-        add(&format!("compute-{directions}"), &words);
+        let deep = extent.deep(Some(directions), None);
+        add(&format!("compute-{directions}"), &[&deep[..], &compared].concat());
         for build in ["fragment", "per-direction"] {
-            let words = [&["--directions", directions, "--build", build], &only_built[..]].concat();
+            let words = [&deep[..], &["--build", build], &only_built].concat();
             add(&format!("{build}-{directions}"), &words);
         }
     }
-    for size in extent.deep_sizes.iter().filter(|size| **size != "64") {
-        add(&format!("size-{size}"), &[&["--deep-size", size], &compared[..]].concat());
+    for size in extent.deep_sizes.iter().skip(1) {
+        let deep = extent.deep(None, Some(size));
+        add(&format!("size-{size}"), &[&deep[..], &compared].concat());
     }
-    add("oversampled", &[&["--oversampling", "2"], &compared[..]].concat());
+    let usual = extent.deep(None, None);
+    add("oversampled", &[&usual[..], &["--oversampling", "2"], &compared].concat());
     for build in ["linked-lists", "conservative"] {
-        add(build, &[&["--build", build], &compared[..]].concat());
+        add(build, &[&usual[..], &["--build", build], &compared].concat());
     }
-    let cast = ["--casts", extent.casts, "--compared", "0"];
+    let cast = [&usual[..], &["--casts", extent.casts, "--compared", "0"]].concat();
     jobs.push(Job::new(scene, CASTS, "", &[&common[..], &cast].concat()));
     let linked = [&cast[..], &["--build", "linked-lists"]].concat();
     jobs.push(Job::new(scene, CASTS, "linked-lists", &[&common[..], &linked].concat()));

@@ -98,6 +98,12 @@ impl<'a> TracedScene<'a> {
         Some(hit.distance_m)
     }
 
+    /// The same, with the unit normal of the triangle on the side that the ray comes from.
+    pub fn surface(&self, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+        let hit = self.triangles.first(origin, direction, f64::INFINITY, |_| true)?;
+        Some((hit.distance_m, towards(self.geometric_normal(&hit), -direction)))
+    }
+
     /// What a ray from a sample meets first; `None` where it leaves the scene, or meets the back of
     /// a surface that has none.
     pub fn bounce(&self, from: &SurfaceSample, direction: DVec3) -> Option<SurfaceSample> {

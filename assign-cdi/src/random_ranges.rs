@@ -1,0 +1,91 @@
+//! Ranges drawn at random: what ray casting is compared with (Archer et al. 2019, table 3).
+
+use assign::{AssignError, Gpu, Passes, Shader};
+use bytemuck::{Pod, Zeroable, bytes_of};
+
+use crate::kernel::{self, Slot, workgroups};
+
+/// What the kernel is told: `random_ranges.wesl`, `struct Random`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct RandomUniform {
+    /// Number of points.
+    pub point_count: u32,
+    /// Seed.
+    pub seed: u32,
+    /// Least range.
+    pub low_m: f32,
+    /// Largest range.
+    pub high_m: f32,
+}
+
+/// Draws ranges at random, uniform between two bounds; the same for the same seed.
+#[derive(Debug)]
+pub struct RandomRanges {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    uniform: wgpu::Buffer,
+    group: Option<wgpu::BindGroup>,
+    count: u32,
+}
+
+impl RandomRanges {
+    /// Makes the kernel.
+    pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        let module = kernel::uncounted(gpu, &Self::shader(), "package::random_ranges")?;
+        let slots = [Slot::Uniform, Slot::Write];
+        let layout = kernel::layout(gpu, "random ranges", wgpu::ShaderStages::COMPUTE, &slots);
+        Ok(Self {
+            pipeline: kernel::compute(gpu, &module, "draw_ranges", &[&layout]),
+            layout,
+            uniform: gpu.uniform("random ranges", size_of::<RandomUniform>() as u64),
+            group: None,
+            count: 0,
+        })
+    }
+
+    /// The kernel's module: the root is `package::random_ranges`.
+    pub fn shader() -> Shader<'static> {
+        Shader::new(3).module("package::random_ranges", include_str!("shaders/random_ranges.wesl"))
+    }
+
+    /// Binds `count` ranges, `array<f32>`, to be drawn from `low_m` to `high_m`.
+    pub fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        ranges_m: &wgpu::Buffer,
+        count: u32,
+        (low_m, high_m): (f32, f32),
+        seed: u32,
+    ) -> Result<(), AssignError> {
+        if !(low_m >= 0.0 && low_m <= high_m && high_m.is_finite()) {
+            return Err(AssignError::Parameter {
+                field: "bounds of random ranges".into(),
+                value: format!("{low_m} to {high_m}"),
+                accepted: "from 0 on, lower first, finite".into(),
+            });
+        }
+        if ranges_m.size() < u64::from(count) * 4 {
+            return Err(AssignError::Parameter {
+                field: "ranges_m".into(),
+                value: format!("{} bytes", ranges_m.size()),
+                accepted: format!("at least {} for {count} points", u64::from(count) * 4),
+            });
+        }
+        let uniform = RandomUniform { point_count: count, seed, low_m, high_m };
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
+        self.group = Some(kernel::group(gpu, &self.layout, &[&self.uniform, ranges_m]));
+        self.count = count;
+        Ok(())
+    }
+
+    /// Records the pass `random-ranges`; nothing before [`prepare`](Self::prepare).
+    pub fn record(&self, passes: &mut dyn Passes) {
+        let Some(group) = &self.group else { return };
+        passes.compute("random-ranges", &mut |pass| {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(workgroups(u64::from(self.count), 256), 1, 1);
+        });
+    }
+}

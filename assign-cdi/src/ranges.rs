@@ -1,0 +1,240 @@
+//! Ranges of points on surfaces, by rays through deep images.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use assign::{AssignError, Gpu, Passes, Shader};
+use bytemuck::{Pod, Zeroable, bytes_of};
+use glam::Vec3;
+
+use crate::{
+    DeepImageSettings, DeepImages,
+    kernel::{self, Slot, workgroups},
+};
+
+/// How the lengths of a point's rays become its range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Combine {
+    /// Their mean.
+    #[default]
+    Average,
+    /// The longest.
+    Maximum,
+}
+
+/// Where a point's primary ray goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Primary {
+    /// Along the normal.
+    #[default]
+    Normal,
+    /// Along a direction given for each point, such as that of reflected light.
+    Given,
+}
+
+/// What a thread does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Threads {
+    /// All rays of a point.
+    #[default]
+    Points,
+    /// One ray.
+    Rays,
+}
+
+/// The rays of a point: the primary one, and the others evenly around it (Archer et al. 2019,
+/// section 3.2). Rays without a hit are left out; without any hit the range is [`f32::MAX`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RangeRule {
+    /// Rays, 1 to [`MAX_RAYS`].
+    pub rays: u32,
+    /// Angle of the others from the primary ray, radians, 0 to a quarter turn.
+    pub cone_angle: f32,
+    /// How their lengths become a range.
+    pub combine: Combine,
+    /// Where the primary ray goes.
+    pub primary: Primary,
+    /// What a thread does.
+    pub threads: Threads,
+}
+
+/// The most rays of a point.
+pub const MAX_RAYS: u32 = 16;
+
+impl Default for RangeRule {
+    /// The paper's six rays, and their mean. The paper leaves the angle open: with 1.047, a sixth of a
+    /// turn, each ray stands for about as much of a Lambertian emitter's light, whose median leaves at
+    /// 45 degrees, and none of them grazes the surface.
+    fn default() -> Self {
+        Self {
+            rays: 6,
+            cone_angle: TAU / 6.0,
+            combine: Combine::default(),
+            primary: Primary::default(),
+            threads: Threads::default(),
+        }
+    }
+}
+
+impl RangeRule {
+    /// Names the first field out of its range.
+    pub fn check(&self) -> Result<(), AssignError> {
+        if !(1..=MAX_RAYS).contains(&self.rays) {
+            return Err(AssignError::Parameter {
+                field: "rays".into(),
+                value: self.rays.to_string(),
+                accepted: format!("1 to {MAX_RAYS}"),
+            });
+        }
+        if !(0.0..=FRAC_PI_2).contains(&self.cone_angle) {
+            return Err(AssignError::Parameter {
+                field: "cone_angle".into(),
+                value: self.cone_angle.to_string(),
+                accepted: format!("0 to {FRAC_PI_2} radians"),
+            });
+        }
+        Ok(())
+    }
+
+    /// Unit vector of a ray, +z being the primary direction.
+    pub fn ray(&self, ix: u32) -> Vec3 {
+        if ix == 0 {
+            return Vec3::Z;
+        }
+        let others = self.rays.saturating_sub(1).max(1);
+        let (sin, cos) = (TAU * (ix - 1) as f32 / others as f32).sin_cos();
+        let (radius, height) = self.cone_angle.sin_cos();
+        Vec3::new(radius * cos, radius * sin, height)
+    }
+}
+
+/// Points whose ranges are wanted, on the GPU.
+#[derive(Clone, Copy, Debug)]
+pub struct RangePoints<'a> {
+    /// `array<vec4f>`: world-space positions, metres; the fourth number is not read.
+    pub positions: &'a wgpu::Buffer,
+    /// `array<vec4f>`: unit normals.
+    pub normals: &'a wgpu::Buffer,
+    /// `array<vec4f>`: unit primary directions, for [`Primary::Given`].
+    pub primaries: Option<&'a wgpu::Buffer>,
+    /// Number of points.
+    pub count: u32,
+    /// `array<f32>`: where ranges go, metres.
+    pub ranges_m: &'a wgpu::Buffer,
+}
+
+/// What the kernel is told: `ranges.wesl`, `struct Ranges`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct RangesUniform {
+    /// Number of points.
+    pub point_count: u32,
+    /// Rays of a point.
+    pub ray_count: u32,
+    /// 1 for the longest ray, 0 for the mean.
+    pub is_maximum: u32,
+    /// Pads to a multiple of 16 bytes.
+    pub padding: u32,
+    /// Directions of the rays around +z.
+    pub rays: [[f32; 4]; MAX_RAYS as usize],
+}
+
+/// Estimates ranges.
+#[derive(Debug)]
+pub struct RangeCaster {
+    rule: RangeRule,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    uniform: wgpu::Buffer,
+    group: Option<wgpu::BindGroup>,
+    count: u32,
+}
+
+impl RangeCaster {
+    /// Makes the kernel for images of these settings; the rule is checked.
+    pub fn new(gpu: &Gpu, images: &DeepImages, rule: RangeRule) -> Result<Self, AssignError> {
+        rule.check()?;
+        let shader = Self::shader(images.settings(), rule);
+        let module = kernel::uncounted(gpu, &shader, "package::ranges")?;
+        let slots = [Slot::Uniform, Slot::Read, Slot::Read, Slot::Read, Slot::Write];
+        let layout = kernel::layout(gpu, "ranges", wgpu::ShaderStages::COMPUTE, &slots);
+        let layouts = [images.layout(), &layout];
+        Ok(Self {
+            pipeline: kernel::compute(gpu, &module, "estimate_ranges", &layouts),
+            layout,
+            uniform: gpu.uniform("ranges", size_of::<RangesUniform>() as u64),
+            group: None,
+            count: 0,
+            rule,
+        })
+    }
+
+    /// The kernel's modules: the root is `package::ranges`.
+    pub fn shader(settings: &DeepImageSettings, rule: RangeRule) -> Shader<'static> {
+        DeepImages::mount(settings, Shader::new(3), 0)
+            .module("package::ranges", include_str!("shaders/ranges.wesl"))
+            .flag("given_primary", rule.primary == Primary::Given)
+            .flag("a_ray_a_thread", rule.threads == Threads::Rays)
+    }
+
+    /// Binds the points of a frame.
+    pub fn prepare(&mut self, gpu: &Gpu, points: &RangePoints<'_>) -> Result<(), AssignError> {
+        let primaries = match (self.rule.primary, points.primaries) {
+            (Primary::Normal, _) => points.normals,
+            (Primary::Given, Some(primaries)) => primaries,
+            (Primary::Given, None) => {
+                return Err(AssignError::Parameter {
+                    field: "primaries".into(),
+                    value: "none".into(),
+                    accepted: "a buffer, where primary directions are given".into(),
+                });
+            }
+        };
+        let buffers = [
+            ("positions", points.positions, 16),
+            ("normals", points.normals, 16),
+            ("primaries", primaries, 16),
+            ("ranges_m", points.ranges_m, 4),
+        ];
+        for (field, buffer, bytes) in buffers {
+            let needed = u64::from(points.count) * bytes;
+            if buffer.size() < needed {
+                return Err(AssignError::Parameter {
+                    field: field.into(),
+                    value: format!("{} bytes", buffer.size()),
+                    accepted: format!("at least {needed} for {} points", points.count),
+                });
+            }
+        }
+        let mut uniform = RangesUniform {
+            point_count: points.count,
+            ray_count: self.rule.rays,
+            is_maximum: u32::from(self.rule.combine == Combine::Maximum),
+            ..RangesUniform::default()
+        };
+        for (ix, ray) in (0..self.rule.rays).zip(&mut uniform.rays) {
+            *ray = self.rule.ray(ix).extend(0.0).into();
+        }
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
+        let bound =
+            [&self.uniform, points.positions, points.normals, primaries, points.ranges_m];
+        self.group = Some(kernel::group(gpu, &self.layout, &bound));
+        self.count = points.count;
+        Ok(())
+    }
+
+    /// Records the pass `cdi-ranges`, after that of the images; nothing before
+    /// [`prepare`](Self::prepare). `images` must have the settings that the kernel was made for.
+    pub fn record(&self, images: &DeepImages, passes: &mut dyn Passes) {
+        let (Some(group), Some(rays)) = (&self.group, images.bind_group()) else { return };
+        let points_a_group = match self.rule.threads {
+            Threads::Points => 256,
+            Threads::Rays => 256 / self.rule.rays,
+        };
+        passes.compute("cdi-ranges", &mut |pass| {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, rays, &[]);
+            pass.set_bind_group(1, group, &[]);
+            pass.dispatch_workgroups(workgroups(u64::from(self.count), points_a_group), 1, 1);
+        });
+    }
+}

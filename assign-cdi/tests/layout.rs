@@ -1,0 +1,144 @@
+//! Every kernel, linked and validated without a GPU; and every struct shared by Rust and WESL.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use std::mem::offset_of;
+
+use assign::Shader;
+use assign_cdi::{
+    Build, Coverage, DeepImageCounters, DeepImageSettings, Directions, DispatchSizes,
+    ImagesUniform, ListRanges, ListSort, PrefixSum, Primary, ROOTS, RandomRanges, RandomUniform,
+    RangeCaster, RangeRule, RangesUniform, SortUniform, SortWork, Spread, StageUniform, Storage,
+    Threads, build_shader,
+};
+
+/// A root, linked and validated with what WebGPU has without any optional feature.
+fn validated(shader: &Shader<'_>, root: &str) -> naga::Module {
+    let source = shader.link(root).unwrap_or_else(|e| panic!("{root}: {e}"));
+    let module = naga::front::wgsl::parse_str(&source)
+        .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
+    // WebGPU's default limits.
+    for entry_point in &module.entry_points {
+        assert!(entry_point.workgroup_size.iter().product::<u32>() <= 256, "{root}");
+    }
+    let mut layouter = naga::proc::Layouter::default();
+    layouter.update(module.to_ctx()).unwrap();
+    let shared: u32 = module
+        .global_variables
+        .iter()
+        .filter(|(_, variable)| variable.space == naga::AddressSpace::WorkGroup)
+        .map(|(_, variable)| layouter[variable.ty].size)
+        .sum();
+    assert!(shared <= 16_384, "{root}: {shared} bytes of workgroup memory");
+    module
+}
+
+fn all_settings() -> Vec<DeepImageSettings> {
+    let mut all = Vec::new();
+    for spread in [Spread::StacksAndSlices, Spread::Squares] {
+        for storage in [Storage::Arrays, Storage::LinkedLists] {
+            for coverage in [Coverage::Centres, Coverage::Conservative] {
+                all.push(DeepImageSettings {
+                    directions: Directions::new(spread, 4, 8).unwrap(),
+                    build: Build::PerDirection { coverage, at_once: 1 },
+                    storage,
+                    ..Default::default()
+                });
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn kernels_validate() {
+    for settings in all_settings() {
+        for root in ROOTS {
+            validated(&build_shader(&settings), root);
+        }
+        for primary in [Primary::Normal, Primary::Given] {
+            for threads in [Threads::Points, Threads::Rays] {
+                let rule = RangeRule { primary, threads, ..RangeRule::default() };
+                validated(&RangeCaster::shader(&settings, rule), "package::ranges");
+            }
+        }
+    }
+    for ranges in [ListRanges::Pairs, ListRanges::PrefixOffsets] {
+        for flag_bits in [0, 2, 31] {
+            let shader = ListSort::shader(ranges, flag_bits).unwrap();
+            validated(&shader, "package::sort_short");
+            validated(&shader, "package::sort_long");
+        }
+    }
+    validated(&PrefixSum::shader(), "package::prefix_sum");
+    validated(&RandomRanges::shader(), "package::random_ranges");
+}
+
+/// Names and offsets of a WESL struct's fields, and its size.
+fn wesl(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    let of_type = |ty: &naga::Type| {
+        // The linker prefixes names with those of their modules.
+        let is_it = ty.name.as_deref().is_some_and(|known| known.ends_with(name));
+        match &ty.inner {
+            naga::TypeInner::Struct { members, span } if is_it => {
+                let field = |m: &naga::StructMember| (m.name.clone().unwrap(), m.offset as usize);
+                Some((members.iter().map(field).collect(), *span as usize))
+            }
+            _ => None,
+        }
+    };
+    let found = module.types.iter().find_map(|(_, ty)| of_type(ty));
+    found.unwrap_or_else(|| panic!("no struct {name}"))
+}
+
+/// Asserts that a Rust struct has the fields of a WESL one, at their offsets, and its size.
+macro_rules! assert_same {
+    ($module:expr, $wesl:literal, $name:ty: $($field:ident),+) => {
+        let (fields, size) = wesl(&$module, $wesl);
+        let rust = vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+];
+        assert_eq!(fields, rust, "fields of WESL, then of Rust: {}", $wesl);
+        assert_eq!(size, size_of::<$name>(), "{}", $wesl);
+    };
+}
+
+#[test]
+fn structs() {
+    let settings = DeepImageSettings::default();
+    let build = build_shader(&settings);
+    let samples = validated(&build, "package::from_samples");
+    assert_same!(samples, "Images", ImagesUniform: centre_world, radius_m, footprint_m, size_px,
+        direction_count, triangle_count, sample_capacity, fragment_capacity, cell_m, side_cells,
+        half_box_m);
+    assert_same!(samples, "Counting", DeepImageCounters: sample_count, fragment_count, large_count,
+        rejected_count, is_overflowed, longest);
+    assert_same!(samples, "Stage", StageUniform: first_direction, mode);
+    let plan = validated(&build, "package::plan");
+    assert_same!(plan, "Dispatches", DispatchSizes: samples, large);
+    let ranges = RangeCaster::shader(&settings, RangeRule::default());
+    let ranges = validated(&ranges, "package::ranges");
+    assert_same!(ranges, "Header", DeepImageCounters: sample_count, fragment_count, large_count,
+        rejected_count, is_overflowed, longest);
+    assert_same!(ranges, "Ranges", RangesUniform: point_count, ray_count, is_maximum, rays);
+    let random = validated(&RandomRanges::shader(), "package::random_ranges");
+    assert_same!(random, "Random", RandomUniform: point_count, seed, low_m, high_m);
+    let sort = ListSort::shader(ListRanges::PrefixOffsets, 0).unwrap();
+    let long = validated(&sort, "package::sort_long");
+    assert_same!(long, "Sort", SortUniform: first_list, list_count, first_entry, entry_count,
+        part_capacity, block_capacity);
+    assert_same!(long, "WorkHeader", SortWork: part_groups, part_count, block_groups, block_count,
+        longest);
+    assert_eq!(offset_of!(SortWork, longest) as u64, ListSort::LONGEST_AT);
+}
+
+/// Frames are written as three columns of 16 bytes.
+#[test]
+fn direction_frames() {
+    let module = validated(&build_shader(&DeepImageSettings::default()), "package::from_samples");
+    assert_eq!(wesl(&module, "DirectionFrame"), (vec![("axes".to_owned(), 0)], 48));
+}

@@ -1,0 +1,165 @@
+//! Rays through deep images against exact ones: how far off their lengths are.
+
+use assign::{EncoderPasses, Gpu, Light, LightShape};
+use assign_cdi::{
+    DeepImages, Primary, RangeCaster, RangePoints, RangeRule,
+};
+use glam::{DVec3, Quat, Vec3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+use shading::traced::TracedScene;
+
+use crate::{error::HarnessError, results::RangeErrors};
+
+/// Steps between two quantiles that are stored: every 20th of the rays.
+const QUANTILES: usize = 20;
+
+/// How far exact rays start off their surface, as a share of a footprint.
+const OFFSET: f64 = 1e-4;
+
+/// A point of a surface that the primary light reaches.
+#[derive(Clone, Copy, Debug)]
+struct LitPoint {
+    position: Vec3,
+    /// On the side of the light.
+    normal: Vec3,
+}
+
+/// Points of surfaces that a spot reaches, drawn evenly over its cone. Fewer than `count` where most
+/// of the cone meets nothing.
+fn lit_points(scene: &TracedScene<'_>, light: &Light, count: usize, seed: u64) -> Vec<LitPoint> {
+    let LightShape::Spot { direction, outer_angle, .. } = light.shape else { return Vec::new() };
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let turn = Quat::from_rotation_arc(Vec3::Z, direction.normalize());
+    let mut drawn = || {
+        let cos = 1.0 - rng.random::<f32>() * (1.0 - outer_angle.cos());
+        let (sin, cos_turn) = (std::f32::consts::TAU * rng.random::<f32>()).sin_cos();
+        let radius = (1.0 - cos * cos).max(0.0).sqrt();
+        turn * Vec3::new(radius * cos_turn, radius * sin, cos)
+    };
+    // Eight times as many directions as points: a sun's cone is wider than its scene.
+    let directions: Vec<Vec3> = (0..8 * count).map(|_| drawn()).collect();
+    let origin = light.position.as_dvec3();
+    let met = |direction: &Vec3| {
+        let direction = direction.as_dvec3().normalize();
+        let (distance, normal) = scene.surface(origin, direction)?;
+        let position = (origin + direction * distance).as_vec3();
+        Some(LitPoint { position, normal: normal.as_vec3().normalize() })
+    };
+    let all: Vec<LitPoint> = directions.par_iter().filter_map(met).collect();
+    all.into_iter().take(count).collect()
+}
+
+/// Casts rays of `rule` from points that `light` reaches, about `rays` in all, through deep images that
+/// are built, and exactly.
+pub fn range_errors(
+    gpu: &Gpu,
+    images: &DeepImages,
+    scene: &TracedScene<'_>,
+    light: &Light,
+    rule: RangeRule,
+    (rays, seed): (u32, u64),
+) -> Result<RangeErrors, HarnessError> {
+    let points = lit_points(scene, light, rays.div_ceil(rule.rays) as usize, seed);
+    let footprint_m = f64::from(images.space().footprint_m);
+    // Each ray by itself: a point and a primary direction a ray.
+    let single = RangeRule { rays: 1, primary: Primary::Given, ..rule };
+    let all: Vec<(LitPoint, Vec3)> = points
+        .iter()
+        .flat_map(|point| (0..rule.rays).map(|ray| (*point, turned(rule.ray(ray), point.normal))))
+        .collect();
+    let found = lengths(gpu, images, single, &all)?;
+    let exact: Vec<Option<f64>> = all
+        .par_iter()
+        .map(|(point, direction)| {
+            let normal = point.normal.as_dvec3();
+            let origin = point.position.as_dvec3() + normal * (OFFSET * footprint_m);
+            scene.distance_m(origin, direction.as_dvec3().normalize())
+        })
+        .collect();
+    let mut errors = Vec::new();
+    let mut result = RangeErrors {
+        rays: all.len() as u64,
+        histogram: vec![0; RangeErrors::BINS.len() + 1],
+        ..RangeErrors::default()
+    };
+    for (found, exact) in found.iter().zip(&exact) {
+        let (Some(found), Some(exact)) = (found, exact) else {
+            result.agree += u64::from(found.is_none() && exact.is_none());
+            result.lost += u64::from(found.is_none() && exact.is_some());
+            result.invented += u64::from(found.is_some() && exact.is_none());
+            continue;
+        };
+        result.agree += 1;
+        let error = (found - exact) / footprint_m;
+        result.too_near += u64::from(error < -1.0);
+        result.too_far += u64::from(error > 1.0);
+        let bin = RangeErrors::BINS.iter().position(|high| error.abs() < *high);
+        result.histogram[bin.unwrap_or(RangeErrors::BINS.len())] += 1;
+        errors.push(error.abs());
+    }
+    errors.sort_by(f64::total_cmp);
+    if let Some(last) = errors.len().checked_sub(1) {
+        let at = |step: usize| errors[step * last / QUANTILES];
+        result.error_quantiles = (0..=QUANTILES).map(at).collect();
+    }
+    let rays = rule.rays as usize;
+    let mut ranges: Vec<f64> = found
+        .chunks(rays)
+        .zip(exact.chunks(rays))
+        .filter_map(|(found, exact)| Some((mean(found)? - mean(exact)?).abs() / footprint_m))
+        .collect();
+    ranges.sort_by(f64::total_cmp);
+    result.median_range_error = ranges.get(ranges.len() / 2).copied().unwrap_or(f64::NAN);
+    Ok(result)
+}
+
+/// The mean of the rays that met something.
+fn mean(lengths: &[Option<f64>]) -> Option<f64> {
+    let met: Vec<f64> = lengths.iter().copied().flatten().collect();
+    (!met.is_empty()).then(|| met.iter().sum::<f64>() / met.len() as f64)
+}
+
+/// A direction around +z turned to a normal, as the kernel turns it.
+fn turned(local: Vec3, normal: Vec3) -> Vec3 {
+    let (right, up) = normal.any_orthonormal_pair();
+    right * local.x + up * local.y + normal * local.z
+}
+
+/// Lengths of rays through deep images, metres.
+fn lengths(
+    gpu: &Gpu,
+    images: &DeepImages,
+    rule: RangeRule,
+    rays: &[(LitPoint, Vec3)],
+) -> Result<Vec<Option<f64>>, HarnessError> {
+    if rays.is_empty() {
+        return Ok(Vec::new());
+    }
+    let upload = |label: &str, of: &dyn Fn(&(LitPoint, Vec3)) -> Vec3| {
+        let data: Vec<[f32; 4]> = rays.iter().map(|ray| of(ray).extend(0.0).to_array()).collect();
+        let buffer = gpu.storage(label, data.len() as u64 * 16)?;
+        gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&data));
+        Ok::<_, HarnessError>(buffer)
+    };
+    let ranges_m = gpu.storage("lengths of rays", rays.len() as u64 * 4)?;
+    let mut caster = RangeCaster::new(gpu, images, rule)?;
+    caster.prepare(
+        gpu,
+        &RangePoints {
+            positions: &upload("points of rays", &|(point, _)| point.position)?,
+            normals: &upload("normals of rays", &|(point, _)| point.normal)?,
+            primaries: Some(&upload("directions of rays", &|(_, direction)| *direction)?),
+            count: rays.len() as u32,
+            ranges_m: &ranges_m,
+        },
+    )?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    caster.record(images, &mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = gpu.read(&ranges_m, rays.len() as u64 * 4)?;
+    let lengths: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
+    let finite = |length: f32| (length < f32::MAX).then_some(f64::from(length));
+    Ok(lengths.into_iter().map(finite).collect())
+}
