@@ -40,8 +40,6 @@ mod rsm;
 mod shaders;
 mod targets;
 pub mod traced;
-mod rsm;
-mod world_triangles;
 mod truth;
 mod world_triangles;
 
@@ -60,7 +58,5 @@ pub use renderer::{Mode, Renderer, record_before_lighting};
 pub use rsm::{MAX_RSM_ANGLE, rsm_view};
 pub use shaders::lighting_shader;
 pub use targets::Targets;
-pub use rsm::{MAX_RSM_ANGLE, rsm_view};
-pub use world_triangles::WorldTriangles;
 pub use truth::{EDGE, LightBvh, ListsTruth};
 pub use world_triangles::WorldTriangles;
