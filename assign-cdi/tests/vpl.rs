@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 use assign::{Light, LightShape, Projection};
 use assign_cdi::{VplBuffer, VplSettings};
 use bytemuck::pod_collect_to_vec;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3};
 use vpl_map::{HALF_WALL_M, Hit, Map, WHITE, room, spot};
 
 fn total(lights: &[Light]) -> DVec3 {
