@@ -17,8 +17,8 @@ const FARTHEST_SUN_M: f32 = 1e7;
 const ELEVATION_DEG: f32 = 60.0;
 
 /// Angle between the sun's azimuth and the scene's longer side, degrees: the floor of a long court
-/// is lit, and one of its long walls.
-const AZIMUTH_DEG: f32 = 30.0;
+/// is lit even where it is as narrow as Sponza's, and one of its long walls.
+const AZIMUTH_DEG: f32 = 20.0;
 
 /// Irradiance of a wall that faces the sun: a white one's radiance is 1.
 const SUN_IRRADIANCE: f32 = PI;

@@ -5,8 +5,8 @@ use bytemuck::cast_slice;
 use glam::Vec3;
 use scenes::Scene;
 
-/// Triangles uploaded at once: 18 MiB.
-const CHUNK: usize = 1 << 19;
+/// Triangles uploaded at once: 1.1 MiB.
+const CHUNK: usize = 1 << 15;
 
 /// Every triangle drawn, on the GPU, as what casts rays or voxelises wants them.
 #[derive(Debug)]

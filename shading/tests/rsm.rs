@@ -4,10 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
-use assign::{EncoderPasses, Gpu, LightBuffer, View};
-use glam::Vec3;
-use scenes::{TownSize, primary_light, town};
-use shading::{HdrImage, Renderer, WorldTriangles, rsm_view};
+use assign::{EncoderPasses, Gpu, Light, LightBuffer, Projection, View};
+use assign_cdi::{Rsm, VplBuffer, VplSettings};
+use glam::{DVec3, Vec3};
+use scenes::{Scene, TownSize, atrium, primary_light, town};
+use shading::{HdrImage, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
 
 /// The control: geometry and normals, without lights.
 fn clay(gpu: &Gpu, renderer: &mut Renderer, view: &View, lights: &LightBuffer) -> HdrImage {
@@ -56,4 +57,73 @@ fn world_triangles_are_the_scenes() {
     assert!(low.abs_diff_eq(scene.bounds.min, 1.0) && high.abs_diff_eq(scene.bounds.max, 1.0));
     let inside = |p: &Vec3| p.cmpge(low).all() && p.cmple(high).all();
     assert!(positions.iter().flatten().all(inside));
+}
+
+/// VPLs of a scene's own map: nearly all lie where a ray from the light meets the scene, and together
+/// they reflect the light that rays say.
+#[test]
+fn vpls_lie_on_the_scene_and_reflect_its_light() {
+    let gpu = common::gpu();
+    for scene in [atrium(1), town(1, TownSize::Small)] {
+        let light = primary_light(&scene);
+        let view = rsm_view(&light, 128, (scene.bounds.min, scene.bounds.max)).unwrap();
+        let vpls = vpls(&gpu, &scene, &light, &view);
+        let traced = TracedScene::new(&scene);
+        let tolerance_m = f64::from(1e-4 * scene.bounds.diagonal());
+        let near = vpls.iter().filter(|vpl| {
+            let to = (vpl.position - light.position).as_dvec3();
+            let met = traced.distance_m(light.position.as_dvec3(), to.normalize());
+            met.is_some_and(|distance_m| (distance_m - to.length()).abs() < tolerance_m)
+        });
+        let near = near.count();
+        assert!(near * 100 > vpls.len() * 97, "{}: {near} of {}", scene.name, vpls.len());
+        let sum: DVec3 = vpls.iter().map(|vpl| vpl.intensity.as_dvec3()).sum();
+        let off = sum / reflected(&traced, &light, &view) - DVec3::ONE;
+        assert!(off.abs().max_element() < 0.01, "{}: {off}", scene.name);
+    }
+}
+
+/// The VPLs of every texel.
+fn vpls(gpu: &Gpu, scene: &Scene, light: &Light, view: &View) -> Vec<Light> {
+    let lights = LightBuffer::new(gpu, &[]).unwrap();
+    let mut renderer = Renderer::new(gpu, scene, view).unwrap();
+    renderer.prepare(view, &lights).unwrap();
+    let mut buffer = VplBuffer::new(gpu, VplSettings::default()).unwrap();
+    let targets = renderer.targets();
+    let rsm = Rsm {
+        depth: &targets.depth,
+        normals: &targets.normal,
+        base_color: &targets.base_color,
+        view,
+        light,
+    };
+    buffer.prepare(gpu, &rsm).unwrap();
+    let ranges = vec![1.0_f32; buffer.capacity() as usize];
+    gpu.queue.write_buffer(buffer.ranges_m(), 0, bytemuck::cast_slice(&ranges));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut passes = EncoderPasses { encoder: &mut encoder };
+    renderer.record_depth(view, &mut passes);
+    renderer.record_gbuffer(view, &mut passes);
+    buffer.record_choose(&mut passes);
+    buffer.record_keep(&mut passes);
+    gpu.queue.submit([encoder.finish()]);
+    buffer.read(gpu).unwrap()
+}
+
+/// Sum of the intensities that the texels reflect, by rays.
+fn reflected(scene: &TracedScene<'_>, light: &Light, view: &View) -> DVec3 {
+    let Projection::Perspective { min, max } = view.projection else { panic!("perspective") };
+    let size = view.viewport.width;
+    let texel = (max - min).as_dvec2() / f64::from(size);
+    let sum = (0..size * size).filter_map(|ix| {
+        let pixel = [ix % size, ix / size];
+        let surface = scene.primary(view, pixel)?;
+        let across = min.x as f64 + (f64::from(pixel[0]) + 0.5) * texel.x;
+        let down = max.y as f64 - (f64::from(pixel[1]) + 0.5) * texel.y;
+        let solid_angle = texel.element_product() / (1.0 + across * across + down * down).powf(1.5);
+        let albedo = surface.surface.base_color * (1.0 - surface.surface.metallic);
+        Some(albedo * solid_angle)
+    });
+    // The cone's full intensity holds the scene, and the window dims nothing.
+    sum.sum::<DVec3>() * light.intensity.as_dvec3() / std::f64::consts::PI
 }

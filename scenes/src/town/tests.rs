@@ -96,11 +96,24 @@ fn the_camera_keeps_clear_and_sees_no_back_faces() {
     assert!(backs * 40 < rays, "{backs} of {rays}");
 }
 
+/// The first frame's picture is full of what is up to 120 m away, not of sky or a near wall.
 #[test]
 fn the_first_frame_looks_down_a_street() {
-    let scene = town(1, SMALL);
-    let pose = scene.path.pose(0, 1200);
-    let bvh = TriangleBvh::new(&scene, scene.bounds);
-    let hit = bvh.cast(pose.eye, pose.forward(), 300.0).expect("the street rises");
-    assert!(hit.distance_m > 20.0, "{} m", hit.distance_m);
+    for size in [SMALL, TownSize::Full] {
+        let scene = town(1, size);
+        let pose = scene.path.pose(0, 1200);
+        let bvh = TriangleBvh::new(&scene, scene.bounds);
+        let hit = bvh.cast(pose.eye, pose.forward(), 300.0).expect("the street rises");
+        assert!(hit.distance_m > 20.0, "{size:?}: {} m", hit.distance_m);
+        let to_world = pose.world_to_view().inverse();
+        let seen = (0..20 * 12).filter(|ix| {
+            let share = Vec3::new((ix % 20) as f32 / 19.0, (ix / 20) as f32 / 11.0, 0.0);
+            // 60 degrees high, 16 to 9.
+            let ray = Vec3::new(2.05 * share.x - 1.025, 1.154 * share.y - 0.577, -1.0).normalize();
+            let hit = bvh.cast(pose.eye, to_world.transform_vector3(ray), 120.0);
+            hit.is_some_and(|hit| hit.distance_m > 3.0)
+        });
+        let seen = seen.count();
+        assert!(seen * 4 > 20 * 12 * 3, "{size:?}: {seen} of 240 rays");
+    }
 }

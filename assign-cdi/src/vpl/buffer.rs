@@ -1,0 +1,240 @@
+//! The buffer of VPLs, from the map to lights.
+
+use assign::{AssignError, Gpu, Light, LightEmission, LightShape, LightSphere, Passes, Readback};
+use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
+use glam::Vec3;
+
+use super::{
+    choose::{Choose, Chosen},
+    keep::{Keep, Kept},
+    rsm::Rsm,
+    settings::VplSettings,
+};
+
+/// How many VPLs there were at each stage: `vpl_keep.wesl`, `struct Counts`. 16 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct VplCounts {
+    /// Chosen from the map, whether there was room for them or not.
+    pub chosen: u32,
+    /// Lights that were kept.
+    pub kept: u32,
+    /// Dropped for too small a range.
+    pub too_small: u32,
+    /// Dropped, or clamped, for too large or an unknown range.
+    pub too_large: u32,
+}
+
+/// VPLs on the GPU: chosen from a reflective shadow map, given ranges by the caller, kept as lights.
+#[derive(Debug)]
+pub struct VplBuffer {
+    settings: VplSettings,
+    choose: Choose,
+    keep: Keep,
+    chosen: Chosen,
+    ranges_m: wgpu::Buffer,
+    kept: Kept,
+    counts: wgpu::Buffer,
+    readback: Readback<VplCounts>,
+    capacity: u32,
+}
+
+impl VplBuffer {
+    /// Makes the kernels, and buffers without room.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] where a setting is out of its range; what the device refuses.
+    pub fn new(gpu: &Gpu, settings: VplSettings) -> Result<Self, AssignError> {
+        settings.check()?;
+        Ok(Self {
+            settings,
+            choose: Choose::new(gpu)?,
+            keep: Keep::new(gpu)?,
+            chosen: Chosen::new(gpu, 0)?,
+            ranges_m: gpu.storage("VPL ranges", 0)?,
+            kept: Kept::new(gpu, 0)?,
+            counts: gpu.storage("VPL counts", size_of::<VplCounts>() as u64)?,
+            readback: Readback::new(gpu, "VPL counts"),
+            capacity: 0,
+        })
+    }
+
+    /// Changes the settings, from the next [`prepare`](Self::prepare) on.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] where one is out of its range; the old ones stay.
+    pub fn set_settings(&mut self, settings: VplSettings) -> Result<(), AssignError> {
+        settings.check()?;
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &VplSettings {
+        &self.settings
+    }
+
+    /// Sizes buffers and binds the map: outside the clock, before each frame's passes. Buffers may be
+    /// made anew, so those who bind them must do so after it.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] where the map's light is no spot, its view not perspective, its
+    /// size above [`MAX_RSM_SIDE`](crate::MAX_RSM_SIDE) or its textures too small for the viewport;
+    /// [`AssignError::View`], [`AssignError::TooLarge`], [`AssignError::OutOfMemory`].
+    pub fn prepare(&mut self, gpu: &Gpu, rsm: &Rsm<'_>) -> Result<(), AssignError> {
+        self.readback.poll(gpu);
+        let mut uniform = rsm.uniform()?;
+        let texels = uniform.size[0] * uniform.size[1];
+        let capacity = self.settings.limit.unwrap_or(texels).min(texels);
+        uniform.capacity = capacity;
+        uniform.spacing_m = self.settings.spacing_m;
+        if capacity != self.capacity {
+            let chosen = Chosen::new(gpu, capacity)?;
+            let ranges_m = gpu.storage("VPL ranges", u64::from(capacity) * 4)?;
+            let kept = Kept::new(gpu, capacity)?;
+            (self.chosen, self.ranges_m, self.kept) = (chosen, ranges_m, kept);
+            self.capacity = capacity;
+        }
+        self.choose.prepare(gpu, rsm, uniform, &self.chosen)?;
+        let found = (&self.chosen, &self.ranges_m, &self.counts);
+        self.keep.prepare(gpu, &self.settings, capacity, found, &self.kept)
+    }
+
+    /// Records `rsm-mips` and `vpl-choose`: positions, normals and intensities.
+    pub fn record_choose(&self, passes: &mut dyn Passes) {
+        self.choose.record(passes, &self.counts);
+    }
+
+    /// Records `vpl-keep`, after what fills the ranges: the lights.
+    pub fn record_keep(&mut self, passes: &mut dyn Passes) {
+        self.keep.record(passes, &self.counts);
+        self.readback.record(passes.encoder(), &self.counts);
+    }
+
+    /// VPLs that there is room for: the length of every array.
+    pub fn capacity(&self) -> u32 {
+        self.capacity
+    }
+
+    /// `array<vec4f>`: world-space positions on surfaces, and the side of the square on the surface
+    /// that each stands for, metres. The first [`VplCounts::chosen`] are in use.
+    pub fn positions(&self) -> &wgpu::Buffer {
+        &self.chosen.positions
+    }
+
+    /// `array<vec4f>`: unit normals on the light's side; zero behind the last in use.
+    pub fn normals(&self) -> &wgpu::Buffer {
+        &self.chosen.normals
+    }
+
+    /// `array<vec4f>`: radiant intensities along the normals, linear RGB.
+    pub fn intensities(&self) -> &wgpu::Buffer {
+        &self.chosen.intensities
+    }
+
+    /// `array<f32>`: for the caller to fill with distances to surfaces, metres; [`f32::MAX`] is an
+    /// unknown one.
+    pub fn ranges_m(&self) -> &wgpu::Buffer {
+        &self.ranges_m
+    }
+
+    /// `array<LightSphere>` of the lights kept; the first [`VplCounts::kept`] are in use.
+    pub fn spheres(&self) -> &wgpu::Buffer {
+        &self.kept.spheres
+    }
+
+    /// `array<LightEmission>` of the lights kept.
+    pub fn emissions(&self) -> &wgpu::Buffer {
+        &self.kept.emissions
+    }
+
+    /// `array<vec4f>`, two a light: what the emissions' indices name.
+    pub fn shapes(&self) -> &wgpu::Buffer {
+        &self.kept.shapes
+    }
+
+    /// [`VplCounts`] on the GPU.
+    pub fn counts(&self) -> &wgpu::Buffer {
+        &self.counts
+    }
+
+    /// The counts of a frame or more ago, without waiting; `None` before they arrive.
+    pub fn latest_counts(&self) -> Option<VplCounts> {
+        self.readback.latest()
+    }
+
+    /// The counts of what was last submitted, blocking.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Device`], [`AssignError::OutOfMemory`]; [`AssignError::Parameter`] where more
+    /// VPLs were chosen than [`VplSettings::limit`] has room for.
+    pub fn read_counts(&self, gpu: &Gpu) -> Result<VplCounts, AssignError> {
+        let bytes = gpu.read(&self.counts, size_of::<VplCounts>() as u64)?;
+        let counts: VplCounts = bytemuck::pod_read_unaligned(&bytes);
+        if counts.chosen > self.capacity {
+            return Err(AssignError::Parameter {
+                field: "limit of VPLs".into(),
+                value: self.capacity.to_string(),
+                accepted: format!("at least {}, the VPLs chosen", counts.chosen),
+            });
+        }
+        Ok(counts)
+    }
+
+    /// The lights kept, in their order, blocking.
+    ///
+    /// # Errors
+    ///
+    /// As [`read_counts`](Self::read_counts).
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<Light>, AssignError> {
+        let kept = u64::from(self.read_counts(gpu)?.kept);
+        let spheres: Vec<LightSphere> = pod_collect_to_vec(&gpu.read(self.spheres(), kept * 16)?);
+        let emissions: Vec<LightEmission> =
+            pod_collect_to_vec(&gpu.read(self.emissions(), kept * 16)?);
+        let shapes: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(self.shapes(), kept * 32)?);
+        let light = |((sphere, emission), [first, second]): (
+            (LightSphere, LightEmission),
+            [[f32; 4]; 2],
+        )| Light {
+            position: sphere.position_world.into(),
+            range_m: sphere.radius_m,
+            intensity: emission.intensity.into(),
+            shape: LightShape::Vpl {
+                normal: Vec3::from_slice(&first[..3]),
+                min_distance_m: second[2].sqrt(),
+            },
+        };
+        Ok(spheres.into_iter().zip(emissions).zip(shapes).map(light).collect())
+    }
+
+    /// Bytes of its buffers on the GPU.
+    pub fn bytes(&self) -> u64 {
+        let own = [
+            &self.chosen.positions,
+            &self.chosen.normals,
+            &self.chosen.intensities,
+            &self.ranges_m,
+            &self.kept.spheres,
+            &self.kept.emissions,
+            &self.kept.shapes,
+            &self.counts,
+        ];
+        let own: u64 = own.map(wgpu::Buffer::size).iter().sum();
+        own + self.choose.bytes() + self.keep.bytes()
+    }
+}
+
+impl Chosen {
+    fn new(gpu: &Gpu, capacity: u32) -> Result<Self, AssignError> {
+        let array = |label| gpu.storage(label, u64::from(capacity) * 16);
+        Ok(Self {
+            positions: array("VPL positions")?,
+            normals: array("VPL normals")?,
+            intensities: array("VPL intensities")?,
+        })
+    }
+}

@@ -1,0 +1,205 @@
+//! VPLs chosen from maps that are filled by hand: light is conserved, order is fixed.
+
+#![allow(dead_code, reason = "the module of maps serves several tests")]
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+mod vpl_map;
+
+use std::f32::consts::PI;
+
+use assign::{Light, LightShape, Projection};
+use assign_cdi::{VplBuffer, VplSettings};
+use bytemuck::pod_collect_to_vec;
+use glam::{DVec3, Vec3};
+use vpl_map::{HALF_WALL_M, Hit, Map, WHITE, room, spot};
+
+fn total(lights: &[Light]) -> DVec3 {
+    lights.iter().map(|light| light.intensity.as_dvec3()).sum()
+}
+
+/// The room's surfaces: which coordinate has which value, and the diffuse albedo.
+const SURFACES: [(usize, f32, Vec3); 5] = [
+    (1, 0.0, Vec3::new(0.8, 0.7, 0.6)),
+    (0, -HALF_WALL_M, Vec3::new(0.9, 0.1, 0.1)),
+    (0, HALF_WALL_M, Vec3::new(0.05, 0.45, 0.05)),
+    (2, -HALF_WALL_M, Vec3::new(0.5, 0.5, 0.9)),
+    (2, HALF_WALL_M, Vec3::ZERO),
+];
+
+/// Off the room's surfaces, metres.
+fn off_surface(p: Vec3) -> f32 {
+    let off = |(axis, at, _): (usize, f32, Vec3)| (p[axis] - at).abs();
+    SURFACES.map(off).into_iter().fold(f32::INFINITY, f32::min)
+}
+
+/// Of the surface nearest to a point.
+fn albedo(p: Vec3) -> Vec3 {
+    let off = |(axis, at, _): &(usize, f32, Vec3)| (p[*axis] - at).abs();
+    SURFACES.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap().2
+}
+
+/// Area of a texel on the plane of view depth 1, square metres.
+fn texel_area(map: &Map, size: [u32; 2]) -> f32 {
+    let Projection::Perspective { min, max } = map.view.projection else { panic!("perspective") };
+    (max - min).element_product() / (size[0] * size[1]) as f32
+}
+
+/// Intensity that a texel of the room reflects whose surface is at `position`.
+fn reflected(map: &Map, size: [u32; 2], position: Vec3) -> Vec3 {
+    let LightShape::Spot { outer_angle, .. } = map.light.shape else { panic!("a spot") };
+    let to = position - map.light.position;
+    let cos = -to.y / to.length();
+    let ramp = (cos - outer_angle.cos()) / (1.0 - outer_angle.cos());
+    let solid_angle = texel_area(map, size) * cos.powi(3);
+    map.light.intensity * albedo(position) * (ramp * ramp * solid_angle / PI)
+}
+
+#[test]
+fn the_brightest_texel_stands_for_its_block() {
+    let light = spot(0.9);
+    let size = [13, 9];
+    for lucky in (0..size[0] * size[1]).step_by(11) {
+        let texel = std::cell::Cell::new(0);
+        let map = Map::new(size, light, |ray| {
+            let bright = texel.replace(texel.get() + 1) == lucky;
+            let color = Vec3::splat(if bright { 1.0 } else { 1e-6 }).extend(0.0);
+            // A slope, so that depths differ.
+            Some((light.position.y / (0.2 * ray.x - ray.y), Vec3::new(-0.2, 1.0, 0.0), color))
+        });
+        let all = map.lights(VplSettings::default());
+        let brightest = all.iter().max_by(|a, b| a.intensity.x.total_cmp(&b.intensity.x)).unwrap();
+        // In the corners, outside the cone, none is bright.
+        if brightest.intensity.x < 1e-3 * light.intensity.x / (size[0] * size[1]) as f32 {
+            continue;
+        }
+        let one = map.lights(VplSettings { spacing_m: 1e3, ..VplSettings::default() });
+        assert_eq!(one.len(), 1);
+        assert_eq!(
+            (one[0].position, one[0].shape),
+            (brightest.position, brightest.shape),
+            "{lucky}"
+        );
+    }
+}
+
+#[test]
+fn choice_conserves_light_and_stays_on_surfaces() {
+    for size in [[64, 64], [50, 37]] {
+        let light = spot(1.2);
+        let map = Map::new(size, light, room(&light));
+        let all = map.lights(VplSettings::default());
+        for vpl in &all {
+            let expected = reflected(&map, size, vpl.position);
+            let off = (vpl.intensity - expected).abs().max_element();
+            assert!(off < 2e-3 * expected.max_element() + 1e-9, "{vpl:?}, not {expected}");
+        }
+        let (mut last, texels) = (all.len(), (size[0] * size[1]) as usize);
+        // The black wall and what lies outside the cone reflect nothing.
+        assert!(last > texels / 2 && last < texels * 4 / 5, "{last} of {texels}");
+        for spacing_m in [0.5, 1.0, 2.0, 1e3] {
+            let lights = map.lights(VplSettings { spacing_m, ..VplSettings::default() });
+            let off = (total(&lights) / total(&all) - DVec3::ONE).abs().max_element();
+            assert!(off < 1e-4, "{spacing_m}: {off}");
+            assert!(lights.len() < last, "{spacing_m}: {} of {last}", lights.len());
+            last = lights.len();
+            for light in &lights {
+                let LightShape::Vpl { normal, .. } = light.shape else { panic!("not a VPL") };
+                let off = off_surface(light.position);
+                assert!(off < 1e-3, "{spacing_m}: {off} m at {}", light.position);
+                let faces = normal.dot(map.light.position - light.position);
+                assert!(faces > 0.0 && (normal.length() - 1.0).abs() < 1e-5, "{normal}");
+                assert_eq!(light.check(), Ok(()));
+            }
+        }
+        assert_eq!(last, 1);
+    }
+}
+
+/// Blocks are no wider than asked, and as wide as they may be: near the light fewer texels suffice.
+#[test]
+fn spacing_is_even_where_texels_allow_it() {
+    let light = spot(0.9);
+    let map = Map::new([128, 128], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
+    let widths = |spacing_m| -> Vec<[f32; 4]> {
+        let settings = VplSettings { spacing_m, ..VplSettings::default() };
+        let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
+        map.run(&mut buffer, |_| 1.0);
+        let count = u64::from(buffer.read_counts(&map.gpu).unwrap().chosen);
+        pod_collect_to_vec(&map.gpu.read(buffer.positions(), count * 16).unwrap())
+    };
+    for [x, y, z, width] in widths(0.0) {
+        let to = Vec3::new(x, y, z) - light.position;
+        let area = texel_area(&map, [128, 128]) * to.length() * light.position.y;
+        assert!((width * width / area - 1.0).abs() < 1e-3, "{width}, not {}", area.sqrt());
+    }
+    let spacing_m = 0.3;
+    let widths: Vec<f32> = widths(spacing_m).iter().map(|position| position[3]).collect();
+    let count = widths.len();
+    assert!(widths.iter().all(|w| *w > 0.0 && *w <= spacing_m), "{widths:?}");
+    // Twice as wide would be too wide for the widest texel of most blocks.
+    let wide = widths.iter().filter(|w| **w > 0.4 * spacing_m).count();
+    assert!(wide * 10 > count * 9, "{wide} of {count}");
+    assert!((300..1500).contains(&count), "{count}");
+}
+
+/// A spot of intensity I and half angle a over a white plane: the plane reflects I times the integral
+/// of the cone's ramp over solid angle. With the ramp ((cos t - cos a) / (1 - cos a))^2 that is
+/// 2 pi (1 - cos a) / 3.
+#[test]
+fn reflected_flux_is_the_spots() {
+    for outer_angle in [0.3, 1.0] {
+        let light = spot(outer_angle);
+        let plane = |ray: Vec3| Some((light.position.y / -ray.y, Vec3::Y, WHITE));
+        // A sphere around the light: the same light whatever the distance and the slope.
+        let sphere = |ray: Vec3| Some((1.5 / ray.length(), -ray.normalize(), WHITE));
+        let hits: [&dyn Fn(Vec3) -> Option<Hit>; 2] = [&plane, &sphere];
+        for hit in hits {
+            let map = Map::new([128, 128], light, hit);
+            // A Lambertian emitter of intensity I along its normal emits pi I.
+            let flux = f64::from(PI) * total(&map.lights(VplSettings::default()));
+            let share = 2.0 * std::f64::consts::PI * (1.0 - f64::from(outer_angle).cos()) / 3.0;
+            let off = flux / (light.intensity.as_dvec3() * share) - DVec3::ONE;
+            assert!(off.abs().max_element() < 0.01, "{outer_angle}: {off}");
+        }
+    }
+}
+
+#[test]
+fn order_is_fixed_and_neighbours_are_near() {
+    let light = spot(1.2);
+    let map = Map::new([64, 64], light, room(&light));
+    let settings = VplSettings { spacing_m: 0.2, ..VplSettings::default() };
+    let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
+    map.run(&mut buffer, |_| 1.0);
+    let first = buffer.read(&map.gpu).unwrap();
+    map.run(&mut buffer, |_| 1.0);
+    assert!(first == buffer.read(&map.gpu).unwrap());
+    // Sixteen texels of a row are some 2.5 m long.
+    let spread = |run: &[Light]| {
+        let ends = run.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), light| {
+            (low.min(light.position), high.max(light.position))
+        });
+        ends.0.distance(ends.1)
+    };
+    let runs: Vec<f32> = first.chunks(16).map(spread).collect();
+    let mean = runs.iter().sum::<f32>() / runs.len() as f32;
+    assert!(mean < 1.6, "{mean} m");
+    let reversed: Vec<Light> = first.iter().rev().copied().collect();
+    assert!(first != reversed);
+}
+
+#[test]
+fn normals_behind_the_last_are_zero() {
+    let light = spot(0.9);
+    let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
+    let mut buffer = VplBuffer::new(&map.gpu, VplSettings::default()).unwrap();
+    for spacing_m in [0.0, 0.8] {
+        buffer.set_settings(VplSettings { spacing_m, ..VplSettings::default() }).unwrap();
+        map.run(&mut buffer, |_| 1.0);
+        let count = buffer.read_counts(&map.gpu).unwrap().chosen as usize;
+        let bytes = map.gpu.read(buffer.normals(), u64::from(buffer.capacity()) * 16).unwrap();
+        let normals: Vec<[f32; 4]> = pod_collect_to_vec(&bytes);
+        let used = normals.iter().take_while(|normal| **normal == [0.0, 1.0, 0.0, 0.0]).count();
+        assert_eq!(used, count, "{spacing_m}");
+        assert!(count < normals.len() && normals[count..].iter().all(|normal| *normal == [0.0; 4]));
+    }
+}

@@ -1,0 +1,114 @@
+//! VPLs kept as lights: what drops out is counted, and what cannot be is refused.
+
+#![allow(dead_code, reason = "the module of maps serves several tests")]
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+mod vpl_map;
+
+use assign::{Light, LightShape, Projection};
+use assign_cdi::{Large, Rsm, VplBuffer, VplCounts, VplSettings};
+use bytemuck::pod_collect_to_vec;
+use glam::{Vec2, Vec3};
+use vpl_map::{Map, WHITE, room, spot};
+
+#[test]
+fn what_drops_out_is_counted() {
+    let light = spot(0.9);
+    let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
+    let all = map.lights(VplSettings::default());
+    let count = all.len() as u32;
+    // In turn: kept, too small, too large, unknown.
+    let given = |ix: u32| [1.0, 0.1, 50.0, f32::MAX][(ix % 4) as usize];
+    let settings = VplSettings {
+        min_range_m: 0.5,
+        max_range_m: 10.0,
+        min_distance_m: 0.25,
+        large: Large::Discard,
+        ..VplSettings::default()
+    };
+    let expected =
+        |which: &[u32]| -> Vec<u32> { (0..count).filter(|ix| which.contains(&(ix % 4))).collect() };
+    for (large, which) in [(Large::Discard, &[0][..]), (Large::Clamp, &[0, 2, 3])] {
+        let mut buffer = VplBuffer::new(&map.gpu, VplSettings { large, ..settings }).unwrap();
+        map.run(&mut buffer, given);
+        let kept = expected(which);
+        let counts = buffer.read_counts(&map.gpu).unwrap();
+        let (small, huge) = (expected(&[1]).len() as u32, expected(&[2, 3]).len() as u32);
+        let wanted =
+            VplCounts { chosen: count, kept: kept.len() as u32, too_small: small, too_large: huge };
+        assert_eq!(counts, wanted, "{large:?}");
+        let lights = buffer.read(&map.gpu).unwrap();
+        assert_eq!(lights.len(), kept.len());
+        for (light, ix) in lights.iter().zip(kept) {
+            let range_m = if ix % 4 == 0 { 2.0 } else { 10.0 };
+            let LightShape::Vpl { normal, .. } = all[ix as usize].shape else { panic!("a VPL") };
+            let shape = LightShape::Vpl { normal, min_distance_m: 0.25 };
+            assert_eq!(*light, Light { range_m, shape, ..all[ix as usize] }, "{ix}");
+        }
+        buffer.prepare(&map.gpu, &map.rsm()).unwrap();
+        map.gpu.wait().unwrap();
+        buffer.prepare(&map.gpu, &map.rsm()).unwrap();
+        assert_eq!(buffer.latest_counts(), Some(wanted));
+    }
+}
+
+/// Records of the lights kept are those that `LightBuffer` would upload.
+#[test]
+fn records_are_those_of_lights() {
+    let light = spot(1.2);
+    let map = Map::new([32, 32], light, room(&light));
+    let settings = VplSettings { min_distance_m: 0.5, min_range_m: 20.0, ..VplSettings::default() };
+    let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
+    map.run(&mut buffer, |ix| 0.1 + ix as f32);
+    let lights = buffer.read(&map.gpu).unwrap();
+    assert!(buffer.read_counts(&map.gpu).unwrap().too_small > 0);
+    let uploaded = assign::LightBuffer::new(&map.gpu, &lights).unwrap();
+    let count = lights.len() as u64;
+    let same = |a, b, bytes| map.gpu.read(a, bytes).unwrap() == map.gpu.read(b, bytes).unwrap();
+    assert!(same(buffer.spheres(), uploaded.spheres(), count * 16));
+    assert!(same(buffer.emissions(), uploaded.emissions(), count * 16));
+    let floats =
+        |buffer| -> Vec<f32> { pod_collect_to_vec(&map.gpu.read(buffer, count * 32).unwrap()) };
+    // `Light` makes its normal unit once more.
+    let (own, given) = (floats(buffer.shapes()), floats(uploaded.shapes()));
+    assert!(own.iter().zip(&given).all(|(a, b)| (a - b).abs() < 1e-6));
+}
+
+#[test]
+fn a_limit_that_is_passed_is_an_error() {
+    let light = spot(0.9);
+    let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
+    let all = map.lights(VplSettings::default());
+    let limited = |limit| VplSettings { limit: Some(limit), ..VplSettings::default() };
+    let mut buffer = VplBuffer::new(&map.gpu, limited(100)).unwrap();
+    map.run(&mut buffer, |_| 0.5);
+    let error = buffer.read(&map.gpu).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        format!("limit of VPLs is 100: it must be at least {}, the VPLs chosen", all.len())
+    );
+    buffer.set_settings(limited(all.len() as u32)).unwrap();
+    map.run(&mut buffer, |_| 0.5);
+    assert!(buffer.read(&map.gpu).unwrap() == all);
+}
+
+#[test]
+fn maps_that_cannot_be_used_are_refused() {
+    let light = spot(0.9);
+    let map = Map::new([32, 32], light, |_| None);
+    let mut buffer = VplBuffer::new(&map.gpu, VplSettings::default()).unwrap();
+    map.run(&mut buffer, |_| 1.0);
+    assert_eq!(buffer.read_counts(&map.gpu).unwrap(), VplCounts::default());
+    assert_eq!(buffer.read(&map.gpu).unwrap(), []);
+    let mut fail = |rsm: Rsm<'_>| buffer.prepare(&map.gpu, &rsm).unwrap_err().to_string();
+    let lamp = Light::point(Vec3::ZERO, 1.0, Vec3::ONE);
+    assert!(fail(Rsm { light: &lamp, ..map.rsm() }).contains("it must be a spot"));
+    let mut view = map.view;
+    view.viewport.width = 4096;
+    assert!(fail(Rsm { view: &view, ..map.rsm() }).contains("at most 2048x2048 texels"));
+    view.viewport.width = 38;
+    assert!(fail(Rsm { view: &view, ..map.rsm() }).contains("at least 41x33"));
+    let mut view = map.view;
+    view.projection = Projection::Orthographic { min: Vec2::NEG_ONE, max: Vec2::ONE };
+    view.far_m = Some(10.0);
+    assert!(fail(Rsm { view: &view, ..map.rsm() }).contains("must be perspective"));
+}

@@ -1,0 +1,79 @@
+//! The VPL passes' modules, linked without a GPU: they validate, and their structs have the same sizes
+//! and offsets in Rust and in WESL.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use std::mem::offset_of;
+
+use assign::{LightEmission, LightSphere, Shader};
+use assign_cdi::{KeepUniform, RsmUniform, VplCounts, choose_shader, keep_shader};
+
+/// A module, validated with what WebGPU has without any optional feature.
+fn module(shader: &Shader<'_>, root: &str) -> naga::Module {
+    let source = shader.link(root).unwrap();
+    let module = naga::front::wgsl::parse_str(&source)
+        .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
+    module
+}
+
+/// Name and offset of every field, and the size, of a struct whose name ends in `name`.
+fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    let found = module.types.iter().find_map(|(_, ty)| match &ty.inner {
+        naga::TypeInner::Struct { members, span }
+            if ty.name.as_deref().is_some_and(|full| full.ends_with(name)) =>
+        {
+            let field = |m: &naga::StructMember| (m.name.clone().unwrap(), m.offset as usize);
+            Some((members.iter().map(field).collect(), *span as usize))
+        }
+        _ => None,
+    });
+    found.unwrap_or_else(|| panic!("no struct {name}"))
+}
+
+macro_rules! same {
+    ($module:expr, $wesl:literal, $rust:ty: $($field:ident),+) => {{
+        let fields = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),+];
+        assert_eq!(layout($module, $wesl), (fields, size_of::<$rust>()), "WESL, then Rust");
+    }};
+}
+
+#[test]
+fn the_map() {
+    for root in ["package::vpl_mips", "package::vpl_choose"] {
+        let module = module(&choose_shader(), root);
+        let (mut fields, size) = layout(&module, "Rsm");
+        let rust = vec![
+            ("intensity", offset_of!(RsmUniform, intensity)),
+            ("range_m", offset_of!(RsmUniform, range_m)),
+            ("direction", offset_of!(RsmUniform, direction)),
+            ("cos_outer", offset_of!(RsmUniform, cos_outer)),
+            ("light_world", offset_of!(RsmUniform, light_world)),
+            ("ramp_scale", offset_of!(RsmUniform, ramp_scale)),
+            ("size", offset_of!(RsmUniform, size)),
+            ("level_count", offset_of!(RsmUniform, level_count)),
+            ("capacity", offset_of!(RsmUniform, capacity)),
+            ("spacing_m", offset_of!(RsmUniform, spacing_m)),
+            ("index_count", offset_of!(RsmUniform, index_count)),
+            ("levels", offset_of!(RsmUniform, levels)),
+        ];
+        let wesl: Vec<_> = fields.iter_mut().map(|(name, at)| (name.as_str(), *at)).collect();
+        assert_eq!(wesl, rust, "{root}: WESL, then Rust");
+        assert_eq!(size, size_of::<RsmUniform>());
+    }
+}
+
+#[test]
+fn what_is_kept() {
+    let module = module(&keep_shader(), "package::vpl_keep");
+    same!(&module, "Keep", KeepUniform:
+        range_scale, min_range_m, max_range_m, min_distance_2, capacity, clamps);
+    same!(&module, "Counts", VplCounts: chosen, kept, too_small, too_large);
+    same!(&module, "LightSphere", LightSphere: position_world, radius_m);
+    same!(&module, "LightEmission", LightEmission: intensity, kind_and_shape);
+}
