@@ -98,12 +98,13 @@ impl Assignment for HybridGrid {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut cells = CellsUniform::new(self.size, frame.view, frame.lights.bounds())?;
-        let depth = match frame.samples {
-            SampleDomain::AnyDepth => None,
-            SampleDomain::OpaqueSurfaces => Some(frame.depth.ok_or_else(|| {
-                AssignError::Missing { strategy: self.id(), missing: "depth" }
-            })?),
-        };
+        let depth =
+            match frame.samples {
+                SampleDomain::AnyDepth => None,
+                SampleDomain::OpaqueSurfaces => Some(frame.depth.ok_or_else(|| {
+                    AssignError::Missing { strategy: self.id(), missing: "depth" }
+                })?),
+            };
         cells.surfaces_only = u32::from(depth.is_some());
         self.lists.prepare(gpu, frame.lights.count(), cells.cell_count())?;
         gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));

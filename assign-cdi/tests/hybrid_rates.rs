@@ -120,13 +120,10 @@ fn rates(gpu: &Gpu, view: &View, ranges_m: [f32; 2]) -> (usize, f64) {
 #[test]
 fn most_of_what_is_listed_meets_the_cell() {
     let gpu = Gpu::open(None).unwrap();
-    let perspective = View {
-        far_m: Some(20.0),
-        ..View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [640, 360])
-    };
+    let perspective =
+        View { far_m: Some(20.0), ..View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [640, 360]) };
     let window = Projection::Orthographic { min: Vec2::new(-8.0, -5.0), max: Vec2::new(7.0, 4.0) };
-    let orthographic =
-        View { projection: window, depth: DepthMapping::Standard, ..perspective };
+    let orthographic = View { projection: window, depth: DepthMapping::Standard, ..perspective };
     for (view, ranges_m, most) in [
         (perspective, [0.2, 1.0], 0.01),
         (perspective, [1.0, 6.0], 0.01),

@@ -1,8 +1,8 @@
 //! What the parts of the page ask of a study's records.
 
-use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
 use crate::results::{Record, Results};
 use crate::study::{Done, Job};
+use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
 
 /// A record with the job that it comes from.
 #[derive(Clone, Copy)]
