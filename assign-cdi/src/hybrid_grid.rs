@@ -14,13 +14,16 @@
 //!    tile that holds samples.
 //! 2. `count`: 32 lanes a light, each every 32nd tile of its outline. A tile without samples at the
 //!    light's depths is left. Else the range of depths over which the light's ball meets the tile's
-//!    pyramid is found, and 1 added to the cells in it that hold samples. Cones and half balls shrink
-//!    the outline, and are tried against a ball around the tile's part.
+//!    pyramid is found, and 1 added to the cells in it that hold samples. The range is that of a convex
+//!    function of depth below the squared radius: Newton's method comes to either end from outside
+//!    and never passes it. Cones and half balls shrink the outline, and are tried against a ball
+//!    around the tile's part.
 //! 3. `reserve`: a lane a cell. Its list takes its place in the pool, or becomes all lights.
 //! 4. `fill`: `count` once more, by the same pipeline, so that both find the same pairs to the bit. A
 //!    cursor a cell now points to places instead of counting.
 //! 5. `sort`: a workgroup a list. Atomic cursors leave lists in another order on every run; ascending,
-//!    they are the same.
+//!    they are the same. Lists are written anew from a second pool, since a light comes once: short
+//!    ones by rank, long ones by a bit a light, without rounds of merges.
 //!
 //! Worked example: lights 0 to 2, of which 0 and 2 reach cell 5 and 1 reaches cell 6. The cursors of 5
 //! and 6 count to 2 and 1, their places are 0 to 1 and 2, `fill` may leave `[2 0 | 1]`, and `sort` makes
@@ -30,15 +33,19 @@
 //!
 //! `occupancy` grows with pixels, `count` and `fill` with the tiles of the lights' outlines, `reserve`
 //! with cells, `sort` with entries. Lights take no hierarchy: none is tested against what it does not
-//! touch, and so lists through one would be the same work. Memory is 24 bytes a cell, an eighth of a
-//! byte more for its bit, and 8 bytes a listed light, twice what other strategies take.
+//! touch, so that a hierarchy would save no work. Memory is 16 bytes a cell and a bit, and 8 bytes a
+//! listed light, twice what other strategies take.
+//!
+//! Of the points and cells that are listed together, 0.7 % or fewer do not meet, in perspective and
+//! orthographic views, for ranges of 0.2 to 40 m (`tests/hybrid_rates.rs`).
 //!
 //! # Where it fails
 //!
 //! Lights that fill the screen are added to every cell, one atomic each, twice; many of them wait for
-//! one another. A light's test is its ball against a whole tile and slice, not against the samples in
-//! it: lists are those of clusters with implicit bounds, and longer than those of explicit ones. Area
-//! lights list both terms.
+//! one another. A light is tested against a whole tile and slice, not against the samples in it: lists
+//! are those of clusters with implicit bounds, and longer than those of explicit ones. A one-sided
+//! light beyond its plane, and a cone beside a tile, are told apart by a ball around the tile's part
+//! alone. Area lights list both terms.
 //!
 //! Look-ups at any depth are served: then every cell holds samples. A surface whose depth equals the
 //! cleared one cannot be told from background: its samples get all lights.

@@ -144,7 +144,9 @@ impl ClustersUniform {
             });
         }
         let near = view.near_m;
-        let last = view.far_m.unwrap_or_else(|| light_bounds.map_or(0.0, |(min, max)| view.deepest_m(min, max)).max(2.0 * near));
+        let last = view.far_m.unwrap_or_else(|| {
+            light_bounds.map_or(0.0, |(min, max)| view.deepest_m(min, max)).max(2.0 * near)
+        });
         let exponential = matches!(view.projection, Projection::Perspective { .. });
         let last = if exponential { last.min(near * MAX_DEPTH_RATIO) } else { last };
         let span = if exponential { (last / near).log2() } else { last - near };

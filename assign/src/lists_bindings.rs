@@ -60,12 +60,7 @@ impl ListsBindings {
 
     /// Binds the lists and the strategy's resources: after each
     /// [`LightLists::prepare`], which may make buffers anew.
-    pub fn bind(
-        &mut self,
-        gpu: &Gpu,
-        lists: &LightLists,
-        resources: &[wgpu::BindGroupEntry<'_>],
-    ) {
+    pub fn bind(&mut self, gpu: &Gpu, lists: &LightLists, resources: &[wgpu::BindGroupEntry<'_>]) {
         let mut entries = vec![entry(0, lists.lists()), entry(1, lists.entries())];
         if self.in_kernel {
             entries.extend([entry(2, lists.counters()), entry(3, lists.uniform())]);

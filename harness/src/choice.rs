@@ -255,7 +255,7 @@ impl Choice {
 
     /// Whether it cuts the samples into groups, and so has something to assign.
     pub fn has_groups(&self) -> bool {
-        self.entry.axes.contains(&Axis::Source)
+        self.entry.axes.contains(&Axis::Cap)
     }
 
     /// The largest relative difference of a channel that the method states of itself; `None` where
@@ -330,6 +330,8 @@ mod tests {
         assert_eq!(parameters("SC-E/32x16x8"), "32x16x8");
         assert_eq!(asked(&["--strategies", "t-i/BVH/28X28"]), ["T-I/28x28/bvh"]);
         assert_eq!(asked(&["--strategies", "m,M/2"]), ["M", "M/2"]);
+        let lights_first = asked(&["--strategies", "hg,HG/32x32x8/CAP8", "--source", "both"]);
+        assert_eq!(lights_first, ["HG/48x48x40", "HG/32x32x8/cap8"]);
         assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
         let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
         assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
