@@ -23,7 +23,10 @@ pub(crate) struct BuildKernels {
 /// What finds fragments.
 #[derive(Debug)]
 pub(crate) enum Finders {
-    SinglePass { samplers: Samplers, spread: wgpu::ComputePipeline },
+    SinglePass {
+        samplers: Samplers,
+        spread: wgpu::ComputePipeline,
+    },
     PerDirection {
         find_large: wgpu::ComputePipeline,
         small: wgpu::ComputePipeline,
@@ -81,8 +84,7 @@ impl BuildKernels {
         let shader = build_shader(settings);
         let stages = wgpu::ShaderStages::COMPUTE;
         let (read, write) = (Slot::Read, Slot::Write);
-        let build_slots =
-            [Slot::Uniform, read, read, write, write, write, write, read, write];
+        let build_slots = [Slot::Uniform, read, read, write, write, write, write, read, write];
         let build_layout = kernel::layout(gpu, "deep images", stages, &build_slots);
         let stage_layout = kernel::layout(gpu, "stage", stages, &[Slot::UniformAt]);
         let plan_slots = [Slot::Uniform, Slot::Uniform, write, read, write];

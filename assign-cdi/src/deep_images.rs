@@ -172,8 +172,15 @@ impl DeepImages {
     fn bind(&self, gpu: &Gpu, positions: &wgpu::Buffer) -> Groups {
         let b = &self.buffers;
         let build = [
-            &self.uniform, &b.frames, positions, &b.header, &b.samples, &b.large, &b.counts,
-            &b.offsets, &b.fragments,
+            &self.uniform,
+            &b.frames,
+            positions,
+            &b.header,
+            &b.samples,
+            &b.large,
+            &b.counts,
+            &b.offsets,
+            &b.fragments,
         ];
         let plan = [&self.uniform, &self.plan, &b.header, &b.offsets, &self.dispatches];
         let stage = wgpu::BindGroupEntry {

@@ -54,7 +54,8 @@ impl Directions {
     /// A power of two from 1 to 1024 in rows, at least as many slices as stacks; any square; 169.
     pub fn of_count(spread: Spread, count: u32) -> Result<Self, AssignError> {
         let stacks = (1..=32).rev().find(|stacks| {
-            count % stacks == 0 && [1, 2].contains(&(count / stacks / stacks))
+            count % stacks == 0
+                && [1, 2].contains(&(count / stacks / stacks))
                 && (count == stacks * stacks || count == 2 * stacks * stacks)
         });
         match stacks {
@@ -148,9 +149,7 @@ impl Directions {
                         let radius = (1.0 - along * along).max(0.0).sqrt();
                         DVec3::new(radius * cos, radius * sin, along)
                     }
-                    Spread::Squares => {
-                        of_square(DVec2::new(2.0 * across - 1.0, 2.0 * along - 1.0))
-                    }
+                    Spread::Squares => of_square(DVec2::new(2.0 * across - 1.0, 2.0 * along - 1.0)),
                 }
             })
         })
@@ -262,8 +261,12 @@ mod tests {
             let mean = f64::from(tries) / f64::from(directions.count());
             let alike = counts.iter().all(|&c| (f64::from(c) - mean).abs() < 6.0 * mean.sqrt());
             assert!(alike, "{directions:?}: {counts:?}");
-            println!("{directions:?}: at most {:.1} degrees, {:.1} on average, {:.1} by search",
-                bound.to_degrees(), sum.to_degrees() / 2e4, best.to_degrees() / 2e4);
+            println!(
+                "{directions:?}: at most {:.1} degrees, {:.1} on average, {:.1} by search",
+                bound.to_degrees(),
+                sum.to_degrees() / 2e4,
+                best.to_degrees() / 2e4
+            );
         }
     }
 
