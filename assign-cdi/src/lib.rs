@@ -64,7 +64,7 @@ mod snapshot;
 mod sort;
 mod sort_network;
 
-pub use build_kernels::{ROOTS, build_shader};
+pub use build_kernels::{BUILD_ROOTS, build_shader};
 pub use deep_buffers::DeepImageCounters;
 pub use deep_images::{DeepImages, DispatchSizes, RAY_CAST_WESL, StageUniform};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
