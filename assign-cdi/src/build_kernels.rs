@@ -51,7 +51,7 @@ pub(crate) struct Draw {
     pub(crate) target: wgpu::TextureView,
 }
 
-/// The modules of the build's kernels; [`ROOTS`] names the roots.
+/// The modules of the build's kernels; [`BUILD_ROOTS`] names the roots.
 pub fn build_shader(settings: &DeepImageSettings) -> Shader<'static> {
     let conservative =
         matches!(settings.build, Build::PerDirection { coverage: Coverage::Conservative, .. });
@@ -71,7 +71,7 @@ pub fn build_shader(settings: &DeepImageSettings) -> Shader<'static> {
 }
 
 /// The root modules of [`build_shader`].
-pub const ROOTS: [&str; 5] = [
+pub const BUILD_ROOTS: [&str; 5] = [
     "package::samples",
     "package::draw_samples",
     "package::from_samples",

@@ -51,13 +51,10 @@ impl Directions {
         Ok(Self { spread, stacks, slices })
     }
 
-    /// A power of two from 1 to 1024 in rows, at least as many slices as stacks; any square; 169.
+    /// `count` directions in rows: a square number up to 1024, or twice one, with twice as many slices
+    /// as stacks.
     pub fn of_count(spread: Spread, count: u32) -> Result<Self, AssignError> {
-        let stacks = (1..=32).rev().find(|stacks| {
-            count % stacks == 0
-                && [1, 2].contains(&(count / stacks / stacks))
-                && (count == stacks * stacks || count == 2 * stacks * stacks)
-        });
+        let stacks = (1..=32).find(|n| count == n * n || count == 2 * n * n);
         match stacks {
             Some(stacks) => Self::new(spread, stacks, count / stacks),
             None => Err(AssignError::Parameter {

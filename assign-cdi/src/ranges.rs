@@ -61,9 +61,8 @@ pub struct RangeRule {
 pub const MAX_RAYS: u32 = 16;
 
 impl Default for RangeRule {
-    /// The paper's six rays, and their mean. The paper leaves the angle open: with 1.047, a sixth of a
-    /// turn, each ray stands for about as much of a Lambertian emitter's light, whose median leaves at
-    /// 45 degrees, and none of them grazes the surface.
+    /// The paper's six rays, and their mean. The paper leaves the angle open. Here it is 60 degrees: a
+    /// quarter of a Lambertian emitter's light leaves farther out, and no ray grazes the surface.
     fn default() -> Self {
         Self {
             rays: 6,
@@ -141,6 +140,7 @@ pub struct RangesUniform {
 /// Estimates ranges.
 #[derive(Debug)]
 pub struct RangeCaster {
+    settings: DeepImageSettings,
     rule: RangeRule,
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
@@ -164,6 +164,7 @@ impl RangeCaster {
             uniform: gpu.uniform("ranges", size_of::<RangesUniform>() as u64),
             group: None,
             count: 0,
+            settings: *images.settings(),
             rule,
         })
     }
@@ -221,10 +222,19 @@ impl RangeCaster {
         Ok(())
     }
 
-    /// Records the pass `cdi-ranges`, after that of the images; nothing before
-    /// [`prepare`](Self::prepare). `images` must have the settings that the kernel was made for.
-    pub fn record(&self, images: &DeepImages, passes: &mut dyn Passes) {
-        let (Some(group), Some(rays)) = (&self.group, images.bind_group()) else { return };
+    /// Records the pass `cdi-ranges`, after those of the images. Refused before both are prepared, and
+    /// for images of other settings than the kernel was made for.
+    pub fn record(&self, images: &DeepImages, passes: &mut dyn Passes) -> Result<(), AssignError> {
+        let missing = |missing| AssignError::Missing { strategy: "cdi-ranges".into(), missing };
+        let group = self.group.as_ref().ok_or_else(|| missing("prepared points"))?;
+        let rays = images.bind_group().ok_or_else(|| missing("prepared deep images"))?;
+        if *images.settings() != self.settings {
+            return Err(AssignError::Parameter {
+                field: "settings of deep images".into(),
+                value: format!("{:?}", images.settings()),
+                accepted: format!("{:?}", self.settings),
+            });
+        }
         let points_a_group = match self.rule.threads {
             Threads::Points => 256,
             Threads::Rays => 256 / self.rule.rays,
@@ -235,5 +245,6 @@ impl RangeCaster {
             pass.set_bind_group(1, group, &[]);
             pass.dispatch_workgroups(workgroups(u64::from(self.count), points_a_group), 1, 1);
         });
+        Ok(())
     }
 }

@@ -47,6 +47,38 @@ pub struct SortInput<'a> {
     pub longest: u32,
 }
 
+impl SortInput<'_> {
+    /// Names a buffer that is too small for its counts.
+    fn check(&self, ranges: ListRanges) -> Result<(), AssignError> {
+        let lists = u64::from(self.first_list) + u64::from(self.list_count);
+        if self.entry_count > MOST_ENTRIES || lists > u64::from(MOST_ENTRIES) {
+            return Err(AssignError::TooLarge {
+                what: format!("a sort of {} entries in {lists} lists", self.entry_count),
+                bytes: u64::from(self.entry_count).max(lists) * 4,
+                limit: u64::from(MOST_ENTRIES) * 4,
+            });
+        }
+        let ranges_bytes = match ranges {
+            ListRanges::Pairs => lists * 8,
+            ListRanges::PrefixOffsets => (lists + 1) * 4,
+        };
+        let buffers = [
+            ("ranges", self.ranges.size(), ranges_bytes),
+            ("entries", self.entries.size(), u64::from(self.entry_count) * 4),
+        ];
+        for (field, has, needed) in buffers {
+            if has < needed {
+                return Err(AssignError::Parameter {
+                    field: format!("{field} of a sort"),
+                    value: format!("{has} bytes"),
+                    accepted: format!("at least {needed}"),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// What the kernels are told: `sort_keys.wesl`, `struct Sort`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -89,6 +121,7 @@ const PART: u32 = 2048;
 /// Sorts lists of keys, ascending, in place.
 #[derive(Debug)]
 pub struct ListSort {
+    ranges: ListRanges,
     short: wgpu::ComputePipeline,
     parts: wgpu::ComputePipeline,
     merge: wgpu::ComputePipeline,
@@ -127,6 +160,7 @@ impl ListSort {
         ];
         let [keys, append, read, round] = &layouts;
         let sort = Self {
+            ranges,
             short: kernel::compute(gpu, &short, "sort_short", &[keys, append]),
             parts: kernel::compute(gpu, &long, "sort_parts", &[keys, read]),
             merge: kernel::compute(gpu, &long, "merge_round", &[keys, read, round]),
@@ -173,13 +207,7 @@ impl ListSort {
 
     /// Sizes the scratch buffers and binds the input's buffers; call whenever one is made anew.
     pub fn prepare(&mut self, gpu: &Gpu, input: &SortInput<'_>) -> Result<(), AssignError> {
-        if input.entry_count > MOST_ENTRIES {
-            return Err(AssignError::TooLarge {
-                what: "entries of lists to sort".into(),
-                bytes: u64::from(input.entry_count) * 4,
-                limit: u64::from(MOST_ENTRIES) * 4,
-            });
-        }
+        input.check(self.ranges)?;
         let longest = input.longest.min(input.entry_count);
         let is_merged = longest > PART;
         // Every part holds more than 32 keys, every list of several more than 2048; a list's last

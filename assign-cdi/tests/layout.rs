@@ -6,8 +6,8 @@ use std::mem::offset_of;
 
 use assign::Shader;
 use assign_cdi::{
-    Build, Coverage, DeepImageCounters, DeepImageSettings, Directions, DispatchSizes,
-    ImagesUniform, ListRanges, ListSort, PrefixSum, Primary, ROOTS, RandomRanges, RandomUniform,
+    BUILD_ROOTS, Build, Coverage, DeepImageCounters, DeepImageSettings, Directions, DispatchSizes,
+    ImagesUniform, ListRanges, ListSort, PrefixSum, Primary, RandomRanges, RandomUniform,
     RangeCaster, RangeRule, RangesUniform, SortUniform, SortWork, Spread, StageUniform, Storage,
     Threads, build_shader,
 };
@@ -59,7 +59,7 @@ fn all_settings() -> Vec<DeepImageSettings> {
 #[test]
 fn kernels_validate() {
     for settings in all_settings() {
-        for root in ROOTS {
+        for root in BUILD_ROOTS {
             validated(&build_shader(&settings), root);
         }
         for primary in [Primary::Normal, Primary::Given] {

@@ -176,3 +176,30 @@ fn prefix_sums() {
         assert!(download(&gpu, &to, count + 1) == expected, "{count}");
     }
 }
+
+#[test]
+fn small_buffers_are_refused() {
+    let gpu = Gpu::noop().unwrap();
+    let mut sort = ListSort::new(&gpu, ListRanges::Pairs, 0).unwrap();
+    let (ranges, entries) = (gpu.storage("r", 80).unwrap(), gpu.storage("e", 80).unwrap());
+    let input = SortInput {
+        ranges: &ranges,
+        entries: &entries,
+        first_list: 1,
+        list_count: 9,
+        first_entry: 0,
+        entry_count: 20,
+        longest: 20,
+    };
+    sort.prepare(&gpu, &input).unwrap();
+    let mut refused = |input| sort.prepare(&gpu, &input).unwrap_err().to_string();
+    let message = refused(SortInput { list_count: 10, ..input });
+    assert_eq!(message, "ranges of a sort is 80 bytes: it must be at least 88");
+    let message = refused(SortInput { entry_count: 21, ..input });
+    assert_eq!(message, "entries of a sort is 80 bytes: it must be at least 84");
+    assert!(refused(SortInput { list_count: u32::MAX, ..input }).starts_with("a sort of 20"));
+    assert!(refused(SortInput { entry_count: u32::MAX, ..input }).starts_with("a sort of 4294"));
+    let mut sum = PrefixSum::new(&gpu).unwrap();
+    let message = sum.prepare(&gpu, &entries, u32::MAX, &entries).unwrap_err().to_string();
+    assert!(message.starts_with("count of a prefix sum is 4294967295"), "{message}");
+}
