@@ -134,7 +134,7 @@ fn casts(
         let warmup = if gpu.is_software() { 0 } else { WARMUP };
         for frame in 0..warmup + frames {
             random.record(&mut clock);
-            caster.record(images, &mut clock);
+            caster.record(images, &mut clock)?;
             for (name, ms) in clock.finish()?.into_iter().filter(|_| frame >= warmup) {
                 if name == "random-ranges" { random_ms.push(ms) } else { cast_ms.push(ms) }
             }
@@ -173,8 +173,10 @@ fn summary(run: &DeepImageRun) -> String {
         text += &format!(
             "ranges   {} rays: median error {:.3} of a pixel, of lights {:.3}, {:.1} % lost {:?}\n",
             errors.rays,
-            errors.median(),errors.median_range_error,
-            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0, errors.histogram
+            errors.median(),
+            errors.median_range_error,
+            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0,
+            errors.histogram
         );
     }
     text

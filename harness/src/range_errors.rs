@@ -154,7 +154,7 @@ fn lengths(
         },
     )?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    caster.record(images, &mut EncoderPasses { encoder: &mut encoder });
+    caster.record(images, &mut EncoderPasses { encoder: &mut encoder })?;
     gpu.queue.submit([encoder.finish()]);
     let bytes = gpu.read(&ranges_m, rays.len() as u64 * 4)?;
     let lengths: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);

@@ -79,7 +79,7 @@ impl VplMaker {
         for frame in 0..WARMUP[kind] + FRAMES[kind] {
             vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
             ranges.prepare(gpu, &vpls)?;
-            record(&map, &view, &mut vpls, &mut ranges, &mut clock);
+            record(&map, &view, &mut vpls, &mut ranges, &mut clock)?;
             let times = clock.finish()?;
             if frame >= WARMUP[kind] {
                 samples.collect(times);
@@ -140,10 +140,11 @@ fn record(
     vpls: &mut VplBuffer,
     ranges: &mut Ranges,
     passes: &mut dyn Passes,
-) {
+) -> Result<(), HarnessError> {
     record_map(map, view, vpls, passes);
-    ranges.record(passes);
+    ranges.record(passes)?;
     vpls.record_keep(passes);
+    Ok(())
 }
 
 /// How lights are kept.
@@ -163,7 +164,8 @@ fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
         range_scale: if args.ranges.casts() { args.range_scale as f32 } else { 1.0 },
         min_range_m: low_m.clamp(MIN_RANGE_M, high_m),
         max_range_m: high_m,
-        large: if args.keep_ranges.is_some() { Large::Discard } else { Large::Clamp },
+        // A light whose rays meet nothing lights nothing.
+        large: if is_infinite { Large::Clamp } else { Large::Discard },
         min_distance_m: args.vpl_clamp.map_or(CLAMP_SHARE * core_m, |clamp| clamp as f32),
     }
 }
@@ -219,15 +221,16 @@ impl<'a> Ranges<'a> {
         Ok(())
     }
 
-    fn record(&mut self, passes: &mut dyn Passes) {
+    fn record(&mut self, passes: &mut dyn Passes) -> Result<(), HarnessError> {
         match self {
             Self::Cast { images, caster, .. } => {
                 images.record(passes);
-                caster.record(images, passes);
+                caster.record(images, passes)?;
             }
             Self::Random(random) => random.record(passes),
             Self::Infinite => {}
         }
+        Ok(())
     }
 
     fn deep(&self) -> Option<&DeepImages> {

@@ -70,6 +70,7 @@ fn truth() -> TruthImage {
         standard_error: 0.0004,
         shadows: false,
         bounces: 0,
+        is_indirect: false,
         samples: 64,
         seconds: 2.5,
     }

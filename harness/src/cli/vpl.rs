@@ -36,7 +36,7 @@ pub struct VplArgs {
     pub range_scale: f64,
 
     /// Shortest and longest range of a virtual point light that is kept, metres: others are left out
-    /// [default: all are kept, none longer than the scene]
+    /// [default: all that reach a surface, up to the size of the scene]
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     pub keep_ranges: Option<Span>,
 

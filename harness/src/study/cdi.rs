@@ -53,9 +53,9 @@ struct Extent {
 }
 
 const FULL: Extent = Extent {
-    size: Size { width: 960, height: 540 },
+    size: Size { width: 480, height: 270 },
     timed_size: Size { width: 1920, height: 1080 },
-    samples: "256",
+    samples: "4096",
     frames: "32",
     warmup: "4",
     rsm: "256",

@@ -58,6 +58,8 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
     let is_none = strategy == "None";
     let stem = format!("atrium-{}-{}", mode.name(), strategy.replace('/', "-"));
     let mut record = Record {
+        vpls: None,
+        compensation: None,
         scene: "atrium".to_owned(),
         scene_hash: "5f0c1b7e9ad24410".to_owned(),
         scene_scale: 1.0,
