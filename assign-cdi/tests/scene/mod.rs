@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub(crate) mod rays;
+
 use assign::{EncoderPasses, Gpu};
 use assign_cdi::{DeepImageSettings, DeepImages, Triangles};
 use glam::{DVec3, Mat3, Vec3};

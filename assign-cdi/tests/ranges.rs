@@ -1,0 +1,178 @@
+//! Ranges of points: by rays, and at random.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+mod scene;
+
+use assign::{EncoderPasses, Gpu};
+use assign_cdi::{
+    Combine, DeepImages, Primary, RandomRanges, RangeCaster, RangePoints, RangeRule, Spread,
+    Threads,
+};
+use bytemuck::pod_collect_to_vec;
+use glam::{Mat3, Vec3};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use scene::{
+    Scene,
+    rays::{Ray, cast, ranges_of, rays_from_surfaces, settings},
+    room, settled, unit,
+};
+
+#[test]
+fn ranges_are_the_mean_or_the_longest_of_their_rays() {
+    let gpu = Gpu::open(None).unwrap();
+    let scene = Scene::new(&gpu, room(20, 8, 50));
+    let images = settled(&gpu, settings(64, 32, Spread::Squares), &scene);
+    let mut points = rays_from_surfaces(&scene.triangles, 700, 21);
+    let mut rng = Pcg64Mcg::seed_from_u64(22);
+    for point in &mut points {
+        // Around a normal along an axis, rays would lie on the borders between directions.
+        point.normal = (point.normal + 0.2 * unit(&mut rng)).normalize();
+    }
+    for rays in [1, 6, 16] {
+        for (combine, primary) in [
+            (Combine::Average, Primary::Normal),
+            (Combine::Maximum, Primary::Normal),
+            (Combine::Average, Primary::Given),
+        ] {
+            let rule = RangeRule { rays, combine, primary, ..RangeRule::default() };
+            let ranges = ranges_of(&gpu, &images, &points, rule);
+            let by_ray = RangeRule { threads: Threads::Rays, ..rule };
+            let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-3;
+            let differing = ranges
+                .iter()
+                .zip(&ranges_of(&gpu, &images, &points, by_ray))
+                .filter(|pair| differs(*pair))
+                .count();
+            // Rounding may take a ray to another pixel.
+            assert!(differing <= 7, "{rule:?}: {differing}");
+            let expected = expected_ranges(&gpu, &images, &points, rule);
+            let differing = ranges.iter().zip(&expected).filter(|pair| differs(*pair)).count();
+            assert!(differing <= 14, "{rule:?}: {differing}");
+        }
+    }
+}
+
+/// Ranges from single rays, combined here.
+fn expected_ranges(gpu: &Gpu, images: &DeepImages, points: &[Ray], rule: RangeRule) -> Vec<f32> {
+    let rays: Vec<Ray> = points
+        .iter()
+        .flat_map(|point| {
+            let axis = match rule.primary {
+                Primary::Normal => point.normal,
+                Primary::Given => point.direction,
+            };
+            let (right, up) = axis.any_orthonormal_pair();
+            let turn = Mat3::from_cols(right, up, axis);
+            (0..rule.rays).map(move |ix| Ray { direction: turn * rule.ray(ix), ..*point })
+        })
+        .collect();
+    cast(gpu, images, &rays)
+        .chunks(rule.rays as usize)
+        .map(|lengths| {
+            let hits: Vec<f32> = lengths.iter().copied().filter(|m| *m >= 0.0).collect();
+            match rule.combine {
+                _ if hits.is_empty() => f32::MAX,
+                Combine::Average => hits.iter().sum::<f32>() / hits.len() as f32,
+                Combine::Maximum => hits.iter().copied().fold(0.0, f32::max),
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn points_without_hits_are_infinite() {
+    let gpu = Gpu::open(None).unwrap();
+    let floor = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let scene = Scene::new(&gpu, vec![floor]);
+    let images = settled(&gpu, settings(16, 32, Spread::Squares), &scene);
+    let at = Vec3::new(0.3, 0.3, 0.0);
+    let up = Ray { origin: at, direction: Vec3::Z, normal: Vec3::Z };
+    assert_eq!(ranges_of(&gpu, &images, &[up], RangeRule::default()), [f32::MAX]);
+    // From above, the floor is met.
+    let down = Ray { origin: at + 0.5 * Vec3::Z, direction: -Vec3::Z, normal: -Vec3::Z };
+    let rule = RangeRule { rays: 1, ..RangeRule::default() };
+    let range = ranges_of(&gpu, &images, &[down], rule)[0];
+    assert!((0.4..0.6).contains(&range), "{range}");
+}
+
+#[test]
+fn rays_of_a_rule_lie_evenly_on_its_cone() {
+    let rule = RangeRule::default();
+    for ix in 1..6 {
+        assert!((rule.ray(ix).z - 0.5).abs() < 1e-6);
+        assert!((rule.ray(ix).length() - 1.0).abs() < 1e-6);
+        let next = rule.ray(1 + ix % 5);
+        assert!((rule.ray(ix).dot(next) - rule.ray(1).dot(rule.ray(2))).abs() < 1e-6);
+    }
+    assert_eq!(rule.ray(0), Vec3::Z);
+    let refused = |rule: RangeRule| rule.check().unwrap_err().to_string();
+    assert_eq!(refused(RangeRule { rays: 17, ..rule }), "rays is 17: it must be 1 to 16");
+    assert!(refused(RangeRule { cone_angle: f32::NAN, ..rule }).starts_with("cone_angle is NaN"));
+}
+
+#[test]
+fn random_ranges_are_uniform_and_repeat() {
+    let gpu = Gpu::open(None).unwrap();
+    let count = 20_000;
+    let ranges_m = gpu.storage("ranges", u64::from(count) * 4).unwrap();
+    let mut random = RandomRanges::new(&gpu).unwrap();
+    let mut draw = |seed| -> Vec<f32> {
+        random.prepare(&gpu, &ranges_m, count, (2.0, 6.0), seed).unwrap();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        random.record(&mut EncoderPasses { encoder: &mut encoder });
+        gpu.queue.submit([encoder.finish()]);
+        pod_collect_to_vec(&gpu.read(&ranges_m, u64::from(count) * 4).unwrap())
+    };
+    let drawn = draw(1);
+    assert!(drawn == draw(1));
+    assert!(drawn != draw(2));
+    assert!(drawn.iter().all(|range| (2.0..=6.0).contains(range)));
+    for tenth in 0..10 {
+        let low = 2.0 + 0.4 * tenth as f32;
+        let share = drawn.iter().filter(|r| (low..low + 0.4).contains(*r)).count();
+        // 2000 in each, give or take five standard deviations.
+        assert!((1788..2212).contains(&share), "{tenth}: {share}");
+    }
+    let error = random.prepare(&gpu, &ranges_m, count, (3.0, 2.0), 1).unwrap_err().to_string();
+    assert!(error.starts_with("bounds of random ranges is 3 to 2"), "{error}");
+}
+
+#[test]
+fn ranges_without_what_they_need_are_refused() {
+    let gpu = Gpu::noop().unwrap();
+    let of = |count| DeepImages::new(&gpu, settings(count, 32, Spread::Squares)).unwrap();
+    let (mut images, mut others) = (of(16), of(32));
+    let mut caster = RangeCaster::new(&gpu, &images, RangeRule::default()).unwrap();
+    let record = |caster: &RangeCaster, images: &DeepImages| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorded = caster.record(images, &mut EncoderPasses { encoder: &mut encoder });
+        recorded.map_err(|e| e.to_string())
+    };
+    assert!(record(&caster, &images).unwrap_err().contains("prepared points"));
+    let buffer = gpu.storage("points", 160).unwrap();
+    let mut points = RangePoints {
+        positions: &buffer,
+        normals: &buffer,
+        primaries: None,
+        count: 11,
+        ranges_m: &buffer,
+    };
+    let message = caster.prepare(&gpu, &points).unwrap_err().to_string();
+    assert_eq!(message, "positions is 160 bytes: it must be at least 176 for 11 points");
+    points.count = 10;
+    let ranges_m = gpu.storage("ranges", 40).unwrap();
+    points.ranges_m = &ranges_m;
+    caster.prepare(&gpu, &points).unwrap();
+    assert!(record(&caster, &images).unwrap_err().contains("prepared deep images"));
+    let scene = Scene::new(&gpu, room(1, 0, 0));
+    images.prepare(&gpu, &scene.input()).unwrap();
+    others.prepare(&gpu, &scene.input()).unwrap();
+    assert_eq!(record(&caster, &images), Ok(()));
+    assert!(record(&caster, &others).unwrap_err().starts_with("settings of deep images is"));
+    let given = RangeRule { primary: Primary::Given, ..RangeRule::default() };
+    let mut given = RangeCaster::new(&gpu, &images, given).unwrap();
+    let message = given.prepare(&gpu, &points).unwrap_err().to_string();
+    assert!(message.starts_with("primaries is none"), "{message}");
+}

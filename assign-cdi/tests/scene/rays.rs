@@ -1,0 +1,138 @@
+//! Rays through deep images and among triangles, and ranges of their origins.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+#![allow(dead_code, reason = "each test uses a part")]
+
+use assign::{EncoderPasses, Gpu, Shader, entry, storage_entry};
+use assign_cdi::{
+    DeepImageSettings, DeepImages, Directions, RAY_CAST_WESL, RangeCaster, RangePoints, RangeRule,
+    Spread,
+};
+use bytemuck::{cast_slice, pod_collect_to_vec};
+use glam::{Vec3, Vec4};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+use super::{Corners, distance, surface, unit};
+
+/// The room's centre.
+pub(crate) const MIDDLE: Vec3 = Vec3::new(1.0, 2.0, 3.0);
+
+#[derive(Clone, Copy)]
+pub(crate) struct Ray {
+    pub(crate) origin: Vec3,
+    pub(crate) direction: Vec3,
+    pub(crate) normal: Vec3,
+}
+
+/// Lengths of rays, by a kernel of the test's own around the given module of ray casting.
+pub(crate) fn cast_with(gpu: &Gpu, images: &DeepImages, rays: &[Ray], ray_cast: &str) -> Vec<f32> {
+    let shader = DeepImages::mount(images.settings(), Shader::new(3), 0)
+        .module("package::ray_cast", ray_cast.to_owned())
+        .module("package::cast", include_str!("cast.wesl"));
+    let module = shader.create(&gpu.device, "package::cast").unwrap();
+    let stages = wgpu::ShaderStages::COMPUTE;
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[storage_entry(0, stages, true), storage_entry(1, stages, false)],
+    });
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(images.layout()), Some(&layout)],
+        immediate_size: 0,
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: Some(&pipeline_layout),
+        module: &module,
+        entry_point: Some("cast_rays"),
+        compilation_options: Default::default(),
+        cache: None,
+    });
+    let words: Vec<Vec4> = rays
+        .iter()
+        .flat_map(|ray| [ray.origin, ray.direction, ray.normal].map(|v| v.extend(0.0)))
+        .collect();
+    let input = upload(gpu, &words);
+    let output = gpu.storage("lengths", rays.len() as u64 * 4).unwrap();
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &[entry(0, &input), entry(1, &output)],
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, images.bind_group().unwrap(), &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.dispatch_workgroups((rays.len() as u32).div_ceil(64), 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    pod_collect_to_vec(&gpu.read(&output, rays.len() as u64 * 4).unwrap())
+}
+
+pub(crate) fn cast(gpu: &Gpu, images: &DeepImages, rays: &[Ray]) -> Vec<f32> {
+    cast_with(gpu, images, rays, RAY_CAST_WESL)
+}
+
+pub(crate) fn upload<T: bytemuck::NoUninit>(gpu: &Gpu, words: &[T]) -> wgpu::Buffer {
+    let bytes: &[u8] = cast_slice(words);
+    let buffer = gpu.storage("words", bytes.len() as u64).unwrap();
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
+
+/// Length of a ray among triangles, beyond 0.1 mm: of that of its own surface.
+pub(crate) fn true_length(triangles: &[Corners], ray: &Ray) -> Option<f32> {
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let hits = triangles.iter().filter_map(|corners| distance(corners, origin, direction));
+    let nearest = hits.filter(|at| *at > 1e-4).fold(f64::INFINITY, f64::min);
+    nearest.is_finite().then_some(nearest as f32)
+}
+
+/// Rays from surfaces, up to 60 degrees from their normals.
+pub(crate) fn rays_from_surfaces(triangles: &[Corners], count: usize, seed: u64) -> Vec<Ray> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut rays = Vec::new();
+    while rays.len() < count {
+        let (origin, normal) = surface(&mut rng, triangles, MIDDLE);
+        let direction = unit(&mut rng);
+        if direction.dot(normal) > 0.5 {
+            rays.push(Ray { origin, direction, normal });
+        }
+    }
+    rays
+}
+
+pub(crate) fn settings(count: u32, size_px: u32, spread: Spread) -> DeepImageSettings {
+    DeepImageSettings {
+        directions: Directions::of_count(spread, count).unwrap(),
+        size_px,
+        ..Default::default()
+    }
+}
+
+/// Ranges of rays' origins; their directions are the primary ones.
+pub(crate) fn ranges_of(gpu: &Gpu, images: &DeepImages, rays: &[Ray], rule: RangeRule) -> Vec<f32> {
+    let words = |of: fn(&Ray) -> Vec3| -> Vec<Vec4> {
+        rays.iter().map(|ray| of(ray).extend(7.0)).collect()
+    };
+    let (positions, normals) = (words(|ray| ray.origin), words(|ray| ray.normal));
+    let (positions, normals) = (upload(gpu, &positions), upload(gpu, &normals));
+    let primaries = upload(gpu, &words(|ray| ray.direction));
+    let ranges_m = upload(gpu, &vec![-7.0_f32; rays.len()]);
+    let mut caster = RangeCaster::new(gpu, images, rule).unwrap();
+    let points = RangePoints {
+        positions: &positions,
+        normals: &normals,
+        primaries: Some(&primaries),
+        count: rays.len() as u32,
+        ranges_m: &ranges_m,
+    };
+    caster.prepare(gpu, &points).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    caster.record(images, &mut EncoderPasses { encoder: &mut encoder }).unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    pod_collect_to_vec(&gpu.read(&ranges_m, rays.len() as u64 * 4).unwrap())
+}
