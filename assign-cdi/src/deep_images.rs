@@ -24,6 +24,10 @@ pub struct StageUniform {
 /// The module that casts rays, `package::ray_cast`: [`DeepImages::mount`] mounts it.
 pub const RAY_CAST_WESL: &str = include_str!("shaders/ray_cast.wesl");
 
+/// Lists up to here are sorted without rounds of merges, which take time and memory even where no list
+/// needs them; rounds are added when a frame has shown a longer one.
+const SORTED_AT_LEAST: u32 = 2048;
+
 /// Bytes from one `Stage` to the next.
 const STAGE_STRIDE: u32 = 256;
 /// Modes of a stage: `build.wesl`.
@@ -55,6 +59,8 @@ pub struct DeepImages {
     buffers: DeepBuffers,
     uniform: wgpu::Buffer,
     space: ImagesUniform,
+    /// The longest list that the sort is prepared for.
+    sorted_longest: u32,
     stages: wgpu::Buffer,
     plan: wgpu::Buffer,
     dispatches: wgpu::Buffer,
@@ -104,6 +110,7 @@ impl DeepImages {
             buffers: DeepBuffers::new(gpu, &settings)?,
             uniform: gpu.uniform("deep images", size_of::<ImagesUniform>() as u64),
             space: ImagesUniform::zeroed(),
+            sorted_longest: SORTED_AT_LEAST,
             stages: stage_buffer,
             plan,
             dispatches: gpu.buffer("dispatches", size_of::<DispatchSizes>() as u64, usage)?,
@@ -135,10 +142,16 @@ impl DeepImages {
         let grown = self.buffers.prepare(gpu, &self.settings, triangles.count, asked)?;
         space.sample_capacity = self.buffers.sample_capacity;
         space.fragment_capacity = self.buffers.fragment_capacity;
+        let is_longer = asked.longest > self.sorted_longest;
+        if is_longer {
+            // A quarter more, so that a scene in motion does not add rounds each frame.
+            self.sorted_longest = asked.longest.saturating_add(asked.longest / 4);
+        }
+        space.sorted_longest = self.sorted_longest;
         self.space = space;
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&space));
         let is_first = self.groups.is_none();
-        if self.settings.storage == Storage::Arrays && (grown || is_first) {
+        if self.settings.storage == Storage::Arrays && (grown || is_longer || is_first) {
             self.prepare_lists(gpu)?;
         }
         self.groups = Some(self.bind(gpu, triangles.positions));
@@ -150,11 +163,6 @@ impl DeepImages {
         let pixels = self.settings.pixel_count();
         let buffers = &self.buffers;
         self.sums.prepare(gpu, &buffers.counts, pixels, &buffers.offsets)?;
-        // A sample is in a pixel once, of each direction.
-        let longest = match self.settings.build {
-            Build::SinglePass { .. } => buffers.sample_capacity,
-            Build::PerDirection { .. } => buffers.fragment_capacity,
-        };
         self.sort.prepare(
             gpu,
             &SortInput {
@@ -164,7 +172,7 @@ impl DeepImages {
                 list_count: pixels,
                 first_entry: 0,
                 entry_count: buffers.fragment_capacity,
-                longest,
+                longest: self.sorted_longest,
             },
         )
     }
@@ -347,6 +355,13 @@ impl DeepImages {
     /// The newest counters that have come back, which may be a few frames old.
     pub fn stats(&self) -> Option<DeepImageCounters> {
         self.readback.latest()
+    }
+
+    /// Whether nothing was lost in the newest frame whose counters have come back. Where something was,
+    /// rays are of unknown length, and the next [`prepare`](Self::prepare) makes room.
+    pub fn is_complete(&self) -> Option<bool> {
+        let stats = self.readback.latest()?;
+        Some(stats.is_overflowed == 0 && stats.longest <= self.sorted_longest)
     }
 
     /// Reads the lists of the last submitted frame back, blocking.

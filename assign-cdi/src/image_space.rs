@@ -43,8 +43,8 @@ pub struct ImagesUniform {
     pub side_cells: u32,
     /// Half the scene's box, and a little more.
     pub half_box_m: [f32; 3],
-    /// Pads to 64 bytes.
-    pub padding: u32,
+    /// The longest list that is sorted: longer ones say nothing.
+    pub sorted_longest: u32,
 }
 
 /// How much larger than its box the scene is taken to be: rounding of single precision.
@@ -96,7 +96,7 @@ impl ImagesUniform {
             cell_m: 2.0 * radius_m / settings.side_cells() as f32,
             side_cells: settings.side_cells(),
             half_box_m: half.into(),
-            padding: 0,
+            sorted_longest: 0,
         })
     }
 

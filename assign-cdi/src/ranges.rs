@@ -53,6 +53,9 @@ pub struct RangeRule {
     pub combine: Combine,
     /// Where the primary ray goes.
     pub primary: Primary,
+    /// Whether each ray is corrected by a second look-up (`ray_cast.wesl`, `cast_corrected_ray`): not
+    /// the paper's, nearer to exact rays, and slower.
+    pub is_corrected: bool,
     /// What a thread does.
     pub threads: Threads,
 }
@@ -69,6 +72,7 @@ impl Default for RangeRule {
             cone_angle: TAU / 6.0,
             combine: Combine::default(),
             primary: Primary::default(),
+            is_corrected: false,
             threads: Threads::default(),
         }
     }
@@ -174,6 +178,7 @@ impl RangeCaster {
         DeepImages::mount(settings, Shader::new(3), 0)
             .module("package::ranges", include_str!("shaders/ranges.wesl"))
             .flag("given_primary", rule.primary == Primary::Given)
+            .flag("corrected", rule.is_corrected)
             .flag("a_ray_a_thread", rule.threads == Threads::Rays)
     }
 

@@ -265,6 +265,36 @@ fn what_does_not_fit_is_said_and_grows() {
 }
 
 #[test]
+fn longer_lists_than_are_sorted_say_nothing_until_they_are() {
+    let gpu = Gpu::open(None).unwrap();
+    // Three thousand layers behind each other.
+    let layer = |ix: u32| {
+        let z = ix as f32 * 0.003;
+        [Vec3::new(-1.0, -1.0, z), Vec3::new(9.0, -1.0, z), Vec3::new(-1.0, 9.0, z)]
+    };
+    let scene = Scene::new(&gpu, (0..3000).map(layer).collect());
+    let settings = DeepImageSettings {
+        directions: Directions::new(Spread::StacksAndSlices, 1, 1).unwrap(),
+        size_px: 4,
+        ..settings(SINGLE, Storage::Arrays)
+    };
+    let mut images = DeepImages::new(&gpu, settings).unwrap();
+    frame(&gpu, &mut images, &scene);
+    assert_eq!(images.is_complete(), None);
+    let mut seen = Vec::new();
+    for _ in 0..4 {
+        frame(&gpu, &mut images, &scene);
+        seen.extend(images.is_complete());
+    }
+    // Samples that overflow, then lists that are too long to be sorted, then all is well.
+    assert_eq!(seen.first(), Some(&false), "{seen:?}");
+    assert_eq!(seen.last(), Some(&true), "{seen:?}");
+    let snapshot = images.snapshot(&gpu).unwrap();
+    assert!(snapshot.counters.longest > 2048, "{:?}", snapshot.counters);
+    assert!(lists_of(&snapshot, &settings).iter().all(|list| list.is_sorted()));
+}
+
+#[test]
 fn triangles_outside_are_counted() {
     let gpu = Gpu::open(None).unwrap();
     let mut triangles = room(9, 2, 5);

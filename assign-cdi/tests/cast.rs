@@ -96,6 +96,26 @@ fn errors_fall_with_directions_and_pixels() {
 }
 
 #[test]
+fn a_second_look_corrects_for_the_angle() {
+    let gpu = Gpu::open(None).unwrap();
+    let scene = Scene::new(&gpu, room(15, 12, 0));
+    let rays = rays_from_surfaces(&scene.triangles, 2000, 16);
+    let twice = RAY_CAST_WESL
+        .replace("fn cast_ray(", "fn cast_once(")
+        .replace("= cast_ray(", "= cast_once(")
+        .replace("fn cast_corrected_ray(", "fn cast_ray(");
+    for storage in [Storage::Arrays, Storage::LinkedLists] {
+        let settings = DeepImageSettings { storage, ..settings(32, 128, Spread::Squares) };
+        let images = settled(&gpu, settings, &scene);
+        let once = errors(&scene, &images, &rays, &cast(&gpu, &images, &rays));
+        let twice = errors(&scene, &images, &rays, &cast_with(&gpu, &images, &rays, &twice));
+        let (a, b) = (once.median_m, twice.median_m);
+        assert!(b < 0.5 * a, "{storage:?}: {a} m, corrected {b} m");
+        assert!(twice.mean_m < once.mean_m, "{storage:?}");
+    }
+}
+
+#[test]
 fn the_origins_surface_is_passed_over() {
     let gpu = Gpu::open(None).unwrap();
     let scene = Scene::new(&gpu, room(13, 0, 0));

@@ -64,8 +64,10 @@ fn kernels_validate() {
         }
         for primary in [Primary::Normal, Primary::Given] {
             for threads in [Threads::Points, Threads::Rays] {
-                let rule = RangeRule { primary, threads, ..RangeRule::default() };
-                validated(&RangeCaster::shader(&settings, rule), "package::ranges");
+                for is_corrected in [false, true] {
+                    let rule = RangeRule { primary, threads, is_corrected, ..RangeRule::default() };
+                    validated(&RangeCaster::shader(&settings, rule), "package::ranges");
+                }
             }
         }
     }
@@ -114,7 +116,7 @@ fn structs() {
     let samples = validated(&build, "package::from_samples");
     assert_same!(samples, "Images", ImagesUniform: centre_world, radius_m, footprint_m, size_px,
         direction_count, triangle_count, sample_capacity, fragment_capacity, cell_m, side_cells,
-        half_box_m);
+        half_box_m, sorted_longest);
     assert_same!(samples, "Counting", DeepImageCounters: sample_count, fragment_count, large_count,
         rejected_count, is_overflowed, longest);
     assert_same!(samples, "Stage", StageUniform: first_direction, mode);

@@ -8,13 +8,13 @@ use shading::{EDGE, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
 use crate::{
     checks::{check_writable, remove_stale},
     cli::CdiArgs,
-    clock::PassClock,
+    clock::{PassClock, PassTime},
     compare::{Bench, DEFAULT_FRAMES},
     deep::{figures, settings_of, settle},
     error::HarnessError,
     machine::machine,
     pass_samples::PassSamples,
-    range_errors::range_errors,
+    range_errors::{range_errors, seen_points},
     results::{CastTimes, DeepImageRun, Results, Truth, TruthLevel, median},
     vpls::{all_texels, points_of},
 };
@@ -53,11 +53,16 @@ pub fn measure(
     let primary = primary_light(scene);
     let casts = casts(&gpu, scene, primary, &images, args, frames)?;
     let rule = RangeRule { rays: args.rays, ..RangeRule::default() };
-    let range_errors = match args.compared {
-        0 => None,
+    let [plain, corrected] = match args.compared {
+        0 => [None, None],
         rays => {
             let traced = TracedScene::new(scene);
-            Some(range_errors(&gpu, &images, &traced, &primary, rule, (rays, args.seed))?)
+            let points = seen_points(&traced, &scene.path, (rays / args.rays) as usize, args.seed);
+            let of = |is_corrected| {
+                let rule = RangeRule { is_corrected, ..rule };
+                range_errors(&gpu, &images, &traced, &points, rule).map(Some)
+            };
+            [of(false)?, of(true)?]
         }
     };
     let run = DeepImageRun {
@@ -67,7 +72,8 @@ pub fn measure(
         deep: figures(&images, &args.deep),
         passes: passes.finish(),
         casts,
-        range_errors,
+        range_errors: plain,
+        corrected_errors: corrected,
     };
     let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes: Vec::new() };
     let mut results = Results::new(machine(&gpu), command, level);
@@ -127,20 +133,30 @@ fn casts(
         let rule = RangeRule { rays: args.rays, ..RangeRule::default() };
         let mut caster = RangeCaster::new(gpu, images, rule)?;
         caster.prepare(gpu, &points_of(&vpls))?;
+        let twice = RangeRule { is_corrected: true, ..rule };
+        let mut corrected = RangeCaster::new(gpu, images, twice)?;
+        corrected.prepare(gpu, &points_of(&vpls))?;
         let mut random = RandomRanges::new(gpu)?;
         random.prepare(gpu, vpls.ranges_m(), vpls.capacity(), (0.0, 1.0), args.seed as u32)?;
-        let (mut cast_ms, mut random_ms) = (Vec::new(), Vec::new());
+        let [mut cast_ms, mut corrected_ms, mut random_ms] = [const { Vec::new() }; 3];
         let mut clock = PassClock::new(gpu);
         let warmup = if gpu.is_software() { 0 } else { WARMUP };
         for frame in 0..warmup + frames {
             random.record(&mut clock);
+            let random = clock.finish()?;
             caster.record(images, &mut clock)?;
-            for (name, ms) in clock.finish()?.into_iter().filter(|_| frame >= warmup) {
-                if name == "random-ranges" { random_ms.push(ms) } else { cast_ms.push(ms) }
+            let cast = clock.finish()?;
+            corrected.record(images, &mut clock)?;
+            let corrected = clock.finish()?;
+            if frame >= warmup {
+                let ms = |times: Vec<PassTime>| times.into_iter().map(|(_, ms)| ms);
+                random_ms.extend(ms(random));
+                cast_ms.extend(ms(cast));
+                corrected_ms.extend(ms(corrected));
             }
         }
         let lights = u64::from(vpls.read_counts(gpu)?.chosen);
-        all.push(CastTimes { rsm_px, lights, rays: args.rays, cast_ms, random_ms });
+        all.push(CastTimes { rsm_px, lights, rays: args.rays, cast_ms, corrected_ms, random_ms });
     }
     Ok(all)
 }
@@ -165,18 +181,22 @@ fn summary(run: &DeepImageRun) -> String {
     let together = median(&run.passes.per_frame_ms(None));
     text += &format!("         {:<14} {together:.4} ms\n", "together");
     for cast in &run.casts {
-        let rays = cast.lights * u64::from(cast.rays);
-        let ms = median(&cast.cast_ms);
-        text += &format!("casts    {rays} rays of {} lights: {ms:.4} ms\n", cast.lights);
-    }
-    if let Some(errors) = &run.range_errors {
         text += &format!(
-            "ranges   {} rays: median error {:.3} of a pixel, of lights {:.3}, {:.1} % lost {:?}\n",
+            "casts    {} rays of {} lights: {:.4} ms, corrected {:.4} ms\n",
+            cast.lights * u64::from(cast.rays),
+            cast.lights,
+            median(&cast.cast_ms),
+            median(&cast.corrected_ms)
+        );
+    }
+    for (what, errors) in [("", &run.range_errors), (" corrected", &run.corrected_errors)] {
+        let Some(errors) = errors else { continue };
+        text += &format!(
+            "ranges   {}{what} rays: median error {:.3} of a pixel, of lights {:.3}; {:.1} % lost\n",
             errors.rays,
             errors.median(),
             errors.median_range_error,
-            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0,
-            errors.histogram
+            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0
         );
     }
     text

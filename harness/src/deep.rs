@@ -52,7 +52,7 @@ pub fn settle(
     for built in 0..=MAX_SETTLING {
         images.prepare(gpu, triangles)?;
         // The counters of a build come back with the next.
-        if built > 1 && images.stats().is_some_and(|stats| stats.is_overflowed == 0) {
+        if built > 1 && images.is_complete() == Some(true) {
             return Ok(());
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());

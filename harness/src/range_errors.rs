@@ -1,11 +1,12 @@
 //! Rays through deep images against exact ones: how far off their lengths are.
 
-use assign::{EncoderPasses, Gpu, Light, LightShape};
+use assign::{EncoderPasses, Gpu};
 use assign_cdi::{DeepImages, Primary, RangeCaster, RangePoints, RangeRule};
-use glam::{Quat, Vec3};
+use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
+use scenes::CameraPath;
 use shading::traced::TracedScene;
 
 use crate::{error::HarnessError, results::RangeErrors};
@@ -16,54 +17,62 @@ const QUANTILES: usize = 20;
 /// How far exact rays start off their surface, as a share of a footprint.
 const OFFSET: f64 = 1e-4;
 
-/// A point of a surface that the primary light reaches.
+/// A point of a surface.
 #[derive(Clone, Copy, Debug)]
-struct LitPoint {
-    position: Vec3,
-    /// On the side of the light.
-    normal: Vec3,
+pub struct SurfacePoint {
+    /// World space, metres.
+    pub position: Vec3,
+    /// Of unit length, on the side from which the point is seen.
+    pub normal: Vec3,
 }
 
-/// Points of surfaces that a spot reaches, drawn evenly over its cone. Fewer than `count` where most
-/// of the cone meets nothing.
-fn lit_points(scene: &TracedScene<'_>, light: &Light, count: usize, seed: u64) -> Vec<LitPoint> {
-    let LightShape::Spot { direction, outer_angle, .. } = light.shape else { return Vec::new() };
+/// Places along a path from which points are looked for.
+const PLACES: u32 = 16;
+
+/// Surfaces that are seen from along a path, in directions drawn evenly over the sphere. Fewer than
+/// `count` where most meet nothing.
+pub fn seen_points(
+    scene: &TracedScene<'_>,
+    path: &CameraPath,
+    count: usize,
+    seed: u64,
+) -> Vec<SurfacePoint> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let turn = Quat::from_rotation_arc(Vec3::Z, direction.normalize());
-    let mut drawn = || {
-        let cos = 1.0 - rng.random::<f32>() * (1.0 - outer_angle.cos());
-        let (sin, cos_turn) = (std::f32::consts::TAU * rng.random::<f32>()).sin_cos();
-        let radius = (1.0 - cos * cos).max(0.0).sqrt();
-        turn * Vec3::new(radius * cos_turn, radius * sin, cos)
+    let mut direction = || {
+        let z = 2.0 * rng.random::<f64>() - 1.0;
+        let (sin, cos) = (std::f64::consts::TAU * rng.random::<f64>()).sin_cos();
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        DVec3::new(radius * cos, radius * sin, z)
     };
-    // Eight times as many directions as points: a sun's cone is wider than its scene.
-    let directions: Vec<Vec3> = (0..8 * count).map(|_| drawn()).collect();
-    let origin = light.position.as_dvec3();
-    let met = |direction: &Vec3| {
-        let direction = direction.as_dvec3().normalize();
-        let (distance, normal) = scene.surface(origin, direction)?;
-        let position = (origin + direction * distance).as_vec3();
-        Some(LitPoint { position, normal: normal.as_vec3().normalize() })
+    // Some directions meet the sky.
+    let rays: Vec<(DVec3, DVec3)> = (0..2 * count)
+        .map(|ix| (path.pose(ix as u32 % PLACES, PLACES).eye.as_dvec3(), direction()))
+        .collect();
+    let met = |(eye, direction): &(DVec3, DVec3)| {
+        let (distance, normal) = scene.surface(*eye, *direction)?;
+        let position = (*eye + *direction * distance).as_vec3();
+        Some(SurfacePoint { position, normal: normal.as_vec3().normalize() })
     };
-    let all: Vec<LitPoint> = directions.par_iter().filter_map(met).collect();
+    let all: Vec<SurfacePoint> = rays.par_iter().filter_map(met).collect();
     all.into_iter().take(count).collect()
 }
 
-/// Casts rays of `rule` from points that `light` reaches, about `rays` in all, through deep images that
-/// are built, and exactly.
+/// Casts the rays of `rule` from points through deep images that are built, and exactly.
+///
+/// # Errors
+///
+/// What the device refuses.
 pub fn range_errors(
     gpu: &Gpu,
     images: &DeepImages,
     scene: &TracedScene<'_>,
-    light: &Light,
+    points: &[SurfacePoint],
     rule: RangeRule,
-    (rays, seed): (u32, u64),
 ) -> Result<RangeErrors, HarnessError> {
-    let points = lit_points(scene, light, rays.div_ceil(rule.rays) as usize, seed);
     let footprint_m = f64::from(images.space().footprint_m);
     // Each ray by itself: a point and a primary direction a ray.
     let single = RangeRule { rays: 1, primary: Primary::Given, ..rule };
-    let all: Vec<(LitPoint, Vec3)> = points
+    let all: Vec<(SurfacePoint, Vec3)> = points
         .iter()
         .flat_map(|point| (0..rule.rays).map(|ray| (*point, turned(rule.ray(ray), point.normal))))
         .collect();
@@ -130,12 +139,12 @@ fn lengths(
     gpu: &Gpu,
     images: &DeepImages,
     rule: RangeRule,
-    rays: &[(LitPoint, Vec3)],
+    rays: &[(SurfacePoint, Vec3)],
 ) -> Result<Vec<Option<f64>>, HarnessError> {
     if rays.is_empty() {
         return Ok(Vec::new());
     }
-    let upload = |label: &str, of: &dyn Fn(&(LitPoint, Vec3)) -> Vec3| {
+    let upload = |label: &str, of: &dyn Fn(&(SurfacePoint, Vec3)) -> Vec3| {
         let data: Vec<[f32; 4]> = rays.iter().map(|ray| of(ray).extend(0.0).to_array()).collect();
         let buffer = gpu.storage(label, data.len() as u64 * 16)?;
         gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&data));

@@ -94,6 +94,7 @@ impl VplMaker {
             rsm_px: args.bounce.vpls,
             ranges: args.bounce.ranges.name().to_owned(),
             rays: if casts { args.bounce.rays } else { 0 },
+            is_corrected: casts && args.bounce.correct_rays,
             range_scale: f64::from(set.range_scale),
             random_m: (args.bounce.ranges == RangeChoice::Random).then(|| {
                 let span = random_span(scene, &args.bounce);
@@ -247,7 +248,7 @@ fn rule_of(args: &VplArgs) -> RangeRule {
         RangeChoice::Maximum => Combine::Maximum,
         _ => Combine::Average,
     };
-    RangeRule { rays: args.rays, combine, ..RangeRule::default() }
+    RangeRule { rays: args.rays, combine, is_corrected: args.correct_rays, ..RangeRule::default() }
 }
 
 /// The lights whose ranges are wanted.

@@ -31,6 +31,10 @@ pub struct VplArgs {
     #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::rays)]
     pub rays: u32,
 
+    /// Correct each ray by a second look-up: nearer to exact rays, and slower
+    #[arg(long)]
+    pub correct_rays: bool,
+
     /// Factor on the ranges that were found, 0.1 to 100: light fades out before its range
     #[arg(long, value_name = "X", default_value = "2", allow_hyphen_values = true, value_parser = values::range_scale)]
     pub range_scale: f64,

@@ -13,6 +13,9 @@ pub struct Vpls {
     pub ranges: String,
     /// Rays of each light; 0 where none was cast.
     pub rays: u32,
+    /// Whether each ray was corrected by a second look-up.
+    #[serde(default)]
+    pub is_corrected: bool,
     /// Factor on the ranges that were found.
     pub range_scale: f64,
     /// Bounds of random ranges, metres.
@@ -97,6 +100,9 @@ pub struct DeepImageRun {
     /// Rays compared with exact ones.
     #[serde(default)]
     pub range_errors: Option<RangeErrors>,
+    /// The same rays, each corrected by a second look-up.
+    #[serde(default)]
+    pub corrected_errors: Option<RangeErrors>,
 }
 
 /// Times of finding the ranges of virtual point lights.
@@ -110,6 +116,9 @@ pub struct CastTimes {
     pub rays: u32,
     /// Times of casting them, ms, one a frame.
     pub cast_ms: Vec<f64>,
+    /// Times of casting them with a second look-up each, ms.
+    #[serde(default)]
+    pub corrected_ms: Vec<f64>,
     /// Times of giving as many lights random ranges, ms.
     pub random_ms: Vec<f64>,
 }
