@@ -267,12 +267,12 @@ fn what_does_not_fit_is_said_and_grows() {
 #[test]
 fn longer_lists_than_are_sorted_say_nothing_until_they_are() {
     let gpu = Gpu::open(None).unwrap();
-    // Three thousand layers behind each other.
+    // Eight thousand layers behind each other.
     let layer = |ix: u32| {
-        let z = ix as f32 * 0.003;
+        let z = ix as f32 * 0.001;
         [Vec3::new(-1.0, -1.0, z), Vec3::new(9.0, -1.0, z), Vec3::new(-1.0, 9.0, z)]
     };
-    let scene = Scene::new(&gpu, (0..3000).map(layer).collect());
+    let scene = Scene::new(&gpu, (0..8000).map(layer).collect());
     let settings = DeepImageSettings {
         directions: Directions::new(Spread::StacksAndSlices, 1, 1).unwrap(),
         size_px: 4,

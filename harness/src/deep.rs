@@ -6,7 +6,7 @@ use assign_cdi::{
 };
 
 use crate::{
-    cli::{BuildChoice, DeepArgs},
+    cli::{BuildChoice, DeepArgs, SpreadChoice},
     error::HarnessError,
     results,
 };
@@ -18,8 +18,11 @@ const MAX_SETTLING: u32 = 8;
 pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
     let single = |raster| Build::SinglePass { oversampling: args.oversampling, raster };
     let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
-    let directions =
-        Directions::new(Spread::Squares, args.directions.stacks, args.directions.slices)?;
+    let spread = match args.spread {
+        SpreadChoice::Stacks => Spread::StacksAndSlices,
+        SpreadChoice::Squares => Spread::Squares,
+    };
+    let directions = Directions::new(spread, args.directions.stacks, args.directions.slices)?;
     let settings = DeepImageSettings {
         directions,
         size_px: args.deep_size,
@@ -75,6 +78,7 @@ pub fn figures(images: &DeepImages, args: &DeepArgs) -> results::DeepImages {
     results::DeepImages {
         stacks: args.directions.stacks,
         slices: args.directions.slices,
+        spread: args.spread.name().to_owned(),
         size_px: args.deep_size,
         oversampling: args.oversampling,
         build: args.build.name().to_owned(),

@@ -66,6 +66,10 @@ pub struct DeepArgs {
     #[arg(long, value_name = "SxS", default_value = "13x13", allow_hyphen_values = true)]
     pub directions: DirectionCounts,
 
+    /// How directions are spread over the hemisphere
+    #[arg(long, value_name = "HOW", default_value = "stacks")]
+    pub spread: SpreadChoice,
+
     /// Pixels along a side of each deep image, 4 to 1,024
     #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::deep_size)]
     pub deep_size: u32,
@@ -77,6 +81,25 @@ pub struct DeepArgs {
     /// How the deep images are built
     #[arg(long, value_name = "HOW", default_value = "compute")]
     pub build: BuildChoice,
+}
+
+/// How directions are spread over the hemisphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SpreadChoice {
+    /// Stacks of equal solid angle, each cut into slices, as in the paper
+    Stacks,
+    /// Cells as wide as high: a square mapped to the hemisphere with equal areas
+    Squares,
+}
+
+impl SpreadChoice {
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stacks => "stacks",
+            Self::Squares => "squares",
+        }
+    }
 }
 
 /// How far a virtual point light reaches.

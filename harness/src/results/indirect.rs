@@ -56,6 +56,9 @@ pub struct DeepImages {
     pub stacks: u32,
     /// Directions of a ring.
     pub slices: u32,
+    /// How they are spread: `stacks` or `squares`.
+    #[serde(default)]
+    pub spread: String,
     /// Side of an image, pixels.
     pub size_px: u32,
     /// Samples of surfaces along each side of a pixel.

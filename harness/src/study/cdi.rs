@@ -209,6 +209,7 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
     }
     let usual = extent.deep(None, None);
     add("oversampled", &[&usual[..], &["--oversampling", "2"], &compared].concat());
+    add("squares", &[&usual[..], &["--spread", "squares"], &compared].concat());
     for build in ["linked-lists", "conservative"] {
         add(build, &[&usual[..], &["--build", build], &compared].concat());
     }
