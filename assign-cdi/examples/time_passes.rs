@@ -207,6 +207,7 @@ fn main() -> Result<(), AssignError> {
             caster.prepare(
                 &gpu,
                 &RangePoints {
+                    light_world: None,
                     positions: &points,
                     normals: &normals,
                     primaries: None,

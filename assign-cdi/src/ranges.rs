@@ -27,7 +27,9 @@ pub enum Primary {
     /// Along the normal.
     #[default]
     Normal,
-    /// Along a direction given for each point, such as that of reflected light.
+    /// As a mirror at the point reflects light from [`RangePoints::light_world`].
+    Reflected,
+    /// Along a direction given for each point.
     Given,
 }
 
@@ -119,6 +121,8 @@ pub struct RangePoints<'a> {
     pub normals: &'a wgpu::Buffer,
     /// `array<vec4f>`: unit primary directions, for [`Primary::Given`].
     pub primaries: Option<&'a wgpu::Buffer>,
+    /// Where the light is that the points reflect, for [`Primary::Reflected`].
+    pub light_world: Option<Vec3>,
     /// Number of points.
     pub count: u32,
     /// `array<f32>`: where ranges go, metres.
@@ -137,6 +141,8 @@ pub struct RangesUniform {
     pub is_maximum: u32,
     /// Pads to a multiple of 16 bytes.
     pub padding: u32,
+    /// The light that points reflect, world space.
+    pub light_world: [f32; 4],
     /// Directions of the rays around +z.
     pub rays: [[f32; 4]; MAX_RAYS as usize],
 }
@@ -177,6 +183,7 @@ impl RangeCaster {
     pub fn shader(settings: &DeepImageSettings, rule: RangeRule) -> Shader<'static> {
         DeepImages::mount(settings, Shader::new(3), 0)
             .module("package::ranges", include_str!("shaders/ranges.wesl"))
+            .flag("reflected_primary", rule.primary == Primary::Reflected)
             .flag("given_primary", rule.primary == Primary::Given)
             .flag("corrected", rule.is_corrected)
             .flag("a_ray_a_thread", rule.threads == Threads::Rays)
@@ -185,7 +192,7 @@ impl RangeCaster {
     /// Binds the points of a frame.
     pub fn prepare(&mut self, gpu: &Gpu, points: &RangePoints<'_>) -> Result<(), AssignError> {
         let primaries = match (self.rule.primary, points.primaries) {
-            (Primary::Normal, _) => points.normals,
+            (Primary::Normal | Primary::Reflected, _) => points.normals,
             (Primary::Given, Some(primaries)) => primaries,
             (Primary::Given, None) => {
                 return Err(AssignError::Parameter {
@@ -195,6 +202,13 @@ impl RangeCaster {
                 });
             }
         };
+        if self.rule.primary == Primary::Reflected && points.light_world.is_none() {
+            return Err(AssignError::Parameter {
+                field: "light_world".into(),
+                value: "none".into(),
+                accepted: "a position, where primary rays are reflected".into(),
+            });
+        }
         let buffers = [
             ("positions", points.positions, 16),
             ("normals", points.normals, 16),
@@ -215,6 +229,7 @@ impl RangeCaster {
             point_count: points.count,
             ray_count: self.rule.rays,
             is_maximum: u32::from(self.rule.combine == Combine::Maximum),
+            light_world: points.light_world.unwrap_or_default().extend(0.0).into(),
             ..RangesUniform::default()
         };
         for (ix, ray) in (0..self.rule.rays).zip(&mut uniform.rays) {

@@ -62,7 +62,7 @@ fn kernels_validate() {
         for root in BUILD_ROOTS {
             validated(&build_shader(&settings), root);
         }
-        for primary in [Primary::Normal, Primary::Given] {
+        for primary in [Primary::Normal, Primary::Reflected, Primary::Given] {
             for threads in [Threads::Points, Threads::Rays] {
                 for is_corrected in [false, true] {
                     let rule = RangeRule { primary, threads, is_corrected, ..RangeRule::default() };
@@ -126,7 +126,7 @@ fn structs() {
     let ranges = validated(&ranges, "package::ranges");
     assert_same!(ranges, "Header", DeepImageCounters: sample_count, fragment_count, large_count,
         rejected_count, is_overflowed, longest);
-    assert_same!(ranges, "Ranges", RangesUniform: point_count, ray_count, is_maximum, rays);
+    assert_same!(ranges, "Ranges", RangesUniform: point_count, ray_count, is_maximum, light_world, rays);
     let random = validated(&RandomRanges::shader(), "package::random_ranges");
     assert_same!(random, "Random", RandomUniform: point_count, seed, low_m, high_m);
     let sort = ListSort::shader(ListRanges::PrefixOffsets, 0).unwrap();

@@ -15,7 +15,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use scene::{
     Scene,
-    rays::{Ray, cast, ranges_of, rays_from_surfaces, settings},
+    rays::{LIGHT_WORLD, Ray, cast, ranges_of, rays_from_surfaces, settings},
     room, settled, unit,
 };
 
@@ -35,6 +35,7 @@ fn ranges_are_the_mean_or_the_longest_of_their_rays() {
             (Combine::Average, Primary::Normal),
             (Combine::Maximum, Primary::Normal),
             (Combine::Average, Primary::Given),
+            (Combine::Average, Primary::Reflected),
         ] {
             let rule = RangeRule { rays, combine, primary, ..RangeRule::default() };
             let ranges = ranges_of(&gpu, &images, &points, rule);
@@ -62,6 +63,9 @@ fn expected_ranges(gpu: &Gpu, images: &DeepImages, points: &[Ray], rule: RangeRu
             let axis = match rule.primary {
                 Primary::Normal => point.normal,
                 Primary::Given => point.direction,
+                Primary::Reflected => {
+                    (point.origin - LIGHT_WORLD).normalize().reflect(point.normal)
+                }
             };
             let (right, up) = axis.any_orthonormal_pair();
             let turn = Mat3::from_cols(right, up, axis);
@@ -153,6 +157,7 @@ fn ranges_without_what_they_need_are_refused() {
     assert!(record(&caster, &images).unwrap_err().contains("prepared points"));
     let buffer = gpu.storage("points", 160).unwrap();
     let mut points = RangePoints {
+        light_world: None,
         positions: &buffer,
         normals: &buffer,
         primaries: None,

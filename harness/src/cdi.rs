@@ -132,10 +132,10 @@ fn casts(
         let vpls = all_texels(gpu, scene, &renderer, primary, rsm_px)?;
         let rule = RangeRule { rays: args.rays, ..RangeRule::default() };
         let mut caster = RangeCaster::new(gpu, images, rule)?;
-        caster.prepare(gpu, &points_of(&vpls))?;
+        caster.prepare(gpu, &points_of(&vpls, None))?;
         let twice = RangeRule { is_corrected: true, ..rule };
         let mut corrected = RangeCaster::new(gpu, images, twice)?;
-        corrected.prepare(gpu, &points_of(&vpls))?;
+        corrected.prepare(gpu, &points_of(&vpls, None))?;
         let mut random = RandomRanges::new(gpu)?;
         random.prepare(gpu, vpls.ranges_m(), vpls.capacity(), (0.0, 1.0), args.seed as u32)?;
         let [mut cast_ms, mut corrected_ms, mut random_ms] = [const { Vec::new() }; 3];

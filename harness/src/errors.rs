@@ -82,6 +82,14 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
         value: |sums, pair| pixels_off(sums, pair),
     },
     ErrorMetric {
+        id: "mean_error",
+        head: "mean error",
+        unit: "",
+        about: "Mean over pixels of the absolute difference of luminance, over the mean luminance there \
+                should be.",
+        value: |sums, _| share(sums.off, sums.reference),
+    },
+    ErrorMetric {
         id: "flip",
         head: "FLIP",
         unit: "",
@@ -113,16 +121,19 @@ struct Sums {
     reference: f64,
     /// Of what lacks where the image is darker.
     darker: f64,
+    /// Of the absolute differences.
+    off: f64,
 }
 
 impl Sums {
     fn of(pair: &ImagePair<'_>) -> Self {
-        let mut sums = Self { pixels: 0.0, image: 0.0, reference: 0.0, darker: 0.0 };
+        let mut sums = Self { pixels: 0.0, image: 0.0, reference: 0.0, darker: 0.0, off: 0.0 };
         for (a, b) in luminances(pair) {
             sums.pixels += 1.0;
             sums.image += a;
             sums.reference += b;
             sums.darker += (b - a).max(0.0);
+            sums.off += (b - a).abs();
         }
         sums
     }

@@ -158,6 +158,7 @@ fn lengths(
             positions: &upload("points of rays", &|(point, _)| point.position)?,
             normals: &upload("normals of rays", &|(point, _)| point.normal)?,
             primaries: Some(&upload("directions of rays", &|(_, direction)| *direction)?),
+            light_world: None,
             count: rays.len() as u32,
             ranges_m: &ranges_m,
         },

@@ -2,15 +2,16 @@
 
 use assign::{EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M, MIN_RANGE_M, Passes, View};
 use assign_cdi::{
-    Combine, DeepImages, Large, RandomRanges, RangeCaster, RangePoints, RangeRule, Rsm, Triangles,
-    VplBuffer, VplSettings,
+    Combine, DeepImages, Large, Primary, RandomRanges, RangeCaster, RangePoints, RangeRule, Rsm,
+    Triangles, VplBuffer, VplSettings,
 };
+use glam::Vec3;
 use scenes::Scene;
 use shading::{Renderer, WorldTriangles, rsm_view};
 
 use crate::{
     cdi::triangles_of,
-    cli::{RangeChoice, Span, StageArgs, VplArgs},
+    cli::{PrimaryRay, RangeChoice, Span, StageArgs, VplArgs},
     clock::PassClock,
     deep::{figures, settings_of, settle},
     error::HarnessError,
@@ -72,7 +73,7 @@ impl VplMaker {
             self.triangles = Some(WorldTriangles::new(gpu, scene)?);
         }
         let triangles = self.triangles.as_ref().map(triangles_of);
-        let mut ranges = Ranges::new(gpu, scene, args, &vpls, triangles)?;
+        let mut ranges = Ranges::new(gpu, scene, args, &vpls, (triangles, primary.position))?;
         let kind = usize::from(gpu.is_software());
         let mut samples = PassSamples::default();
         let mut clock = PassClock::new(gpu);
@@ -94,6 +95,7 @@ impl VplMaker {
             rsm_px: args.bounce.vpls,
             ranges: args.bounce.ranges.name().to_owned(),
             rays: if casts { args.bounce.rays } else { 0 },
+            is_reflected: casts && args.bounce.primary_ray == PrimaryRay::Reflected,
             is_corrected: casts && args.bounce.correct_rays,
             range_scale: f64::from(set.range_scale),
             random_m: (args.bounce.ranges == RangeChoice::Random).then(|| {
@@ -181,7 +183,12 @@ fn random_span(scene: &Scene, args: &VplArgs) -> Span {
 
 /// Where ranges come from.
 enum Ranges<'a> {
-    Cast { images: Box<DeepImages>, triangles: Triangles<'a>, caster: RangeCaster },
+    Cast {
+        images: Box<DeepImages>,
+        triangles: Triangles<'a>,
+        caster: RangeCaster,
+        light_world: Vec3,
+    },
     Random(RandomRanges),
     Infinite,
 }
@@ -192,14 +199,14 @@ impl<'a> Ranges<'a> {
         scene: &Scene,
         args: &StageArgs,
         vpls: &VplBuffer,
-        triangles: Option<Triangles<'a>>,
+        (triangles, light_world): (Option<Triangles<'a>>, Vec3),
     ) -> Result<Self, HarnessError> {
         let args = (&args.bounce, args.seed);
         if let (true, Some(triangles)) = (args.0.ranges.casts(), triangles) {
             let mut images = DeepImages::new(gpu, settings_of(&args.0.deep)?)?;
             settle(gpu, &mut images, &triangles)?;
             let caster = RangeCaster::new(gpu, &images, rule_of(args.0))?;
-            return Ok(Self::Cast { images: Box::new(images), triangles, caster });
+            return Ok(Self::Cast { images: Box::new(images), triangles, caster, light_world });
         }
         if args.0.ranges == RangeChoice::Random {
             let mut random = RandomRanges::new(gpu)?;
@@ -215,9 +222,9 @@ impl<'a> Ranges<'a> {
     }
 
     fn prepare(&mut self, gpu: &Gpu, vpls: &VplBuffer) -> Result<(), HarnessError> {
-        if let Self::Cast { images, triangles, caster } = self {
+        if let Self::Cast { images, triangles, caster, light_world } = self {
             images.prepare(gpu, triangles)?;
-            caster.prepare(gpu, &points_of(vpls))?;
+            caster.prepare(gpu, &points_of(vpls, Some(*light_world)))?;
         }
         Ok(())
     }
@@ -248,15 +255,25 @@ fn rule_of(args: &VplArgs) -> RangeRule {
         RangeChoice::Maximum => Combine::Maximum,
         _ => Combine::Average,
     };
-    RangeRule { rays: args.rays, combine, is_corrected: args.correct_rays, ..RangeRule::default() }
+    RangeRule {
+        rays: args.rays,
+        combine,
+        primary: match args.primary_ray {
+            PrimaryRay::Normal => Primary::Normal,
+            PrimaryRay::Reflected => Primary::Reflected,
+        },
+        is_corrected: args.correct_rays,
+        ..RangeRule::default()
+    }
 }
 
 /// The lights whose ranges are wanted.
-pub fn points_of(vpls: &VplBuffer) -> RangePoints<'_> {
+pub fn points_of(vpls: &VplBuffer, light_world: Option<Vec3>) -> RangePoints<'_> {
     RangePoints {
         positions: vpls.positions(),
         normals: vpls.normals(),
         primaries: None,
+        light_world,
         count: vpls.capacity(),
         ranges_m: vpls.ranges_m(),
     }

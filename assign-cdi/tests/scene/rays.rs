@@ -113,6 +113,9 @@ pub(crate) fn settings(count: u32, size_px: u32, spread: Spread) -> DeepImageSet
     }
 }
 
+/// The light that points reflect.
+pub(crate) const LIGHT_WORLD: Vec3 = Vec3::new(30.0, 50.0, 20.0);
+
 /// Ranges of rays' origins; their directions are the primary ones.
 pub(crate) fn ranges_of(gpu: &Gpu, images: &DeepImages, rays: &[Ray], rule: RangeRule) -> Vec<f32> {
     let words = |of: fn(&Ray) -> Vec3| -> Vec<Vec4> {
@@ -124,6 +127,7 @@ pub(crate) fn ranges_of(gpu: &Gpu, images: &DeepImages, rays: &[Ray], rule: Rang
     let ranges_m = upload(gpu, &vec![-7.0_f32; rays.len()]);
     let mut caster = RangeCaster::new(gpu, images, rule).unwrap();
     let points = RangePoints {
+        light_world: Some(LIGHT_WORLD),
         positions: &positions,
         normals: &normals,
         primaries: Some(&primaries),

@@ -26,10 +26,14 @@ pub struct VplArgs {
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     pub random_ranges: Option<Span>,
 
-    /// Rays that look for the range of a virtual point light, 1 to 16: the first along the surface's
-    /// normal, the others around it
+    /// Rays that look for the range of a virtual point light, 1 to 16: the first along the primary ray,
+    /// the others around it
     #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::rays)]
     pub rays: u32,
+
+    /// Where the first ray goes
+    #[arg(long, value_name = "WHERE", default_value = "normal")]
+    pub primary_ray: PrimaryRay,
 
     /// Correct each ray by a second look-up: nearer to exact rays, and slower
     #[arg(long)]
@@ -130,6 +134,15 @@ impl RangeChoice {
     pub fn casts(self) -> bool {
         matches!(self, Self::Average | Self::Maximum)
     }
+}
+
+/// Where the first ray of a virtual point light goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PrimaryRay {
+    /// Along the surface's normal
+    Normal,
+    /// As a mirror would reflect the primary light
+    Reflected,
 }
 
 /// How deep images are built.

@@ -13,6 +13,9 @@ pub struct Vpls {
     pub ranges: String,
     /// Rays of each light; 0 where none was cast.
     pub rays: u32,
+    /// Whether the first ray went where a mirror reflects the primary light, not along the normal.
+    #[serde(default)]
+    pub is_reflected: bool,
     /// Whether each ray was corrected by a second look-up.
     #[serde(default)]
     pub is_corrected: bool,

@@ -50,12 +50,14 @@ struct Extent {
     casts: &'static str,
     compared: &'static str,
     strategies: &'static str,
+    /// Directions of conservative images: many fragments a triangle.
+    conservative: &'static str,
 }
 
 const FULL: Extent = Extent {
     size: Size { width: 480, height: 270 },
     timed_size: Size { width: 1920, height: 1080 },
-    samples: "4096",
+    samples: "2048",
     frames: "32",
     warmup: "4",
     rsm: "256",
@@ -68,6 +70,7 @@ const FULL: Extent = Extent {
     casts: "256,512,1024,2048",
     compared: "200000",
     strategies: "None,T-E,DC-E,SC-E,G,M/2,HG",
+    conservative: "13x13",
 };
 
 const QUICK: Extent = Extent {
@@ -86,6 +89,7 @@ const QUICK: Extent = Extent {
     casts: "16,32",
     compared: "2000",
     strategies: "None,SC-E,HG",
+    conservative: "1x4",
 };
 
 impl Extent {
@@ -146,6 +150,10 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
         add(&format!("random-{share}"), extent.rsm, &random_words(span));
     }
     add("infinite", extent.rsm, &["--ranges", "infinite"]);
+    let corrected = [&extent.deep(None, None)[..], &["--correct-rays"]].concat();
+    add("corrected", extent.rsm, &corrected);
+    let reflected = [&extent.deep(None, None)[..], &["--primary-ray", "reflected"]].concat();
+    add("reflected", extent.rsm, &reflected);
     // More and fewer lights.
     for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
         add(&format!("average-rsm{rsm}"), rsm, &extent.deep(None, None));
@@ -210,9 +218,9 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
     let usual = extent.deep(None, None);
     add("oversampled", &[&usual[..], &["--oversampling", "2"], &compared].concat());
     add("squares", &[&usual[..], &["--spread", "squares"], &compared].concat());
-    for build in ["linked-lists", "conservative"] {
-        add(build, &[&usual[..], &["--build", build], &compared].concat());
-    }
+    add("linked-lists", &[&usual[..], &["--build", "linked-lists"], &compared].concat());
+    let deep = extent.deep(Some(extent.conservative), None);
+    add("conservative", &[&deep[..], &["--build", "conservative"], &compared].concat());
     let cast = [&usual[..], &["--casts", extent.casts, "--compared", "0"]].concat();
     jobs.push(Job::new(scene, CASTS, "", &[&common[..], &cast].concat()));
     let linked = [&cast[..], &["--build", "linked-lists"]].concat();

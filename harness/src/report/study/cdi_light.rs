@@ -16,7 +16,7 @@ use crate::stored::Store;
 use crate::study::{Done, MODELS, cdi, truth_of};
 
 /// The metric by which rules are told apart in words.
-const METRIC: &str = "rel_mse";
+const METRIC: &str = "mean_error";
 
 /// Gain of pictures of differences over that of the images.
 const GAIN: f32 = 4.0;
@@ -57,6 +57,11 @@ fn setting(record: &Record) -> String {
             parts.push(format!("\u{d7} {}", significant(vpls.range_scale)));
         }
         None => {}
+    }
+    for (said, words) in
+        [(vpls.is_reflected, "reflected primary rays"), (vpls.is_corrected, "corrected rays")]
+    {
+        parts.extend(said.then(|| words.to_owned()));
     }
     if let Some(deep) = &vpls.deep {
         parts.push(format!(
@@ -205,7 +210,7 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
                 );
         shown.push((name.to_owned(), format!("<div class=\"views\">{body}</div>\n")));
     }
-    let text = "Of each rule the setting of least relMSE. Indirect images are under the exposure of the truth.";
+    let text = "Of each rule the setting of least mean error. Indirect images are under the exposure of the truth.";
     part(scene, "pictures", "What ranges look like", text, &panels("Ranges", &shown))
 }
 
@@ -254,7 +259,7 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let say = |other: Entry<'_>, what: &str| {
         let theirs = error(other.record).unwrap_or(f64::NAN);
         format!(
-            "In {scene} ranges by rays ({}) err by relMSE {} in {} ms; the best random ranges {what} ({}) by {} in \
+            "In {scene} ranges by rays ({}) err by {} of the mean in {} ms; the best random ranges {what} ({}) by {} in \
              {} ms: {}.",
             setting(cast.record),
             difference(own),
@@ -272,7 +277,7 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     if let Some(other) = best(&all, "infinite", |_| true) {
         let theirs = error(other.record).unwrap_or(f64::NAN);
         found.push(format!(
-            "In {scene} lights of infinite range err by relMSE {} and take {} ms.",
+            "In {scene} lights of infinite range err by {} of the mean and take {} ms.",
             difference(theirs),
             significant(total_ms(other.record))
         ));
