@@ -31,6 +31,9 @@ const CLAMP_SHARE: f32 = 0.01;
 /// The longest random range as a share of it.
 const RANDOM_SHARE: f32 = 0.25;
 
+/// Half the middle of a scene, as a share of its core.
+const MIDDLE_SHARE: f32 = 0.1;
+
 /// Infinite ranges are as many diagonals of the scene: the window is above 0.9999 in it.
 const INFINITE_DIAGONALS: f32 = 20.0;
 
@@ -301,7 +304,8 @@ impl Passes for OfMap<'_> {
     }
 }
 
-/// Draws the map once and chooses its lights: their positions and normals are there then.
+/// Draws the map of the middle of the scene once, so that about every texel shows a surface, and makes a
+/// light of each: their positions and normals are there then.
 ///
 /// # Errors
 ///
@@ -313,7 +317,10 @@ pub fn all_texels(
     primary: Light,
     size_px: u32,
 ) -> Result<VplBuffer, HarnessError> {
-    let view = rsm_view(&primary, size_px, (scene.bounds.min, scene.bounds.max))?;
+    let mut view = rsm_view(&primary, size_px, (scene.bounds.min, scene.bounds.max))?;
+    let (centre, half) = (scene.core_bounds.center(), MIDDLE_SHARE * scene.core_bounds.size());
+    let middle = rsm_view(&primary, size_px, (centre - half, centre + half))?;
+    view.projection = middle.projection;
     let mut map = renderer.beside(&view)?;
     map.prepare(&view, &LightBuffer::new(gpu, &[primary])?)?;
     let mut vpls = VplBuffer::new(gpu, VplSettings::default())?;

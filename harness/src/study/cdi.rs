@@ -211,6 +211,9 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
             add(&format!("{build}-{directions}"), &words);
         }
     }
+    // One direction by itself: so many times as long would as many take, built one after the other.
+    let alone = [&extent.deep(Some("1x1"), None)[..], &["--build", "per-direction"], &only_built];
+    add("per-direction-1x1", &alone.concat());
     for size in extent.deep_sizes.iter().skip(1) {
         let deep = extent.deep(None, Some(size));
         add(&format!("size-{size}"), &[&deep[..], &compared].concat());

@@ -122,6 +122,10 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
             number(rays),
             significant(ms),
             significant(rays / ms / 1e6),
+            match cast.corrected_ms.is_empty() {
+                true => ABSENT.to_owned(),
+                false => significant(median(&cast.corrected_ms)),
+            },
             list.map_or(ABSENT.to_owned(), |list| significant(median(&list.cast_ms))),
             significant(random),
             theirs(0),
@@ -138,6 +142,7 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "rays".to_owned(),
         unit("cast", "ms"),
         unit("rate", "10\u{2079} rays/s"),
+        unit("corrected", "ms"),
         unit("through linked lists", "ms"),
         unit("random", "ms"),
         unit("paper, Atrium", "ms"),
@@ -151,7 +156,7 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "casts",
         "Rays from every pixel of the shadow map",
         &format!(
-            "Every pixel is a virtual point light, none is discarded; {} rays each through {} directions of \
+            "Every pixel of a map of the scene\u{2019}s middle is a virtual point light, none is discarded; {} rays each through {} directions of \
              {} x {} pixels. The paper\u{2019}s figures: {PAPER}.",
             run.casts.first().map_or(0, |cast| cast.rays),
             run.deep.directions(),

@@ -31,7 +31,9 @@ pub(super) fn build_ms(run: &DeepImageRun) -> f64 {
 
 /// Whether an image is of the size and sampling that directions and builds are compared at.
 fn is_plain(run: &DeepImageRun, first: &DeepImageRun) -> bool {
-    run.deep.size_px == first.deep.size_px && run.deep.oversampling == 1
+    run.deep.size_px == first.deep.size_px
+        && run.deep.oversampling == 1
+        && run.deep.spread == first.deep.spread
 }
 
 /// Builds that are charted against the number of directions: id, name, class.
@@ -53,7 +55,9 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
             .copied()
             .find(|run| run.deep.build == build && run.deep.directions() == directions)
     };
-    let mut counts: Vec<u32> = plain.iter().map(|run| run.deep.directions()).collect();
+    let alone = plain.iter().find(|run| is_alone(run)).map(|run| build_ms(run));
+    let mut counts: Vec<u32> =
+        plain.iter().filter(|run| !is_alone(run)).map(|run| run.deep.directions()).collect();
     counts.sort_unstable();
     counts.dedup();
     let ms = |run: Option<&DeepImageRun>| {
@@ -68,6 +72,10 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
             let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
             let mut row = vec![number(f64::from(count)), ms(compute), ms(fragment), ms(each)];
             row.push(factor.map_or(ABSENT.to_owned(), significant));
+            let separate = alone.map(|ms| ms * f64::from(count));
+            row.push(separate.map_or(ABSENT.to_owned(), significant));
+            let factor = compute.zip(separate).map(|(one, all)| all / build_ms(one));
+            row.push(factor.map_or(ABSENT.to_owned(), significant));
             row.extend([theirs(0), theirs(1)]);
             row
         })
@@ -78,6 +86,8 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
         unit("one pass, compute"),
         unit("one pass, rasterised"),
         unit("a pass a direction"),
+        "factor".to_owned(),
+        unit("each by itself"),
         "factor".to_owned(),
         unit("paper, Atrium"),
         unit("paper, Rungholt"),
@@ -90,7 +100,8 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
         + &memory(&all);
     let text = format!(
         "{} triangles, {1} x {1} pixels a direction. All of a build is on the clock: sampling or drawing, \
-         counting, prefix sum, filling and sorting. The paper\u{2019}s figures: {2}.",
+         counting, prefix sum, filling and sorting. A pass a direction shares the prefix sum and the sort among \
+         all; each by itself is one direction built alone, times their number. The paper\u{2019}s figures: {2}.",
         number(first.triangles as f64),
         first.deep.size_px,
         super::cdi::PAPER
@@ -98,11 +109,16 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
     part(scene, "builds", "Building deep images", &text, &body)
 }
 
+/// Whether it is one direction built alone.
+fn is_alone(run: &DeepImageRun) -> bool {
+    run.deep.build == "per-direction" && run.deep.directions() == 1
+}
+
 fn build_chart(plain: &[&DeepImageRun]) -> XyChart {
     let series = BUILDS
         .iter()
         .map(|(id, name, class)| {
-            let own = plain.iter().filter(|run| run.deep.build == *id);
+            let own = plain.iter().filter(|run| run.deep.build == *id && !is_alone(run));
             let mut points: Vec<Point> = own
                 .map(|run| {
                     let (x, y) = (f64::from(run.deep.directions()), build_ms(run));
@@ -233,9 +249,17 @@ pub(super) fn findings(done: &Done, scene: &str) -> Option<String> {
     };
     let one = best(|build| build == "compute" || build == "fragment")?;
     let each = best(|build| build == "per-direction")?;
+    let alone = all.iter().find(|run| is_alone(run)).map(|run| build_ms(run) * f64::from(most));
+    let alone = alone.filter(|ms| ms.is_finite()).map_or_else(String::new, |ms| {
+        format!(
+            " and {} times as fast as each by itself, {} ms",
+            significant(ms / one),
+            significant(ms)
+        )
+    });
     Some(format!(
         "In {scene} one pass over the triangles builds {most} directions in {} ms, {} times as fast as a pass a \
-         direction, {} ms; the paper says {} times in its atrium and {} in its town.",
+         direction, {} ms{alone}; the paper says {} times in its atrium and {} in its town.",
         significant(one),
         significant(each / one),
         significant(each),

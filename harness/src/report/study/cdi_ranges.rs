@@ -50,7 +50,7 @@ pub(super) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> String {
 
 /// Whether it is built as in the paper.
 fn is_paper_build(run: &DeepImageRun) -> bool {
-    run.deep.oversampling == 1 && run.deep.build == "compute"
+    run.deep.oversampling == 1 && run.deep.build == "compute" && run.deep.spread != "squares"
 }
 
 fn chart(
@@ -116,17 +116,21 @@ fn histogram((run, errors): &(&DeepImageRun, &RangeErrors)) -> Histogram {
 }
 
 fn errors_table(all: &[(&DeepImageRun, &RangeErrors)]) -> String {
-    let rows: Vec<Vec<String>> = all
-        .iter()
-        .map(|(run, errors)| {
+    let corrected =
+        all.iter().filter_map(|(run, _)| Some((*run, run.corrected_errors.as_ref()?, true)));
+    let both = all.iter().map(|(run, errors)| (*run, *errors, false)).chain(corrected);
+    let rows: Vec<Vec<String>> = both
+        .map(|(run, errors, is_corrected)| {
             let share = |count: u64| percent(count as f64 / errors.rays.max(1) as f64);
             vec![
                 format!(
-                    "{} x {}\u{b2}{}, {}",
+                    "{} x {}\u{b2}{}{}, {}{}",
                     run.deep.directions(),
                     run.deep.size_px,
                     if run.deep.oversampling > 1 { ", oversampled" } else { "" },
-                    run.deep.build
+                    if run.deep.spread == "squares" { ", squares" } else { "" },
+                    run.deep.build,
+                    if is_corrected { ", corrected" } else { "" }
                 ),
                 significant(errors.median()),
                 significant(quantile(errors, 0.9)),
