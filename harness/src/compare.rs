@@ -138,6 +138,7 @@ impl Bench {
         let machine = machine(&gpu);
         let stage = self.stage(&args.stage)?;
         stage.area_model = args.area_model;
+        stage.compensation = args.compensate.map(|lights| lights as f32);
         // What a strategy cannot serve shows before anything long begins.
         let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
         let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };

@@ -9,12 +9,12 @@ use super::values::{self, DirectionCounts, Span};
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct VplArgs {
     /// Light the scene by its primary light alone: its brightest spot, else a sun
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["lights", "lights_from", "spots", "areas", "threshold"])]
     pub primary: bool,
 
     /// Light the scene by what its surfaces reflect of its primary light: virtual point lights from a
     /// reflective shadow map of N x N pixels, 16 to 2,048; 0 is none
-    #[arg(long, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::rsm, conflicts_with = "primary")]
+    #[arg(long, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::rsm, conflicts_with_all = ["primary", "lights", "lights_from", "spots", "areas", "threshold"])]
     pub vpls: u32,
 
     /// How far a virtual point light reaches: as far as rays through the deep images say on average or
