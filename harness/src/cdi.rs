@@ -57,7 +57,8 @@ pub fn measure(
         0 => [None, None],
         rays => {
             let traced = TracedScene::new(scene);
-            let points = seen_points(&traced, &scene.path, (rays / args.rays) as usize, args.seed);
+            let points =
+                seen_points(&traced, &scene.path, rays.div_ceil(args.rays) as usize, args.seed);
             let of = |is_corrected| {
                 let rule = RangeRule { is_corrected, ..rule };
                 range_errors(&gpu, &images, &traced, &points, rule).map(Some)
@@ -128,8 +129,10 @@ fn casts(
     let view = rsm_view(&primary, first, (scene.bounds.min, scene.bounds.max))?;
     let renderer = Renderer::new(gpu, scene, &view)?;
     let mut all = Vec::new();
-    for &rsm_px in &args.casts.0 {
-        let vpls = all_texels(gpu, scene, &renderer, primary, rsm_px)?;
+    let whole = args.casts.0.iter().map(|&rsm_px| (rsm_px, false));
+    let largest = args.casts.0.iter().max().map(|&rsm_px| (rsm_px, true));
+    for (rsm_px, is_middle) in whole.chain(largest) {
+        let vpls = all_texels(gpu, scene, &renderer, primary, (rsm_px, is_middle))?;
         let rule = RangeRule { rays: args.rays, ..RangeRule::default() };
         let mut caster = RangeCaster::new(gpu, images, rule)?;
         caster.prepare(gpu, &points_of(&vpls, None))?;
@@ -156,7 +159,15 @@ fn casts(
             }
         }
         let lights = u64::from(vpls.read_counts(gpu)?.chosen);
-        all.push(CastTimes { rsm_px, lights, rays: args.rays, cast_ms, corrected_ms, random_ms });
+        all.push(CastTimes {
+            rsm_px,
+            is_middle,
+            lights,
+            rays: args.rays,
+            cast_ms,
+            corrected_ms,
+            random_ms,
+        });
     }
     Ok(all)
 }
@@ -182,9 +193,10 @@ fn summary(run: &DeepImageRun) -> String {
     text += &format!("         {:<14} {together:.4} ms\n", "together");
     for cast in &run.casts {
         text += &format!(
-            "casts    {} rays of {} lights: {:.4} ms, corrected {:.4} ms\n",
+            "casts    {} rays of {} lights{}: {:.4} ms, corrected {:.4} ms\n",
             cast.lights * u64::from(cast.rays),
             cast.lights,
+            if cast.is_middle { " of the middle" } else { "" },
             median(&cast.cast_ms),
             median(&cast.corrected_ms)
         );

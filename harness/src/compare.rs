@@ -91,7 +91,8 @@ impl Bench {
 
     /// The stage that arguments ask for; the scene is opened once while it stays the same.
     pub fn stage(&mut self, args: &StageArgs) -> Result<&mut Stage, HarnessError> {
-        let key = format!("{} {} {}", args.scene, args.scene_scale, args.replicate);
+        let bounce = args.bounce.is_on();
+        let key = format!("{} {} {} {bounce}", args.scene, args.scene_scale, args.replicate);
         let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
             Some((key, mut stage)) => {
                 stage.set_up(&self.gpu, args)?;

@@ -16,6 +16,14 @@ const MAX_SETTLING: u32 = 8;
 
 /// The settings that options ask for.
 pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
+    let visits = [BuildChoice::PerDirection, BuildChoice::Conservative];
+    if args.oversampling > 1 && visits.contains(&args.build) {
+        return Err(AssignError::Parameter {
+            field: "--oversampling".into(),
+            value: args.oversampling.to_string(),
+            accepted: format!("1 where --build is {}", args.build.name()),
+        });
+    }
     let single = |raster| Build::SinglePass { oversampling: args.oversampling, raster };
     let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
     let spread = match args.spread {

@@ -78,7 +78,11 @@ impl Stage {
     fn under_scattered_lights(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
         let unscaled_m = scene.core_bounds.diagonal();
-        let scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
+        let mut scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
+        if args.bounce.is_on() {
+            // What is seen is what the primary light sends, and the truth knows nothing else.
+            scene = scene.without_emission();
+        }
         let Set { lens, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
         Ok(Self {
             scene_hash: scene.hash(),
@@ -115,7 +119,7 @@ impl Stage {
     /// ask for it.
     fn bounce(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
         self.vpls = None;
-        if !args.bounce.primary && args.bounce.vpls == 0 {
+        if !args.bounce.is_on() {
             return Ok(());
         }
         let primary = primary_light(&self.scene);
@@ -170,7 +174,7 @@ impl Lit {
             LightBox::Core | LightBox::Cylinders => scene.core_bounds,
             LightBox::Bounds => scene.bounds,
         };
-        if args.bounce.primary || args.bounce.vpls > 0 {
+        if args.bounce.is_on() {
             return Ok(Self { lights: Vec::new(), bounds, own: 0 });
         }
         let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };

@@ -11,7 +11,7 @@ use shading::{Renderer, WorldTriangles, rsm_view};
 
 use crate::{
     cdi::triangles_of,
-    cli::{PrimaryRay, RangeChoice, Span, StageArgs, VplArgs},
+    cli::{CliError, PrimaryRay, RangeChoice, Span, StageArgs, VplArgs},
     clock::PassClock,
     deep::{figures, settings_of, settle},
     error::HarnessError,
@@ -31,8 +31,8 @@ const CLAMP_SHARE: f32 = 0.01;
 /// The longest random range as a share of it.
 const RANDOM_SHARE: f32 = 0.25;
 
-/// Half the middle of a scene, as a share of its core.
-const MIDDLE_SHARE: f32 = 0.1;
+/// Half the width of the middle of a scene, as a share of its core's.
+const MIDDLE_SHARE: f32 = 0.25;
 
 /// Infinite ranges are as many diagonals of the scene: the window is above 0.9999 in it.
 const INFINITE_DIAGONALS: f32 = 20.0;
@@ -66,6 +66,7 @@ impl VplMaker {
         primary: Light,
         args: &StageArgs,
     ) -> Result<Made, HarnessError> {
+        check(&args.bounce)?;
         let bounds = (scene.bounds.min, scene.bounds.max);
         let view = rsm_view(&primary, args.bounce.vpls, bounds)?;
         let mut map = renderer.beside(&view)?;
@@ -153,12 +154,31 @@ fn record(
     Ok(())
 }
 
+/// What options say nothing of each other.
+fn check(args: &VplArgs) -> Result<(), CliError> {
+    let refused = |option: &str, accepted: &str| {
+        let rule = args.ranges.name();
+        Err(CliError::new(format!("{option}: it must be {accepted}, and --ranges is {rule}")))
+    };
+    if args.keep_ranges.is_some() && args.ranges == RangeChoice::Infinite {
+        return refused("--keep-ranges", "given with ranges that end");
+    }
+    if args.random_ranges.is_some() && args.ranges != RangeChoice::Random {
+        return refused("--random-ranges", "given with --ranges random");
+    }
+    if args.correct_rays && !args.ranges.casts() {
+        return refused("--correct-rays", "given with --ranges average or maximum");
+    }
+    Ok(())
+}
+
 /// How lights are kept.
 fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
     let core_m = scene.core_bounds.diagonal();
-    let scene_m = scene.bounds.diagonal().clamp(1e-3, 1e6);
     let is_infinite = args.ranges == RangeChoice::Infinite;
-    let longest_m = if is_infinite { INFINITE_DIAGONALS * scene_m } else { scene_m };
+    let infinite_m = INFINITE_DIAGONALS * scene.bounds.diagonal().clamp(1e-3, 1e6);
+    // A light whose rays meet nothing lights nothing: it alone has no range, however long others are.
+    let longest_m = if is_infinite { infinite_m } else { MAX_RANGE_M };
     let (low_m, high_m) = args
         .keep_ranges
         .map_or((MIN_RANGE_M, longest_m), |span| (span.low_m as f32, span.high_m as f32));
@@ -170,7 +190,6 @@ fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
         range_scale: if args.ranges.casts() { args.range_scale as f32 } else { 1.0 },
         min_range_m: low_m.clamp(MIN_RANGE_M, high_m),
         max_range_m: high_m,
-        // A light whose rays meet nothing lights nothing.
         large: if is_infinite { Large::Clamp } else { Large::Discard },
         min_distance_m: args.vpl_clamp.map_or(CLAMP_SHARE * core_m, |clamp| clamp as f32),
     }
@@ -304,8 +323,9 @@ impl Passes for OfMap<'_> {
     }
 }
 
-/// Draws the map of the middle of the scene once, so that about every texel shows a surface, and makes a
-/// light of each: their positions and normals are there then.
+/// Draws the map once and makes a light of each texel that shows a surface: their positions and normals
+/// are there then. Where `is_middle`, the map is of the middle of the scene, so that about every texel
+/// does.
 ///
 /// # Errors
 ///
@@ -315,12 +335,16 @@ pub fn all_texels(
     scene: &Scene,
     renderer: &Renderer,
     primary: Light,
-    size_px: u32,
+    (size_px, is_middle): (u32, bool),
 ) -> Result<VplBuffer, HarnessError> {
     let mut view = rsm_view(&primary, size_px, (scene.bounds.min, scene.bounds.max))?;
     let (centre, half) = (scene.core_bounds.center(), MIDDLE_SHARE * scene.core_bounds.size());
-    let middle = rsm_view(&primary, size_px, (centre - half, centre + half))?;
-    view.projection = middle.projection;
+    // A spot of the scene's own may look elsewhere.
+    if let (true, Ok(middle)) =
+        (is_middle, rsm_view(&primary, size_px, (centre - half, centre + half)))
+    {
+        view.projection = middle.projection;
+    }
     let mut map = renderer.beside(&view)?;
     map.prepare(&view, &LightBuffer::new(gpu, &[primary])?)?;
     let mut vpls = VplBuffer::new(gpu, VplSettings::default())?;

@@ -27,7 +27,7 @@ fn run(out: &Path, arguments: &[&str]) -> (String, Results) {
 /// Deep images of the small town.
 fn deep(out: &Path, more: &[&str]) -> (String, DeepImageRun) {
     let small = ["cdi", "--scene", "town-small", "--directions", "4x4", "--deep-size", "32"];
-    let (printed, results) = run(out, &[&small, &["--frames", "1"], more].concat());
+    let (printed, results) = run(out, &[&small[..], &["--frames", "1"], more].concat());
     (printed, results.deep_images.expect("deep images"))
 }
 
@@ -41,9 +41,10 @@ fn deep_images_are_built_cast_through_and_compared() {
     let names: Vec<&str> = all.passes.iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["cdi-samples", "cdi-count", "cdi-scan", "cdi-fill", "cdi-sort"]);
     assert!(all.deep.fragments == 16 * all.deep.samples && all.deep.samples > 500, "{all:?}");
-    let [cast] = &all.casts[..] else { panic!("one map: {:?}", all.casts) };
+    let [whole, middle] = &all.casts[..] else { panic!("two maps: {:?}", all.casts) };
     // About every texel of a map of the middle shows a surface.
-    assert!((900..=1024).contains(&cast.lights), "{cast:?}");
+    assert!(middle.is_middle && (900..=1024).contains(&middle.lights), "{middle:?}");
+    assert!(!whole.is_middle && (100..middle.lights).contains(&whole.lights), "{whole:?}");
     let errors = all.range_errors.expect("errors");
     let compared: u64 = errors.histogram.iter().sum();
     assert_eq!(errors.rays, errors.agree + errors.lost + errors.invented, "{errors:?}");
@@ -110,6 +111,8 @@ fn indirect_light_is_as_bright_as_one_bounce() {
     let infinite = lit("infinite", &["--ranges", "infinite"]);
     let short = lit("short", &["--ranges", "random", "--random-ranges", "0,2"]);
     assert!((0.7..1.4).contains(&cast), "{cast}");
+    let compensated = lit("compensated", &["--ranges", "average", "--compensate", "10"]);
+    assert!((compensated - cast).abs() > 0.05, "{compensated}, {cast}");
     // Light without a range leaks; light of short range lacks.
     assert!(infinite > 1.1 * cast && short < 0.7 * cast, "{infinite}, {cast}, {short}");
 }
@@ -124,6 +127,11 @@ fn what_does_not_go_together_is_refused() {
         ("--vpls 64 --ranges nearest", "--ranges is nearest: it must be one of average"),
         ("--vpls 64 --random-ranges 5,1", "--random-ranges is 5,1: it must be LOW,HIGH in metres"),
         ("--vpls 64 --directions 0x4", "--directions is 0x4: it must be STACKSxSLICES"),
+        ("--ranges random", "--vpls"),
+        ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges: it must be given with"),
+        ("--vpls 64 --random-ranges 1,2", "--random-ranges: it must be given with --ranges random"),
+        ("--vpls 64 --ranges random --correct-rays", "--correct-rays: it must be given with"),
+        ("cdi --build per-direction --oversampling 2", "--oversampling is 2: it must be 1 where"),
         ("truth --primary --indirect", "--indirect: it must be given with --bounces 1"),
         ("cdi --casts 12", "--casts is 12: it must be none, or sizes from 16 to 2,048"),
         ("cdi --directions 64x64", "stacks x slices is 64 x 64: it must be 1 to 1024 together"),

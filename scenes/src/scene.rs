@@ -230,6 +230,16 @@ impl Scene {
         Ok(self)
     }
 
+    /// The scene without anything that emits by itself: what is left is lit by lights alone.
+    #[must_use]
+    pub fn without_emission(mut self) -> Self {
+        for material in &mut self.materials {
+            material.emissive = Vec3::ZERO;
+            material.emissive_texture = None;
+        }
+        self
+    }
+
     /// The scene, uniformly scaled about the origin.
     ///
     /// Geometry, boxes, cameras, the path and the positions of the scene's own lights scale by
@@ -303,6 +313,16 @@ mod tests {
         assert_ne!(four.hash(), one.hash());
         let refused = one.replicated(0).expect_err("none").to_string();
         assert!(refused.contains("copies is 0"), "{refused}");
+    }
+
+    #[test]
+    fn emission_can_be_left_out() {
+        let atrium = crate::atrium(1);
+        let emits = |scene: &crate::Scene| scene.materials.iter().any(|m| m.emissive != Vec3::ZERO);
+        assert!(emits(&atrium));
+        let dark = atrium.clone().without_emission();
+        assert!(!emits(&dark));
+        assert_ne!(dark.hash(), atrium.hash());
     }
 
     #[test]

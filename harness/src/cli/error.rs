@@ -84,12 +84,13 @@ impl CliError {
                 Self::unknown(
                     "command",
                     &name,
-                    &["compare", "study", "report", "advise", "fit-ltc", "truth", "list"],
+                    &["compare", "study", "report", "advise", "fit-ltc", "truth", "cdi", "list"],
                 )
             }
             ErrorKind::MissingRequiredArgument => Self::new(match option {
+                "--vpls" => "options of virtual point lights need some: give --vpls",
                 "<DIR>..." => "report needs a folder: of a comparison or a study",
-                "<STUDY>" => "study needs which one: comparison, culling, area or endless",
+                "<STUDY>" => "study needs which one: comparison, culling, area, endless or cdi",
                 _ => "list needs what to list: strategies, scenes or adapters",
             }),
             ErrorKind::ArgumentConflict => Self::new(conflict(error, option)),

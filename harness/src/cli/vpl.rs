@@ -19,48 +19,55 @@ pub struct VplArgs {
 
     /// How far a virtual point light reaches: as far as rays through the deep images say on average or
     /// at most, as random numbers say, or everywhere
-    #[arg(long, value_name = "RULE", default_value = "average")]
+    #[arg(long, value_name = "RULE", default_value = "average", requires = "vpls")]
     pub ranges: RangeChoice,
 
     /// Bounds of random ranges, metres [default: 0 to a quarter of the diagonal of the scene's core]
-    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, requires = "vpls")]
     pub random_ranges: Option<Span>,
 
     /// Rays that look for the range of a virtual point light, 1 to 16: the first along the primary ray,
     /// the others around it
-    #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::rays)]
+    #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::rays, requires = "vpls")]
     pub rays: u32,
 
     /// Where the first ray goes
-    #[arg(long, value_name = "WHERE", default_value = "normal")]
+    #[arg(long, value_name = "WHERE", default_value = "normal", requires = "vpls")]
     pub primary_ray: PrimaryRay,
 
     /// Correct each ray by a second look-up: nearer to exact rays, and slower
-    #[arg(long)]
+    #[arg(long, requires = "vpls")]
     pub correct_rays: bool,
 
     /// Factor on the ranges that were found, 0.1 to 100: light fades out before its range
-    #[arg(long, value_name = "X", default_value = "2", allow_hyphen_values = true, value_parser = values::range_scale)]
+    #[arg(long, value_name = "X", default_value = "2", allow_hyphen_values = true, value_parser = values::range_scale, requires = "vpls")]
     pub range_scale: f64,
 
     /// Shortest and longest range of a virtual point light that is kept, metres: others are left out
     /// [default: all that reach a surface, up to the size of the scene]
-    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, requires = "vpls")]
     pub keep_ranges: Option<Span>,
 
     /// Gather pixels of the shadow map into blocks while those are no wider than this on their surface,
     /// metres; 0 keeps every pixel
-    #[arg(long, value_name = "X", default_value = "0", allow_hyphen_values = true, value_parser = values::metres)]
+    #[arg(long, value_name = "X", default_value = "0", allow_hyphen_values = true, value_parser = values::metres, requires = "vpls")]
     pub vpl_spacing: f64,
 
     /// Distance within which the light of a virtual point light grows no further, metres
     /// [default: a hundredth of the diagonal of the scene's core]
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::metres)]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::metres, requires = "vpls")]
     pub vpl_clamp: Option<f64>,
 
     /// What the deep images are like.
     #[command(flatten)]
     pub deep: DeepArgs,
+}
+
+impl VplArgs {
+    /// Whether the scene is lit by its primary light, or by what surfaces reflect of it.
+    pub fn is_on(&self) -> bool {
+        self.primary || self.vpls > 0
+    }
 }
 
 /// The deep images.

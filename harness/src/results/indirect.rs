@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Passes;
+use super::{Passes, passes::nan_from_null};
 
 /// The virtual point lights of a record, and what it took to make them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -116,7 +116,10 @@ pub struct DeepImageRun {
 pub struct CastTimes {
     /// Side of the reflective shadow map, pixels.
     pub rsm_px: u32,
-    /// Virtual point lights.
+    /// Whether the map is of the middle of the scene, where about every pixel shows a surface.
+    #[serde(default)]
+    pub is_middle: bool,
+    /// Virtual point lights: pixels that show a surface.
     pub lights: u64,
     /// Rays of each.
     pub rays: u32,
@@ -152,6 +155,7 @@ pub struct RangeErrors {
     pub too_far: u64,
     /// Median of the errors of ranges over their lights: the average of a light's rays against that of
     /// exact ones, in footprints.
+    #[serde(deserialize_with = "nan_from_null")]
     pub median_range_error: f64,
 }
 
@@ -163,5 +167,18 @@ impl RangeErrors {
     pub fn median(&self) -> f64 {
         let middle = self.error_quantiles.len() / 2;
         self.error_quantiles.get(middle).copied().unwrap_or(f64::NAN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_no_rays_survive_json() {
+        let none = RangeErrors { median_range_error: f64::NAN, ..RangeErrors::default() };
+        let json = serde_json::to_string(&none).expect("serialises");
+        let back: RangeErrors = serde_json::from_str(&json).expect("parses");
+        assert!(back.median_range_error.is_nan() && back.median().is_nan());
     }
 }

@@ -66,7 +66,8 @@ const FULL: Extent = Extent {
     deep_sizes: &["64", "32", "128", "256"],
     rays: &["6", "1", "3", "12"],
     scales: &["1", "1.5", "2", "3", "4"],
-    random: &[0.05, 0.1, 0.2, 0.4, 0.8],
+    // As many as settings of rays.
+    random: &[0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0],
     casts: "256,512,1024,2048",
     compared: "200000",
     strategies: "None,T-E,DC-E,SC-E,G,M/2,HG",
@@ -131,6 +132,7 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
         Job::new(scene, DIRECT, "", &traced),
     ];
     let timed = ["--strategies", GRID, "--frames", extent.frames, "--warmup", extent.warmup];
+    let timed = [&timed[..], &["--light-order", "given"]].concat();
     let common = [&["compare"], &drawn[..], &timed, &["--truth", "none"]].concat();
     let mut add = |variant: &str, rsm: &str, words: &[&str]| {
         let words = [&common[..], &["--vpls", rsm], words].concat();
@@ -182,9 +184,10 @@ fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
     let timed = ["--frames", extent.frames, "--warmup", extent.warmup, "--pictures", "none"];
     let deep = extent.deep(None, None);
     let common = [&["compare"], &drawn[..], &timed, &["--vpls", extent.rsm], &deep].concat();
-    let own = ["--strategies", GRID, "--truth", "none"];
+    let own = ["--strategies", GRID, "--light-order", "given", "--truth", "none"];
     // Pairs in f64 would take minutes: images say whether anything was lost.
-    let all = ["--strategies", extent.strategies, "--source", "both", "--truth", "none"];
+    // Lights that are made anew each frame have no order but their map's, and no hierarchy.
+    let all = ["--strategies", extent.strategies, "--light-order", "given", "--truth", "none"];
     vec![
         Job::new(scene, STEPS, "", &[&common[..], &own].concat()),
         Job::new(scene, STRATEGIES, "", &[&common[..], &all].concat()),
@@ -211,9 +214,6 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
             add(&format!("{build}-{directions}"), &words);
         }
     }
-    // One direction by itself: so many times as long would as many take, built one after the other.
-    let alone = [&extent.deep(Some("1x1"), None)[..], &["--build", "per-direction"], &only_built];
-    add("per-direction-1x1", &alone.concat());
     for size in extent.deep_sizes.iter().skip(1) {
         let deep = extent.deep(None, Some(size));
         add(&format!("size-{size}"), &[&deep[..], &compared].concat());

@@ -82,7 +82,8 @@ fn steps(done: &Done, scene: &str) -> String {
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let text = format!(
         "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
-         paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding.",
+         paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding. A data-centre GPU \
+         draws fragments on a few of its processors: what is rasterised is slow there as on no other chip.",
         escape(&record.scene),
         record.width,
         record.height,
@@ -112,13 +113,17 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let mut rows = Vec::new();
     for cast in &run.casts {
         let (ms, random) = (median(&cast.cast_ms), median(&cast.random_ms));
-        let list =
-            linked.and_then(|run| run.casts.iter().find(|other| other.rsm_px == cast.rsm_px));
-        let paper = PAPER_CASTS.iter().find(|(side, _)| *side == cast.rsm_px);
+        let list = linked.and_then(|run| {
+            run.casts
+                .iter()
+                .find(|other| (other.rsm_px, other.is_middle) == (cast.rsm_px, cast.is_middle))
+        });
+        let is_paper = |side: u32| side == cast.rsm_px && !cast.is_middle;
+        let paper = PAPER_CASTS.iter().find(|(side, _)| is_paper(*side));
         let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
         let rays = cast.lights as f64 * f64::from(cast.rays);
         rows.push(vec![
-            format!("{0} x {0}", cast.rsm_px),
+            format!("{0} x {0}{1}", cast.rsm_px, if cast.is_middle { ", the middle" } else { "" }),
             number(rays),
             significant(ms),
             significant(rays / ms / 1e6),
@@ -156,7 +161,8 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "casts",
         "Rays from every pixel of the shadow map",
         &format!(
-            "Every pixel of a map of the scene\u{2019}s middle is a virtual point light, none is discarded; {} rays each through {} directions of \
+            "Every pixel that shows a surface is a virtual point light, none is discarded; about every one does in a \
+             map of the scene\u{2019}s middle, whose rays lie closer together; {} rays each through {} directions of \
              {} x {} pixels. The paper\u{2019}s figures: {PAPER}.",
             run.casts.first().map_or(0, |cast| cast.rays),
             run.deep.directions(),
@@ -183,7 +189,8 @@ fn strategies(done: &Done, scene: &str) -> String {
     ];
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let text = format!(
-        "{} virtual point lights at {} x {}; none of their ranges is known to a strategy before.",
+        "{} virtual point lights at {} x {}, in the order of their map, from the list of all: lights of this frame \
+         have no hierarchy.",
         number(first.record.lights as f64),
         first.record.width,
         first.record.height
