@@ -160,7 +160,10 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
     let known = "known are compare, study, report, advise, fit-ltc, truth, cdi, list";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
-    assert_eq!(refusal("study"), "study needs which one: comparison, culling, area, endless or cdi");
+    assert_eq!(
+        refusal("study"),
+        "study needs which one: comparison, culling, area, endless or cdi"
+    );
     assert_eq!(refusal("report"), "report needs a folder: of a comparison or a study");
     assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
     assert!(refusal("study comparison --shard 3/2").contains("K from 1 to N"));

@@ -6,6 +6,7 @@ use crate::{
     cli::{Size, StudyArgs},
     compare::Bench,
     error::HarnessError,
+    results::{DeepImages, Vpls},
 };
 
 /// The section whose job is timed step by step.
@@ -107,6 +108,20 @@ impl Extent {
     }
 }
 
+/// Whether rays are cast as in most jobs: how many, through which deep images.
+pub fn is_usual(vpls: &Vpls) -> bool {
+    let is_of = |extent: &Extent, deep: &DeepImages| {
+        let directions = format!("{}x{}", deep.stacks, deep.slices);
+        let size = deep.size_px.to_string();
+        extent.directions.last() == Some(&directions.as_str())
+            && extent.deep_sizes.first() == Some(&size.as_str())
+            && extent.rays.first() == Some(&vpls.rays.to_string().as_str())
+    };
+    let is_plain = !vpls.is_corrected && !vpls.is_reflected;
+    let deep = vpls.deep.as_ref();
+    is_plain && deep.is_some_and(|deep| [&FULL, &QUICK].iter().any(|extent| is_of(extent, deep)))
+}
+
 /// The jobs of one scene.
 pub(super) fn jobs(
     bench: &mut Bench,
@@ -159,7 +174,8 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     // More and fewer lights.
     for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
         add(&format!("average-rsm{rsm}"), rsm, &extent.deep(None, None));
-        for (share, span) in extent.random.iter().zip(&random) {
+        // Every other span.
+        for (share, span) in extent.random.iter().zip(&random).skip(1).step_by(2) {
             add(&format!("random-{share}-rsm{rsm}"), rsm, &random_words(span));
         }
     }

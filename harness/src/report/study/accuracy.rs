@@ -3,7 +3,7 @@
 use super::super::format::{difference, significant};
 use super::super::rank::Ratio;
 use super::data::{class, entries, family, knob, lines};
-use super::errors_plot::Plot;
+use super::errors_plot::{FIRST, Plot};
 use super::figure::{Charts, part};
 use super::shots::{Shots, Wanted};
 use crate::results::Record;
@@ -31,6 +31,7 @@ pub(super) fn accuracy(
         label,
         wanted: Wanted::Pair,
         time: "Assign + shade",
+        first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
     let reuse = Plot {
@@ -66,6 +67,7 @@ pub(super) fn accuracy(
         label: |record| record.threshold.map_or_else(String::new, |t| t.to_string()),
         wanted: Wanted::Unbounded,
         time: "Assign + shade",
+        first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
     html + &part(

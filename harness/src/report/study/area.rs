@@ -3,7 +3,7 @@
 use super::super::format::{ABSENT, difference, escape, percent, significant};
 use super::super::rank::listed;
 use super::data::{Entry, entries};
-use super::errors_plot::{Plot, frontier};
+use super::errors_plot::{FIRST, Plot, frontier};
 use super::figure::{Charts, part, table};
 use super::shots::{Shots, Wanted};
 use crate::errors::ERROR_METRICS;
@@ -109,6 +109,7 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
         label: |record| model(record).split(':').nth(1).unwrap_or_default().to_owned(),
         wanted: Wanted::Truth,
         time: "Shade",
+        first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
     html + &part(

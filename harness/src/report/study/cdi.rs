@@ -226,5 +226,6 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
 
 /// What stands above all.
 pub(super) fn headline(done: &Done) -> Option<String> {
-    done.scenes().into_iter().find_map(|scene| findings(done, scene).into_iter().next())
+    let first = |scene| findings(done, scene).into_iter().next();
+    super::cdi_light::headline(done).or_else(|| done.scenes().into_iter().find_map(first))
 }

@@ -34,6 +34,19 @@ fn rule(record: &Record) -> &'static str {
     RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
 }
 
+/// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set
+/// otherwise by themselves.
+fn series(record: &Record) -> String {
+    let Some(vpls) = &record.vpls else { return String::new() };
+    let side = vpls.rsm_px;
+    match vpls.ranges.as_str() {
+        "random" => format!("random, {side}\u{b2}"),
+        "infinite" => "infinite".to_owned(),
+        _ if !cdi::is_usual(vpls) => "rays, otherwise set".to_owned(),
+        _ => format!("{}, {side}\u{b2}", rule(record)),
+    }
+}
+
 fn class(record: &Record) -> String {
     RULES
         .iter()
@@ -107,7 +120,7 @@ pub(super) fn indirect(
         title: "Error of indirect light against time",
         entries: known,
         errors: |record| &record.truth_errors,
-        series: |record| rule(record).to_owned(),
+        series,
         class,
         shape: |_| None,
         name: title,
@@ -116,6 +129,7 @@ pub(super) fn indirect(
         },
         wanted: Wanted::Truth,
         time: "Lights, assign and shade",
+        first: METRIC,
         ms: total_ms,
     };
     let body = plot.html(scene, charts, shots) + &rows;
@@ -248,8 +262,11 @@ fn best<'a>(
 pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let all = entries(done, scene, MODELS);
     // The settings that random ranges have as many of: rule and factor.
-    let usual: Vec<Entry<'_>> =
-        all.iter().filter(|entry| entry.job.name.contains("-x")).copied().collect();
+    let usual: Vec<Entry<'_>> = all
+        .iter()
+        .filter(|entry| entry.record.vpls.as_ref().is_some_and(cdi::is_usual))
+        .copied()
+        .collect();
     let mut found = Vec::new();
     let cast = ["rays, average", "rays, maximum"]
         .iter()
@@ -292,4 +309,29 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
         ));
     }
     found
+}
+
+/// Rays against random ranges from the same map, in the first scene that has both.
+pub(super) fn headline(done: &Done) -> Option<String> {
+    done.scenes().into_iter().find_map(|scene| {
+        let all = entries(done, scene, MODELS);
+        let is_usual = |record: &Record| record.vpls.as_ref().is_some_and(cdi::is_usual);
+        let cast = ["rays, average", "rays, maximum"]
+            .iter()
+            .filter_map(|name| best(&all, name, is_usual))
+            .min_by(|a, b| error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0)))?;
+        let pixels = cast.record.vpls.as_ref()?.candidates;
+        let random = best(&all, "random", |record| {
+            record.vpls.as_ref().is_some_and(|vpls| vpls.candidates == pixels)
+        })?;
+        let (own, theirs) = (error(cast.record)?, error(random.record)?);
+        Some(format!(
+            "In {scene} lights with ranges by rays err by {} of the mean in {} ms, with the best random ranges by \
+             {} in {} ms.",
+            significant(own),
+            significant(total_ms(cast.record)),
+            significant(theirs),
+            significant(total_ms(random.record))
+        ))
+    })
 }

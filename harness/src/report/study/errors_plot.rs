@@ -8,8 +8,8 @@ use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::errors::{ERROR_METRICS, ErrorMetric};
 use crate::results::{Errors, Record};
 
-/// The metric that a reader sees first.
-const FIRST: &str = "rel_mse";
+/// The metric that a reader sees first, where a plot has no reason for another.
+pub(super) const FIRST: &str = "rel_mse";
 
 /// A chart of errors against times.
 pub(super) struct Plot<'a> {
@@ -29,6 +29,8 @@ pub(super) struct Plot<'a> {
     pub(super) label: fn(&Record) -> String,
     pub(super) wanted: Wanted,
     pub(super) time: &'a str,
+    /// The metric that a reader sees first.
+    pub(super) first: &'a str,
     /// That time of a record, ms: assigning and shading, or more.
     pub(super) ms: fn(&Record) -> f64,
 }
@@ -40,7 +42,7 @@ impl Plot<'_> {
             .iter()
             .filter(|metric| self.entries.iter().any(|e| self.error(e.record, metric).is_some()))
             .collect();
-        metrics.sort_by_key(|metric| metric.id != FIRST);
+        metrics.sort_by_key(|metric| metric.id != self.first);
         let keys: Vec<Option<String>> =
             self.entries.iter().map(|entry| shots.keep(*entry, self.wanted)).collect();
         let opens = keys.iter().any(Option::is_some);
