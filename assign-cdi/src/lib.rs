@@ -79,9 +79,7 @@ pub use hybrid_passes::HybridShader;
 pub use image_space::{ImagesUniform, Triangles};
 pub use prefix_sum::PrefixSum;
 pub use random_ranges::{RandomRanges, RandomUniform};
-pub use ranges::{
-    Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform, Threads,
-};
+pub use ranges::{Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform};
 pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
 pub use vpl::{

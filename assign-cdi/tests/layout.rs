@@ -9,7 +9,7 @@ use assign_cdi::{
     BUILD_ROOTS, Build, Coverage, DeepImageCounters, DeepImageSettings, Directions, DispatchSizes,
     ImagesUniform, ListRanges, ListSort, PrefixSum, Primary, RandomRanges, RandomUniform,
     RangeCaster, RangeRule, RangesUniform, SortUniform, SortWork, Spread, StageUniform, Storage,
-    Threads, build_shader,
+    build_shader,
 };
 
 /// A root, linked and validated with what WebGPU has without any optional feature.
@@ -63,11 +63,9 @@ fn kernels_validate() {
             validated(&build_shader(&settings), root);
         }
         for primary in [Primary::Normal, Primary::Reflected, Primary::Given] {
-            for threads in [Threads::Points, Threads::Rays] {
-                for is_corrected in [false, true] {
-                    let rule = RangeRule { primary, threads, is_corrected, ..RangeRule::default() };
-                    validated(&RangeCaster::shader(&settings, rule), "package::ranges");
-                }
+            for is_corrected in [false, true] {
+                let rule = RangeRule { primary, is_corrected, ..RangeRule::default() };
+                validated(&RangeCaster::shader(&settings, rule), "package::ranges");
             }
         }
     }
