@@ -4,7 +4,7 @@ use assign::{AssignError, Gpu};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
-use crate::{Build, DeepImageSettings, Storage};
+use crate::{Build, DeepImageSettings, LinkedNode, Storage};
 
 /// Counters of a build: `deep_images.wesl`, `struct Header`.
 #[repr(C)]
@@ -81,7 +81,7 @@ impl DeepBuffers {
         }
         let node_bytes = match settings.storage {
             Storage::Arrays => 4,
-            Storage::LinkedLists => 8,
+            Storage::LinkedLists => size_of::<LinkedNode>() as u64,
         };
         let room = gpu.max_storage_bytes() / node_bytes;
         let most = room.min(u64::from(settings.most_fragments)) as u32;

@@ -1,25 +1,16 @@
 //! Compound deep images on the GPU: built from triangles, read by rays.
 
 use assign::{AssignError, Gpu, Passes, Readback, Shader};
-use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+use bytemuck::{Zeroable, bytes_of};
 
 use crate::{
-    Build, DeepImageCounters, DeepImageSettings, DeepImagesSnapshot, ImagesUniform, ListRanges,
-    ListSort, PrefixSum, SortInput, Storage, Triangles,
+    Build, DeepImageCounters, DeepImageSettings, DeepImagesSnapshot, ImagesUniform, ListSort,
+    PrefixSum, SortInput, Storage, Triangles,
     build_kernels::{BuildKernels, Finders, Samplers},
     deep_buffers::{DeepBuffers, LONGEST_AT},
     kernel::{self, Slot, workgroups},
+    stages::{COUNT, FILL, LARGE_AT, Stages, at_once},
 };
-
-/// One dispatch over directions: `build.wesl`, `struct Stage`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct StageUniform {
-    /// First direction of the dispatch.
-    pub first_direction: u32,
-    /// 0 counts, 1 fills in.
-    pub mode: u32,
-}
 
 /// The module that casts rays, `package::ray_cast`: [`DeepImages::mount`] mounts it.
 pub const RAY_CAST_WESL: &str = include_str!("shaders/ray_cast.wesl");
@@ -27,29 +18,6 @@ pub const RAY_CAST_WESL: &str = include_str!("shaders/ray_cast.wesl");
 /// Lists up to here are sorted without rounds of merges, which take time and memory even where no list
 /// needs them; rounds are added when a frame has shown a longer one.
 const SORTED_AT_LEAST: u32 = 2048;
-
-/// Bytes from one `Stage` to the next.
-const STAGE_STRIDE: u32 = 256;
-/// Modes of a stage: `build.wesl`.
-const COUNT: u32 = 0;
-const FILL: u32 = 1;
-
-/// Sizes of indirect dispatches: `plan.wesl`, `struct Dispatches`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct DispatchSizes {
-    /// Workgroups over samples.
-    pub samples: [u32; 3],
-    /// Pads to a multiple of 16 bytes.
-    pub padding: u32,
-    /// Workgroups over large triangles.
-    pub large: [u32; 3],
-    /// Pads to a multiple of 16 bytes.
-    pub padding_end: u32,
-}
-
-/// Byte of the dispatch over large triangles.
-const LARGE_AT: u64 = 16;
 
 /// Deep images of a scene from many directions.
 #[derive(Debug)]
@@ -61,9 +29,7 @@ pub struct DeepImages {
     space: ImagesUniform,
     /// The longest list that the sort is prepared for.
     sorted_longest: u32,
-    stages: wgpu::Buffer,
-    plan: wgpu::Buffer,
-    dispatches: wgpu::Buffer,
+    stages: Stages,
     sums: PrefixSum,
     sort: ListSort,
     ray_layout: wgpu::BindGroupLayout,
@@ -84,25 +50,6 @@ impl DeepImages {
     /// Makes the kernels; `settings` are checked.
     pub fn new(gpu: &Gpu, settings: DeepImageSettings) -> Result<Self, AssignError> {
         settings.check()?;
-        let stages: Vec<StageUniform> = [COUNT, FILL]
-            .into_iter()
-            .flat_map(|mode| {
-                first_directions(&settings)
-                    .map(move |first_direction| StageUniform { first_direction, mode })
-            })
-            .collect();
-        let stage_buffer = gpu.uniform("stages", stages.len() as u64 * u64::from(STAGE_STRIDE));
-        for (at, stage) in (0_u64..).zip(&stages) {
-            gpu.queue.write_buffer(&stage_buffer, at * u64::from(STAGE_STRIDE), bytes_of(stage));
-        }
-        let plan = gpu.uniform("plan", 16);
-        let large_directions = match settings.build {
-            Build::SinglePass { .. } => 1,
-            Build::PerDirection { at_once, .. } => at_once,
-        };
-        gpu.queue.write_buffer(&plan, 0, cast_slice(&[large_directions, 0, 0, 0]));
-        let copies = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | copies;
         let slots = [Slot::Uniform, Slot::Read, Slot::Read, Slot::Read, Slot::Read];
         let rays = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
@@ -111,11 +58,9 @@ impl DeepImages {
             uniform: gpu.uniform("deep images", size_of::<ImagesUniform>() as u64),
             space: ImagesUniform::zeroed(),
             sorted_longest: SORTED_AT_LEAST,
-            stages: stage_buffer,
-            plan,
-            dispatches: gpu.buffer("dispatches", size_of::<DispatchSizes>() as u64, usage)?,
+            stages: Stages::new(gpu, &settings)?,
             sums: PrefixSum::new(gpu)?,
-            sort: ListSort::new(gpu, ListRanges::PrefixOffsets, 0)?,
+            sort: ListSort::new(gpu)?,
             ray_layout: kernel::layout(gpu, "rays through deep images", rays, &slots),
             groups: None,
             readback: Readback::new(gpu, "deep image counters"),
@@ -166,11 +111,9 @@ impl DeepImages {
         self.sort.prepare(
             gpu,
             &SortInput {
-                ranges: &buffers.offsets,
+                offsets: &buffers.offsets,
                 entries: &buffers.fragments,
-                first_list: 0,
                 list_count: pixels,
-                first_entry: 0,
                 entry_count: buffers.fragment_capacity,
                 longest: self.sorted_longest,
             },
@@ -190,15 +133,8 @@ impl DeepImages {
             &b.offsets,
             &b.fragments,
         ];
-        let plan = [&self.uniform, &self.plan, &b.header, &b.offsets, &self.dispatches];
-        let stage = wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &self.stages,
-                offset: 0,
-                size: wgpu::BufferSize::new(size_of::<StageUniform>() as u64),
-            }),
-        };
+        let plan =
+            [&self.uniform, &self.stages.plan, &b.header, &b.offsets, &self.stages.dispatches];
         let draw = match &self.kernels.finders {
             Finders::SinglePass { samplers: Samplers::Fragment(draw), .. } => Some([
                 kernel::group(gpu, &draw.read_layout, &[&self.uniform, positions]),
@@ -213,7 +149,7 @@ impl DeepImages {
         let rays = [&self.uniform, &b.frames, &b.header, starts, &b.fragments];
         Groups {
             build: kernel::group(gpu, &self.kernels.build_layout, &build),
-            stage: kernel::group_of(gpu, &self.kernels.stage_layout, &[stage]),
+            stage: kernel::group_of(gpu, &self.kernels.stage_layout, &[self.stages.entry()]),
             plan: kernel::group(gpu, &self.kernels.plan_layout, &plan),
             draw,
             rays: kernel::group(gpu, &self.ray_layout, &rays),
@@ -275,7 +211,7 @@ impl DeepImages {
                     self.run_plan(groups, pass, &self.kernels.plan_large);
                     pass.set_bind_group(0, &groups.build, &[]);
                     pass.set_pipeline(large);
-                    pass.dispatch_workgroups_indirect(&self.dispatches, LARGE_AT);
+                    pass.dispatch_workgroups_indirect(&self.stages.dispatches, LARGE_AT);
                 });
             }
             (Samplers::Fragment(draw), Some(bound)) => {
@@ -321,21 +257,21 @@ impl DeepImages {
     /// Counts the fragments of all directions, or fills them in.
     fn put(&self, groups: &Groups, pass: &mut wgpu::ComputePass<'_>, mode: u32) {
         pass.set_bind_group(0, &groups.build, &[]);
-        let stage_count = first_directions(&self.settings).count() as u32;
-        let first = mode * stage_count;
         match &self.kernels.finders {
             Finders::SinglePass { spread, .. } => {
                 pass.set_pipeline(spread);
-                pass.set_bind_group(1, &groups.stage, &[first * STAGE_STRIDE]);
-                pass.dispatch_workgroups_indirect(&self.dispatches, 0);
+                for offset in self.stages.offsets(mode) {
+                    pass.set_bind_group(1, &groups.stage, &[offset]);
+                    pass.dispatch_workgroups_indirect(&self.stages.dispatches, 0);
+                }
             }
             Finders::PerDirection { small, large, .. } => {
-                for stage in first..first + stage_count {
-                    pass.set_bind_group(1, &groups.stage, &[stage * STAGE_STRIDE]);
+                for offset in self.stages.offsets(mode) {
+                    pass.set_bind_group(1, &groups.stage, &[offset]);
                     pass.set_pipeline(small);
                     pass.dispatch_workgroups(self.triangle_groups(), at_once(&self.settings), 1);
                     pass.set_pipeline(large);
-                    pass.dispatch_workgroups_indirect(&self.dispatches, LARGE_AT);
+                    pass.dispatch_workgroups_indirect(&self.stages.dispatches, LARGE_AT);
                 }
             }
         }
@@ -371,8 +307,8 @@ impl DeepImages {
 
     /// Bytes of all its buffers on the GPU.
     pub fn bytes(&self) -> u64 {
-        let own = self.uniform.size() + self.stages.size() + self.plan.size();
-        own + self.dispatches.size() + self.buffers.bytes() + self.sums.bytes() + self.sort.bytes()
+        let own = self.uniform.size() + self.stages.bytes();
+        own + self.buffers.bytes() + self.sums.bytes() + self.sort.bytes()
     }
 
     /// Layout of [`bind_group`](Self::bind_group), for compute and fragment shaders: the images'
@@ -396,17 +332,4 @@ impl DeepImages {
             .flag("linked", settings.storage == Storage::LinkedLists);
         settings.directions.mount(shader)
     }
-}
-
-/// Directions of a stage.
-fn at_once(settings: &DeepImageSettings) -> u32 {
-    match settings.build {
-        Build::SinglePass { .. } => settings.directions.count(),
-        Build::PerDirection { at_once, .. } => at_once,
-    }
-}
-
-/// First direction of each stage.
-fn first_directions(settings: &DeepImageSettings) -> impl Iterator<Item = u32> {
-    (0..settings.directions.count()).step_by(at_once(settings).max(1) as usize)
 }

@@ -51,20 +51,6 @@ impl Directions {
         Ok(Self { spread, stacks, slices })
     }
 
-    /// `count` directions in rows: a square number up to 1024, or twice one, with twice as many slices
-    /// as stacks.
-    pub fn of_count(spread: Spread, count: u32) -> Result<Self, AssignError> {
-        let stacks = (1..=32).find(|n| count == n * n || count == 2 * n * n);
-        match stacks {
-            Some(stacks) => Self::new(spread, stacks, count / stacks),
-            None => Err(AssignError::Parameter {
-                field: "directions".into(),
-                value: count.to_string(),
-                accepted: "a square up to 1024, or twice a square: 8, 16, 32, 64, 128, 169".into(),
-            }),
-        }
-    }
-
     /// How they are spread.
     pub fn spread(&self) -> Spread {
         self.spread
@@ -202,8 +188,8 @@ mod tests {
 
     fn all() -> impl Iterator<Item = Directions> {
         [Spread::StacksAndSlices, Spread::Squares].into_iter().flat_map(|spread| {
-            let of = move |count| Directions::of_count(spread, count).unwrap();
-            [1, 8, 16, 32, 64, 128, 169].map(of)
+            let of = move |(stacks, slices)| Directions::new(spread, stacks, slices).unwrap();
+            [(1, 1), (2, 4), (4, 4), (4, 8), (8, 8), (8, 16), (13, 13)].map(of)
         })
     }
 
@@ -272,8 +258,6 @@ mod tests {
         for (stacks, slices) in [(0, 3), (3, 0), (33, 32), (u32::MAX, u32::MAX)] {
             assert!(Directions::new(Spread::Squares, stacks, slices).is_err());
         }
-        assert!(Directions::of_count(Spread::Squares, 7).is_err());
-        assert!(Directions::of_count(Spread::Squares, 0).is_err());
-        assert!(Directions::of_count(Spread::Squares, 1024).is_ok());
+        assert!(Directions::new(Spread::Squares, 32, 32).is_ok());
     }
 }

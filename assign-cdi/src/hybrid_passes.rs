@@ -68,15 +68,18 @@ impl HybridShader {
                 .module("package::hybrid_outline", include_str!("shaders/hybrid_outline.wesl")),
             Self::Reserve => shader
                 .module(self.root(), include_str!("shaders/hybrid_reserve.wesl"))
-                .module("package::live", LiveGroups::WESL),
+                .module("package::live", LiveGroups::WESL)
+                // A lane a cell.
+                .flag("lanes_reserve", true),
             Self::Sort => shader.module(self.root(), include_str!("shaders/hybrid_sort.wesl")),
         }
     }
 
     fn create(self, gpu: &Gpu, kinds: LightKinds) -> Result<wgpu::ShaderModule, AssignError> {
         // SAFETY: loops count up, without wrapping, to a constant, to the length of a buffer, to a
-        // number of lights, tiles, slices or entries, each no greater than the length of a buffer, or
-        // clear a bit of a word a round.
+        // number of lights, tiles, slices or entries, each no greater than the length of a buffer,
+        // clear a bit of a word a round, or end once the cursor, which only grows, leaves no room, or
+        // no other lane moved it between look and exchange.
         #[allow(unsafe_code, reason = "its loops end")]
         unsafe {
             self.shader(kinds).create_uncounted(&gpu.device, self.root())

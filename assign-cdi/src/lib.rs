@@ -48,7 +48,8 @@
 //! - Triangles smaller than a cell of the grid are missed where they cover no cell's centre; a finer
 //!   grid or [`Coverage::Conservative`] finds them.
 //! - Images that do not fit their buffers say so: every range is infinite until they have grown, two
-//!   frames later at most. No light is lost.
+//!   frames later at most. Of the VPLs of such a frame [`Large::Clamp`] keeps all, at the largest range,
+//!   and [`Large::Discard`] none: the frame has no indirect light.
 
 mod build_kernels;
 mod deep_buffers;
@@ -66,24 +67,24 @@ mod ranges;
 mod snapshot;
 mod sort;
 mod sort_network;
+mod stages;
 mod vpl;
 
 pub use build_kernels::{BUILD_ROOTS, build_shader};
 pub use deep_buffers::DeepImageCounters;
-pub use deep_images::{DeepImages, DispatchSizes, RAY_CAST_WESL, StageUniform};
+pub use deep_images::{DeepImages, RAY_CAST_WESL};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
 pub use directions::{Directions, MAX_DIRECTIONS, Spread};
 pub use hybrid_cells::{CellSize, CellsUniform};
 pub use hybrid_grid::{HYBRID_WESL, HybridGrid};
 pub use hybrid_passes::HybridShader;
 pub use image_space::{ImagesUniform, Triangles};
-pub use prefix_sum::PrefixSum;
+pub use prefix_sum::{PrefixSum, ScanUniform};
 pub use random_ranges::{RandomRanges, RandomUniform};
-pub use ranges::{
-    Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform, Threads,
-};
-pub use snapshot::DeepImagesSnapshot;
-pub use sort::{ListRanges, ListSort, SortInput, SortUniform, SortWork};
+pub use ranges::{Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform};
+pub use snapshot::{DeepImagesSnapshot, LinkedNode};
+pub use sort::{ListSort, RoundUniform, SortInput, SortUniform, SortWork};
+pub use stages::{DispatchSizes, PlanUniform, StageUniform};
 pub use vpl::{
     KeepUniform, Large, MAX_RSM_SIDE, Rsm, RsmUniform, VplBuffer, VplCounts, VplSettings,
     choose_shader, keep_shader,

@@ -4,7 +4,7 @@
 //! run gives the same result. Counts 2, 5 and 3 give 0, 2, 7 and the total, 10.
 
 use assign::{AssignError, Gpu, Passes, Shader};
-use bytemuck::bytes_of;
+use bytemuck::{Pod, Zeroable, bytes_of};
 
 use crate::kernel::{self, Slot};
 
@@ -12,6 +12,18 @@ use crate::kernel::{self, Slot};
 const BLOCK: u32 = 2048;
 /// The most values: a dispatch has at most 65,535 workgroups.
 const MOST: u32 = 65_535 * BLOCK - 1;
+
+/// What the kernels are told of a level: `prefix_sum.wesl`, `struct Scan`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct ScanUniform {
+    /// Values read; behind them zeros.
+    pub in_count: u32,
+    /// Sums written.
+    pub out_count: u32,
+    /// 1 where each block starts at its entry of `bases`, 0 where at zero.
+    pub has_bases: u32,
+}
 
 /// Sums up to each of many counts.
 #[derive(Debug)]
@@ -86,8 +98,8 @@ impl PrefixSum {
             self.bytes += sums.size() + bases.size();
             let group = |has_bases: u32, bases: &wgpu::Buffer, to: &wgpu::Buffer| {
                 let uniform = gpu.uniform("prefix sum", 16);
-                let words = [in_count, out_count, has_bases, 0];
-                gpu.queue.write_buffer(&uniform, 0, bytes_of(&words));
+                let scan = ScanUniform { in_count, out_count, has_bases };
+                gpu.queue.write_buffer(&uniform, 0, bytes_of(&scan));
                 kernel::group(gpu, &self.layout, &[&uniform, &values, bases, to])
             };
             self.levels.push(Level {

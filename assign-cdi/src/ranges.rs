@@ -33,16 +33,6 @@ pub enum Primary {
     Given,
 }
 
-/// What a thread does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Threads {
-    /// All rays of a point.
-    #[default]
-    Points,
-    /// One ray.
-    Rays,
-}
-
 /// The rays of a point: the primary one, and the others evenly around it (Archer et al. 2019,
 /// section 3.2). Rays without a hit are left out; without any hit the range is [`f32::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +48,6 @@ pub struct RangeRule {
     /// Whether each ray is corrected by a second look-up (`ray_cast.wesl`, `cast_corrected_ray`): not
     /// the paper's, nearer to exact rays, and slower.
     pub is_corrected: bool,
-    /// What a thread does.
-    pub threads: Threads,
 }
 
 /// The most rays of a point.
@@ -75,7 +63,6 @@ impl Default for RangeRule {
             combine: Combine::default(),
             primary: Primary::default(),
             is_corrected: false,
-            threads: Threads::default(),
         }
     }
 }
@@ -117,7 +104,8 @@ impl RangeRule {
 pub struct RangePoints<'a> {
     /// `array<vec4f>`: world-space positions, metres; the fourth number is not read.
     pub positions: &'a wgpu::Buffer,
-    /// `array<vec4f>`: unit normals.
+    /// `array<vec4f>`: unit normals; a point whose normal is 0 casts no ray, and its range is
+    /// [`f32::MAX`].
     pub normals: &'a wgpu::Buffer,
     /// `array<vec4f>`: unit primary directions, for [`Primary::Given`].
     pub primaries: Option<&'a wgpu::Buffer>,
@@ -186,7 +174,6 @@ impl RangeCaster {
             .flag("reflected_primary", rule.primary == Primary::Reflected)
             .flag("given_primary", rule.primary == Primary::Given)
             .flag("corrected", rule.is_corrected)
-            .flag("a_ray_a_thread", rule.threads == Threads::Rays)
     }
 
     /// Binds the points of a frame.
@@ -255,15 +242,11 @@ impl RangeCaster {
                 accepted: format!("{:?}", self.settings),
             });
         }
-        let points_a_group = match self.rule.threads {
-            Threads::Points => 256,
-            Threads::Rays => 256 / self.rule.rays,
-        };
         passes.compute("cdi-ranges", &mut |pass| {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, rays, &[]);
             pass.set_bind_group(1, group, &[]);
-            pass.dispatch_workgroups(workgroups(u64::from(self.count), points_a_group), 1, 1);
+            pass.dispatch_workgroups(workgroups(u64::from(self.count), 256), 1, 1);
         });
         Ok(())
     }

@@ -1,10 +1,20 @@
 //! Deep images copied to the CPU.
 
 use assign::{AssignError, Gpu};
-use bytemuck::pod_collect_to_vec;
+use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
 use glam::UVec2;
 
 use crate::{DeepImageCounters, DeepImageSettings, Storage, deep_buffers::DeepBuffers};
+
+/// A fragment of a linked list: `build.wesl`, `struct Node`, and `ray_cast.wesl`, `struct RayNode`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct LinkedNode {
+    /// Depth, metres from the near end of the image.
+    pub depth_m: f32,
+    /// Index of the next node plus one; 0 at the end.
+    pub next: u32,
+}
 
 /// Every pixel's depths, as a frame left them.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +43,9 @@ impl DeepImagesSnapshot {
             }
             Storage::LinkedLists => {
                 let heads: Vec<u32> = pod_collect_to_vec(&gpu.read(&buffers.counts, pixels * 4)?);
-                let nodes: Vec<[u32; 2]> =
-                    pod_collect_to_vec(&gpu.read(&buffers.fragments, used * 8)?);
+                let bytes = used * size_of::<LinkedNode>() as u64;
+                let nodes: Vec<LinkedNode> =
+                    pod_collect_to_vec(&gpu.read(&buffers.fragments, bytes)?);
                 follow(&heads, &nodes)
             }
         };
@@ -60,17 +71,17 @@ impl DeepImagesSnapshot {
 }
 
 /// Offsets and depths of linked lists; a list that leaves the nodes, or turns in a circle, ends there.
-fn follow(heads: &[u32], nodes: &[[u32; 2]]) -> (Vec<u32>, Vec<f32>) {
+fn follow(heads: &[u32], nodes: &[LinkedNode]) -> (Vec<u32>, Vec<f32>) {
     let mut offsets = vec![0];
     let mut depths_m = Vec::with_capacity(nodes.len());
     for &head in heads {
         let mut next = head;
-        while let Some(&[depth, then]) = nodes.get((next as usize).wrapping_sub(1)) {
+        while let Some(node) = nodes.get((next as usize).wrapping_sub(1)) {
             if depths_m.len() == nodes.len() {
                 break;
             }
-            depths_m.push(f32::from_bits(depth));
-            next = then;
+            depths_m.push(node.depth_m);
+            next = node.next;
         }
         offsets.push(depths_m.len() as u32);
     }

@@ -19,28 +19,16 @@ use crate::{
     sort_network,
 };
 
-/// How the lists' ranges are stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ListRanges {
-    /// `array<vec2u>`: first entry and count, as [`LightList`](assign::LightList).
-    Pairs,
-    /// `array<u32>`: list `i` is `offsets[i]` to `offsets[i + 1]`.
-    PrefixOffsets,
-}
-
 /// What to sort.
 #[derive(Clone, Copy, Debug)]
 pub struct SortInput<'a> {
-    /// The ranges, as [`ListRanges`] says; lists must be disjoint.
-    pub ranges: &'a wgpu::Buffer,
+    /// `array<u32>`: list `i` is the entries `offsets[i]` to `offsets[i + 1]`, and none where offsets
+    /// fall.
+    pub offsets: &'a wgpu::Buffer,
     /// The keys: `array<u32>`.
     pub entries: &'a wgpu::Buffer,
-    /// First list to sort, and how many follow.
-    pub first_list: u32,
-    /// Number of lists to sort.
+    /// Number of lists.
     pub list_count: u32,
-    /// Lists that begin before this entry are left alone, such as those of all lights.
-    pub first_entry: u32,
     /// Entries that there are: lists that reach beyond are left alone.
     pub entry_count: u32,
     /// The most keys of a list; keys of longer lists come out in no order.
@@ -49,8 +37,8 @@ pub struct SortInput<'a> {
 
 impl SortInput<'_> {
     /// Names a buffer that is too small for its counts.
-    fn check(&self, ranges: ListRanges) -> Result<(), AssignError> {
-        let lists = u64::from(self.first_list) + u64::from(self.list_count);
+    fn check(&self) -> Result<(), AssignError> {
+        let lists = u64::from(self.list_count);
         if self.entry_count > MOST_ENTRIES || lists > u64::from(MOST_ENTRIES) {
             return Err(AssignError::TooLarge {
                 what: format!("a sort of {} entries in {lists} lists", self.entry_count),
@@ -58,12 +46,8 @@ impl SortInput<'_> {
                 limit: u64::from(MOST_ENTRIES) * 4,
             });
         }
-        let ranges_bytes = match ranges {
-            ListRanges::Pairs => lists * 8,
-            ListRanges::PrefixOffsets => (lists + 1) * 4,
-        };
         let buffers = [
-            ("ranges", self.ranges.size(), ranges_bytes),
+            ("offsets", self.offsets.size(), (lists + 1) * 4),
             ("entries", self.entries.size(), u64::from(self.entry_count) * 4),
         ];
         for (field, has, needed) in buffers {
@@ -83,18 +67,24 @@ impl SortInput<'_> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct SortUniform {
-    /// First list to sort.
-    pub first_list: u32,
     /// Lists to sort.
     pub list_count: u32,
-    /// Lists that begin before it are left alone.
-    pub first_entry: u32,
     /// Entries that there are.
     pub entry_count: u32,
     /// Most parts.
     pub part_capacity: u32,
     /// Most blocks.
     pub block_capacity: u32,
+}
+
+/// One round of merges: `sort_long.wesl`, `struct Round`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct RoundUniform {
+    /// Keys of a sorted run before the round, as a power of two.
+    pub run_log2: u32,
+    /// 1 where runs lie in the scratch buffer and merge into the entries; 0 for the other way round.
+    pub is_odd: u32,
 }
 
 /// The work left to workgroups: `sort_work.wesl`, `struct WorkHeader`.
@@ -121,7 +111,6 @@ const PART: u32 = 2048;
 /// Sorts lists of keys, ascending, in place.
 #[derive(Debug)]
 pub struct ListSort {
-    ranges: ListRanges,
     short: wgpu::ComputePipeline,
     parts: wgpu::ComputePipeline,
     merge: wgpu::ComputePipeline,
@@ -144,10 +133,9 @@ const MOST_ENTRIES: u32 = 1 << 30;
 const MOST_ROUNDS: u32 = MOST_ENTRIES.ilog2() - PART.ilog2() + 1;
 
 impl ListSort {
-    /// Makes the kernels. The top `flag_bits` of a key, at most 31, count less than the bits below:
-    /// light lists have two.
-    pub fn new(gpu: &Gpu, ranges: ListRanges, flag_bits: u32) -> Result<Self, AssignError> {
-        let shader = Self::shader(ranges, flag_bits)?;
+    /// Makes the kernels.
+    pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        let shader = Self::shader();
         let short = kernel::uncounted(gpu, &shader, "package::sort_short")?;
         let long = kernel::uncounted(gpu, &shader, "package::sort_long")?;
         let stages = wgpu::ShaderStages::COMPUTE;
@@ -160,11 +148,10 @@ impl ListSort {
         ];
         let [keys, append, read, round] = &layouts;
         let sort = Self {
-            ranges,
             short: kernel::compute(gpu, &short, "sort_short", &[keys, append]),
             parts: kernel::compute(gpu, &long, "sort_parts", &[keys, read]),
             merge: kernel::compute(gpu, &long, "merge_round", &[keys, read, round]),
-            uniform: gpu.uniform("sort", 32),
+            uniform: gpu.uniform("sort", size_of::<SortUniform>() as u64),
             empty_work: gpu.storage("empty sort work", size_of::<SortWork>() as u64)?,
             work: work_buffer(gpu)?,
             rounds: gpu.uniform("sort rounds", u64::from(MOST_ROUNDS) * 256),
@@ -179,35 +166,25 @@ impl ListSort {
             SortWork { part_groups: [0, 1, 1], block_groups: [0, 1, 1], ..SortWork::default() };
         gpu.queue.write_buffer(&sort.empty_work, 0, bytes_of(&empty));
         for round in 0..MOST_ROUNDS {
-            let words = [PART.ilog2() + round, round % 2];
-            gpu.queue.write_buffer(&sort.rounds, u64::from(round) * 256, bytes_of(&words));
+            let uniform = RoundUniform { run_log2: PART.ilog2() + round, is_odd: round % 2 };
+            gpu.queue.write_buffer(&sort.rounds, u64::from(round) * 256, bytes_of(&uniform));
         }
         Ok(sort)
     }
 
     /// The kernels' modules: roots are `package::sort_short` and `package::sort_long`.
-    pub fn shader(ranges: ListRanges, flag_bits: u32) -> Result<Shader<'static>, AssignError> {
-        if flag_bits > 31 {
-            return Err(AssignError::Parameter {
-                field: "flag_bits".into(),
-                value: flag_bits.to_string(),
-                accepted: "0 to 31".into(),
-            });
-        }
-        Ok(Shader::new(3)
-            .module("package::sort_flags", format!("const FLAG_BITS: u32 = {flag_bits}u;\n"))
+    pub fn shader() -> Shader<'static> {
+        Shader::new(3)
             .module("package::sort_network", sort_network::module(&[8, 16, 32]))
             .module("package::sort_keys", include_str!("shaders/sort_keys.wesl"))
             .module("package::sort_work", include_str!("shaders/sort_work.wesl"))
             .module("package::sort_short", include_str!("shaders/sort_short.wesl"))
             .module("package::sort_long", include_str!("shaders/sort_long.wesl"))
-            .flag("flags", flag_bits > 0)
-            .flag("prefix_offsets", ranges == ListRanges::PrefixOffsets))
     }
 
     /// Sizes the scratch buffers and binds the input's buffers; call whenever one is made anew.
     pub fn prepare(&mut self, gpu: &Gpu, input: &SortInput<'_>) -> Result<(), AssignError> {
-        input.check(self.ranges)?;
+        input.check()?;
         let longest = input.longest.min(input.entry_count);
         let is_merged = longest > PART;
         // Every part holds more than 32 keys, every list of several more than 2048; a list's last
@@ -220,9 +197,7 @@ impl ListSort {
         grow(gpu, blocks, "sort blocks", u64::from(block_capacity) * 8)?;
         grow(gpu, &mut self.scratch, "sort scratch", scratch_bytes)?;
         let uniform = SortUniform {
-            first_list: input.first_list,
             list_count: input.list_count,
-            first_entry: input.first_entry,
             entry_count: input.entry_count,
             part_capacity,
             block_capacity,
@@ -233,14 +208,14 @@ impl ListSort {
         // One more takes lists home that end in the scratch buffer.
         self.round_count = if is_merged { merges + 1 } else { 0 };
         let [keys, append, read, round] = &self.layouts;
-        let key_buffers = [&self.uniform, input.ranges, input.entries, &self.scratch];
+        let key_buffers = [&self.uniform, input.offsets, input.entries, &self.scratch];
         let item_buffers = [&self.work, &self.items[0], &self.items[1]];
         let round_entry = wgpu::BindGroupEntry {
             binding: 0,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer: &self.rounds,
                 offset: 0,
-                size: wgpu::BufferSize::new(8),
+                size: wgpu::BufferSize::new(size_of::<RoundUniform>() as u64),
             }),
         };
         self.groups = Some([

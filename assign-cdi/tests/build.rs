@@ -21,7 +21,7 @@ const TOUCHED: Build = Build::PerDirection { coverage: Coverage::Conservative, a
 
 fn settings(build: Build, storage: Storage) -> DeepImageSettings {
     DeepImageSettings {
-        directions: Directions::of_count(Spread::Squares, 32).unwrap(),
+        directions: Directions::new(Spread::Squares, 4, 8).unwrap(),
         size_px: 32,
         build,
         storage,
@@ -373,7 +373,7 @@ fn faulty_input_is_named() {
     assert!(refused(&|s| s.most_fragments = 0).starts_with("most_fragments is 0"));
     let large = |s: &mut DeepImageSettings| {
         s.size_px = 1024;
-        s.directions = Directions::of_count(Spread::Squares, 1024).unwrap();
+        s.directions = Directions::new(Spread::Squares, 32, 32).unwrap();
     };
     assert!(refused(&large).starts_with("directions x size_px^2 is 1073741824"));
 

@@ -66,6 +66,22 @@ fn cells() {
     }
 }
 
+/// Of a pool of 2^30 entries and 65,535 workgroups, each lane of which adds one list up to `CAREFUL`.
+#[test]
+fn reservations_at_once_cannot_wrap_the_cursor() {
+    let module = validated(HybridShader::Reserve, LightKinds::default());
+    let is_it = |name: &Option<String>| name.as_deref().is_some_and(|n| n.ends_with("CAREFUL"));
+    let (_, careful) = module.constants.iter().find(|(_, c)| is_it(&c.name)).unwrap();
+    let init = &module.global_expressions[careful.init];
+    let naga::Expression::Literal(naga::Literal::U32(careful)) = *init else {
+        panic!("{init:?}: not a number");
+    };
+    let entry_point = module.entry_points.iter().find(|e| e.name == "reserve_lists").unwrap();
+    let lanes: u32 = entry_point.workgroup_size.iter().product();
+    let most = 65_535 * u64::from(lanes) * u64::from(careful) + (1 << 30);
+    assert!(careful > 0 && most < 1 << 32, "{lanes} lanes of {careful}: {most}");
+}
+
 /// The live cells as `reserve` writes them, and as `sort` reads them.
 #[test]
 fn live_cells() {

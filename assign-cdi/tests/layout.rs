@@ -7,9 +7,9 @@ use std::mem::offset_of;
 use assign::Shader;
 use assign_cdi::{
     BUILD_ROOTS, Build, Coverage, DeepImageCounters, DeepImageSettings, Directions, DispatchSizes,
-    ImagesUniform, ListRanges, ListSort, PrefixSum, Primary, RandomRanges, RandomUniform,
-    RangeCaster, RangeRule, RangesUniform, SortUniform, SortWork, Spread, StageUniform, Storage,
-    Threads, build_shader,
+    ImagesUniform, LinkedNode, ListSort, PlanUniform, PrefixSum, Primary, RandomRanges,
+    RandomUniform, RangeCaster, RangeRule, RangesUniform, RoundUniform, ScanUniform, SortUniform,
+    SortWork, Spread, StageUniform, Storage, build_shader,
 };
 
 /// A root, linked and validated with what WebGPU has without any optional feature.
@@ -63,21 +63,14 @@ fn kernels_validate() {
             validated(&build_shader(&settings), root);
         }
         for primary in [Primary::Normal, Primary::Reflected, Primary::Given] {
-            for threads in [Threads::Points, Threads::Rays] {
-                for is_corrected in [false, true] {
-                    let rule = RangeRule { primary, threads, is_corrected, ..RangeRule::default() };
-                    validated(&RangeCaster::shader(&settings, rule), "package::ranges");
-                }
+            for is_corrected in [false, true] {
+                let rule = RangeRule { primary, is_corrected, ..RangeRule::default() };
+                validated(&RangeCaster::shader(&settings, rule), "package::ranges");
             }
         }
     }
-    for ranges in [ListRanges::Pairs, ListRanges::PrefixOffsets] {
-        for flag_bits in [0, 2, 31] {
-            let shader = ListSort::shader(ranges, flag_bits).unwrap();
-            validated(&shader, "package::sort_short");
-            validated(&shader, "package::sort_long");
-        }
-    }
+    validated(&ListSort::shader(), "package::sort_short");
+    validated(&ListSort::shader(), "package::sort_long");
     validated(&PrefixSum::shader(), "package::prefix_sum");
     validated(&RandomRanges::shader(), "package::random_ranges");
 }
@@ -122,6 +115,7 @@ fn structs() {
     assert_same!(samples, "Stage", StageUniform: first_direction, mode);
     let plan = validated(&build, "package::plan");
     assert_same!(plan, "Dispatches", DispatchSizes: samples, large);
+    assert_same!(plan, "Plan", PlanUniform: directions_at_once);
     let ranges = RangeCaster::shader(&settings, RangeRule::default());
     let ranges = validated(&ranges, "package::ranges");
     assert_same!(ranges, "Header", DeepImageCounters: sample_count, fragment_count, large_count,
@@ -129,13 +123,26 @@ fn structs() {
     assert_same!(ranges, "Ranges", RangesUniform: point_count, ray_count, is_maximum, light_world, rays);
     let random = validated(&RandomRanges::shader(), "package::random_ranges");
     assert_same!(random, "Random", RandomUniform: point_count, seed, low_m, high_m);
-    let sort = ListSort::shader(ListRanges::PrefixOffsets, 0).unwrap();
-    let long = validated(&sort, "package::sort_long");
-    assert_same!(long, "Sort", SortUniform: first_list, list_count, first_entry, entry_count,
-        part_capacity, block_capacity);
+    let scan = validated(&PrefixSum::shader(), "package::prefix_sum");
+    assert_same!(scan, "Scan", ScanUniform: in_count, out_count, has_bases);
+    let long = validated(&ListSort::shader(), "package::sort_long");
+    assert_same!(long, "Sort", SortUniform: list_count, entry_count, part_capacity,
+        block_capacity);
+    assert_same!(long, "Round", RoundUniform: run_log2, is_odd);
     assert_same!(long, "WorkHeader", SortWork: part_groups, part_count, block_groups, block_count,
         longest);
     assert_eq!(offset_of!(SortWork, longest) as u64, ListSort::LONGEST_AT);
+}
+
+/// Linked lists are written by the build, and read by rays and on the CPU.
+#[test]
+fn linked_nodes() {
+    let settings = DeepImageSettings { storage: Storage::LinkedLists, ..Default::default() };
+    let build = validated(&build_shader(&settings), "package::from_samples");
+    assert_same!(build, "Node", LinkedNode: depth_m, next);
+    let ranges = RangeCaster::shader(&settings, RangeRule::default());
+    let rays = validated(&ranges, "package::ranges");
+    assert_same!(rays, "RayNode", LinkedNode: depth_m, next);
 }
 
 /// Frames are written as three columns of 16 bytes.

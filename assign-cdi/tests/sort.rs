@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use assign::{EncoderPasses, Gpu};
-use assign_cdi::{ListRanges, ListSort, PrefixSum, SortInput, SortWork};
+use assign_cdi::{ListSort, PrefixSum, SortInput, SortWork};
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -34,32 +34,23 @@ impl Lists {
         Self { offsets, keys }
     }
 
-    fn sorted(&self, key: impl Fn(&u32) -> u32) -> Vec<u32> {
+    fn sorted(&self) -> Vec<u32> {
         let mut keys = self.keys.clone();
         for ends in self.offsets.windows(2) {
-            keys[ends[0] as usize..ends[1] as usize].sort_by_key(&key);
+            keys[ends[0] as usize..ends[1] as usize].sort_unstable();
         }
         keys
     }
 
-    /// Sorts lists from `first_list` on.
-    fn on_gpu(&self, gpu: &Gpu, layout: ListRanges, flag_bits: u32, first_list: u32) -> Vec<u32> {
-        let lists = self.offsets.len() as u32 - 1;
-        let pairs = self.offsets.windows(2).flat_map(|ends| [ends[0], ends[1] - ends[0]]);
-        let ranges = match layout {
-            ListRanges::Pairs => upload(gpu, &pairs.collect::<Vec<_>>()),
-            ListRanges::PrefixOffsets => upload(gpu, &self.offsets),
-        };
+    fn on_gpu(&self, gpu: &Gpu) -> Vec<u32> {
+        let offsets = upload(gpu, &self.offsets);
         let entries = upload(gpu, &self.keys);
-        let lengths = self.offsets.windows(2).map(|ends| ends[1] - ends[0]);
-        let longest = lengths.clone().max().unwrap_or(0);
-        let mut sort = ListSort::new(gpu, layout, flag_bits).unwrap();
+        let longest = self.offsets.windows(2).map(|ends| ends[1] - ends[0]).max().unwrap_or(0);
+        let mut sort = ListSort::new(gpu).unwrap();
         let input = SortInput {
-            ranges: &ranges,
+            offsets: &offsets,
             entries: &entries,
-            first_list,
-            list_count: lists - first_list,
-            first_entry: 0,
+            list_count: self.offsets.len() as u32 - 1,
             entry_count: self.keys.len() as u32,
             longest,
         };
@@ -72,7 +63,7 @@ impl Lists {
         }
         let work = gpu.read(sort.work(), size_of::<SortWork>() as u64).unwrap();
         let work: SortWork = bytemuck::pod_read_unaligned(&work);
-        assert_eq!(work.longest, lengths.skip(first_list as usize).max().unwrap_or(0));
+        assert_eq!(work.longest, longest);
         download(gpu, &entries, self.keys.len())
     }
 }
@@ -85,12 +76,10 @@ const LENGTHS: [u32; 22] = [
 fn lists_of_all_lengths() {
     let gpu = Gpu::open(None).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(1);
-    for layout in [ListRanges::Pairs, ListRanges::PrefixOffsets] {
-        // All keys, and many repeats.
-        for below in [u32::MAX, 50] {
-            let lists = Lists::random(&mut rng, &LENGTHS, below);
-            assert!(lists.on_gpu(&gpu, layout, 0, 0) == lists.sorted(|key| *key), "{layout:?}");
-        }
+    // All keys, and many repeats.
+    for below in [u32::MAX, 50] {
+        let lists = Lists::random(&mut rng, &LENGTHS, below);
+        assert!(lists.on_gpu(&gpu) == lists.sorted(), "{below}");
     }
 }
 
@@ -100,27 +89,7 @@ fn many_short_lists() {
     let mut rng = Pcg64Mcg::seed_from_u64(2);
     let lengths: Vec<u32> = (0..3000).map(|_| rng.random_range(0..60)).collect();
     let lists = Lists::random(&mut rng, &lengths, 1 << 20);
-    assert!(lists.on_gpu(&gpu, ListRanges::PrefixOffsets, 0, 0) == lists.sorted(|key| *key));
-}
-
-#[test]
-fn flags_count_less_than_indices() {
-    let gpu = Gpu::open(None).unwrap();
-    let mut rng = Pcg64Mcg::seed_from_u64(3);
-    let lists = Lists::random(&mut rng, &LENGTHS, u32::MAX);
-    let sorted = lists.sorted(|key| key.rotate_left(2));
-    assert!(lists.on_gpu(&gpu, ListRanges::Pairs, 2, 0) == sorted);
-    assert!(lists.on_gpu(&gpu, ListRanges::Pairs, 0, 0) != sorted);
-}
-
-#[test]
-fn lists_before_the_first_are_left_alone() {
-    let gpu = Gpu::open(None).unwrap();
-    let mut rng = Pcg64Mcg::seed_from_u64(4);
-    let lists = Lists::random(&mut rng, &[40, 5, 3000, 12], 1000);
-    let sorted = lists.on_gpu(&gpu, ListRanges::Pairs, 0, 2);
-    assert_eq!(sorted[..45], lists.keys[..45]);
-    assert_eq!(sorted[45..], lists.sorted(|key| *key)[45..]);
+    assert!(lists.on_gpu(&gpu) == lists.sorted());
 }
 
 #[test]
@@ -128,16 +97,13 @@ fn lists_outside_are_left_alone() {
     let gpu = Gpu::open(None).unwrap();
     let keys: Vec<u32> = (0..100).rev().collect();
     let entries = upload(&gpu, &keys);
-    // Before the first entry; beyond the last; beyond 32 bits; at the end, empty; inside.
-    let pairs = [0, 10, 95, 6, 99, u32::MAX, 100, 0, 20, 50];
-    let ranges = upload(&gpu, &pairs);
-    let mut sort = ListSort::new(&gpu, ListRanges::Pairs, 0).unwrap();
+    // Inside; falling; beyond the last entry; falling; to the end of 32 bits; falling; empty.
+    let offsets = upload(&gpu, &[20, 70, 65, 101, 0, u32::MAX, 100, 100]);
+    let mut sort = ListSort::new(&gpu).unwrap();
     let input = SortInput {
-        ranges: &ranges,
+        offsets: &offsets,
         entries: &entries,
-        first_list: 0,
-        list_count: 5,
-        first_entry: 10,
+        list_count: 7,
         entry_count: 100,
         longest: 100,
     };
@@ -148,12 +114,6 @@ fn lists_outside_are_left_alone() {
     let mut sorted = keys;
     sorted[20..70].sort_unstable();
     assert_eq!(download(&gpu, &entries, 100), sorted);
-}
-
-#[test]
-fn too_many_flag_bits_are_refused() {
-    let message = ListSort::shader(ListRanges::Pairs, 32).unwrap_err().to_string();
-    assert_eq!(message, "flag_bits is 32: it must be 0 to 31");
 }
 
 #[test]
@@ -180,21 +140,19 @@ fn prefix_sums() {
 #[test]
 fn small_buffers_are_refused() {
     let gpu = Gpu::noop().unwrap();
-    let mut sort = ListSort::new(&gpu, ListRanges::Pairs, 0).unwrap();
-    let (ranges, entries) = (gpu.storage("r", 80).unwrap(), gpu.storage("e", 80).unwrap());
+    let mut sort = ListSort::new(&gpu).unwrap();
+    let (offsets, entries) = (gpu.storage("o", 80).unwrap(), gpu.storage("e", 80).unwrap());
     let input = SortInput {
-        ranges: &ranges,
+        offsets: &offsets,
         entries: &entries,
-        first_list: 1,
-        list_count: 9,
-        first_entry: 0,
+        list_count: 19,
         entry_count: 20,
         longest: 20,
     };
     sort.prepare(&gpu, &input).unwrap();
     let mut refused = |input| sort.prepare(&gpu, &input).unwrap_err().to_string();
-    let message = refused(SortInput { list_count: 10, ..input });
-    assert_eq!(message, "ranges of a sort is 80 bytes: it must be at least 88");
+    let message = refused(SortInput { list_count: 20, ..input });
+    assert_eq!(message, "offsets of a sort is 80 bytes: it must be at least 84");
     let message = refused(SortInput { entry_count: 21, ..input });
     assert_eq!(message, "entries of a sort is 80 bytes: it must be at least 84");
     assert!(refused(SortInput { list_count: u32::MAX, ..input }).starts_with("a sort of 20"));

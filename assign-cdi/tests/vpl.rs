@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 use assign::{Light, LightShape, Projection};
 use assign_cdi::{VplBuffer, VplSettings};
 use bytemuck::pod_collect_to_vec;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use vpl_map::{HALF_WALL_M, Hit, Map, WHITE, room, spot};
 
 fn total(lights: &[Light]) -> DVec3 {
@@ -114,25 +114,80 @@ fn choice_conserves_light_and_stays_on_surfaces() {
     }
 }
 
+/// Positions of the VPLs chosen, and the sides of the squares that they stand for.
+fn widths(map: &Map, spacing_m: f32) -> Vec<[f32; 4]> {
+    let settings = VplSettings { spacing_m, ..VplSettings::default() };
+    let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
+    map.run(&mut buffer, |_| 1.0);
+    let count = u64::from(buffer.read_counts(&map.gpu).unwrap().chosen);
+    pod_collect_to_vec(&map.gpu.read(buffer.positions(), count * 16).unwrap())
+}
+
+/// Of a plane: rays through the four corners of the texel meet it around the texel's patch.
+#[test]
+fn a_width_is_the_side_of_the_texels_patch() {
+    let light = spot(0.9);
+    for slope in [0.0, 0.3] {
+        let normal = Vec3::new(-slope, 1.0, 0.0);
+        // Through the point 3 m below the light.
+        let depth = |ray: Vec3| -light.position.y / ray.dot(normal);
+        let map = Map::new([128, 128], light, |ray| Some((depth(ray), normal, WHITE)));
+        let Projection::Perspective { max: reach, .. } = map.view.projection else { panic!() };
+        let texel = 2.0 * reach / 128.0;
+        let to_world = map.view.world_to_view.inverse();
+        let all = widths(&map, 0.0);
+        assert!(all.len() > 128 * 128 / 2, "{}", all.len());
+        for [x, y, z, width] in all {
+            let at = map.view.world_to_view.transform_point3(Vec3::new(x, y, z));
+            let low = ((at.truncate() / -at.z + reach) / texel).floor() * texel - reach;
+            let meets = |corner: Vec2| {
+                let ray = to_world.transform_vector3((low + corner * texel).extend(-1.0));
+                ray * depth(ray)
+            };
+            let corners = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].map(meets);
+            let diagonals = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
+            let area = 0.5 * diagonals.length();
+            let off = width * width / area - 1.0;
+            assert!(off.abs() < 2e-3, "{slope}: {width} at {x} {z}, not {}", area.sqrt());
+        }
+    }
+}
+
+/// A shading normal that leans away from the light reflects nothing; nor is it turned.
+#[test]
+fn texels_turned_away_give_no_vpl() {
+    let light = spot(0.9);
+    let floor = |ray: Vec3, normal| Some((light.position.y / -ray.y, normal, WHITE));
+    // Just below the horizon of the light.
+    let away = |ray: Vec3| {
+        let to_light = -ray.normalize();
+        let across = to_light.any_orthonormal_vector();
+        (across - 0.02 * to_light).normalize()
+    };
+    let is_turned = |ray: Vec3| ray.x > 0.3 * ray.z;
+    let turned = Map::new([50, 37], light, |ray| {
+        floor(ray, if is_turned(ray) { away(ray) } else { Vec3::Y })
+    });
+    let without =
+        Map::new([50, 37], light, |ray| if is_turned(ray) { None } else { floor(ray, Vec3::Y) });
+    let whole = Map::new([50, 37], light, |ray| floor(ray, Vec3::Y));
+    for spacing_m in [0.0, 0.5, 1e3] {
+        let settings = VplSettings { spacing_m, ..VplSettings::default() };
+        let lights = turned.lights(settings);
+        assert!(!lights.is_empty() && lights == without.lights(settings), "{spacing_m}");
+        let share = (total(&lights) / total(&whole.lights(settings))).x;
+        assert!((0.4..0.6).contains(&share), "{spacing_m}: {share}");
+    }
+}
+
 /// Blocks are no wider than asked, and as wide as they may be: near the light fewer texels suffice.
 #[test]
 fn spacing_is_even_where_texels_allow_it() {
     let light = spot(0.9);
     let map = Map::new([128, 128], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
-    let widths = |spacing_m| -> Vec<[f32; 4]> {
-        let settings = VplSettings { spacing_m, ..VplSettings::default() };
-        let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
-        map.run(&mut buffer, |_| 1.0);
-        let count = u64::from(buffer.read_counts(&map.gpu).unwrap().chosen);
-        pod_collect_to_vec(&map.gpu.read(buffer.positions(), count * 16).unwrap())
-    };
-    for [x, y, z, width] in widths(0.0) {
-        let to = Vec3::new(x, y, z) - light.position;
-        let area = texel_area(&map, [128, 128]) * to.length() * light.position.y;
-        assert!((width * width / area - 1.0).abs() < 1e-3, "{width}, not {}", area.sqrt());
-    }
     let spacing_m = 0.3;
-    let widths: Vec<f32> = widths(spacing_m).iter().map(|position| position[3]).collect();
+    let widths = widths(&map, spacing_m);
+    let widths: Vec<f32> = widths.iter().map(|position| position[3]).collect();
     let count = widths.len();
     assert!(widths.iter().all(|w| *w > 0.0 && *w <= spacing_m), "{widths:?}");
     // Twice as wide would be too wide for the widest texel of most blocks.

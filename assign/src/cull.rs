@@ -81,7 +81,8 @@ pub struct CullerDescriptor<'a> {
     pub facing: Facing,
     /// WESL with `group_bounds(group: u32) -> GroupBounds` and `group_of(sample: ViewSample) -> u32`.
     pub module: StrategyModule,
-    /// Layout of its resources, bindings from [`FIRST_STRATEGY_BINDING`], read-only.
+    /// Layout of its resources, bindings from
+    /// [`FIRST_STRATEGY_BINDING`](crate::FIRST_STRATEGY_BINDING), read-only.
     pub bindings: &'a [wgpu::BindGroupLayoutEntry],
 }
 

@@ -37,6 +37,7 @@ mod light;
 mod light_buffer;
 mod light_nodes;
 mod light_order;
+mod light_record;
 mod lists;
 mod lists_bindings;
 mod live_groups;
@@ -55,13 +56,11 @@ pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
 pub use gpu::Gpu;
-pub use light::{
-    Light, LightEmission, LightFault, LightKind, LightKinds, LightShape, LightSphere,
-    MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M,
-};
+pub use light::{Light, LightFault, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M};
 pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
 pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
+pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere};
 pub use lists::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
     LightLists, ListsSnapshot,

@@ -18,7 +18,9 @@ pub struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    /// The contract's modules; lists are read from bind group `lists_group`.
+    /// The contract's modules; lists are read from bind group `lists_group`. The flag `lanes_reserve`
+    /// is off: `package::reserve` may reserve one list a workgroup at once, and with the flag on one a
+    /// lane of workgroups of 256.
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         Self { modules: Vec::new(), flags: Vec::new() }
@@ -29,6 +31,7 @@ impl<'a> Shader<'a> {
             .module("package::volume", include_str!("shaders/volume.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
+            .flag("lanes_reserve", false)
             .light_kinds(LightKinds::default())
     }
 

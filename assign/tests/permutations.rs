@@ -95,6 +95,24 @@ fn every_permutation_of_the_kernel_validates() {
     }
 }
 
+/// Of a pool of 2^30 entries and 65,535 workgroups, each of which adds one list up to `CAREFUL`.
+#[test]
+fn reservations_at_once_cannot_wrap_the_cursor() {
+    let (_, bounds, settings, sparse) = permutations()[0];
+    let strategy = strategy(bounds);
+    let kinds = LightKinds::default();
+    let source = Culler::kernel_source(FRUSTUM.0, settings, sparse, &strategy, kinds).unwrap();
+    let module = validate(&source).unwrap();
+    let is_it = |name: &Option<String>| name.as_deref().is_some_and(|n| n.ends_with("CAREFUL"));
+    let (_, careful) = module.constants.iter().find(|(_, c)| is_it(&c.name)).unwrap();
+    let init = &module.global_expressions[careful.init];
+    let naga::Expression::Literal(naga::Literal::U32(careful)) = *init else {
+        panic!("{init:?}: not a number");
+    };
+    let most = 65_535 * u64::from(careful) + (1 << 30);
+    assert!(careful > 0 && most < 1 << 32, "{careful}: {most}");
+}
+
 /// Permutations differ where they should: the flags reach the module.
 #[test]
 fn flags_change_the_kernel() {

@@ -14,7 +14,8 @@
 //!
 //! A texel of solid angle `w` seen from a spot of intensity `I` reflects the flux `I w a`, with `a` the
 //! diffuse albedo; Lambert's law gives the intensity `I w a / pi` along the normal, whose integral over
-//! the half space is that flux. A block has its texels' sum and the place and normal of one of them, so
+//! the half space is that flux. A texel whose shading normal faces away from the light reflects nothing,
+//! though its facet faces it. A block has its texels' sum and the place and normal of one of them, so
 //! the spacing changes where light comes from and not how much there is.
 
 mod buffer;

@@ -14,7 +14,8 @@ const LEVELS: usize = 12;
 pub struct Rsm<'a> {
     /// Depth, as the view maps it.
     pub depth: &'a wgpu::TextureView,
-    /// World-space shading normals of any length; 0 where there is no surface.
+    /// World-space shading normals of any length; 0 where there is no surface. A texel whose normal
+    /// faces away from the light reflects nothing.
     pub normals: &'a wgpu::TextureView,
     /// Base colour, linear when loaded; metallic in alpha.
     pub base_color: &'a wgpu::TextureView,

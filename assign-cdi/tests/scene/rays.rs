@@ -105,9 +105,11 @@ pub(crate) fn rays_from_surfaces(triangles: &[Corners], count: usize, seed: u64)
     rays
 }
 
+/// Settings of `count` directions: a square number, or twice one.
 pub(crate) fn settings(count: u32, size_px: u32, spread: Spread) -> DeepImageSettings {
+    let stacks = (1..=32).find(|n| count == n * n || count == 2 * n * n).unwrap();
     DeepImageSettings {
-        directions: Directions::of_count(spread, count).unwrap(),
+        directions: Directions::new(spread, stacks, count / stacks).unwrap(),
         size_px,
         ..Default::default()
     }

@@ -228,8 +228,8 @@ pub(crate) fn room(light: &Light) -> impl Fn(Vec3) -> Option<Hit> + use<> {
         let walls = [
             (to(1, 0.0), Vec3::Y, Vec4::new(0.8, 0.7, 0.6, 0.0)),
             (to(0, -HALF_WALL_M), Vec3::X, Vec4::new(0.9, 0.1, 0.1, 0.0)),
-            // Half a metal; its normal points out of the room.
-            (to(0, HALF_WALL_M), Vec3::X, Vec4::new(0.1, 0.9, 0.1, 0.5)),
+            // Half a metal.
+            (to(0, HALF_WALL_M), Vec3::NEG_X, Vec4::new(0.1, 0.9, 0.1, 0.5)),
             (to(2, -HALF_WALL_M), Vec3::Z, Vec4::new(0.5, 0.5, 0.9, 0.0)),
             (to(2, HALF_WALL_M), Vec3::NEG_Z, Vec4::ZERO),
         ];

@@ -1,0 +1,136 @@
+//! The record of a light on the GPU: its kind, what culling reads, and what shading reads.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::{
+    emitter::Outline,
+    light::{Light, LightShape},
+};
+
+/// The kinds of light, as stored in the top four bits of [`LightEmission::kind_and_shape`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum LightKind {
+    /// [`LightShape::Point`].
+    Point = 0,
+    /// [`LightShape::Spot`].
+    Spot = 1,
+    /// [`LightShape::Area`] with a rectangle.
+    Rectangle = 2,
+    /// [`LightShape::Area`] with a polygon.
+    Polygon = 3,
+    /// [`LightShape::Vpl`].
+    Vpl = 4,
+}
+
+/// The kinds beside points that some lights are of: shaders are compiled for what there is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct LightKinds {
+    /// Spots or virtual point lights, whose supports are cones: the flag `spots`.
+    pub spots: bool,
+    /// Rectangles or polygons: the flag `areas`.
+    pub areas: bool,
+}
+
+impl LightKinds {
+    /// Every combination.
+    pub const ALL: [Self; 4] = [
+        Self { spots: false, areas: false },
+        Self { spots: true, areas: false },
+        Self { spots: false, areas: true },
+        Self { spots: true, areas: true },
+    ];
+
+    /// The kinds of some lights.
+    pub fn of(lights: &[Light]) -> Self {
+        Self {
+            spots: lights
+                .iter()
+                .any(|light| matches!(light.kind(), LightKind::Spot | LightKind::Vpl)),
+            areas: lights.iter().any(|light| matches!(light.shape, LightShape::Area(_))),
+        }
+    }
+
+    /// Whether a shader that is compiled for these kinds lights all of `others`.
+    pub fn cover(self, others: Self) -> bool {
+        self.spots >= others.spots && self.areas >= others.areas
+    }
+}
+
+/// The part of a light that culling reads: its bounding sphere. 16 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct LightSphere {
+    /// World-space position, metres.
+    pub position_world: [f32; 3],
+    /// Radius of a ball that holds the support, metres: the range, and an emitter's own radius.
+    pub radius_m: f32,
+}
+
+/// The part of a light that only shading reads. 16 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct LightEmission {
+    /// Radiant intensity, linear RGB.
+    pub intensity: [f32; 3],
+    /// [`LightKind`] in the top 4 bits; in the low 28 the index of the light's first vector in
+    /// the shape buffer.
+    pub kind_and_shape: u32,
+}
+
+impl Light {
+    /// Its kind.
+    pub fn kind(&self) -> LightKind {
+        match self.shape {
+            LightShape::Point => LightKind::Point,
+            LightShape::Spot { .. } => LightKind::Spot,
+            LightShape::Vpl { .. } => LightKind::Vpl,
+            LightShape::Area(emitter) => match emitter.outline() {
+                Outline::Rectangle => LightKind::Rectangle,
+                Outline::Polygon => LightKind::Polygon,
+            },
+        }
+    }
+
+    /// The part of the light's record that culling reads.
+    pub fn sphere(&self) -> LightSphere {
+        LightSphere { position_world: self.position.to_array(), radius_m: self.radius_m() }
+    }
+
+    /// The light's record for shading; appends what its kind needs to `shapes`.
+    ///
+    /// Shape vectors: a point light has none; a spot has `(direction, cos outer)` and
+    /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`; a virtual point light has
+    /// `(normal, cos outer = 0)` and `(0, sin outer = 1, least distance squared, 0)`; an area light has `(normal,
+    /// range)`, `(half x, diffuse range)`, `(half y, vertex count)` with the count negative where
+    /// two-sided, `(area, 0, 0, 0)`, and its vertices relative to its position, `(vertex, 0)` each.
+    pub(crate) fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
+        let first_shape = shapes.len() as u32;
+        if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
+            let direction = direction.normalize();
+            let cos_outer = outer_angle.cos();
+            let scale = 1.0 / (inner_angle.cos() - cos_outer).max(1e-3);
+            shapes.push([direction.x, direction.y, direction.z, cos_outer]);
+            shapes.push([scale, outer_angle.sin().max(0.0), 0.0, 0.0]);
+        }
+        if let LightShape::Vpl { normal, min_distance_m } = self.shape {
+            let normal = normal.normalize();
+            shapes.push([normal.x, normal.y, normal.z, 0.0]);
+            shapes.push([0.0, 1.0, min_distance_m * min_distance_m, 0.0]);
+        }
+        if let LightShape::Area(emitter) = &self.shape {
+            let [half_x, half_y] = emitter.half_axes();
+            let count = emitter.vertices().len() as f32;
+            let count = if emitter.two_sided { -count } else { count };
+            shapes.push(emitter.normal().extend(self.range_m).to_array());
+            shapes.push(half_x.extend(self.diffuse_range_m()).to_array());
+            shapes.push(half_y.extend(count).to_array());
+            shapes.push([emitter.area(), 0.0, 0.0, 0.0]);
+            shapes.extend(emitter.vertices().iter().map(|v| v.extend(0.0).to_array()));
+        }
+        LightEmission {
+            intensity: self.intensity.to_array(),
+            kind_and_shape: (self.kind() as u32) << 28 | first_shape,
+        }
+    }
+}
