@@ -51,7 +51,8 @@ struct Extent {
     casts: &'static str,
     compared: &'static str,
     strategies: &'static str,
-    /// Directions of conservative images: many fragments a triangle.
+    /// Directions of conservative images: a fragment at least of every triangle in each, which in the town
+    /// would be five GiB of 169.
     conservative: &'static str,
 }
 
@@ -72,7 +73,7 @@ const FULL: Extent = Extent {
     casts: "256,512,1024,2048",
     compared: "200000",
     strategies: "None,T-E,DC-E,SC-E,G,M/2,HG",
-    conservative: "13x13",
+    conservative: "4x4",
 };
 
 const QUICK: Extent = Extent {

@@ -215,7 +215,8 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let mut found = quietest(done, scene);
     found.extend(super::cdi_builds::findings(done, scene));
     let casts = runs(done, scene, cdi::CASTS);
-    let cast = casts.iter().flat_map(|run| &run.casts).max_by_key(|cast| cast.lights);
+    let arrays = casts.iter().filter(|run| run.deep.build != "linked-lists");
+    let cast = arrays.flat_map(|run| &run.casts).max_by_key(|cast| cast.lights);
     found.extend(cast.map(|cast| {
         let (ms, rays) = (median(&cast.cast_ms), cast.lights as f64 * f64::from(cast.rays));
         format!("In {scene} {} million rays take {} ms.", significant(rays / 1e6), significant(ms))
@@ -227,5 +228,7 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
 /// What stands above all.
 pub(super) fn headline(done: &Done) -> Option<String> {
     let first = |scene| findings(done, scene).into_iter().next();
-    super::cdi_light::headline(done).or_else(|| done.scenes().into_iter().find_map(first))
+    super::cdi_light::in_common(done)
+        .or_else(|| super::cdi_light::headline(done))
+        .or_else(|| done.scenes().into_iter().find_map(first))
 }

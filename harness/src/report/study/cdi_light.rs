@@ -335,3 +335,47 @@ pub(super) fn headline(done: &Done) -> Option<String> {
         ))
     })
 }
+
+/// The setting of a rule that errs least on average over the scenes, with that error and the greatest of
+/// any scene: what a renderer would set once.
+fn best_in_common(done: &Done, is_of: fn(&str) -> bool) -> Option<(String, f64, f64)> {
+    let scenes = done.scenes();
+    let mut settings: Vec<(String, Vec<f64>)> = Vec::new();
+    for scene in &scenes {
+        for Entry { job, record } in entries(done, scene, MODELS) {
+            let name = job.name.strip_prefix(&format!("{scene}-{MODELS}-")).unwrap_or_default();
+            let Some(error) = error(record).filter(|_| is_of(name)) else { continue };
+            match settings.iter_mut().find(|(known, _)| known == name) {
+                Some((_, errors)) => errors.push(error),
+                None => settings.push((name.to_owned(), vec![error])),
+            }
+        }
+    }
+    settings
+        .into_iter()
+        .filter(|(_, errors)| errors.len() == scenes.len())
+        .map(|(name, errors)| {
+            let worst = errors.iter().copied().fold(0.0, f64::max);
+            (name, errors.iter().sum::<f64>() / errors.len() as f64, worst)
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// One setting for all scenes: rays against random ranges, where there are several scenes.
+pub(super) fn in_common(done: &Done) -> Option<String> {
+    let scenes = done.scenes().len();
+    if scenes < 2 {
+        return None;
+    }
+    let (_, own, own_worst) = best_in_common(done, |name| name.contains("-x"))?;
+    let is_random = |name: &str| name.starts_with("random-") && !name.contains("rsm");
+    let (_, theirs, their_worst) = best_in_common(done, is_random)?;
+    Some(format!(
+        "With one setting for all {scenes} scenes, lights with ranges by rays err by {} of the mean ({} at worst), with \
+         random ranges by {} ({}).",
+        significant(own),
+        significant(own_worst),
+        significant(theirs),
+        significant(their_worst)
+    ))
+}
