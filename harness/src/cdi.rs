@@ -1,5 +1,7 @@
 //! `lightbench cdi`: deep images of a scene, built, timed, and compared with exact rays.
 
+use std::time::Instant;
+
 use assign::{EncoderPasses, Gpu, Light};
 use assign_cdi::{DeepImages, RandomRanges, RangeCaster, RangeRule, Triangles};
 use scenes::{Scene, primary_light};
@@ -9,7 +11,7 @@ use crate::{
     checks::{check_writable, remove_stale},
     cli::CdiArgs,
     clock::{PassClock, PassTime},
-    compare::{Bench, DEFAULT_FRAMES},
+    compare::{Bench, DEFAULT_FRAMES, is_warm},
     deep::{figures, settings_of, settle},
     error::HarnessError,
     machine::machine,
@@ -18,9 +20,6 @@ use crate::{
     results::{CastTimes, DeepImageRun, Results, Truth, TruthLevel, median},
     vpls::{all_texels, points_of},
 };
-
-/// Builds before the clock starts, on a GPU.
-const WARMUP: u32 = 16;
 
 /// Runs it, writes its results, and returns what to print. `command` is the command line, for
 /// provenance.
@@ -101,12 +100,14 @@ fn time(
 ) -> Result<PassSamples, HarnessError> {
     let mut samples = PassSamples::default();
     let mut clock = PassClock::new(gpu);
-    let warmup = if gpu.is_software() { 0 } else { WARMUP };
-    for _ in 0..warmup {
+    let (began, mut built) = (Instant::now(), 0);
+    while !is_warm(gpu, built, began) {
         images.prepare(gpu, triangles)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         images.record(&mut EncoderPasses { encoder: &mut encoder });
         gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        built += 1;
     }
     for _ in 0..frames {
         images.prepare(gpu, triangles)?;
@@ -143,15 +144,16 @@ fn casts(
         random.prepare(gpu, vpls.ranges_m(), vpls.capacity(), (0.0, 1.0), args.seed as u32)?;
         let [mut cast_ms, mut corrected_ms, mut random_ms] = [const { Vec::new() }; 3];
         let mut clock = PassClock::new(gpu);
-        let warmup = if gpu.is_software() { 0 } else { WARMUP };
-        for frame in 0..warmup + frames {
+        let (began, mut warm) = (Instant::now(), 0);
+        while (cast_ms.len() as u32) < frames {
             random.record(&mut clock);
             let random = clock.finish()?;
             caster.record(images, &mut clock)?;
             let cast = clock.finish()?;
             corrected.record(images, &mut clock)?;
             let corrected = clock.finish()?;
-            if frame >= warmup {
+            warm += 1;
+            if is_warm(gpu, warm - 1, began) {
                 let ms = |times: Vec<PassTime>| times.into_iter().map(|(_, ms)| ms);
                 random_ms.extend(ms(random));
                 cast_ms.extend(ms(cast));
@@ -204,11 +206,13 @@ fn summary(run: &DeepImageRun) -> String {
     for (what, errors) in [("", &run.range_errors), (" corrected", &run.corrected_errors)] {
         let Some(errors) = errors else { continue };
         text += &format!(
-            "ranges   {}{what} rays: median error {:.3} of a pixel, of lights {:.3}; {:.1} % lost\n",
+            "ranges   {}{what} rays: median error {:.3} of a pixel, of lights {:.3}; {:.1} % lost, {:.1} % \
+             invented\n",
             errors.rays,
             errors.median(),
             errors.median_range_error,
-            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0
+            errors.lost as f64 / errors.rays.max(1) as f64 * 100.0,
+            errors.invented as f64 / errors.rays.max(1) as f64 * 100.0
         );
     }
     text

@@ -1,6 +1,10 @@
 //! `lightbench compare`: the main job.
 
-use std::{path::Path, sync::Arc, time::Duration};
+use std::{
+    path::Path,
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -32,6 +36,12 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 
 /// How long a GPU warms up at least; a software adapter has no clocks to raise.
 const GPU_WARM_UP: Duration = Duration::from_millis(250);
+
+/// Whether a device is awake after some frames since a time: a GPU's clocks fall while it waits.
+pub(crate) fn is_warm(gpu: &Gpu, frames: u32, began: Instant) -> bool {
+    let kind = usize::from(gpu.is_software());
+    gpu.is_software() || (frames >= DEFAULT_WARMUP[kind] && began.elapsed() >= GPU_WARM_UP)
+}
 
 /// A device with the scene that was drawn last.
 pub struct Bench {
@@ -188,6 +198,14 @@ impl Run<'_> {
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self) {
         note_faults(&mut self.results, self.stage);
+        if let Some(vpls) = &self.stage.vpls {
+            let words = vpls.summary();
+            eprintln!("vpls     {words}");
+            if vpls.kept == 0 {
+                let none = "no virtual point light is left: every image is black";
+                self.results.warnings.push(format!("{words}: {none}"));
+            }
+        }
         let name = &self.stage.scene.name;
         if self.args.path && !self.stage.scene.path.moves() {
             self.results
@@ -324,7 +342,7 @@ fn describe(stage: &Stage) {
         stage.scene.models.len(),
         stage.lights.count()
     );
-    if stage.lights.count() as usize > stage.own_lights {
+    if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
         eprintln!("lights   scattered with a mean radius of {:.3} m", stage.radius_scale);
     }
     for warning in &stage.scene.warnings {

@@ -5,6 +5,8 @@ use assign_cdi::{
     Combine, DeepImages, Large, Primary, RandomRanges, RangeCaster, RangePoints, RangeRule, Rsm,
     Triangles, VplBuffer, VplSettings,
 };
+use std::time::Instant;
+
 use glam::Vec3;
 use scenes::Scene;
 use shading::{Renderer, WorldTriangles, rsm_view};
@@ -13,6 +15,7 @@ use crate::{
     cdi::triangles_of,
     cli::{CliError, PrimaryRay, RangeChoice, Span, StageArgs, VplArgs},
     clock::PassClock,
+    compare::is_warm,
     deep::{figures, settings_of, settle},
     error::HarnessError,
     pass_samples::PassSamples,
@@ -21,9 +24,6 @@ use crate::{
 
 /// Frames in which the steps are timed: on a GPU, and on a software adapter.
 const FRAMES: [u32; 2] = [32, 1];
-
-/// Frames before the clock starts, likewise.
-const WARMUP: [u32; 2] = [8, 0];
 
 /// The clamp of a light's fall-off as a share of the diagonal of the scene's core.
 const CLAMP_SHARE: f32 = 0.01;
@@ -81,14 +81,18 @@ impl VplMaker {
         let kind = usize::from(gpu.is_software());
         let mut samples = PassSamples::default();
         let mut clock = PassClock::new(gpu);
-        for frame in 0..WARMUP[kind] + FRAMES[kind] {
+        let began = Instant::now();
+        let (mut warm, mut timed) = (0, 0);
+        while timed < FRAMES[kind] {
             vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
             ranges.prepare(gpu, &vpls)?;
             record(&map, &view, &mut vpls, &mut ranges, &mut clock)?;
             let times = clock.finish()?;
-            if frame >= WARMUP[kind] {
+            if is_warm(gpu, warm, began) {
                 samples.collect(times);
+                timed += 1;
             }
+            warm += 1;
         }
         let counts = vpls.read_counts(gpu)?;
         let lights = vpls.read(gpu)?;

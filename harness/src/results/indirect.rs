@@ -46,6 +46,18 @@ pub struct Vpls {
 }
 
 impl Vpls {
+    /// What they are: `1,042 of 2,515 lights, ranges average, 3.15 m on average, made in 1.15 ms`.
+    pub fn summary(&self) -> String {
+        format!(
+            "{} of {} lights, ranges {}, {:.2} m on average, made in {:.3} ms",
+            self.kept,
+            self.candidates,
+            self.ranges,
+            self.mean_range_m,
+            self.total_ms()
+        )
+    }
+
     /// All steps together, ms: the sum of their medians.
     pub fn total_ms(&self) -> f64 {
         self.passes.iter().map(|(_, times)| times.median_ms).sum()

@@ -48,6 +48,10 @@ fn series(record: &Record) -> String {
 }
 
 fn class(record: &Record) -> String {
+    let is_cast = |vpls: &Vpls| vpls.rays > 0 && !cdi::is_usual(vpls);
+    if record.vpls.as_ref().is_some_and(is_cast) {
+        return "strategy-5".to_owned();
+    }
     RULES
         .iter()
         .find(|(_, _, name)| *name == rule(record))
@@ -122,7 +126,11 @@ pub(super) fn indirect(
         errors: |record| &record.truth_errors,
         series,
         class,
-        shape: |_| None,
+        // A mark for each size of the map.
+        shape: |record| {
+            let side = record.vpls.as_ref()?.rsm_px;
+            [256, 128, 64, 512].iter().position(|known| *known == side)
+        },
         name: title,
         label: |record| {
             record.vpls.as_ref().map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))

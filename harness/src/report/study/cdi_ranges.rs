@@ -165,11 +165,12 @@ pub(super) fn findings(done: &Done, scene: &str) -> Option<String> {
     errors.median().is_finite().then(|| {
         format!(
             "In {scene} at {} directions the median error of a ray is {} of a pixel\u{2019}s footprint of {} m; \
-             {} % of rays are lost.",
+             {} % of rays are lost, {} % invented.",
             run.deep.directions(),
             significant(errors.median()),
             significant(run.deep.footprint_m),
-            percent(errors.lost as f64 / errors.rays.max(1) as f64)
+            percent(errors.lost as f64 / errors.rays.max(1) as f64),
+            percent(errors.invented as f64 / errors.rays.max(1) as f64)
         )
     })
 }
