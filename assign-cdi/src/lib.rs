@@ -22,6 +22,21 @@
 //! to the ray's, the pixel of the point, and the first depth beyond it. Other ways to build and to
 //! store are there to compare with: [`Build::PerDirection`], [`Storage::LinkedLists`].
 //!
+//! [`VplBuffer`] makes virtual point lights of the G-buffer of a spot's view ([`Rsm`]; far away and
+//! narrow, a spot is a sun): passes `rsm-mips` and `vpl-choose` before the rays, `vpl-keep` after them.
+//! [`HybridGrid`], HG, is a strategy like any other.
+//!
+//! # Use
+//!
+//! Before a frame: `vpls.prepare(gpu, &rsm)`, `images.prepare(gpu, &triangles)` and
+//! `caster.prepare(gpu, &points)`, whose positions, normals and `ranges_m` are buffers of `vpls` and whose
+//! count is [`VplBuffer::capacity`]. In it, after the map is drawn: `vpls.record_choose`,
+//! `images.record`, `caster.record`, `vpls.record_keep`. The lights are then in
+//! [`VplBuffer::spheres`] and its neighbours; [`VplBuffer::read`] fetches them for a
+//! [`LightBuffer`](assign::LightBuffer). Set [`VplSettings::large`] to [`Large::Discard`], so that lights
+//! whose rays meet nothing are left out, and [`VplSettings::min_distance_m`] to about a hundredth of the
+//! scene. The uniforms, kernels and sorts that are exported beside these serve tests of layouts.
+//!
 //! Worked example: a floor at height 0 and a table top at 1 m, in a sphere of radius 2 m around
 //! height 0.5 m, seen along +z. The near end is at height -1.5 m, so a pixel that holds both has the
 //! depths `[1.5, 2.5]`. A ray upwards from the floor is at depth 1.5; the first depth beyond is 2.5,
