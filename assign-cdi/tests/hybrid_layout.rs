@@ -3,23 +3,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
+mod linked;
+
 use std::mem::offset_of;
 
 use assign::{LightKinds, LiveGroups};
 use assign_cdi::{CellsUniform, HybridShader};
+use linked::members;
 
 fn validated(shader: HybridShader, kinds: LightKinds) -> naga::Module {
     let source = shader.source(kinds).unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {e}"));
-    let module = naga::front::wgsl::parse_str(&source)
-        .unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {}", e.emit_to_string(&source)));
-    // What WebGPU has without any optional feature.
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {}", e.emit_to_string(&source)));
-    module
+    linked::validated(&source, &format!("{shader:?}, {kinds:?}"))
 }
 
 #[test]
@@ -29,18 +23,6 @@ fn all_permutations_validate() {
             validated(shader, kinds);
         }
     }
-}
-
-/// Fields and offsets, and size, of the struct whose linked name ends in `name`.
-fn members(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
-    let is_named = |n: &str| n == name || n.ends_with(&format!("_{name}"));
-    let (_, ty) =
-        module.types.iter().find(|(_, ty)| ty.name.as_deref().is_some_and(is_named)).unwrap();
-    let naga::TypeInner::Struct { members, span } = &ty.inner else {
-        panic!("{name}: not a struct");
-    };
-    let fields = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
-    (fields, *span as usize)
 }
 
 /// Name and offset of every field of a Rust struct, in its order.

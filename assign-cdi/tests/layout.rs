@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
+mod linked;
+
 use std::mem::offset_of;
 
 use assign::Shader;
@@ -11,18 +13,12 @@ use assign_cdi::{
     RandomUniform, RangeCaster, RangeRule, RangesUniform, RoundUniform, ScanUniform, SortUniform,
     SortWork, Spread, StageUniform, Storage, build_shader,
 };
+use linked::members;
 
 /// A root, linked and validated with what WebGPU has without any optional feature.
 fn validated(shader: &Shader<'_>, root: &str) -> naga::Module {
     let source = shader.link(root).unwrap_or_else(|e| panic!("{root}: {e}"));
-    let module = naga::front::wgsl::parse_str(&source)
-        .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
+    let module = linked::validated(&source, root);
     // WebGPU's default limits.
     for entry_point in &module.entry_points {
         assert!(entry_point.workgroup_size.iter().product::<u32>() <= 256, "{root}");
@@ -75,27 +71,10 @@ fn kernels_validate() {
     validated(&RandomRanges::shader(), "package::random_ranges");
 }
 
-/// Names and offsets of a WESL struct's fields, and its size.
-fn wesl(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
-    let of_type = |ty: &naga::Type| {
-        // The linker prefixes names with those of their modules.
-        let is_it = ty.name.as_deref().is_some_and(|known| known.ends_with(name));
-        match &ty.inner {
-            naga::TypeInner::Struct { members, span } if is_it => {
-                let field = |m: &naga::StructMember| (m.name.clone().unwrap(), m.offset as usize);
-                Some((members.iter().map(field).collect(), *span as usize))
-            }
-            _ => None,
-        }
-    };
-    let found = module.types.iter().find_map(|(_, ty)| of_type(ty));
-    found.unwrap_or_else(|| panic!("no struct {name}"))
-}
-
 /// Asserts that a Rust struct has the fields of a WESL one, at their offsets, and its size.
 macro_rules! assert_same {
     ($module:expr, $wesl:literal, $name:ty: $($field:ident),+) => {
-        let (fields, size) = wesl(&$module, $wesl);
+        let (fields, size) = members(&$module, $wesl);
         let rust = vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+];
         assert_eq!(fields, rust, "fields of WESL, then of Rust: {}", $wesl);
         assert_eq!(size, size_of::<$name>(), "{}", $wesl);
@@ -149,5 +128,5 @@ fn linked_nodes() {
 #[test]
 fn direction_frames() {
     let module = validated(&build_shader(&DeepImageSettings::default()), "package::from_samples");
-    assert_eq!(wesl(&module, "DirectionFrame"), (vec![("axes".to_owned(), 0)], 48));
+    assert_eq!(members(&module, "DirectionFrame"), (vec![("axes".to_owned(), 0)], 48));
 }

@@ -3,43 +3,24 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
+mod linked;
+
 use std::mem::offset_of;
 
 use assign::{LightEmission, LightSphere, Shader};
 use assign_cdi::{KeepUniform, RsmUniform, VplCounts, choose_shader, keep_shader};
+use linked::members;
 
 /// A module, validated with what WebGPU has without any optional feature.
 fn module(shader: &Shader<'_>, root: &str) -> naga::Module {
     let source = shader.link(root).unwrap();
-    let module = naga::front::wgsl::parse_str(&source)
-        .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .unwrap_or_else(|e| panic!("{root}: {}", e.emit_to_string(&source)));
-    module
-}
-
-/// Name and offset of every field, and the size, of a struct whose name ends in `name`.
-fn layout(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
-    let found = module.types.iter().find_map(|(_, ty)| match &ty.inner {
-        naga::TypeInner::Struct { members, span }
-            if ty.name.as_deref().is_some_and(|full| full.ends_with(name)) =>
-        {
-            let field = |m: &naga::StructMember| (m.name.clone().unwrap(), m.offset as usize);
-            Some((members.iter().map(field).collect(), *span as usize))
-        }
-        _ => None,
-    });
-    found.unwrap_or_else(|| panic!("no struct {name}"))
+    linked::validated(&source, root)
 }
 
 macro_rules! same {
     ($module:expr, $wesl:literal, $rust:ty: $($field:ident),+) => {{
         let fields = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),+];
-        assert_eq!(layout($module, $wesl), (fields, size_of::<$rust>()), "WESL, then Rust");
+        assert_eq!(members($module, $wesl), (fields, size_of::<$rust>()), "WESL, then Rust");
     }};
 }
 
@@ -47,7 +28,7 @@ macro_rules! same {
 fn the_map() {
     for root in ["package::vpl_mips", "package::vpl_choose"] {
         let module = module(&choose_shader(), root);
-        let (mut fields, size) = layout(&module, "Rsm");
+        let (mut fields, size) = members(&module, "Rsm");
         let rust = vec![
             ("intensity", offset_of!(RsmUniform, intensity)),
             ("range_m", offset_of!(RsmUniform, range_m)),

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use assign::{EncoderPasses, Gpu, Light};
+use assign::{Gpu, Light};
 use assign_cdi::{DeepImages, RandomRanges, RangeCaster, RangeRule, Triangles};
 use scenes::{Scene, primary_light};
 use shading::{EDGE, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
@@ -12,7 +12,7 @@ use crate::{
     cli::CdiArgs,
     clock::{PassClock, PassTime},
     compare::{Bench, DEFAULT_FRAMES, is_warm},
-    deep::{figures, settings_of, settle},
+    deep::{build, figures, settings_of, settle},
     error::HarnessError,
     machine::machine,
     pass_samples::PassSamples,
@@ -103,10 +103,7 @@ fn time(
     let (began, mut built) = (Instant::now(), 0);
     while !is_warm(gpu, built, began) {
         images.prepare(gpu, triangles)?;
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        images.record(&mut EncoderPasses { encoder: &mut encoder });
-        gpu.queue.submit([encoder.finish()]);
-        gpu.wait()?;
+        build(gpu, images)?;
         built += 1;
     }
     for _ in 0..frames {

@@ -50,6 +50,14 @@ pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
     Ok(settings)
 }
 
+/// Builds prepared images once, on no clock, and waits for them.
+pub fn build(gpu: &Gpu, images: &mut DeepImages) -> Result<(), AssignError> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    images.record(&mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait()
+}
+
 /// Builds until nothing overflows.
 ///
 /// # Errors
@@ -66,10 +74,7 @@ pub fn settle(
         if built > 1 && images.is_complete() == Some(true) {
             return Ok(());
         }
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        images.record(&mut EncoderPasses { encoder: &mut encoder });
-        gpu.queue.submit([encoder.finish()]);
-        gpu.wait()?;
+        build(gpu, images)?;
     }
     let fragments = images.stats().map_or(0, |stats| stats.fragment_count);
     Err(AssignError::TooLarge {

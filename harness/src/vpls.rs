@@ -1,12 +1,12 @@
 //! The virtual point lights of a stage: from the primary light's view to lights with ranges.
 
+use std::time::Instant;
+
 use assign::{EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M, MIN_RANGE_M, Passes, View};
 use assign_cdi::{
     Combine, DeepImages, Large, Primary, RandomRanges, RangeCaster, RangePoints, RangeRule, Rsm,
     Triangles, VplBuffer, VplSettings,
 };
-use std::time::Instant;
-
 use glam::Vec3;
 use scenes::Scene;
 use shading::{Renderer, WorldTriangles, rsm_view};
@@ -69,8 +69,7 @@ impl VplMaker {
         check(&args.bounce)?;
         let bounds = (scene.bounds.min, scene.bounds.max);
         let view = rsm_view(&primary, args.bounce.vpls, bounds)?;
-        let mut map = renderer.beside(&view)?;
-        map.prepare(&view, &LightBuffer::new(gpu, &[primary])?)?;
+        let map = map_of(gpu, renderer, &view, primary)?;
         let mut vpls = VplBuffer::new(gpu, settings(scene, &args.bounce))?;
         vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
         if args.bounce.ranges.casts() && self.triangles.is_none() {
@@ -124,8 +123,20 @@ impl VplMaker {
     }
 }
 
+/// Draws the scene of `renderer` as the primary light sees it.
+fn map_of(
+    gpu: &Gpu,
+    renderer: &Renderer,
+    view: &View,
+    primary: Light,
+) -> Result<Renderer, HarnessError> {
+    let mut map = renderer.beside(view)?;
+    map.prepare(view, &LightBuffer::new(gpu, &[primary])?)?;
+    Ok(map)
+}
+
 /// The map that virtual point lights come from.
-pub fn rsm_of<'a>(map: &'a Renderer, view: &'a View, light: &'a Light) -> Rsm<'a> {
+fn rsm_of<'a>(map: &'a Renderer, view: &'a View, light: &'a Light) -> Rsm<'a> {
     let targets = map.targets();
     Rsm {
         depth: &targets.depth,
@@ -137,7 +148,7 @@ pub fn rsm_of<'a>(map: &'a Renderer, view: &'a View, light: &'a Light) -> Rsm<'a
 }
 
 /// Draws the map and chooses the lights that come of it.
-pub fn record_map(map: &Renderer, view: &View, vpls: &VplBuffer, passes: &mut dyn Passes) {
+fn record_map(map: &Renderer, view: &View, vpls: &VplBuffer, passes: &mut dyn Passes) {
     let mut named = OfMap(passes);
     map.record_depth(view, &mut named);
     map.record_gbuffer(view, &mut named);
@@ -349,8 +360,7 @@ pub fn all_texels(
     {
         view.projection = middle.projection;
     }
-    let mut map = renderer.beside(&view)?;
-    map.prepare(&view, &LightBuffer::new(gpu, &[primary])?)?;
+    let map = map_of(gpu, renderer, &view, primary)?;
     let mut vpls = VplBuffer::new(gpu, VplSettings::default())?;
     vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

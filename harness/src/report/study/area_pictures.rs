@@ -73,11 +73,13 @@ pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Strin
     )
 }
 
-fn linear(done: &Done, job: &str, name: Option<&str>) -> Option<Rc<HdrImage>> {
+/// A linear image of a job.
+pub(super) fn linear(done: &Done, job: &str, name: Option<&str>) -> Option<Rc<HdrImage>> {
     Store::new(done.folders.get(job)?).image(name).ok().flatten()
 }
 
-fn figure(key: Option<String>, title: &str, text: &str) -> String {
+/// A picture with its caption; nothing without a picture.
+pub(super) fn figure(key: Option<String>, title: &str, text: &str) -> String {
     let Some(key) = key else { return String::new() };
     let (title, separator) = (escape(title), if text.is_empty() { "." } else { ": " });
     format!(

@@ -1,18 +1,14 @@
 //! Indirect light by virtual point lights against the path-traced image: errors by how ranges are found,
 //! pictures, and what is best at equal numbers of lights and at equal time.
 
-use std::rc::Rc;
-
-use shading::HdrImage;
-
 use super::super::format::{ABSENT, difference, escape, number, percent, significant};
+use super::area_pictures::{figure, linear};
 use super::data::{Entry, entries};
 use super::errors_plot::Plot;
 use super::figure::{Charts, panels, part, table};
 use super::shots::{Shots, Wanted};
 use crate::errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage, Vpls};
-use crate::stored::Store;
 use crate::study::{Done, MODELS, cdi, truth_of};
 
 /// The metric by which rules are told apart in words.
@@ -216,18 +212,18 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
         let apart = shots.drawn(format!("{}:difference", job.name), || {
             image.difference_png(&reference, gain).ok()
         });
-        let worse = |text: &str| format!("{text}, {}", setting(record));
+        let worse = |text: &str| format!("{text}, {}.", setting(record));
         let body =
-            figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself")
+            figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself.")
                 + &figure(
                     truth_key.clone(),
                     "One bounce alone, path-traced",
-                    "the truth of indirect light",
+                    "the truth of indirect light.",
                 )
                 + &figure(
                     own,
                     &format!("One bounce by lights with {name} ranges"),
-                    &setting(record),
+                    &format!("{}.", setting(record)),
                 )
                 + &figure(
                     apart,
@@ -238,20 +234,6 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
     }
     let text = "Of each rule the setting of least mean error. Indirect images are under the exposure of the truth.";
     part(scene, "pictures", "What ranges look like", text, &panels("Ranges", &shown))
-}
-
-fn linear(done: &Done, job: &str, name: Option<&str>) -> Option<Rc<HdrImage>> {
-    Store::new(done.folders.get(job)?).image(name).ok().flatten()
-}
-
-fn figure(key: Option<String>, title: &str, text: &str) -> String {
-    let Some(key) = key else { return String::new() };
-    let title = escape(title);
-    format!(
-        "<figure><img data-picture=\"{}\" alt=\"{title}\"><figcaption><b>{title}</b>: {}.</figcaption></figure>\n",
-        escape(&key),
-        escape(text)
-    )
 }
 
 /// The record of least error of a rule among some.
@@ -266,28 +248,33 @@ fn best<'a>(
         .copied()
 }
 
+/// Rays as they are usually cast, at the rule and factor of least error: random ranges have as many
+/// settings.
+fn best_cast<'a>(entries: &[Entry<'a>]) -> Option<Entry<'a>> {
+    let is_usual = |record: &Record| record.vpls.as_ref().is_some_and(cdi::is_usual);
+    ["rays, average", "rays, maximum"]
+        .iter()
+        .filter_map(|name| best(entries, name, is_usual))
+        .min_by(|a, b| error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0)))
+}
+
+/// Random ranges of least error from the map that a record's lights come from.
+fn best_random_of_map<'a>(entries: &[Entry<'a>], vpls: &Vpls) -> Option<Entry<'a>> {
+    best(entries, "random", |record| {
+        record.vpls.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
+    })
+}
+
 /// Rays against random ranges: at as many lights, and at the time of the rays.
 pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let all = entries(done, scene, MODELS);
-    // The settings that random ranges have as many of: rule and factor.
-    let usual: Vec<Entry<'_>> = all
-        .iter()
-        .filter(|entry| entry.record.vpls.as_ref().is_some_and(cdi::is_usual))
-        .copied()
-        .collect();
     let mut found = Vec::new();
-    let cast = ["rays, average", "rays, maximum"]
-        .iter()
-        .filter_map(|name| best(&usual, name, |_| true))
-        .min_by(|a, b| error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0)));
-    let Some(cast) = cast else { return found };
+    let Some(cast) = best_cast(&all) else { return found };
     let (Some(own), Some(vpls)) = (error(cast.record), cast.record.vpls.as_ref()) else {
         return found;
     };
     let kept = |record: &Record| record.vpls.as_ref().map_or(0, |other| other.kept);
-    let same_map = best(&all, "random", |record| {
-        record.vpls.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
-    });
+    let same_map = best_random_of_map(&all, vpls);
     let same_count = best(&all, "random", |record| kept(record) <= vpls.kept);
     let say = |other: Entry<'_>, what: &str| {
         let theirs = error(other.record).unwrap_or(f64::NAN);
@@ -323,15 +310,8 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
 pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let all = entries(done, scene, MODELS);
-        let is_usual = |record: &Record| record.vpls.as_ref().is_some_and(cdi::is_usual);
-        let cast = ["rays, average", "rays, maximum"]
-            .iter()
-            .filter_map(|name| best(&all, name, is_usual))
-            .min_by(|a, b| error(a.record).unwrap_or(0.0).total_cmp(&error(b.record).unwrap_or(0.0)))?;
-        let pixels = cast.record.vpls.as_ref()?.candidates;
-        let random = best(&all, "random", |record| {
-            record.vpls.as_ref().is_some_and(|vpls| vpls.candidates == pixels)
-        })?;
+        let cast = best_cast(&all)?;
+        let random = best_random_of_map(&all, cast.record.vpls.as_ref()?)?;
         let (own, theirs) = (error(cast.record)?, error(random.record)?);
         Some(format!(
             "In {scene} lights with ranges by rays err by {} of the mean in {} ms, with the best random ranges by \
