@@ -1,17 +1,84 @@
-//! What decides each claim of the comparison paper, in one scene.
+//! What the comparison paper (Enhuber 2019) claims, and what decides each claim in one scene.
 
-use super::super::fit::Fit;
-use super::super::format::{number, percent, significant};
-use super::super::rank::{Ratio, first, ranks};
-use super::claims::{Answer, Verdict};
-use super::data::{
+use super::super::super::fit::Fit;
+use super::super::super::format::{number, percent, significant};
+use super::super::super::rank::{Ratio, first, ranks};
+use super::super::data::{
     Entry, counts, entries, family, is_bvh, is_near, is_of_the_paper, lines, nearest_count, short,
     tests as tests_of,
 };
-use super::path::Spread;
-use super::scaling::fit;
+use super::super::path::Spread;
+use super::super::scaling::fit;
+use super::{Answer, Check, Paper, Verdict};
 use crate::results::Record;
 use crate::study::Done;
+
+/// Enhuber 2019.
+pub(super) const PAPER: Paper = Paper {
+    name: "the comparison paper",
+    about: "Enhuber 2019 timed these strategies on a GTX 780. Claims are decided by the strategies \
+            of that paper and the counts of lights this study has.",
+    checks: &CHECKS,
+};
+
+const CHECKS: [Check; 7] = [
+    Check {
+        id: "linear",
+        place: "section 4.4.2",
+        words: "Time grows linearly with the number of lights.",
+        paper: "",
+        departure: "",
+        decide: linear,
+    },
+    Check {
+        id: "bounds",
+        place: "table 4.6",
+        words: "Explicit bounds lower the slope and raise the offset.",
+        paper: "",
+        departure: "",
+        decide: bounds,
+    },
+    Check {
+        id: "many",
+        place: "table 4.3",
+        words: "SC-E is best at 10,000 lights.",
+        paper: "",
+        departure: "",
+        decide: best_at_many,
+    },
+    Check {
+        id: "few",
+        place: "table 4.5",
+        words: "DC-I or G is best at 100 lights.",
+        paper: "",
+        departure: "",
+        decide: best_at_few,
+    },
+    Check {
+        id: "tests",
+        place: "section 4.3.1",
+        words: "HS+SAT-N is the best intersection test.",
+        paper: "",
+        departure: "",
+        decide: tests,
+    },
+    Check {
+        id: "steady",
+        place: "table 4.4",
+        words: "SC-E depends least on the view.",
+        paper: "",
+        departure: "",
+        decide: steadiness,
+    },
+    Check {
+        id: "models",
+        place: "section 4.4",
+        words: "M suffers from large models, and dividing them mends it.",
+        paper: "",
+        departure: "",
+        decide: models,
+    },
+];
 
 /// From this share of the variance explained on, growth is called linear.
 const LINEAR: f64 = 0.98;
@@ -46,7 +113,7 @@ fn astray(fit: &Fit, records: &[&Record]) -> f64 {
 }
 
 /// Linear where the line through each strategy's times explains nearly all of their variance.
-pub(super) fn linear(done: &Done, scene: &str) -> Answer {
+fn linear(done: &Done, scene: &str) -> Answer {
     let fits = fits(done, scene);
     let worst = fits.iter().min_by(|a, b| a.1.r2.total_cmp(&b.1.r2));
     let Some((id, worst, _)) = worst else {
@@ -71,7 +138,7 @@ pub(super) fn linear(done: &Done, scene: &str) -> Answer {
 
 /// Explicit against implicit bounds of the same groups from the same source: slope lower, offset
 /// higher.
-pub(super) fn bounds(done: &Done, scene: &str) -> Answer {
+fn bounds(done: &Done, scene: &str) -> Answer {
     let fits = fits(done, scene);
     let of = |wanted: &str, bvh: bool| {
         fits.iter()
@@ -151,17 +218,17 @@ fn best_at(done: &Done, scene: &str, wanted: u64, families: &[&str]) -> Answer {
 }
 
 /// SC-E at 10,000 lights, or as many as there are.
-pub(super) fn best_at_many(done: &Done, scene: &str) -> Answer {
+fn best_at_many(done: &Done, scene: &str) -> Answer {
     best_at(done, scene, 10_000, &["SC-E"])
 }
 
 /// DC-I or G at 100 lights.
-pub(super) fn best_at_few(done: &Done, scene: &str) -> Answer {
+fn best_at_few(done: &Done, scene: &str) -> Answer {
     best_at(done, scene, 100, &["DC-I", "G"])
 }
 
 /// HS+SAT-N leads in each family, or cannot be told from what leads.
-pub(super) fn tests(done: &Done, scene: &str) -> Answer {
+fn tests(done: &Done, scene: &str) -> Answer {
     const BEST: &str = "hs+sat-n";
     let all = entries(done, scene, "tests");
     let mut families: Vec<&str> = Vec::new();
@@ -196,7 +263,7 @@ pub(super) fn tests(done: &Done, scene: &str) -> Answer {
 }
 
 /// SC-E has the least relative deviation along the path, and the least worst frame over the median.
-pub(super) fn steadiness(done: &Done, scene: &str) -> Answer {
+fn steadiness(done: &Done, scene: &str) -> Answer {
     let path: Vec<Entry<'_>> = entries(done, scene, "path")
         .into_iter()
         .filter(|entry| is_of_the_paper(entry.record))
@@ -232,7 +299,7 @@ pub(super) fn steadiness(done: &Done, scene: &str) -> Answer {
 }
 
 /// The lists of parts are shorter than those of models, and the time is less.
-pub(super) fn models(done: &Done, scene: &str) -> Answer {
+fn models(done: &Done, scene: &str) -> Answer {
     let main = entries(done, scene, "main");
     let Some(count) = nearest_count(&counts(&main), 10_000) else {
         return Answer::unknown("the main comparison");
