@@ -10,6 +10,9 @@ pub struct ListLengths {
     pub per_pixel: Vec<Option<u32>>,
     /// Groups that some sample reads, by the length of their list: see [`bin_of`].
     pub histogram: Vec<u64>,
+    /// All groups, read or not, likewise. A group that the frame's pass skips, such as a cluster without
+    /// samples, counts as without lights.
+    pub all_groups: Vec<u64>,
 }
 
 /// The bin of a list's length: 0 for none, then 1, 2 to 3, 4 to 7 and so on, each twice as wide.
@@ -18,8 +21,9 @@ pub fn bin_of(lights: u32) -> usize {
 }
 
 impl ListLengths {
-    /// Counts a frame's lists. Only those that a sample reads: the records of others may be an
-    /// earlier frame's.
+    /// Counts a frame's lists. `per_pixel` and `histogram` count only those that a sample reads; the
+    /// records of others may be an earlier frame's, so `all_groups` holds for a camera that stood still
+    /// since the lists were made.
     pub fn new(samples: &Samples, lists: &ListsSnapshot, pixels: usize) -> Self {
         let length = |group: u32| lists.list(group).map_or(0, |list| list.count);
         let mut per_pixel = vec![None; pixels];
@@ -31,16 +35,24 @@ impl ListLengths {
         let mut groups = samples.groups.clone();
         groups.sort_unstable();
         groups.dedup();
-        let mut histogram = Vec::new();
-        for group in groups.into_iter().filter(|&group| group != ALL_LIGHTS) {
-            let bin = bin_of(length(group));
-            if histogram.len() <= bin {
-                histogram.resize(bin + 1, 0);
-            }
-            histogram[bin] += 1;
-        }
-        Self { per_pixel, histogram }
+        let read = groups.into_iter().filter(|&group| group != ALL_LIGHTS);
+        let histogram = histogram_of(read.map(length));
+        // The first record lists all lights.
+        let all_groups = histogram_of(lists.lists.iter().skip(1).map(|list| list.count));
+        Self { per_pixel, histogram, all_groups }
     }
+}
+
+/// How many lists fall into each bin.
+fn histogram_of(lengths: impl Iterator<Item = u32>) -> Vec<u64> {
+    let mut bins = Vec::new();
+    for bin in lengths.map(bin_of) {
+        if bins.len() <= bin {
+            bins.resize(bin + 1, 0);
+        }
+        bins[bin] += 1;
+    }
+    bins
 }
 
 #[cfg(test)]
@@ -73,5 +85,7 @@ mod tests {
         assert_eq!(lengths.per_pixel, [Some(3), None, Some(0), Some(3), Some(9)]);
         // Group 2 is read by no sample, and all lights are no group.
         assert_eq!(lengths.histogram, [1, 0, 1]);
+        // Group 2 counts among all groups; the record of all lights does not.
+        assert_eq!(lengths.all_groups, [1, 0, 1, 0, 0, 0, 0, 1]);
     }
 }

@@ -150,6 +150,7 @@ pub fn record(
         differing_channels: seen.compared.then_some(seen.differing_channels),
         lists_bytes: lists.bytes,
         histogram: lists.lengths.histogram,
+        all_groups: lists.lengths.all_groups,
         light_order: Some(stage.lights.order().to_string()),
         light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
         tolerance: choice.tolerance(),

@@ -254,6 +254,10 @@ pub struct Record {
     /// on. Empty where lists were not checked.
     #[serde(default)]
     pub histogram: Vec<u64>,
+    /// All groups, read or not, by the length of their list, likewise. Empty where lists were not
+    /// checked.
+    #[serde(default)]
+    pub all_groups: Vec<u64>,
     /// Rounds in which the frames were drawn, each with all methods in turn; see
     /// [`round_medians`](Self::round_medians). 0 where unknown.
     #[serde(default)]

@@ -4,14 +4,15 @@
 //! against the scene's triangles; points inside solids (which see back faces) or close to walls
 //! drop out. Every direction of every point left is scored by what a picture from there would
 //! show. The best views then get a loop around a point ahead of them, the largest ellipse that
-//! keeps clear of all triangles, and the view with the best product of score and loop wins.
+//! keeps clear of all triangles, and the view with the best product of score and loop wins. Its
+//! loop is then bent: it climbs, sinks and weaves ([`tour`](crate::tour)).
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::{Aabb, CameraPath, Pose, Scene, bvh::TriangleBvh};
+use crate::{Aabb, CameraPath, Pose, Scene, bvh::TriangleBvh, tour::Room};
 
 /// What a scene looks at before its path is fitted.
 pub(crate) const ORIGIN: Pose = Pose { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y };
@@ -47,8 +48,8 @@ const MAX_LAMPS: usize = 256;
 /// Scenes of more triangles are judged by a sample of at most that many, evenly chosen.
 const MAX_SAMPLES: u64 = 2_000_000;
 
-/// Knots of a loop.
-const KNOTS: usize = 24;
+/// Knots of a loop: enough to go between two columns and back.
+const KNOTS: usize = 48;
 
 /// The box around all triangles drawn.
 pub(crate) fn bounds(scene: &Scene) -> Aabb {
@@ -269,21 +270,27 @@ impl Fit {
     fn is_clear(&self, eye: Vec3, heading: Vec3, axes: Vec2) -> bool {
         // Points no further apart than the margin, so that none between them touches.
         let points = (TAU * axes.max_element() / self.margin_m.max(1e-12)).clamp(16.0, 600.0);
-        (0..points as u32).all(|ix| {
-            let at = on_ellipse(eye, heading, axes, TAU * ix as f32 / points);
-            self.core.contains(at) && self.bvh.clearance(at, self.margin_m) >= self.margin_m
-        })
+        let room = self.room();
+        (0..points as u32)
+            .all(|ix| room.is_free(on_ellipse(eye, heading, axes, TAU * ix as f32 / points)))
     }
 
-    /// Around the ellipse once, turning once, so that the camera always looks across it.
+    fn room(&self) -> Room<'_> {
+        Room { bvh: &self.bvh, core: self.core, margin_m: self.margin_m }
+    }
+
+    /// Around the ellipse once, turning once, so that the camera always looks across it. The eye
+    /// leaves the ellipse where there is room; the point that it looks at does not.
     fn tour(&self, eye: Vec3, heading: Vec3, pitch: f32, axes: Vec2) -> CameraPath {
         let right = heading.cross(Vec3::Y);
-        let knots = (0..KNOTS).map(|ix| {
-            let angle = TAU * ix as f32 / KNOTS as f32;
-            let at = on_ellipse(eye, heading, axes, angle);
-            let (sin, cos) = angle.sin_cos();
+        let angle = |ix: usize| TAU * ix as f32 / KNOTS as f32;
+        let level: Vec<Vec3> =
+            (0..KNOTS).map(|ix| on_ellipse(eye, heading, axes, angle(ix))).collect();
+        let eyes = self.room().bend(&level);
+        let knots = eyes.into_iter().zip(level).enumerate().map(|(ix, (eye, at))| {
+            let (sin, cos) = angle(ix).sin_cos();
             let across = heading * cos - right * sin + Vec3::Y * pitch;
-            (at, at + across * (0.25 * self.reach_m))
+            (eye, at + across * (0.25 * self.reach_m))
         });
         CameraPath::closed_loop(knots.collect(), Pose::new(eye, eye + heading))
     }

@@ -23,6 +23,7 @@ mod path;
 mod primary_light;
 mod registry;
 mod scene;
+mod tour;
 mod town;
 
 pub use aabb::Aabb;

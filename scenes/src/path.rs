@@ -128,7 +128,7 @@ fn loop_pose(knots: &[(Vec3, Vec3)], turn: f64) -> Pose {
 }
 
 /// Uniform Catmull-Rom from `q` (t = 0) to `r` (t = 1).
-fn catmull_rom(p: Vec3, q: Vec3, r: Vec3, s: Vec3, t: f32) -> Vec3 {
+pub(crate) fn catmull_rom(p: Vec3, q: Vec3, r: Vec3, s: Vec3, t: f32) -> Vec3 {
     let linear = 0.5 * (r - p);
     let square = p - 2.5 * q + 2.0 * r - 0.5 * s;
     let cube = 0.5 * (s - p) + 1.5 * (q - r);

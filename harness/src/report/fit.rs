@@ -19,13 +19,27 @@ impl Fit {
     /// The line through points with the least sum of squared distances along `y`. Points that are
     /// not finite are left out. `None` where fewer than two differ in `x`.
     pub(super) fn through(points: &[(f64, f64)]) -> Option<Self> {
+        Self::weighted(points, |_| 1.0)
+    }
+
+    /// The line with the least sum of squared *relative* distances: each point's distance counts over
+    /// its own `y`, so that small values weigh as much as large ones. Points whose `y` is not above zero
+    /// are left out.
+    pub(super) fn relative(points: &[(f64, f64)]) -> Option<Self> {
+        let points: Vec<(f64, f64)> = points.iter().copied().filter(|(_, y)| *y > 0.0).collect();
+        Self::weighted(&points, |y| y.powi(-2))
+    }
+
+    fn weighted(points: &[(f64, f64)], weight: fn(f64) -> f64) -> Option<Self> {
         let points: Vec<(f64, f64)> =
             points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
-        let count = points.len() as f64;
-        let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+        let count: f64 = points.iter().map(|(_, y)| weight(*y)).sum();
+        let mean = |of: fn(&(f64, f64)) -> f64| {
+            points.iter().map(|point| weight(point.1) * of(point)).sum::<f64>() / count
+        };
         let (mean_x, mean_y) = (mean(|p| p.0), mean(|p| p.1));
         let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-            points.iter().map(|(x, y)| of(x - mean_x, y - mean_y)).sum()
+            points.iter().map(|(x, y)| weight(*y) * of(x - mean_x, y - mean_y)).sum()
         };
         let (xx, xy, yy) = (sum(&|x, _| x * x), sum(&|x, y| x * y), sum(&|_, y| y * y));
         if points.len() < 2 || xx <= 0.0 || !xx.is_finite() {
@@ -37,6 +51,12 @@ impl Fit {
         let r2 = if squares <= 1e-18 * count * mean_y.powi(2) { 1.0 } else { 1.0 - squares / yy };
         let residual = (squares / count).sqrt();
         Some(Self { slope, offset: mean_y - slope * mean_x, r2, residual, points: points.len() })
+    }
+
+    /// The largest relative distance of a point from the line, with the point's `x`. NaN without points.
+    pub(super) fn worst(&self, points: &[(f64, f64)]) -> (f64, f64) {
+        let off = |(x, y): &(f64, f64)| ((self.at(*x) / y - 1.0).abs(), *x);
+        points.iter().map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// The line's `y`.
@@ -80,6 +100,21 @@ mod tests {
         assert!((fit.r2 - 0.6665).abs() < 1e-4, "{fit:?}");
         // The residual sum of squares is 13.763.
         assert!((fit.residual - (13.763_f64 / 11.0).sqrt()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_relative_line_goes_through_few_lights_too() {
+        // Flat up to 1,000 lights, then proportional: the plain line follows the largest values.
+        let points = [(100.0, 1.0), (1_000.0, 1.0), (3_000.0, 3.0), (10_000.0, 10.0), (30_000.0, 30.0)];
+        let [plain, relative] = [Fit::through(&points), Fit::relative(&points)].map(Option::unwrap);
+        assert!(plain.r2 > 0.99, "{plain:?}");
+        let (off, at) = plain.worst(&points);
+        assert!(off > 0.5 && at == 100.0, "{off} at {at}");
+        assert!(relative.worst(&points).0 < off);
+        // Points on a line stay on it, whatever their weights.
+        let line: Vec<(f64, f64)> = points.iter().map(|(x, _)| (*x, 2.0 + 0.01 * x)).collect();
+        let fit = Fit::relative(&line).unwrap();
+        assert!((fit.slope - 0.01).abs() < 1e-9 && fit.worst(&line).0 < 1e-9, "{fit:?}");
     }
 
     #[test]

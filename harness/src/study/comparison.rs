@@ -1,5 +1,11 @@
 //! The comparison paper (Enhuber 2019) on any scene, and what it left out: many more lights, other
 //! radii, and speed against accuracy.
+//!
+//! Rankings, searches and scaling are means along the scene's path, as in the paper. Each method draws
+//! every pose of a run once a lap, and laps repeat the run, so that ties are known. A still camera serves
+//! as an example only: pictures, heat maps, and lists checked pair by pair.
+
+mod extent;
 
 use super::{Job, StudyScene, views::Views};
 use crate::{
@@ -7,100 +13,7 @@ use crate::{
     compare::Bench,
     error::HarnessError,
 };
-
-/// Every strategy at the paper's parameters, M also in parts.
-const ALL: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2";
-/// Those whose groups are cut from the view or the world.
-const CUT: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M/2";
-/// One of each kind, for the lossy knobs, through the hierarchy.
-const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
-
-/// Every strategy from both sources, but HG, which has one.
-const BOTH: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,\
-     T-I/bvh,T-E/bvh,DC-I/bvh,DC-E/bvh,SC-I/bvh,SC-E/bvh,G/bvh,M/bvh,M/2/bvh";
-/// Every strategy, and one of each kind through the hierarchy.
-const SOME: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,T-E/bvh,SC-E/bvh,G/bvh";
-
-/// How much a study looks at.
-struct Extent {
-    size: Size,
-    /// Frames of each method before the clock starts.
-    warmup: &'static str,
-    /// Strategies of the main comparison, from both sources.
-    main: &'static str,
-    /// Strategies of the views.
-    views: &'static str,
-    /// Strategies under many lights and under other radii.
-    many: &'static str,
-    counts: &'static [u32],
-    /// The most lights of the path, the views and the searches.
-    most: u32,
-    scaling: &'static [u32],
-    frames: u32,
-    path_frames: u32,
-    tiles: &'static [u32],
-    cluster_tiles: &'static [u32],
-    slices: &'static [u32],
-    cells: &'static [&'static str],
-    parts: &'static [&'static str],
-    tests: &'static [&'static str],
-    caps: &'static [u32],
-    thresholds: &'static [&'static str],
-    reuse: &'static [u32],
-}
-
-const FULL: Extent = Extent {
-    size: Size { width: 1920, height: 1080 },
-    warmup: "4",
-    main: BOTH,
-    views: ALL,
-    many: CUT,
-    counts: &[100, 1_000, 10_000],
-    most: 10_000,
-    scaling: &[100, 1_000, 3_000, 10_000, 30_000],
-    frames: 32,
-    path_frames: 1_200,
-    tiles: &[16, 20, 24, 28, 32, 40, 48, 64],
-    cluster_tiles: &[32, 48, 64, 96, 128],
-    slices: &[24, 40, 64],
-    cells: &["8x8x8", "12x12x12", "16x16x16", "20x20x20", "28x28x28", "40x40x40", "40x12x20"],
-    parts: &["0.5", "1", "2", "4", "8"],
-    tests: &[
-        "hs",
-        "hs+sat-e",
-        "hs+sat-n",
-        "hs+sat-p",
-        "hs+sat-v",
-        "sat-e+sat-n+sat-p",
-        "hs+sat-e+sat-p+sat-v",
-        "hs+sat-e+sat-n+sat-p+sat-v",
-    ],
-    caps: &[4, 8, 16, 32, 64],
-    thresholds: &["0.005", "0.02", "0.05", "0.2"],
-    reuse: &[2, 4, 8],
-};
-
-const QUICK: Extent = Extent {
-    size: Size { width: 192, height: 108 },
-    warmup: "1",
-    main: SOME,
-    views: "T-E,SC-E,G,HG,M/2",
-    many: "T-E,DC-E,SC-E,G,HG",
-    counts: &[100, 500],
-    most: 500,
-    scaling: &[100, 300, 1_000],
-    frames: 6,
-    path_frames: 12,
-    tiles: &[16, 32],
-    cluster_tiles: &[16, 32],
-    slices: &[16],
-    cells: &["8x8x8", "16x16x16"],
-    parts: &["2"],
-    tests: &["hs", "hs+sat-n", "hs+sat-e+sat-p+sat-v"],
-    caps: &[4, 16],
-    thresholds: &["0.01", "0.1"],
-    reuse: &[4],
-};
+use extent::Extent;
 
 /// Builds the jobs of one scene.
 struct Plan<'a> {
@@ -116,17 +29,33 @@ pub(super) fn jobs(
     args: &StudyArgs,
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
-    let mut extent = if args.quick { QUICK } else { FULL };
+    let (views, triangles) = look(bench, scene)?;
+    let mut extent = Extent::of(args.quick, triangles);
     extent.size = args.size.unwrap_or(extent.size);
     let mut plan = Plan { scene, extent, seed: args.seed, jobs: Vec::new() };
-    plan.comparison();
+    plan.example();
     plan.searches();
-    plan.views(bench)?;
-    plan.paths();
-    plan.scaling(args.quick);
-    plan.beyond(args.quick);
+    plan.views(views);
+    plan.rankings();
+    plan.scaling();
+    plan.beyond();
     plan.accuracy();
     Ok(plan.jobs)
+}
+
+/// The views with the least and the most depth discontinuity (section 4.4.1.2), and the scene's
+/// triangles.
+fn look(bench: &mut Bench, scene: &StudyScene) -> Result<(Option<Views>, u64), HarnessError> {
+    let words = ["lightbench", "compare", "--scene", &scene.scene, "--size", "160x90"];
+    let scale = scene.scale.to_string();
+    let words = [&words[..], &["--scene-scale", &scale, "--lights", "1"]].concat();
+    let Invocation::Compare(args) = crate::cli::parse(words)? else {
+        return Ok((None, 0));
+    };
+    let gpu = bench.gpu().clone();
+    let stage = bench.stage(&args.stage)?;
+    let triangles = stage.scene.triangle_count();
+    Ok((Some(Views::find(&gpu, stage)?), triangles))
 }
 
 impl Plan<'_> {
@@ -154,61 +83,52 @@ impl Plan<'_> {
         self.jobs.push(Job::new(self.scene, section, variant, &words));
     }
 
-    /// Every strategy from both sources at the paper's counts of lights.
-    fn comparison(&mut self) {
+    /// Options of strategies along the path, with that many poses a lap.
+    fn along(&self, poses: u32, strategies: &str) -> Vec<String> {
+        let (poses, laps) = (poses.to_string(), self.extent.laps.to_string());
+        let options = ["--strategies", strategies, "--path", "--frames", &poses, "--laps", &laps];
+        let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
+        options.into_iter().map(str::to_owned).collect()
+    }
+
+    /// Adds a job along the path.
+    fn add_along(&mut self, section: &str, variant: &str, lights: u32, poses: u32, ids: &str) {
+        let options = self.along(poses, ids);
+        let options: Vec<&str> = options.iter().map(String::as_str).collect();
+        self.add(section, variant, lights, &options);
+    }
+
+    /// Every strategy from the still camera, with pictures: an example, and the rate of no culling.
+    fn example(&mut self) {
         let frames = self.extent.frames.to_string();
-        let strategies = format!("None,Sphere,RasterSphere,Clay,{}", self.extent.main);
-        for &count in self.extent.counts {
-            let pictures = if count == self.extent.most { "all" } else { "none" };
-            let options = ["--strategies", &strategies, "--frames", &frames];
-            let options = [&options[..], &["--pictures", pictures]].concat();
-            self.add("main", &count.to_string(), count, &options);
-        }
+        let options = ["--strategies", self.extent.main, "--frames", &frames, "--pictures", "all"];
+        self.add("main", &self.extent.most.to_string(), self.extent.most, &options);
     }
 
-    /// Group sizes and intersection tests (the paper's sections 4.3.1 and 4.3.2).
+    /// Group sizes and intersection tests (the paper's sections 4.3.1 and 4.3.2), from each source of
+    /// lights that they are reported for.
     fn searches(&mut self) {
-        let frames = (self.extent.frames / 4).max(6).to_string();
-        let lossless = ["--truth", "none", "--pictures", "none", "--frames", &frames];
-        let each = |family: &str, sizes: &[String]| {
-            sizes.iter().map(|size| format!("{family}/{size}")).collect::<Vec<_>>().join(",")
-        };
-        let tiles: Vec<String> = self.extent.tiles.iter().map(|t| format!("{t}x{t}")).collect();
-        let clusters: Vec<String> = self
-            .extent
-            .cluster_tiles
-            .iter()
-            .flat_map(|t| self.extent.slices.iter().map(move |s| format!("{t}x{t}x{s}")))
-            .collect();
-        let owned = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>();
-        let (cells, parts) = (owned(self.extent.cells), owned(self.extent.parts));
-        let families = [("T-I", &tiles), ("T-E", &tiles)]
-            .into_iter()
-            .chain(["DC-I", "DC-E", "SC-I", "SC-E", "HG"].map(|family| (family, &clusters)))
-            .chain([("G", &cells), ("M", &parts)]);
-        for (family, sizes) in families {
-            let strategies = each(family, sizes);
-            let options = ["--strategies", &strategies, "--source", "bvh"];
-            let most = self.extent.most;
-            self.add("sizes", family, most, &[&options[..], &lossless].concat());
+        let (most, poses) = (self.extent.most, self.extent.search_poses);
+        for (source, families) in
+            [("", self.extent.linear_sizes), ("/bvh", self.extent.bvh_sizes)]
+        {
+            for (family, sizes) in families {
+                let ids: Vec<String> =
+                    sizes.iter().map(|size| format!("{family}/{size}{source}")).collect();
+                let variant = format!("{family}{}", source.replace('/', "-"));
+                self.add_along("sizes", &variant, most, poses, &ids.join(","));
+            }
         }
-        for family in ["T-E", "DC-I", "SC-I"] {
-            let strategies = each(family, &owned(self.extent.tests));
-            let options = ["--strategies", strategies.as_str()];
-            self.add("tests", family, self.extent.most, &[&options[..], &lossless].concat());
+        for family in self.extent.tested {
+            let ids: Vec<String> =
+                self.extent.tests.iter().map(|tests| format!("{family}/{tests}")).collect();
+            self.add_along("tests", family, most, poses, &ids.join(","));
         }
     }
 
-    /// The views with the least and the most depth discontinuity (section 4.4.1.2).
-    fn views(&mut self, bench: &mut Bench) -> Result<(), HarnessError> {
-        let words = ["lightbench", "compare", "--scene", &self.scene.scene, "--size", "160x90"];
-        let scale = self.scene.scale.to_string();
-        let words = [&words[..], &["--scene-scale", &scale, "--lights", "1"]].concat();
-        let Invocation::Compare(args) = crate::cli::parse(words)? else {
-            return Ok(());
-        };
-        let gpu = bench.gpu().clone();
-        let views = Views::find(&gpu, bench.stage(&args.stage)?)?;
+    /// Heat maps and lists of the views with the least and the most depth discontinuity.
+    fn views(&mut self, views: Option<Views>) {
+        let Some(views) = views else { return };
         let frames = self.extent.frames.to_string();
         let strategies = format!("None,{}", self.extent.views);
         for (name, frame) in [("low", views.low), ("high", views.high)] {
@@ -216,37 +136,43 @@ impl Plan<'_> {
             let options = ["--strategies", &strategies, "--camera", &camera, "--frames", &frames];
             self.add("views", name, self.extent.most, &options);
         }
-        Ok(())
     }
 
-    /// Frame times along the camera path (section 4.4.1.1).
-    fn paths(&mut self) {
-        let frames = self.extent.path_frames.to_string();
-        let options = ["--strategies", CUT, "--path", "--frames", &frames];
-        let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
-        let most = self.extent.most;
-        self.add("path", &most.to_string(), most, &options);
+    /// Times along the camera path (sections 4.4.1.1 and 4.4.2.1). Methods that take tens of
+    /// milliseconds a frame have jobs of their own with fewer poses.
+    fn rankings(&mut self) {
+        for (ix, &count) in self.extent.counts.iter().enumerate() {
+            let is_most = ix + 1 == self.extent.counts.len();
+            let (poses, ids) = match is_most {
+                true => (self.extent.rank_poses[1], self.extent.ranked_at_most),
+                false => (self.extent.rank_poses[0], self.extent.ranked),
+            };
+            self.add_along("path", &count.to_string(), count, poses, ids);
+            if !self.extent.slow.is_empty() {
+                let variant = format!("{count}-slow");
+                let (poses, ids) = (self.extent.slow_poses, self.extent.slow);
+                self.add_along("path", &variant, count, poses, ids);
+            }
+        }
     }
 
-    /// Times against the number of lights (section 4.4.2).
-    fn scaling(&mut self, quick: bool) {
-        let frames = (self.extent.frames / 4).max(6).to_string();
-        let strategies = format!("None,{CUT}");
+    /// Times against the number of lights (section 4.4.2.2). M is left out of more lights than the
+    /// paper has.
+    fn scaling(&mut self) {
         for &count in self.extent.scaling {
-            let source = if quick { "linear" } else { "both" };
-            let options = ["--strategies", &strategies, "--source", source, "--frames", &frames];
-            let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
-            self.add("scaling", &count.to_string(), count, &options);
+            let mut ids = self.extent.scaled.to_owned();
+            if count <= self.extent.most && !self.extent.scaled_whole.is_empty() {
+                ids = format!("{ids},{}", self.extent.scaled_whole);
+            }
+            self.add_along("scaling", &count.to_string(), count, self.extent.search_poses, &ids);
         }
     }
 
     /// Many more lights, at growing and at constant density, and other radii.
-    fn beyond(&mut self, quick: bool) {
-        let frames = (self.extent.frames / 4).max(6).to_string();
-        let options = ["--strategies", self.extent.many, "--source", "bvh", "--frames", &frames];
-        let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
-        let many: &[u32] = if quick { &[2_000] } else { &[100_000, 300_000] };
-        for &count in many {
+    fn beyond(&mut self) {
+        let options = self.along(self.extent.search_poses, self.extent.beyond);
+        let options: Vec<&str> = options.iter().map(String::as_str).collect();
+        for &count in self.extent.many {
             let factor = (f64::from(count) / f64::from(self.extent.most)).cbrt();
             let scale = format!("{:.4}", self.scene.scale * factor);
             self.add_scaled("constant", &count.to_string(), count, &scale, &options);
@@ -254,7 +180,7 @@ impl Plan<'_> {
                 self.add("growing", &count.to_string(), count, &options);
             }
         }
-        for radii in ["gamma", "equal", "log-normal"] {
+        for radii in self.extent.radii {
             let options = [&options[..], &["--radii", radii]].concat();
             self.add("radii", radii, self.extent.most, &options);
         }
@@ -263,7 +189,7 @@ impl Plan<'_> {
     /// The lossy knobs: capped lists, lists used for several frames, and the threshold at which
     /// lights end.
     fn accuracy(&mut self) {
-        let frames = (self.extent.frames / 4).max(6).to_string();
+        let frames = self.extent.lossy_frames.to_string();
         let most = self.extent.most;
         let knobs = |families: &[&str], knob: &str, values: &[u32]| {
             let lossless = families.iter().map(|family| format!("{family}/bvh"));
@@ -273,15 +199,19 @@ impl Plan<'_> {
             }
             ids.join(",")
         };
-        let caps = knobs(&LOSSY, "cap", self.extent.caps);
-        let options = ["--strategies", &caps, "--frames", &frames, "--truth", "none"];
-        self.add("caps", "", most, &options);
-        let path_frames = (self.extent.path_frames / 10).max(16).to_string();
-        let reuse = knobs(&LOSSY[1..], "reuse", self.extent.reuse);
-        let options = ["--strategies", &reuse, "--path", "--frames", &path_frames];
-        let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
-        self.add("reuse", "", most, &options);
-        let lossless = LOSSY.map(|family| format!("{family}/bvh")).join(",");
+        if !self.extent.caps.is_empty() {
+            let caps = knobs(&extent::LOSSY, "cap", self.extent.caps);
+            let options = ["--strategies", &caps, "--frames", &frames, "--truth", "none"];
+            self.add("caps", "", most, &options);
+        }
+        if !self.extent.reuse.is_empty() {
+            let poses = self.extent.reuse_poses.to_string();
+            let reuse = knobs(&extent::LOSSY[1..], "reuse", self.extent.reuse);
+            let options = ["--strategies", &reuse, "--path", "--frames", &poses];
+            let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
+            self.add("reuse", "", most, &options);
+        }
+        let lossless = extent::LOSSY.map(|family| format!("{family}/bvh")).join(",");
         for cut in ["windowed", "hard"] {
             for &threshold in self.extent.thresholds {
                 let options = ["--strategies", &lossless, "--threshold", threshold, "--cut", cut];
@@ -292,3 +222,6 @@ impl Plan<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -100,6 +100,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         differing_channels: Some(0),
         lists_bytes: if is_none { 4_016 } else { 1_310_720 },
         overflowed_groups: 0,
+        all_groups: vec![],
         histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
         rounds: frames,
         along_path: false,

@@ -1,5 +1,6 @@
 //! What the parts of the page ask of a study's records.
 
+use super::super::format::number;
 use crate::results::{Record, Results};
 use crate::study::{Done, Job};
 use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
@@ -17,6 +18,41 @@ pub(super) fn entries<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> V
         results.records.iter().map(move |record| Entry { job, record })
     };
     done.of(scene, section).flat_map(of_job).collect()
+}
+
+/// The records that rank strategies: those along the path at each count of lights that has them, and
+/// those from the still camera at the other counts.
+pub(super) fn ranking<'a>(done: &'a Done, scene: &'a str) -> Vec<Entry<'a>> {
+    let mut all = entries(done, scene, "path");
+    let along = counts(&all);
+    let still = entries(done, scene, "main").into_iter();
+    all.extend(still.filter(|entry| !along.contains(&entry.record.lights)));
+    all
+}
+
+/// Poses along the path of which a record's times are means; 1 from a still camera.
+pub(super) fn poses(record: &Record) -> usize {
+    if record.along_path { record.frames as usize } else { 1 }
+}
+
+/// The time at each pose, mean over laps, ms.
+pub(super) fn pose_times(record: &Record) -> Vec<f64> {
+    let laps = laps(record);
+    let sum = |pose: usize| laps.iter().filter_map(|lap| lap.get(pose)).sum::<f64>();
+    (0..laps.first().map_or(0, Vec::len)).map(|pose| sum(pose) / laps.len() as f64).collect()
+}
+
+/// The times of each lap, pose by pose, ms.
+pub(super) fn laps(record: &Record) -> Vec<Vec<f64>> {
+    record.frames_ms().chunks_exact(poses(record).max(1)).map(<[f64]>::to_vec).collect()
+}
+
+/// What a time is a mean of: `240 poses`, or `one pose`.
+pub(super) fn stand(record: &Record) -> String {
+    match poses(record) {
+        1 => "one pose".to_owned(),
+        poses => format!("{} poses", number(poses as f64)),
+    }
 }
 
 /// The records of one strategy, with its id, in the order of their lights.
@@ -113,12 +149,16 @@ pub(super) fn class(id: &str) -> String {
     }
 }
 
+/// Boxes of a grid that the comparison paper does not have.
+const OTHER_BOXES: [&str; 2] = ["surfaces", "supports"];
+
 /// Whether the comparison paper has a strategy: those that cut samples into groups, from the list of
-/// all lights, and models whole; not the grid of hybrid lighting.
+/// all lights, and models whole; not the grid of hybrid lighting, nor grids over other boxes.
 pub(super) fn is_of_the_paper(record: &Record) -> bool {
     let id = record.strategy.as_str();
     let is_parted = family(id) == "M" && !parameters(id).is_empty();
-    let is_plain = !is_bvh(id) && !is_parted && !record.is_lossy && family(id) != "HG";
+    let is_other_box = id.split('/').any(|segment| OTHER_BOXES.contains(&segment));
+    let is_plain = !is_bvh(id) && !is_other_box && !is_parted && !record.is_lossy && family(id) != "HG";
     is_plain && STRATEGIES.iter().any(|entry| entry.family == family(id) && !entry.axes.is_empty())
 }
 

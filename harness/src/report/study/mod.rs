@@ -26,6 +26,7 @@ mod endless_data;
 mod errors_plot;
 mod figure;
 mod html;
+mod order;
 mod overview;
 mod path;
 mod scaling;

@@ -6,60 +6,118 @@ use super::super::comparison::{Comparison, comparisons};
 use super::super::format::{number, short_adapter, significant};
 use super::super::page;
 use super::super::rank::{Ratio, first, listed, ranks, tie};
-use super::data::class;
+use super::data::{Entry, class, counts, entries, poses, stand};
 use super::figure::{Charts, panels, part};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
-use crate::results::{PassKind, Record, Results};
+use crate::results::{PassKind, Record, Results, mean};
 use crate::study::Done;
 
 /// From this ratio of the longest to the shortest bar on, the axis is logarithmic.
 const LOG_ABOVE: f64 = 20.0;
 
-/// The results of a section in the order of their lights, with the first comparison of each.
-fn by_lights<'a>(
-    done: &'a Done,
-    scene: &'a str,
-    section: &'a str,
-) -> Vec<(&'a Results, Comparison<'a>)> {
-    let mut all: Vec<(&Results, Comparison<'_>)> = done
-        .of(scene, section)
-        .filter_map(|(_, results)| Some((results, comparisons(results).into_iter().next()?)))
-        .collect();
-    all.sort_by_key(|(_, comparison)| comparison.first().lights);
-    all
+/// The ranking at each count of lights, few lights first, each with one comparison: times along the
+/// path where the path has the methods that lead from the still camera, else from the still camera.
+fn rankings(done: &Done, scene: &str) -> Vec<Results> {
+    let (path, still) = (entries(done, scene, "path"), entries(done, scene, "main"));
+    let mut all = counts(&path);
+    all.extend(counts(&still));
+    all.sort_unstable();
+    all.dedup();
+    let at = |entries: &[Entry<'_>], count| {
+        let own = entries.iter().filter(|entry| entry.record.lights == count);
+        own.copied().collect::<Vec<Entry<'_>>>()
+    };
+    let chosen = |count| {
+        let (along, still) = (at(&path, count), at(&still, count));
+        let ranked = ranks(still.iter().map(|entry| entry.record));
+        let has = |record: &&Record| along.iter().any(|e| e.record.strategy == record.strategy);
+        let covers = !along.is_empty() && first(&ranked).iter().all(has);
+        merged(done, if covers { &along } else { &still })
+    };
+    all.into_iter().filter_map(chosen).collect()
+}
+
+/// The still comparisons that stand beside a ranking along the path: examples.
+fn examples(done: &Done, scene: &str) -> Vec<Results> {
+    let still = entries(done, scene, "main");
+    let along = |results: &&Results| results.records.iter().any(|record| record.along_path);
+    let at = |results: &Results| {
+        let lights = results.records.first().map(|record| record.lights);
+        let own = still.iter().filter(|entry| Some(entry.record.lights) == lights);
+        merged(done, &own.copied().collect::<Vec<_>>())
+    };
+    rankings(done, scene).iter().filter(along).filter_map(at).collect()
+}
+
+/// Records of several jobs as if they came from one.
+fn merged(done: &Done, entries: &[Entry<'_>]) -> Option<Results> {
+    let of = done.results.get(&entries.first()?.job.name)?;
+    let records = entries.iter().map(|entry| entry.record.clone()).collect();
+    let empty = Results::new(of.machine.clone(), of.command.clone(), of.truth.clone());
+    Some(Results { records, ..empty })
+}
+
+/// The first comparison of results, which is made of one count of lights.
+fn comparison(results: &Results) -> Option<Comparison<'_>> {
+    comparisons(results).into_iter().next()
 }
 
 /// The result table and the passes of each count of lights, the most lights first.
 pub(super) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let mut shown: Vec<(String, String)> = Vec::new();
-    for (results, comparison) in by_lights(done, scene, "main").into_iter().rev() {
-        let count = comparison.first().lights;
-        let lights = format!("{} lights", number(count as f64));
-        let classes: BTreeMap<&str, String> = comparison
-            .records
-            .iter()
-            .map(|(_, r)| (r.strategy.as_str(), class(&r.strategy)))
-            .collect();
-        let caption = format!("{scene}, {lights}");
-        let mut body = format!(
-            "<p class=\"meta\">{}</p>\n",
-            super::super::format::escape(&page::setting(comparison.first()))
-        );
-        body += &page::table(&caption, &comparison, &classes);
-        body += &charts.bars(
-            &format!("{scene}-passes-{count}"),
-            &passes(format!("Passes that assign and shade, {lights}"), results, &comparison),
-        );
-        shown.push((lights, body));
+    for results in rankings(done, scene).iter().rev() {
+        shown.extend(panel(scene, "", results, charts));
+    }
+    for results in examples(done, scene).iter().rev() {
+        shown.extend(panel(scene, "still-", results, charts));
     }
     part(
         scene,
         "main",
         "All strategies",
         "At the comparison paper\u{2019}s parameters, from the list of all lights and through the hierarchy \
-         (/bvh). A heading sorts by its column.",
+         (/bvh). Times are means along the path where they were measured there: these rank. A table of \
+         one pose is an example, with pictures and lists. A heading sorts by its column.",
         &panels("Lights", &shown),
     )
+}
+
+/// A count of lights with its table and its bars.
+fn panel(
+    scene: &str,
+    slug: &str,
+    results: &Results,
+    charts: &mut Charts,
+) -> Option<(String, String)> {
+    let comparison = comparison(results)?;
+    let first = comparison.first();
+    let most = comparison.records.iter().map(|(_, r)| *r).max_by_key(|r| poses(r))?;
+    let count = first.lights;
+    let lights = format!("{} lights", number(count as f64));
+    let title = format!("{lights}, {}", stand(most));
+    let classes: BTreeMap<&str, String> = comparison
+        .records
+        .iter()
+        .map(|(_, r)| (r.strategy.as_str(), class(&r.strategy)))
+        .collect();
+    let mut fewer: Vec<String> = Vec::new();
+    for (_, record) in &comparison.records {
+        if poses(record) != poses(most) {
+            fewer.push(format!("{} {}", record.strategy, stand(record)));
+        }
+    }
+    let fewer = match fewer.is_empty() {
+        true => String::new(),
+        false => format!(" \u{b7} slow methods have fewer: {}", listed(&fewer)),
+    };
+    let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
+    let mut body = format!("<p class=\"meta\">{}</p>\n", super::super::format::escape(&meta));
+    body += &page::table(&format!("{scene}, {title}"), &comparison, &classes);
+    body += &charts.bars(
+        &format!("{scene}-passes-{slug}{count}"),
+        &passes(format!("Passes that assign and shade, {title}"), results, &comparison),
+    );
+    Some((title, body))
 }
 
 fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarChart {
@@ -88,7 +146,7 @@ fn bar(record: &Record, classes: &BTreeMap<&str, String>) -> BarRow {
         .map(|(name, times)| Segment {
             name: name.to_owned(),
             class: classes.get(name).cloned().unwrap_or_default(),
-            value: times.median_ms,
+            value: if record.along_path { mean(&times.samples) } else { times.median_ms },
         })
         .collect();
     let parts: String = segments
@@ -106,35 +164,18 @@ fn bar(record: &Record, classes: &BTreeMap<&str, String>) -> BarRow {
 
 /// What a scene's comparison found, one sentence per count of lights, the most lights first.
 pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
-    by_lights(done, scene, "main")
-        .into_iter()
-        .rev()
-        .filter_map(|(_, comparison)| sentence(scene, &comparison))
-        .collect()
+    let all = rankings(done, scene);
+    all.iter().rev().filter_map(|results| sentence(scene, &comparison(results)?)).collect()
 }
 
-/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0), ahead of B ...`.
+/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0; 240 poses); next is B ...`, or `A and
+/// B tie for fastest (6.9 and 7.0 ms; 240 poses)`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
     let best = first(&ranked);
     let leader = *best.first()?;
     let lights = super::super::finding::lights(comparison.first().lights);
-    let mut text = format!("In {scene} at {lights}, ");
-    if best.len() == 1 {
-        text += &format!("{} is fastest with {}", leader.strategy, timed(leader));
-    } else {
-        let others: Vec<String> = best
-            .iter()
-            .skip(1)
-            .map(|record| format!("{} ({} ms)", record.strategy, ms(record)))
-            .collect();
-        text += &format!(
-            "{} is fastest with {}, but cannot be told from {}",
-            leader.strategy,
-            timed(leader),
-            listed(&others)
-        );
-    }
+    let mut text = format!("In {scene} at {lights}, {}", lead(&best)?);
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
             format!(", {} to {} times as long", significant(ratio.low), significant(ratio.high))
@@ -147,53 +188,67 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     Some(text + ".")
 }
 
+/// Who is fastest: never a winner where there is a tie.
+fn lead(best: &[&Record]) -> Option<String> {
+    match best {
+        [] => None,
+        [leader] => Some(format!("{} is fastest with {}", leader.strategy, timed(leader))),
+        [leader, ..] => {
+            let names: Vec<&str> = best.iter().map(|record| record.strategy.as_str()).collect();
+            let times: Vec<String> = best.iter().map(|record| ms(record)).collect();
+            let (names, times) = (listed(&names), listed(&times));
+            Some(format!("{names} tie for fastest ({times} ms; {})", stand(leader)))
+        }
+    }
+}
+
 fn ms(record: &Record) -> String {
     significant(record.assign_and_shade_ms())
 }
 
-/// `6.9 ms (6.8 to 7.0)`.
+/// `6.9 ms (6.8 to 7.0; 240 poses)`.
 fn timed(record: &Record) -> String {
     let interval = record.interval_ms().map_or_else(String::new, |interval| {
-        format!(" ({} to {})", significant(interval.low), significant(interval.high))
+        format!("{} to {}; ", significant(interval.low), significant(interval.high))
     });
-    format!("{} ms{interval}", ms(record))
+    format!("{} ms ({interval}{})", ms(record), stand(record))
 }
 
 /// The headline: the fastest at the most lights, in each scene.
 pub(super) fn headline(done: &Done) -> Option<String> {
-    let first_of = |scene: &&str| {
-        let (_, comparison) = by_lights(done, scene, "main").pop()?;
-        let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-        let leader = first(&ranked).first().map(|record| record.strategy.clone())?;
-        Some(((*scene).to_owned(), leader, comparison.first().lights))
-    };
     let scenes = done.scenes();
-    let all: Vec<(String, String, u64)> = scenes.iter().filter_map(first_of).collect();
-    let most = all.iter().map(|(_, _, lights)| *lights).max()?;
-    let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
-    let mut winners: Vec<(String, Vec<String>)> = Vec::new();
-    for (scene, leader, _) in &all {
-        match winners.iter_mut().find(|(known, _)| known == leader) {
-            Some((_, scenes)) => scenes.push(scene.clone()),
-            None => winners.push((leader.clone(), vec![scene.clone()])),
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut most = None;
+    for scene in &scenes {
+        let Some(results) = rankings(done, scene).pop() else { continue };
+        let Some(comparison) = comparison(&results) else { continue };
+        let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
+        let names: Vec<&str> = first(&ranked).iter().map(|r| r.strategy.as_str()).collect();
+        let says = match names.as_slice() {
+            [] => continue,
+            [one] => format!("{one} is fastest"),
+            several => format!("{} tie for fastest", listed(several)),
+        };
+        most = most.max(Some(comparison.first().lights));
+        match found.iter_mut().find(|(known, _)| *known == says) {
+            Some((_, scenes)) => scenes.push(scene),
+            None => found.push((says, vec![scene])),
         }
     }
-    let parts: Vec<String> = winners
-        .iter()
-        .map(|(leader, scenes)| format!("{leader} is fastest in {}", listed(scenes)))
-        .collect();
-    let lights = number(most as f64);
+    let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
+    let parts: Vec<String> =
+        found.iter().map(|(says, scenes)| format!("{says} in {}", listed(scenes))).collect();
+    let lights = number(most? as f64);
     Some(format!("On {adapter} at {lights} lights, {}.", listed(&parts)))
 }
 
 /// Who shares the first rank, per count of lights.
 pub(super) fn ties(done: &Done, scene: &str) -> Vec<String> {
-    by_lights(done, scene, "main")
-        .into_iter()
-        .filter_map(|(_, comparison)| {
-            let tie = tie(&comparison.ranks())?;
-            let lights = super::super::finding::lights(comparison.first().lights);
-            Some(format!("{scene}, {lights}: {tie}."))
-        })
-        .collect()
+    let said = |results: &Results| {
+        let comparison = comparison(results)?;
+        let tie = tie(&comparison.ranks())?;
+        let lights = super::super::finding::lights(comparison.first().lights);
+        Some(format!("{scene}, {lights}: {tie}."))
+    };
+    rankings(done, scene).iter().filter_map(said).collect()
 }

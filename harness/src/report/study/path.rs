@@ -1,40 +1,50 @@
 //! Times frame by frame along the camera's path.
 
 use super::super::format::{number, percent, significant};
-use super::data::{Entry, class, counts, entries, lines, short};
+use super::data::{Entry, class, counts, entries, laps, lines, pose_times, poses, short};
 use super::figure::{Charts, name, panels, part, table};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use super::order::Order;
 use crate::results::{Record, mean, median, standard_deviation};
 use crate::study::Done;
 
 /// From this ratio of the greatest to the least mean on, the axis of times is logarithmic.
 const LOG_ABOVE: f64 = 8.0;
 
-/// How a record's times vary along the path.
-#[derive(Clone, Copy, Debug)]
+/// How a record's times vary along the path. The time of a pose is its mean over laps.
+#[derive(Clone, Debug)]
 pub(super) struct Spread {
-    /// Mean over frames, ms.
+    /// Mean over poses, ms.
     pub(super) mean: f64,
-    /// Standard deviation over frames, ms.
+    /// Standard deviation over poses, ms.
     pub(super) deviation: f64,
     /// The deviation over the mean.
     pub(super) relative: f64,
-    /// The slowest frame, ms.
+    /// The slowest pose, ms.
     pub(super) worst: f64,
-    /// The slowest over the median frame.
+    /// The slowest over the median pose.
     pub(super) worst_over_median: f64,
+    /// The standard deviation of each lap, ms.
+    deviations: Vec<f64>,
 }
 
 impl Spread {
-    /// `None` without frames, or where their times say nothing.
+    /// `None` without poses, or where their times say nothing.
     pub(super) fn of(record: &Record) -> Option<Self> {
-        let times = record.frames_ms();
+        let times = pose_times(record);
         let worst = times.iter().copied().fold(f64::NAN, f64::max);
         let (mean, deviation) = (mean(&times), standard_deviation(&times));
         let worst_over_median = worst / median(&times);
         let relative = deviation / mean;
         let sound = mean > 0.0 && relative.is_finite() && worst_over_median.is_finite();
-        sound.then_some(Self { mean, deviation, relative, worst, worst_over_median })
+        let deviations = laps(record).iter().map(|lap| standard_deviation(lap)).collect();
+        sound.then_some(Self { mean, deviation, relative, worst, worst_over_median, deviations })
+    }
+
+    /// Whose standard deviation is the lesser, lap by lap where there are laps.
+    pub(super) fn compare(&self, other: &Self) -> Order {
+        let wholes = [self.deviation, other.deviation];
+        Order::of_laps(&self.deviations, &other.deviations, wholes)
     }
 }
 
@@ -45,7 +55,7 @@ pub(super) fn path(done: &Done, scene: &str, charts: &mut Charts) -> String {
     for count in counts(&all).into_iter().rev() {
         let own: Vec<Entry<'_>> =
             all.iter().filter(|entry| entry.record.lights == count).copied().collect();
-        let title = format!("Frame by frame, {} lights", number(count as f64));
+        let title = format!("Pose by pose, {} lights", number(count as f64));
         let body = charts.xy(&format!("{scene}-path-{count}"), &chart(title.clone(), &own))
             + &spreads(&title, &own);
         shown.push((format!("{} lights", number(count as f64)), body));
@@ -54,8 +64,9 @@ pub(super) fn path(done: &Done, scene: &str, charts: &mut Charts) -> String {
         scene,
         "path",
         "Along the path",
-        "Assigning and shading at each frame, the camera at another place each time. SD is the standard \
-         deviation over frames; the frame\u{2019}s own noise is in it.",
+        "Assigning and shading at each pose of the camera, mean over laps. SD is the standard deviation \
+         over poses, by which the comparison paper ranks; SD / mean and worst / median stand beside it. \
+         Slow methods have fewer poses.",
         &panels("Lights", &shown),
     )
 }
@@ -71,24 +82,25 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
         .iter()
         .flat_map(|(id, records)| records.iter().map(move |record| (id, record)))
         .map(|(id, record)| {
-            let point = |(frame, y): (usize, &f64)| Point {
-                x: frame as f64,
+            let times = pose_times(record);
+            let point = |(pose, y): (usize, &f64)| Point {
+                x: 100.0 * pose as f64 / times.len() as f64,
                 y: *y,
-                tip: format!("{}\nframe {frame}\n{} ms", record.strategy, significant(*y)),
+                tip: format!("{}\npose {pose}\n{} ms", record.strategy, significant(*y)),
                 ..Point::default()
             };
             Series {
                 name: short(id),
                 class: class(id),
                 marks: Marks::Line,
-                points: record.frames_ms().iter().enumerate().map(point).collect(),
+                points: times.iter().enumerate().map(point).collect(),
                 ..Series::default()
             }
         })
         .collect();
     XyChart {
         title,
-        x: Axis { label: "Frame".to_owned(), unit: String::new(), scale: Scale::Linear },
+        x: Axis { label: "Along the path".to_owned(), unit: "%".to_owned(), scale: Scale::Linear },
         y: Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale },
         series,
         note: String::new(),
@@ -107,6 +119,8 @@ fn spreads(title: &str, entries: &[Entry<'_>]) -> String {
                 percent(spread.relative),
                 significant(spread.worst_over_median),
                 significant(spread.worst),
+                number(poses(record) as f64),
+                number(laps(record).len() as f64),
             ]
         })
         .collect();
@@ -117,6 +131,8 @@ fn spreads(title: &str, entries: &[Entry<'_>]) -> String {
         "SD / mean <span class=\"unit\">%</span>",
         "worst / median <span class=\"unit\">\u{d7}</span>",
         "worst <span class=\"unit\">ms</span>",
+        "poses",
+        "laps",
     ];
     table(title, &heads, &rows)
 }

@@ -1,8 +1,10 @@
 //! Times against the number of lights, with straight lines through them.
 
 use super::super::fit::Fit;
-use super::super::format::{number, significant};
-use super::data::{Entry, Line, class, counts, entries, is_bvh, lines, short};
+use super::super::format::{ABSENT, number, percent, significant};
+use super::data::{
+    Entry, Line, class, counts, entries, is_bvh, lines, poses, ranking, short, stand,
+};
 use super::figure::{Charts, name, panels, part, table};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::Record;
@@ -21,6 +23,54 @@ pub(super) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
     Fit::through(&points)
 }
 
+/// A time no farther than this share of itself from a line lies on it.
+const TOLERANCE: f64 = 0.1;
+
+/// A line is judged over at least as many counts: through three, a line with two ends always comes
+/// close.
+const FEWEST: usize = 4;
+
+/// How straight a strategy's times are against the number of lights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Straight {
+    /// The largest relative distance of a time from the best line.
+    pub(super) worst: f64,
+    /// The count of lights at which it is.
+    pub(super) at: u64,
+    /// The widest range of neighbouring counts over which the times are straight.
+    pub(super) range: Option<[u64; 2]>,
+}
+
+impl Straight {
+    /// Whether no time is off the line over all counts.
+    pub(super) fn holds(&self) -> bool {
+        self.worst <= TOLERANCE
+    }
+}
+
+/// How straight times are: through the line that takes every count's relative distance alike, so that
+/// the greatest counts do not decide alone. `None` of fewer than four counts.
+pub(super) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
+    let points: Vec<(f64, f64)> = records.iter().map(|r| (r.lights as f64, time(r))).collect();
+    let worst = |points: &[(f64, f64)]| Fit::relative(points).map(|fit| fit.worst(points));
+    if points.len() < FEWEST {
+        return None;
+    }
+    let (whole, at) = worst(&points)?;
+    let mut range: Option<[usize; 2]> = None;
+    let width = |[from, to]: [usize; 2]| points[to].0 / points[from].0.max(1.0);
+    for from in 0..points.len() {
+        for to in from + FEWEST - 1..points.len() {
+            let is_straight = worst(&points[from..=to]).is_some_and(|(off, _)| off <= TOLERANCE);
+            if is_straight && range.is_none_or(|best| width([from, to]) > width(best)) {
+                range = Some([from, to]);
+            }
+        }
+    }
+    let range = range.map(|ends| ends.map(|ix| points[ix].0 as u64));
+    Some(Straight { worst: whole, at: at as u64, range })
+}
+
 /// Scaling with lights: fits, growing and constant density, radii.
 pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let scaling = entries(done, scene, "scaling");
@@ -34,8 +84,12 @@ pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> String {
         scene,
         "scaling",
         "Scaling",
-        "Points are medians, whiskers their intervals, dashes a least-squares line through each \
-         strategy\u{2019}s times: straight on linear axes, bent on these.",
+        &format!(
+            "{} Whiskers are intervals; dashes are a least-squares line through each strategy\u{2019}s \
+             times: straight on linear axes, bent on these. How far times are off a line is told of \
+             another one, which takes relative distances, so that few lights count as much as many.",
+            stands(&scaling)
+        ),
         &html,
     );
     html + &part(
@@ -53,6 +107,16 @@ pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> String {
          distribution.",
         &radii(done, scene),
     )
+}
+
+/// What the points of a chart are: means along the path, or medians of one pose.
+fn stands(entries: &[Entry<'_>]) -> String {
+    match entries.iter().map(|entry| entry.record).max_by_key(|record| poses(record)) {
+        Some(record) if record.along_path => {
+            format!("Points are means of {} along the path.", stand(record))
+        }
+        _ => "Points are medians from one pose.".to_owned(),
+    }
 }
 
 /// A panel per source of lights: strategies without one, such as None, are in both.
@@ -140,11 +204,16 @@ fn fits_table(entries: &[Entry<'_>]) -> String {
     for (id, records) in lines(entries) {
         let Some(both) = fit(&records, Record::assign_and_shade_ms) else { continue };
         let mut row = vec![name(id)];
+        let straight = straight(&records, Record::assign_and_shade_ms);
         row.extend([
             significant(both.slope * 1e6),
             significant(both.offset),
             r2(&both),
-            significant(both.residual),
+            straight.map_or_else(|| ABSENT.to_owned(), |straight| percent(straight.worst)),
+            straight.and_then(|straight| straight.range).map_or_else(
+                || ABSENT.to_owned(),
+                |[low, high]| format!("{} to {}", number(low as f64), number(high as f64)),
+            ),
         ]);
         let parts: [Time; 2] = [|record| record.assign_ms, |record| record.shade_ms];
         for time in parts {
@@ -168,7 +237,8 @@ fn fits_table(entries: &[Entry<'_>]) -> String {
         slope("slope"),
         unit("offset", "ms"),
         "R\u{b2}".to_owned(),
-        unit("residual", "ms"),
+        unit("off a straight line by at most", "%"),
+        "straight within 10 %, lights".to_owned(),
         slope("assign: slope"),
         unit("offset", "ms"),
         "R\u{b2}".to_owned(),
@@ -187,7 +257,7 @@ fn r2(fit: &Fit) -> String {
 
 fn density(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let scaling = entries(done, scene, "scaling");
-    let main = entries(done, scene, "main");
+    let main = ranking(done, scene);
     let bvh = |entry: &&Entry<'_>| is_bvh(&entry.record.strategy);
     let most = counts(&main).last().copied();
     let mut html = String::new();

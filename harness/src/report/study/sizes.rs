@@ -3,19 +3,26 @@
 use super::super::format::{ABSENT, number, significant};
 use super::super::page;
 use super::super::rank::{first, listed, ranks};
-use super::data::{Entry, class, entries, family, parameters, tests};
+use super::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
 use super::figure::{Charts, name, panels, part, table};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::Record;
 use crate::study::Done;
 
-/// The records of each family, in the order of the jobs.
-fn families<'a>(entries: &[Entry<'a>]) -> Vec<(&'a str, Vec<&'a Record>)> {
-    let mut all: Vec<(&str, Vec<&Record>)> = Vec::new();
+/// A family with the source of its lights: `SC-E`, `SC-E/bvh`. Sizes of one compete.
+fn searched(record: &Record) -> String {
+    let family = family(&record.strategy);
+    if is_bvh(&record.strategy) { format!("{family}/bvh") } else { family.to_owned() }
+}
+
+/// The records of each family and source, in the order of the jobs.
+fn families<'a>(entries: &[Entry<'a>]) -> Vec<(String, Vec<&'a Record>)> {
+    let mut all: Vec<(String, Vec<&Record>)> = Vec::new();
     for Entry { record, .. } in entries {
-        match all.iter_mut().find(|(known, _)| *known == family(&record.strategy)) {
+        let name = searched(record);
+        match all.iter_mut().find(|(known, _)| *known == name) {
             Some((_, records)) => records.push(record),
-            None => all.push((family(&record.strategy), vec![record])),
+            None => all.push((name, vec![record])),
         }
     }
     all
@@ -45,9 +52,10 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
             significant(best.assign_and_shade_ms()) + &page::interval(best),
             if same.is_empty() { ABSENT.to_owned() } else { listed(&same) },
             number(records.len() as f64),
+            stand(best),
         ]);
         let slug = format!("{scene}-sizes-{family}");
-        shown.push(((*family).to_owned(), charts.bars(&slug, &bars(family, records))));
+        shown.push((family.clone(), charts.bars(&slug, &bars(family, records))));
     }
     let heads = [
         "family",
@@ -55,6 +63,7 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "assign + shade <span class=\"unit\">ms</span>",
         "not to be told apart from it",
         "sizes tried",
+        "mean of",
     ];
     let body = if rows.is_empty() {
         String::new()
@@ -66,7 +75,8 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "sizes",
         "Group sizes",
         "Sizes in pixels of a tile\u{2019}s sides and depth slices, in cells along the box\u{2019}s sides, \
-         in metres of a model\u{2019}s parts. Small groups cost assignment, large ones shading.",
+         in metres of a model\u{2019}s parts. Small groups cost assignment, large ones shading. Sizes are \
+         searched from each source of lights: the list of all lights, and the hierarchy (/bvh).",
         &body,
     ) + &part(
         scene,
@@ -135,7 +145,7 @@ fn tests_table(done: &Done, scene: &str) -> String {
     let rows: Vec<Vec<String>> = unions
         .iter()
         .map(|union| {
-            let cell = |((_, records), best): (&(&str, Vec<&Record>), &Vec<&Record>)| {
+            let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
                 let found = records.iter().find(|record| tests(record) == Some(*union));
                 found.map_or_else(
                     || ABSENT.to_owned(),
@@ -173,20 +183,25 @@ pub(super) fn best_overall(done: &Done) -> String {
     let mut rows = Vec::new();
     for (family, records) in families(leading) {
         let factor = |id: &str| -> Option<(f64, f64)> {
-            let (mut logs, mut worst) = (0.0, 0.0_f64);
+            let (mut logs, mut worst, mut count) = (0.0, 0.0_f64, 0.0);
             for entries in &complete {
                 let own = || {
                     entries
                         .iter()
                         .map(|entry| entry.record)
-                        .filter(|record| super::data::family(&record.strategy) == family)
+                        .filter(|record| searched(record) == family)
                 };
+                // A heavy scene searches fewer families.
+                if own().next().is_none() {
+                    continue;
+                }
                 let best = own().map(Record::assign_and_shade_ms).fold(f64::INFINITY, f64::min);
                 let time = own().find(|record| record.strategy == id)?.assign_and_shade_ms();
                 logs += (time / best).ln();
+                count += 1.0;
                 worst = worst.max(time / best);
             }
-            let mean = (logs / complete.len() as f64).exp();
+            let mean = (logs / count).exp();
             mean.is_finite().then_some((mean, worst))
         };
         let mut factors: Vec<(&Record, f64, f64)> = records
@@ -198,7 +213,7 @@ pub(super) fn best_overall(done: &Done) -> String {
         factors.sort_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((record, mean, worst)) = factors.first() {
             rows.push(vec![
-                name(family),
+                name(&family),
                 size(record).to_owned(),
                 significant(*mean),
                 significant(*worst),

@@ -42,7 +42,7 @@ pub(super) fn views(
             let entries = of(&first, Some(low));
             let Some(view) = entries.first().map(view) else { continue };
             maps += &heat_maps(&entries, "views four", shots);
-            let title = format!("Lists by length, {view}: groups that some pixel reads");
+            let title = format!("Lists by length, {view}: {}", counted(&entries));
             drawn += &histograms(&format!("{scene}-views-{view}"), &title, &entries, charts);
         }
         let names: Vec<String> = first.iter().map(|id| short(id)).collect();
@@ -50,7 +50,7 @@ pub(super) fn views(
     }
     for id in &ids {
         let entries = of(&[*id], None);
-        let title = format!("Lists by length, {id}: groups that some pixel reads");
+        let title = format!("Lists by length, {id}: {}", counted(&entries));
         let slug = format!("{scene}-views-{}", short(id));
         let mut body = heat_maps(&entries, "views", shots);
         body += &histograms(&slug, &title, &entries, charts);
@@ -61,8 +61,9 @@ pub(super) fn views(
         "views",
         "Views of low and high depth discontinuity",
         "Of the views along the path, the one in which the fewest neighbouring pixels are a tenth apart \
-         in depth, and the one in which the most are. Heat maps show the lights in the list of each \
-         pixel: blue at none, red at 150, green above.",
+         in depth, and the one in which the most are. A tile that holds near and far surfaces lists the \
+         lights between them too; a cluster does not. The lists of G and M are the same from everywhere. \
+         Heat maps show the lights in the list of each pixel: blue at none, red at 150, green above.",
         &panels("Strategy", &shown),
     )
 }
@@ -97,17 +98,31 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Strin
     }
 }
 
+/// The lists that histograms count: those of all groups, as in the comparison paper, or in older results
+/// those that a pixel reads.
+fn lengths(record: &Record) -> &[u64] {
+    if record.all_groups.is_empty() { &record.histogram } else { &record.all_groups }
+}
+
+fn counted(entries: &[Entry<'_>]) -> &'static str {
+    match entries.iter().all(|entry| entry.record.all_groups.is_empty()) {
+        true => "groups that some pixel reads",
+        false => "all groups with lights",
+    }
+}
+
 /// The lengths of the lists of records, side by side.
 fn histograms(slug: &str, title: &str, entries: &[Entry<'_>], charts: &mut Charts) -> String {
     let all: Vec<Histogram> = entries
         .iter()
-        .filter(|entry| entry.record.histogram.iter().any(|groups| *groups > 0))
+        .filter(|entry| lengths(entry.record).iter().any(|groups| *groups > 0))
         .map(|entry| histogram(entry.record, view(entry)))
         .collect();
     if all.is_empty() { String::new() } else { charts.histograms(slug, title, &all) }
 }
 
-fn is_low(entry: &Entry<'_>) -> bool {
+/// Whether a record is of the view with the least discontinuity.
+pub(super) fn is_low(entry: &Entry<'_>) -> bool {
     entry.job.name.ends_with("low")
 }
 
@@ -123,11 +138,18 @@ fn histogram(record: &Record, view: &str) -> Histogram {
             format!("{}\u{2013}{}", number(first as f64), number((first * 2 - 1) as f64))
         }
     };
+    // Most cells of a dense grid hold no light: their bar would hide all others.
+    let lengths = lengths(record);
+    let without = usize::from(!record.all_groups.is_empty());
+    let note = match lengths.first().filter(|_| without > 0) {
+        Some(empty) => format!("{} groups hold no light", number(*empty as f64)),
+        None => String::new(),
+    };
     Histogram {
         title: format!("{}, {view}", short(&record.strategy)),
         x_label: "Lights in a list".to_owned(),
-        bins: record.histogram.iter().enumerate().map(|(ix, n)| (bin(ix), *n)).collect(),
+        bins: lengths.iter().enumerate().skip(without).map(|(ix, n)| (bin(ix), *n)).collect(),
         class: class(&record.strategy),
-        note: String::new(),
+        note,
     }
 }

@@ -1,0 +1,257 @@
+//! Claims on times against the number of lights: figure 4.13 and table 4.6.
+
+use super::super::super::super::fit::Fit;
+use super::super::super::super::format::{number, percent, significant};
+use super::super::super::data::{Entry, entries, family, is_of_the_paper, lines, poses, stand};
+use super::super::super::order::Order;
+use super::super::super::scaling::{Straight, Time, straight};
+use super::super::{Answer, Verdict};
+use super::ALIKE;
+use super::field::Pairs;
+use crate::results::Record;
+use crate::study::Done;
+
+/// The counts of lights between which the paper fits its lines.
+const RANGE: [u64; 2] = [100, 10_000];
+
+/// The records of the paper's strategies over counts of lights, within the paper's range.
+fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<(&'a str, Vec<&'a Record>)> {
+    let scaling: Vec<Entry<'_>> = entries(done, scene, "scaling")
+        .into_iter()
+        .filter(|entry| is_of_the_paper(entry.record) && entry.record.lights <= most)
+        .collect();
+    let mut lines = lines(&scaling);
+    lines.retain(|(_, records)| records.len() > 2);
+    lines
+}
+
+/// The line through a strategy's times by least squares, as in the paper.
+fn fit(records: &[&Record], time: Time) -> Option<Fit> {
+    super::super::super::scaling::fit(records, time)
+}
+
+fn basis(lines: &[(&str, Vec<&Record>)]) -> String {
+    let records = || lines.iter().flat_map(|(_, records)| records.iter());
+    let low = records().map(|record| record.lights).min().unwrap_or(0);
+    let high = records().map(|record| record.lights).max().unwrap_or(0);
+    let stand = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| stand(r));
+    format!("{} to {} lights, {stand}", number(low as f64), number(high as f64))
+}
+
+/// Straight where the best line misses no time by more than a tenth; where that stops is said.
+pub(super) fn linear(done: &Done, scene: &str) -> Answer {
+    let lines = grown(done, scene, u64::MAX);
+    let paper = grown(done, scene, RANGE[1]);
+    let (mut good, mut all, mut figures) = (0, 0, Vec::new());
+    for (id, records) in &lines {
+        let own = paper.iter().find(|(known, _)| known == id).map(|(_, records)| records);
+        let Some(within) = own.and_then(|own| straight(own, Record::assign_and_shade_ms)) else {
+            continue;
+        };
+        all += 1;
+        good += usize::from(within.holds());
+        let plain = fit(records, Record::assign_and_shade_ms);
+        figures.push(said(id, &within, straight(records, Record::assign_and_shade_ms), plain, records));
+    }
+    if all == 0 {
+        return Answer::unknown("scaling over four counts of lights");
+    }
+    let figure = format!("{}; {}", basis(&lines), figures.join("; "));
+    Answer { figure, verdict: Verdict::of_parts(good, all, "strategies") }
+}
+
+/// `T-I off by 9.0 % at 1,000, straight from 100 to 30,000, least squares off by 28 % at 100`.
+fn said(
+    id: &str,
+    within: &Straight,
+    whole: Option<Straight>,
+    plain: Option<Fit>,
+    records: &[&Record],
+) -> String {
+    let mut text = format!(
+        "{} off its line by {} % at most, at {}",
+        family(id),
+        percent(within.worst),
+        number(within.at as f64)
+    );
+    match whole.or(Some(*within)).and_then(|whole| whole.range) {
+        Some([low, high]) => {
+            text += &format!(", straight from {} to {}", number(low as f64), number(high as f64));
+        }
+        None => text += ", nowhere straight over four counts",
+    }
+    if let Some(plain) = plain {
+        let points: Vec<(f64, f64)> =
+            records.iter().map(|r| (r.lights as f64, r.assign_and_shade_ms())).collect();
+        let (off, at) = plain.worst(&points);
+        text += &format!(" (plain least squares {} % at {})", percent(off), number(at));
+    }
+    text
+}
+
+/// The time of each strategy that a claim is about, as a line.
+struct Slopes<'a> {
+    basis: String,
+    all: Vec<(&'a str, Fit)>,
+}
+
+impl<'a> Slopes<'a> {
+    fn of(done: &'a Done, scene: &'a str, time: Time) -> Result<Self, Answer> {
+        let lines = grown(done, scene, RANGE[1]);
+        let all: Vec<(&str, Fit)> = lines
+            .iter()
+            .filter_map(|(id, records)| Some((family(id), fit(records, time)?)))
+            .collect();
+        match all.is_empty() {
+            true => Err(Answer::unknown("scaling over three counts of lights")),
+            false => Ok(Self { basis: basis(&lines), all }),
+        }
+    }
+
+    fn fit(&self, name: &str) -> Option<&Fit> {
+        self.all.iter().find(|(family, _)| *family == name).map(|(_, fit)| fit)
+    }
+
+    fn ascending(&self, names: &[&str], of: fn(&Fit) -> f64) -> String {
+        let mut all: Vec<(&str, f64)> =
+            names.iter().filter_map(|name| Some((*name, of(self.fit(name)?)))).collect();
+        all.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let said = all.iter().map(|(name, figure)| format!("{name} {}", significant(*figure)));
+        said.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Decides by the order of slopes or offsets.
+    fn ordered(&self, chain: &[&[&str]], of: fn(&Fit) -> f64) -> Pairs {
+        Pairs::of_chain(chain, |less, more| {
+            let (less, more) = (of(self.fit(less)?), of(self.fit(more)?));
+            // An offset below zero is less than one above it, whatever their ratio.
+            match less > 0.0 && more > 0.0 {
+                true => Some(Order::of_figures(less, more)),
+                false if less < more => Some(Order::Less),
+                false => Some(Order::More),
+            }
+        })
+    }
+}
+
+fn slope(fit: &Fit) -> f64 {
+    fit.slope * 1e6
+}
+
+fn offset(fit: &Fit) -> f64 {
+    fit.offset
+}
+
+/// The groups of table 4.6 by the slope of all stages.
+pub(super) fn slopes(done: &Done, scene: &str) -> Answer {
+    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let chain: [&[&str]; 5] = [&["SC-E", "SC-I"], &["T-E"], &["DC-I", "G"], &["T-I"], &["M"]];
+    let pairs = slopes.ordered(&chain, slope);
+    let figure = format!(
+        "{}, \u{b5}s per 1,000 lights: {}{}",
+        slopes.basis,
+        slopes.ascending(&chain.concat(), slope),
+        pairs.exceptions()
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// The groups of table 4.6 by the offset of all stages.
+pub(super) fn offsets(done: &Done, scene: &str) -> Answer {
+    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let chain: [&[&str]; 3] = [&["M", "T-I", "G", "DC-I"], &["T-E"], &["SC-I", "SC-E"]];
+    let pairs = slopes.ordered(&chain, offset);
+    let figure = format!(
+        "{}, ms: {}{}",
+        slopes.basis,
+        slopes.ascending(&chain.concat(), offset),
+        pairs.exceptions()
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// Shading grows faster than assignment, in each strategy.
+pub(super) fn shading_dominates(done: &Done, scene: &str) -> Answer {
+    let both = Slopes::of(done, scene, |r| r.assign_ms)
+        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.shade_ms)?)));
+    let (assign, shade) = match both {
+        Ok(both) => both,
+        Err(answer) => return answer,
+    };
+    let (mut pairs, mut figures) = (Pairs::default(), Vec::new());
+    for (name, of_assign) in &assign.all {
+        let Some(of_shade) = shade.fit(name) else { continue };
+        let order = Order::of_figures(of_assign.slope, of_shade.slope);
+        pairs.add(&format!("{name}'s assignment"), "its shading", order);
+        let both = [of_assign, of_shade].map(|fit| significant(slope(fit)));
+        figures.push(format!("{name} {} and {}", both[0], both[1]));
+    }
+    let figure = format!(
+        "{}, \u{b5}s per 1,000 lights, assign and shade: {}{}",
+        assign.basis,
+        figures.join(", "),
+        pairs.exceptions()
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// M assigns with the least slope and shades with the greatest.
+pub(super) fn model_slopes(done: &Done, scene: &str) -> Answer {
+    let both = Slopes::of(done, scene, |r| r.assign_ms)
+        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.shade_ms)?)));
+    let (assign, shade) = match both {
+        Ok(both) => both,
+        Err(answer) => return answer,
+    };
+    if assign.fit("M").is_none() {
+        return Answer::unknown("M over three counts of lights");
+    }
+    let others = ["SC-E", "SC-I", "T-E", "T-I", "G", "DC-I"];
+    let less = assign.ordered(&[&["M"], &others], slope);
+    let more = shade.ordered(&[&others, &["M"]], slope);
+    let verdict = match (less.verdict(), more.verdict()) {
+        (Verdict::Holds, Verdict::Holds) => Verdict::Holds,
+        (Verdict::Holds, _) => Verdict::Differs("least in assignment only".to_owned()),
+        (_, Verdict::Holds) => Verdict::Differs("greatest in shading only".to_owned()),
+        _ => Verdict::Fails,
+    };
+    let names = [&["M"][..], &others].concat();
+    let figure = format!(
+        "{}, \u{b5}s per 1,000 lights: assign {}; shade {}",
+        assign.basis,
+        assign.ascending(&names, slope),
+        shade.ascending(&names, slope)
+    );
+    Answer { figure, verdict }
+}
+
+/// The slopes and the offsets of DC-I and G are alike.
+pub(super) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
+    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let (Some(dense), Some(grid)) = (slopes.fit("DC-I"), slopes.fit("G")) else {
+        return Answer::unknown("DC-I and G over three counts of lights");
+    };
+    let apart = |of: fn(&Fit) -> f64| (of(dense) / of(grid)).max(of(grid) / of(dense));
+    let good = [slope as fn(&Fit) -> f64, offset].into_iter().filter(|of| {
+        let apart = apart(*of);
+        apart > 0.0 && apart <= ALIKE
+    });
+    let verdict = Verdict::of_parts(good.count(), 2, "measures");
+    let names = ["DC-I", "G"];
+    let figure = format!(
+        "{}: slope {} \u{b5}s per 1,000 lights, offset {} ms",
+        slopes.basis,
+        slopes.ascending(&names, slope),
+        slopes.ascending(&names, offset)
+    );
+    Answer { figure, verdict }
+}

@@ -1,0 +1,138 @@
+//! Paths climb, keep clear, and see both smooth and broken depth.
+
+use std::{io::Write, path::PathBuf};
+
+use super::*;
+use crate::{Scene, atrium, load_gltf};
+
+/// Poses of a path that are looked at.
+const POSES: u32 = 60;
+
+/// Rays of a picture of each pose.
+const RAYS: [u32; 2] = [64, 36];
+
+/// What a path shows.
+struct Shown {
+    /// Range of heights over the height of the core.
+    heights: f32,
+    /// The least distance to a triangle, metres.
+    clearance_m: f32,
+    /// Share of neighbouring rays whose depths are a tenth apart, pose by pose.
+    broken: Vec<f32>,
+}
+
+impl Shown {
+    fn of(scene: &Scene) -> Self {
+        let bvh = TriangleBvh::new(scene, scene.core_bounds.grown(1.0));
+        let eyes: Vec<Vec3> = (0..1200).map(|frame| scene.path.pose(frame, 1200).eye).collect();
+        let low = eyes.iter().map(|eye| eye.y).fold(f32::INFINITY, f32::min);
+        let high = eyes.iter().map(|eye| eye.y).fold(f32::NEG_INFINITY, f32::max);
+        let clearances = eyes.par_iter().map(|eye| bvh.clearance(*eye, 1.0));
+        Self {
+            heights: (high - low) / scene.core_bounds.size().y,
+            clearance_m: clearances.reduce(|| 1.0, f32::min),
+            broken: (0..POSES).into_par_iter().map(|pose| broken(scene, &bvh, pose)).collect(),
+        }
+    }
+
+    fn least(&self) -> f32 {
+        self.broken.iter().copied().fold(f32::INFINITY, f32::min)
+    }
+
+    fn most(&self) -> f32 {
+        self.broken.iter().copied().fold(0.0, f32::max)
+    }
+}
+
+/// The share of neighbouring rays of a picture whose depths are more than a tenth apart.
+fn broken(scene: &Scene, bvh: &TriangleBvh, pose: u32) -> f32 {
+    let pose = scene.path.pose(pose, POSES);
+    let right = pose.forward().cross(pose.up).normalize();
+    let up = right.cross(pose.forward());
+    let [width, height] = RAYS;
+    let half = 30_f32.to_radians().tan();
+    let depth = |x: u32, y: u32| {
+        let at = |ix: u32, count: u32| (2.0 * ix as f32 + 1.0) / count as f32 - 1.0;
+        let aside = at(x, width) * half * width as f32 / height as f32;
+        let along = pose.forward() + right * aside + up * (at(y, height) * half);
+        let hit = bvh.cast(pose.eye, along.normalize(), 1e4)?;
+        Some(hit.distance_m / along.length())
+    };
+    let depths: Vec<Option<f32>> =
+        (0..width * height).map(|ix| depth(ix % width, ix / width)).collect();
+    let (mut apart, mut all) = (0, 0);
+    let mut compare = |a: usize, b: usize| {
+        if let (Some(Some(a)), Some(Some(b))) = (depths.get(a), depths.get(b)) {
+            all += 1;
+            apart += usize::from(a.max(*b) > 1.1 * a.min(*b));
+        }
+    };
+    let width = width as usize;
+    for ix in 0..depths.len() {
+        compare(ix, ix + width);
+        if ix % width + 1 < width {
+            compare(ix, ix + 1);
+        }
+    }
+    apart as f32 / all.max(1) as f32
+}
+
+fn check(name: &str, shown: &Shown) {
+    let said = format!(
+        "{name}: heights {:.2}, clearance {:.2} m, broken {:.3} to {:.3}, at first {:.3}",
+        shown.heights,
+        shown.clearance_m,
+        shown.least(),
+        shown.most(),
+        shown.broken[0]
+    );
+    println!("{said}");
+    assert!(shown.heights > 0.2, "{said}");
+    assert!(shown.clearance_m > 0.15, "{said}");
+    // Both smooth and broken views, and not the most broken one first.
+    assert!(shown.most() > 2.0 * shown.least(), "{said}");
+    assert!(shown.most() > 1.1 * shown.broken[0], "{said}");
+}
+
+#[test]
+fn the_atriums_path_climbs_and_crosses_edges() {
+    check("atrium", &Shown::of(&atrium(1)));
+}
+
+/// Sponza's path is fitted. Its first pose is that of earlier versions, which pictures show.
+#[test]
+fn a_fitted_path_climbs_and_crosses_edges() {
+    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes");
+    let folder = std::env::var_os("LIGHTBENCH_SCENES").map_or_else(beside, PathBuf::from);
+    let path = folder.join("crytek-sponza/Sponza.gltf");
+    if !path.exists() {
+        let line = format!("skipped: {} is absent, nothing was tested\n", path.display());
+        let _ = std::io::stderr().write_all(line.as_bytes());
+        return;
+    }
+    let scene = load_gltf(&path).expect("a valid scene");
+    check("Sponza", &Shown::of(&scene));
+}
+
+/// In a hall with a row of posts the loop leaves its ellipse and touches nothing.
+#[test]
+fn a_bent_loop_keeps_its_first_knot_and_its_margin() {
+    let scene = atrium(1);
+    let bvh = TriangleBvh::new(&scene, scene.bounds);
+    let room = Room { bvh: &bvh, core: scene.core_bounds, margin_m: 0.3 };
+    let level: Vec<Vec3> = (0..48)
+        .map(|ix| {
+            let (sin, cos) = (TAU * ix as f32 / 48.0).sin_cos();
+            Vec3::new(8.0 * cos, 2.5, 3.5 * sin)
+        })
+        .collect();
+    let eyes = room.bend(&level);
+    assert_eq!(eyes[0], level[0]);
+    let rise = eyes.iter().map(|eye| eye.y - 2.5).fold(0.0, f32::max);
+    let pushed = eyes.iter().zip(&level).map(|(eye, at)| {
+        Vec3::new(eye.x - at.x, 0.0, eye.z - at.z).length()
+    });
+    let pushed = pushed.fold(0.0, f32::max);
+    assert!(rise > 2.0 && pushed > 1.5, "rise {rise}, push {pushed}");
+    assert!((0..48).all(|ix| room.is_clear(&eyes, ix)));
+}
