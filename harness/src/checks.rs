@@ -18,8 +18,26 @@ use crate::{
 /// The method that has no forward mode.
 pub(crate) const RASTER_SPHERE: &str = "RasterSphere";
 
-/// An error where no choice can be measured in any of the modes.
+/// The most frames of a method on the clock, laps and poses together.
+const MAX_SAMPLES: u32 = 100_000;
+
+/// Poses of a lap where the command line names none, at most.
+const MOST_POSES: u32 = 1_200;
+
+/// An error where laps are asked for without a path or too often, or where no choice can be measured
+/// in any of the modes.
 pub(crate) fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
+    if let Some(laps) = args.laps {
+        let refuse =
+            |accepted: &str| Err(CliError::out_of_range("--laps", &laps.to_string(), accepted));
+        if !args.path {
+            return refuse("given with --path: a camera that stands still takes no laps");
+        }
+        let most = MAX_SAMPLES / args.frames.unwrap_or(MOST_POSES);
+        if laps > most.max(1) {
+            return refuse(&format!("at most {} with as many --frames", most.max(1)));
+        }
+    }
     let is_forward = args.mode == ModeChoice::Forward;
     if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
         let accepted =

@@ -173,7 +173,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
     pub area_model: AreaModel,
 
-    /// Frames to time, 1 to 100,000, every sample kept [default: 64, or 3 on a software adapter]
+    /// Frames to time, 1 to 100,000, every sample kept; with --path, poses of a lap
+    /// [default: 64, or 3 on a software adapter; with --path 1,200 or 60]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
     pub frames: Option<u32>,
 
@@ -184,6 +185,11 @@ pub struct CompareArgs {
     /// Time each frame from another pose: the camera goes once along the scene's path
     #[arg(long, conflicts_with = "camera")]
     pub path: bool,
+
+    /// With --path, go along the path N times, 1 to 1,000, from --frames poses each time; 6 laps or
+    /// more tell methods apart [default: 1]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::laps)]
+    pub laps: Option<u32>,
 
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed")]

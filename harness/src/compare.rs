@@ -19,7 +19,7 @@ use crate::{
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
-    measure::{Contest, Plan, unbounded_image},
+    measure::{Contest, Plan, Timetable, unbounded_image},
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
@@ -177,7 +177,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
         warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(defaults[kind]),
-        along_path: args.path,
+        laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
         seed: args.stage.seed,
         cut: args.cut.into(),
         operations: args.operations,
@@ -218,7 +218,7 @@ impl Run<'_> {
         let lights = self.stage.lights.lights().to_vec();
         let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
         let modes = self.args.mode.modes();
-        let per_method = u64::from(self.plan.timed) + 1;
+        let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
         for &mode in modes {
             let mut served = choices.to_vec();
@@ -286,7 +286,10 @@ impl Run<'_> {
             })
         };
         let tick = &mut || bar.inc(1);
-        contest.time(self.stage, &timed, reference_ix, tick, &mut compared)?;
+        let remember: Vec<usize> =
+            timed.iter().copied().filter(|&ix| choices[ix].is_reused()).collect();
+        let timetable = Timetable { timed: &timed, remember: &remember, reference: reference_ix };
+        contest.time(self.stage, timetable, tick, &mut compared)?;
         for ((&ix, seen), times) in timed.iter().zip(all_seen).zip(contest.finish()) {
             let record = record(
                 self.args,

@@ -11,6 +11,7 @@ use super::MAX_LIGHTS;
 
 const MAX_SIDE: u32 = 16_384;
 const MAX_FRAMES: u32 = 100_000;
+const MAX_LAPS: u32 = 1_000;
 const MAX_SAMPLES: u32 = 65_536;
 /// The largest side of a reflective shadow map, pixels.
 const MAX_RSM: u32 = 2048;
@@ -257,6 +258,10 @@ pub(super) fn lights(text: &str) -> Result<u32, String> {
 
 pub(super) fn frames(text: &str) -> Result<u32, String> {
     whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
+}
+
+pub(super) fn laps(text: &str) -> Result<u32, String> {
+    whole(text, 1, MAX_LAPS).ok_or_else(|| "a whole number from 1 to 1,000".to_owned())
 }
 
 pub(super) fn bounces(text: &str) -> Result<u32, String> {

@@ -104,6 +104,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
         rounds: frames,
         along_path: false,
+        poses: None,
         radii: Some("gamma".to_owned()),
         light_places: Some("core".to_owned()),
         threshold: None,

@@ -32,17 +32,13 @@ pub(super) fn ranking<'a>(done: &'a Done, scene: &'a str) -> Vec<Entry<'a>> {
 
 /// Poses along the path of which a record's times are means; 1 from a still camera.
 pub(super) fn poses(record: &Record) -> usize {
-    if record.along_path { record.frames as usize } else { 1 }
+    match record.along_path {
+        true => record.frames as usize / record.laps().max(1) as usize,
+        false => 1,
+    }
 }
 
-/// The time at each pose, mean over laps, ms.
-pub(super) fn pose_times(record: &Record) -> Vec<f64> {
-    let laps = laps(record);
-    let sum = |pose: usize| laps.iter().filter_map(|lap| lap.get(pose)).sum::<f64>();
-    (0..laps.first().map_or(0, Vec::len)).map(|pose| sum(pose) / laps.len() as f64).collect()
-}
-
-/// The times of each lap, pose by pose, ms.
+/// The times of each lap along the path, pose by pose, ms.
 pub(super) fn laps(record: &Record) -> Vec<Vec<f64>> {
     record.frames_ms().chunks_exact(poses(record).max(1)).map(<[f64]>::to_vec).collect()
 }

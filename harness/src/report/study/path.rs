@@ -1,7 +1,7 @@
 //! Times frame by frame along the camera's path.
 
 use super::super::format::{number, percent, significant};
-use super::data::{Entry, class, counts, entries, laps, lines, pose_times, poses, short};
+use super::data::{Entry, class, counts, entries, laps, lines, poses, short};
 use super::figure::{Charts, name, panels, part, table};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use super::order::Order;
@@ -31,7 +31,7 @@ pub(super) struct Spread {
 impl Spread {
     /// `None` without poses, or where their times say nothing.
     pub(super) fn of(record: &Record) -> Option<Self> {
-        let times = pose_times(record);
+        let times = record.pose_times_ms();
         let worst = times.iter().copied().fold(f64::NAN, f64::max);
         let (mean, deviation) = (mean(&times), standard_deviation(&times));
         let worst_over_median = worst / median(&times);
@@ -82,7 +82,7 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
         .iter()
         .flat_map(|(id, records)| records.iter().map(move |record| (id, record)))
         .map(|(id, record)| {
-            let times = pose_times(record);
+            let times = record.pose_times_ms();
             let point = |(pose, y): (usize, &f64)| Point {
                 x: 100.0 * pose as f64 / times.len() as f64,
                 y: *y,
