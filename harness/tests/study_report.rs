@@ -13,7 +13,50 @@ use harness::study::{Done, Job, Manifest};
 use report_data::{empty, pictures, record};
 
 /// The claims of the comparison paper, by their ids.
-const CLAIMS: [&str; 7] = ["linear", "bounds", "many", "few", "tests", "steady", "models"];
+const CLAIMS: [&str; 28] = [
+    "sizes",
+    "many",
+    "dense",
+    "memory",
+    "explicit",
+    "tests",
+    "union",
+    "steady",
+    "spread",
+    "steady-explicit",
+    "steady-alike",
+    "discontinuity",
+    "view-free",
+    "models",
+    "subdivision",
+    "grids",
+    "few",
+    "few-order",
+    "medium",
+    "medium-order",
+    "many-order",
+    "linear",
+    "bounds",
+    "dominates",
+    "slopes",
+    "offsets",
+    "model-slopes",
+    "alike",
+];
+
+/// Of those, the ones that cannot fail outright: some part of them holds in any made-up study.
+const PARTLY: [&str; 10] = [
+    "spread",
+    "few-order",
+    "medium-order",
+    "many-order",
+    "many",
+    "slopes",
+    "offsets",
+    "models",
+    "model-slopes",
+    "sizes",
+];
 
 const FAMILIES: [&str; 9] = [
     "T-I/28x28",
@@ -30,15 +73,27 @@ const FAMILIES: [&str; 9] = [
 /// Offset and slope of a strategy, ms and ms per light: as the paper has it.
 fn line(strategy: &str) -> (f64, f64) {
     match strategy.split('/').next().expect("it is there") {
-        "T-I" => (3.0, 4.0e-3),
-        "T-E" => (5.0, 2.0e-3),
+        "T-I" => (0.9, 6.0e-3),
+        "T-E" => (2.0, 1.4e-3),
         "DC-I" => (1.0, 3.0e-3),
-        "DC-E" => (4.0, 1.0e-3),
-        "SC-I" => (4.5, 1.6e-3),
-        "SC-E" => (6.0, 0.4e-3),
-        "G" => (2.5, 2.5e-3),
-        _ if strategy == "M" => (20.0, 0.2),
-        _ => (8.0, 5.0e-3),
+        "DC-E" => (3.1, 0.45e-3),
+        "SC-I" => (3.0, 0.7e-3),
+        "SC-E" => (3.3, 0.45e-3),
+        "G" => (1.15, 3.2e-3),
+        _ if strategy == "M" => (0.5, 0.2),
+        _ => (2.0, 2.5e-3),
+    }
+}
+
+/// By how much the times of a strategy vary along the path, as a share of their mean.
+fn swing(strategy: &str) -> f64 {
+    match strategy.split('/').next().expect("it is there") {
+        "SC-E" => 0.02,
+        "SC-I" | "M" => 0.03,
+        "T-E" => 0.05,
+        "T-I" => 0.1,
+        "G" => 0.023,
+        _ => 0.025,
     }
 }
 
@@ -70,32 +125,89 @@ impl Maker {
 
     /// Every strategy at a count of lights.
     fn all(&self, lights: u64) -> Vec<Record> {
-        let make = |id: &&str| {
-            let (offset, slope) = line(id);
-            let count = lights as f64;
-            let mut times = [offset * 0.5, offset * 0.5 + slope * count];
-            if self.turned == "linear" {
-                times[1] = offset + (count / 3_000.0 - 1.0).powi(2) * 50.0;
-            }
-            let slow = match self.turned {
-                "many" => lights == 10_000 && id.starts_with("SC-E"),
-                "few" => lights == 100 && (id.starts_with("DC-I") || id.starts_with('G')),
-                "models" => *id == "M/2",
-                _ => false,
-            };
-            if slow {
-                times[1] += 5_000.0;
-            }
-            let mut record = record(id, Mode::Deferred, times[0], times[1]);
-            record.lights = lights;
-            record.listed_per_sample = Some(match (*id, self.turned) {
-                ("M", _) => 100.0,
-                ("M/2", "models") => 200.0,
-                _ => 5.0,
-            });
-            record
+        FAMILIES.iter().map(|id| self.one(id, lights)).collect()
+    }
+
+    fn one(&self, id: &str, lights: u64) -> Record {
+        let (mut offset, mut slope) = line(id);
+        let count = lights as f64;
+        let of = |names: &[&str]| names.iter().any(|name| id.split('/').next() == Some(name));
+        match self.turned {
+            "many" if of(&["DC-E", "SC-E"]) => offset += 5_000.0,
+            "dense" if of(&["DC-E"]) => offset += 3.0,
+            "explicit" if of(&["T-E", "DC-E", "SC-E"]) => offset += 500.0,
+            "few" if of(&["DC-I"]) => offset += 50.0,
+            "few-order" if of(&["DC-I", "G", "T-I"]) => offset += 50.0,
+            "medium" if of(&["T-E"]) => offset += 5_000.0,
+            "medium-order" if of(&["T-I"]) => (offset, slope) = (0.1, 1e-5),
+            "many-order" if of(&["SC-E", "SC-I"]) => offset += 5_000.0,
+            "slopes" if of(&["SC-E", "SC-I"]) => slope = 1.0,
+            "offsets" if of(&["SC-E", "SC-I"]) => offset = 0.01,
+            "alike" if of(&["DC-I"]) => (offset, slope) = (9.0, 0.05),
+            "models" | "subdivision" if id == "M/2" => offset += 5_000.0,
+            _ => {}
+        }
+        let in_assignment = match self.turned {
+            "dominates" => 0.8,
+            "model-slopes" if id == "M" => 0.9,
+            _ if id == "M" => 1e-5,
+            _ => 0.3,
         };
-        FAMILIES.iter().map(make).collect()
+        let bend = match self.turned {
+            "linear" => (count / 3_000.0 - 1.0).powi(2) * 500.0,
+            _ => 0.0,
+        };
+        let assign = offset * 0.5 + in_assignment * slope * count;
+        let shade = offset * 0.5 + (1.0 - in_assignment) * slope * count + bend;
+        let mut record = record(id, Mode::Deferred, assign, shade);
+        record.lights = lights;
+        record.lists_bytes = match (of(&["DC-E"]), self.turned) {
+            (true, "memory") => 1_000,
+            (true, _) => 9_000_000,
+            _ => 1_310_720,
+        };
+        record.longest_list = if id == "M" { lights * 3 / 4 } else { 96 };
+        record.listed_per_sample = Some(match (id, self.turned) {
+            ("M", _) => 100.0,
+            ("M/2", "models") => 200.0,
+            _ => 5.0,
+        });
+        record
+    }
+
+    /// A view of low or of high depth discontinuity.
+    fn view(&self, view: &str) -> Vec<Record> {
+        let mut records = self.all(10_000);
+        let is_high = view == "high";
+        for record in records.iter_mut().filter(|_| is_high) {
+            let family = record.strategy.split('/').next().unwrap_or_default();
+            let growth = match (family, self.turned) {
+                ("T-E", _) => 2.0,
+                ("SC-E", "discontinuity") => 2.5,
+                ("SC-E", _) => 1.4,
+                _ => 1.0,
+            };
+            record.listed_per_sample = record.listed_per_sample.map(|listed| listed * growth);
+            if growth > 1.0 || self.turned == "view-free" {
+                record.list_entries = record.list_entries * 3 / 2;
+            }
+        }
+        records
+    }
+
+    /// Sizes of a family, the paper's first.
+    fn sizes(&self, family: &str, sizes: &[&str], source: &str) -> Vec<Record> {
+        let time = |ix: usize| match (self.turned, family) {
+            ("sizes", _) => 9.0 - 2.0 * ix as f64,
+            ("grids", _) => 3.0 + 2.0 * ix as f64,
+            // The last grid is the shaped one, which the paper did not try.
+            (_, "G") if ix == 2 => 2.5,
+            _ => 3.0 + 2.0 * ix as f64,
+        };
+        let make = |(ix, size): (usize, &&str)| {
+            record(&format!("{family}/{size}{source}"), Mode::Deferred, 3.0, time(ix))
+        };
+        sizes.iter().enumerate().map(make).collect()
     }
 
     fn scaling(&self, lights: u64) -> Vec<Record> {
@@ -114,29 +226,53 @@ impl Maker {
     }
 
     fn tests(&self, family: &str) -> Vec<Record> {
-        let time = |union: &str| match (union, self.turned) {
-            ("hs+sat-n", "tests") => 30.0,
-            ("hs+sat-n", _) => 5.0,
-            _ => 10.0,
+        let times = |union: &str| match (union, self.turned) {
+            ("hs+sat-n", "tests") => (5.0, 30.0),
+            ("hs+sat-n", "union") => (15.0, 8.0),
+            ("hs+sat-n", _) => (5.0, 8.0),
+            ("hs+sat-e+sat-p+sat-v", "union") => (5.0, 24.0),
+            ("hs+sat-e+sat-p+sat-v", _) => (9.0, 8.0),
+            _ => (5.0, 20.0),
         };
         let make = |union: &&str| {
-            let mut record = record(&format!("{family}/{union}"), Mode::Deferred, 5.0, time(union));
+            let (assign, shade) = times(union);
+            let mut record = record(&format!("{family}/{union}"), Mode::Deferred, assign, shade);
             record.strategy_parameters.insert("tests".into(), (*union).into());
             record
         };
-        ["hs", "hs+sat-n", "hs+sat-v"].iter().map(make).collect()
+        ["hs", "hs+sat-n", "hs+sat-v", "hs+sat-e+sat-p+sat-v"].iter().map(make).collect()
     }
 
-    fn path(&self) -> Vec<Record> {
-        let mut records = self.all(10_000);
+    /// Times along the path: `poses` of them, `laps` times; one lap of old results has no count of
+    /// poses.
+    fn path(&self, lights: u64, poses: u32, laps: u32) -> Vec<Record> {
+        let mut records = self.all(lights);
         for record in &mut records {
-            let steady = record.strategy.starts_with("SC-E") != (self.turned == "steady");
-            let swing = if steady { 0.02 } else { 0.4 };
-            let frames = (0..40).map(|f| 10.0 * (1.0 + swing * (f64::from(f) / 6.0).sin()));
-            record.passes.insert("shade", PassTimes::new(PassKind::Shade, frames.collect()));
-            record.passes.insert("cull", PassTimes::new(PassKind::Assign, vec![1.0; 40]));
-            record.passes.insert("bounds", PassTimes::new(PassKind::Assign, vec![1.0; 40]));
-            (record.frames, record.rounds, record.along_path) = (40, 40, true);
+            let id = record.strategy.as_str();
+            let of = |name: &str| id.split('/').next() == Some(name);
+            let swing = match self.turned {
+                "steady" if of("SC-E") => 5.0,
+                "spread" if of("SC-E") || of("SC-I") => 5.0,
+                "steady-explicit" if of("T-E") || of("SC-E") => 60.0,
+                "steady-alike" if of("G") => 0.4,
+                _ => swing(id),
+            };
+            let mean = [record.assign_ms, record.shade_ms];
+            let wave = |frame: u32| {
+                1.0 + swing
+                    * (std::f64::consts::TAU * f64::from(frame % poses) / f64::from(poses)).sin()
+            };
+            let frames = poses * laps;
+            let of = |part: usize| (0..frames).map(|frame| mean[part] * wave(frame)).collect();
+            let (assign, shade) = (of(0), of(1));
+            record.passes = Default::default();
+            record.passes.insert("cull", PassTimes::new(PassKind::Assign, assign));
+            record.passes.insert("shade", PassTimes::new(PassKind::Shade, shade));
+            (record.frames, record.rounds, record.along_path) = (frames, laps, true);
+            record.poses = (laps > 1).then_some(poses);
+            if laps == 1 {
+                record.rounds = frames;
+            }
             record.set_times();
         }
         records
@@ -173,8 +309,13 @@ impl Maker {
 
 /// A whole study; pictures are kept in a folder.
 fn study(turned: &'static str, folder: &Path) -> Done {
+    study_of(turned, folder, 6)
+}
+
+/// The same with other laps along the path.
+fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     let mut maker = Maker::new(turned);
-    for lights in [100, 10_000] {
+    for lights in [100, 1_000, 10_000] {
         let mut records = maker.all(lights);
         let mut none = record("None", Mode::Deferred, 0.0, 0.2 * lights as f64);
         none.lights = lights;
@@ -187,15 +328,17 @@ fn study(turned: &'static str, folder: &Path) -> Done {
     for family in ["T-I/28x28", "SC-I/48x48x40"] {
         maker.add("tests", &family[..3], maker.tests(family));
     }
-    for family in ["T-E", "SC-E"] {
-        let sizes = ["16x16", "32x32"].map(|size| {
-            record(&format!("{family}/{size}/bvh"), Mode::Deferred, 3.0, size.len() as f64)
-        });
-        maker.add("sizes", family, sizes.to_vec());
+    for (family, sizes) in [
+        ("T-E", &["28x28", "16x16"][..]),
+        ("SC-E", &["48x48x40", "32x32x40"]),
+        ("G", &["20x20x20", "16x16x16", "40x12x20"]),
+    ] {
+        maker.add("sizes", family, maker.sizes(family, sizes, ""));
+        maker.add("sizes", &format!("{family}-bvh"), maker.sizes(family, sizes, "/bvh"));
     }
-    maker.add("path", "10000", maker.path());
+    maker.add("path", "10000", maker.path(10_000, 40, laps));
     for view in ["low", "high"] {
-        maker.add("views", view, maker.all(10_000));
+        maker.add("views", view, maker.view(view));
     }
     for (section, lights) in [("growing", 30_000), ("constant", 30_000)] {
         let mut records = maker.all(lights);
@@ -212,7 +355,7 @@ fn study(turned: &'static str, folder: &Path) -> Done {
         maker.add("radii", radii, records);
     }
     maker.add("caps", "all", maker.caps(folder));
-    let mut reuse = maker.path();
+    let mut reuse = maker.path(10_000, 40, 1);
     for (record, error) in reuse.iter_mut().zip([0.1, 0.2, 0.3]) {
         record.strategy += "/reuse2";
         record.is_lossy = true;
@@ -279,15 +422,94 @@ fn every_claim_holds_where_the_figures_say_so_and_fails_where_they_are_turned_ro
     }
     for turned in CLAIMS {
         let page = whole(turned).page;
-        assert_eq!(verdict(&page, turned), "fails", "{turned}, turned round");
+        let verdict = verdict(&page, turned);
+        let accepted =
+            if PARTLY.contains(&turned) { &["differs", "fails"][..] } else { &["fails"] };
+        assert!(accepted.contains(&verdict), "{turned}, turned round: {verdict}");
     }
+}
+
+/// Every row names its place in the paper and what the paper's figures are.
+#[test]
+fn every_claim_has_a_place_and_the_papers_figures() {
+    let page = whole("").page;
+    let claims = page.split_once("class=\"claims\"").expect("the claims").1;
+    let claims = claims.split_once("</section>").expect("their end").0;
+    assert_eq!(claims.matches("data-claim=").count(), CLAIMS.len());
+    for place in ["table 4.3", "table 4.4", "table 4.5", "table 4.6", "figure 4.13", "section 4.5"]
+    {
+        assert!(claims.contains(place), "{place}");
+    }
+    assert!(claims.contains("DC-E 9.14, 8.87, 9.50 ms; SC-E 9.75, 9.75, 9.90"));
+}
+
+/// The paper judges by the standard deviation: SC-E's may be the least where its share of the mean is
+/// not, and then the claim holds; the other statistics stand beside it.
+#[test]
+fn steadiness_is_judged_by_the_standard_deviation() {
+    for laps in [1, 6] {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let page = write(&study_of("", folder.path(), laps)).page;
+        let row = page.split_once("data-claim=\"steady\"").expect("the claim").0;
+        let row = &row[row.rfind("<tr>").expect("its row")..];
+        // Of SC-E 3.3 + 4.5 ms times 0.02 / sqrt 2; of G 0.023 / sqrt 2 of 33 ms.
+        assert!(row.contains("SD SC-E 0.110, SC-I 0.212"), "{row}");
+        assert!(row.contains("SD / mean SC-E 1.41, G 1.6"), "{row}");
+        assert!(row.contains("worst / median"), "{row}");
+        assert_eq!(verdict(&page, "steady"), "holds");
+    }
+}
+
+#[test]
+fn claims_are_judged_by_path_means_and_say_over_how_many_poses() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut done = study("", folder.path());
+    let row = |page: &str| {
+        let row = page.split_once("data-claim=\"many\"").expect("the claim").0;
+        row[row.rfind("<tr>").expect("its row")..].to_owned()
+    };
+    let page = write(&done).page;
+    assert!(row(&page).contains("at 10,000 lights, means of 40 poses"), "{}", row(&page));
+    // From the still camera SC-I leads: the path decides.
+    let still = done.results.get_mut("atrium-main-10000").expect("it is there");
+    for record in still.records.iter_mut().filter(|r| r.strategy.starts_with("SC-I")) {
+        record.passes = Default::default();
+        record.passes.insert("shade", PassTimes::new(PassKind::Shade, vec![0.1; 8]));
+        record.set_times();
+    }
+    assert_eq!(verdict(&write(&done).page, "many"), "holds");
+    done.results.remove("atrium-path-10000");
+    let page = write(&done).page;
+    assert!(row(&page).contains("at 10,000 lights, one pose"), "{}", row(&page));
+    assert_eq!(verdict(&page, "many"), "differs");
+}
+
+/// A time that stays level up to 1,000 lights and is proportional from there is no line, though the
+/// greatest counts explain nearly all of its variance.
+#[test]
+fn a_level_start_is_not_linear() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut done = study("", folder.path());
+    for lights in [100, 1_000, 3_000, 10_000] {
+        let results = done.results.get_mut(&format!("atrium-scaling-{lights}")).expect("a job");
+        for record in results.records.iter_mut().filter(|r| r.strategy.starts_with("G/")) {
+            let time = (lights as f64 / 1_000.0).max(1.0);
+            record.passes = Default::default();
+            record.passes.insert("shade", PassTimes::new(PassKind::Shade, vec![time; 8]));
+            record.set_times();
+        }
+    }
+    let page = write(&done).page;
+    assert_eq!(verdict(&page, "linear"), "differs");
+    assert!(page.contains("nowhere straight over four counts"), "the range is told");
+    assert!(page.contains("straight from 100 to 10,000"));
 }
 
 #[test]
 fn the_words_name_the_best_with_its_interval_and_every_chart_is_a_file() {
     let Written { text, page, charts } = whole("");
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(text.contains("On llvmpipe at 10,000 lights, SC-E/48x48x40 is fastest"), "{text}");
+    assert!(text.contains("On llvmpipe at 10,000 lights, DC-E/64x64x40 is fastest"), "{text}");
     assert!(text.contains("In atrium at 100 lights, DC-I/128x128x64 is fastest with 1."), "{text}");
     assert!(text.contains("next is G/20x20x20 with"), "{text}");
     assert!(text.contains("A relMSE of"), "{text}");
@@ -309,6 +531,7 @@ fn the_words_name_the_best_with_its_interval_and_every_chart_is_a_file() {
         "path-10000",
         "views-sc-e",
         "sizes-t-e",
+        "sizes-t-e-bvh",
         "passes-100",
     ] {
         let name = format!("atrium-{chart}.svg");
@@ -323,7 +546,7 @@ fn the_words_name_the_best_with_its_interval_and_every_chart_is_a_file() {
 fn a_tie_is_said() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut done = study("", folder.path());
-    let results = done.results.get_mut("atrium-main-10000").expect("it is there");
+    let results = done.results.get_mut("atrium-path-10000").expect("it is there");
     let best = results
         .records
         .iter()
@@ -336,9 +559,12 @@ fn a_tie_is_said() {
     }
     let Written { text, page, .. } = write(&done);
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(text.contains("cannot be told from"), "{text}");
-    assert!(text.contains("DC-E/64x64x40 and SC-E/48x48x40 cannot be told apart"), "{text}");
-    assert_eq!(verdict(&page, "many"), "differs");
+    let both = "DC-E/64x64x40 and SC-E/48x48x40";
+    assert!(text.contains(&format!("lights, {both} tie for fastest in atrium")), "{text}");
+    assert!(text.contains(&format!("{both} tie for fastest (")), "{text}");
+    assert!(text.contains(&format!("{both} cannot be told apart")), "{text}");
+    assert_eq!(verdict(&page, "dense"), "differs");
+    assert_eq!(verdict(&page, "many"), "holds");
 }
 
 #[test]

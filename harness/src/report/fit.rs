@@ -105,7 +105,8 @@ mod tests {
     #[test]
     fn a_relative_line_goes_through_few_lights_too() {
         // Flat up to 1,000 lights, then proportional: the plain line follows the largest values.
-        let points = [(100.0, 1.0), (1_000.0, 1.0), (3_000.0, 3.0), (10_000.0, 10.0), (30_000.0, 30.0)];
+        let points =
+            [(100.0, 1.0), (1_000.0, 1.0), (3_000.0, 3.0), (10_000.0, 10.0), (30_000.0, 30.0)];
         let [plain, relative] = [Fit::through(&points), Fit::relative(&points)].map(Option::unwrap);
         assert!(plain.r2 > 0.99, "{plain:?}");
         let (off, at) = plain.worst(&points);

@@ -109,8 +109,7 @@ impl Plan<'_> {
     /// lights that they are reported for.
     fn searches(&mut self) {
         let (most, poses) = (self.extent.most, self.extent.search_poses);
-        for (source, families) in
-            [("", self.extent.linear_sizes), ("/bvh", self.extent.bvh_sizes)]
+        for (source, families) in [("", self.extent.linear_sizes), ("/bvh", self.extent.bvh_sizes)]
         {
             for (family, sizes) in families {
                 let ids: Vec<String> =

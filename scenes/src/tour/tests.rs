@@ -129,9 +129,10 @@ fn a_bent_loop_keeps_its_first_knot_and_its_margin() {
     let eyes = room.bend(&level);
     assert_eq!(eyes[0], level[0]);
     let rise = eyes.iter().map(|eye| eye.y - 2.5).fold(0.0, f32::max);
-    let pushed = eyes.iter().zip(&level).map(|(eye, at)| {
-        Vec3::new(eye.x - at.x, 0.0, eye.z - at.z).length()
-    });
+    let pushed = eyes
+        .iter()
+        .zip(&level)
+        .map(|(eye, at)| Vec3::new(eye.x - at.x, 0.0, eye.z - at.z).length());
     let pushed = pushed.fold(0.0, f32::max);
     assert!(rise > 2.0 && pushed > 1.5, "rise {rise}, push {pushed}");
     assert!((0..48).all(|ix| room.is_clear(&eyes, ix)));

@@ -154,7 +154,8 @@ pub(super) fn is_of_the_paper(record: &Record) -> bool {
     let id = record.strategy.as_str();
     let is_parted = family(id) == "M" && !parameters(id).is_empty();
     let is_other_box = id.split('/').any(|segment| OTHER_BOXES.contains(&segment));
-    let is_plain = !is_bvh(id) && !is_other_box && !is_parted && !record.is_lossy && family(id) != "HG";
+    let is_plain =
+        !is_bvh(id) && !is_other_box && !is_parted && !record.is_lossy && family(id) != "HG";
     is_plain && STRATEGIES.iter().any(|entry| entry.family == family(id) && !entry.axes.is_empty())
 }
 

@@ -23,10 +23,6 @@ fn rankings(done: &Done, scene: &str) -> Vec<Results> {
     all.extend(counts(&still));
     all.sort_unstable();
     all.dedup();
-    let at = |entries: &[Entry<'_>], count| {
-        let own = entries.iter().filter(|entry| entry.record.lights == count);
-        own.copied().collect::<Vec<Entry<'_>>>()
-    };
     let chosen = |count| {
         let (along, still) = (at(&path, count), at(&still, count));
         let ranked = ranks(still.iter().map(|entry| entry.record));
@@ -37,16 +33,17 @@ fn rankings(done: &Done, scene: &str) -> Vec<Results> {
     all.into_iter().filter_map(chosen).collect()
 }
 
+/// The records at a count of lights.
+fn at<'a>(entries: &[Entry<'a>], lights: u64) -> Vec<Entry<'a>> {
+    entries.iter().filter(|entry| entry.record.lights == lights).copied().collect()
+}
+
 /// The still comparisons that stand beside a ranking along the path: examples.
 fn examples(done: &Done, scene: &str) -> Vec<Results> {
     let still = entries(done, scene, "main");
     let along = |results: &&Results| results.records.iter().any(|record| record.along_path);
-    let at = |results: &Results| {
-        let lights = results.records.first().map(|record| record.lights);
-        let own = still.iter().filter(|entry| Some(entry.record.lights) == lights);
-        merged(done, &own.copied().collect::<Vec<_>>())
-    };
-    rankings(done, scene).iter().filter(along).filter_map(at).collect()
+    let example = |results: &Results| merged(done, &at(&still, results.records.first()?.lights));
+    rankings(done, scene).iter().filter(along).filter_map(example).collect()
 }
 
 /// Records of several jobs as if they came from one.
@@ -95,11 +92,8 @@ fn panel(
     let count = first.lights;
     let lights = format!("{} lights", number(count as f64));
     let title = format!("{lights}, {}", stand(most));
-    let classes: BTreeMap<&str, String> = comparison
-        .records
-        .iter()
-        .map(|(_, r)| (r.strategy.as_str(), class(&r.strategy)))
-        .collect();
+    let classes: BTreeMap<&str, String> =
+        comparison.records.iter().map(|(_, r)| (r.strategy.as_str(), class(&r.strategy))).collect();
     let mut fewer: Vec<String> = Vec::new();
     for (_, record) in &comparison.records {
         if poses(record) != poses(most) {

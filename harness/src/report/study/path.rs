@@ -3,8 +3,8 @@
 use super::super::format::{number, percent, significant};
 use super::data::{Entry, class, counts, entries, laps, lines, poses, short};
 use super::figure::{Charts, name, panels, part, table};
-use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use super::order::Order;
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::{Record, mean, median, standard_deviation};
 use crate::study::Done;
 

@@ -76,8 +76,15 @@ const TILES: &[&str] = &["16x16", "20x20", "24x24", "28x28", "32x32", "40x40"];
 
 /// Nine sizes around that of the paper, wide enough that the best found so far lie inside.
 const DENSE_IMPLICIT: &[&str] = &[
-    "96x96x24", "96x96x40", "96x96x64", "128x128x24", "128x128x40", "128x128x64", "192x192x24",
-    "192x192x40", "192x192x64",
+    "96x96x24",
+    "96x96x40",
+    "96x96x64",
+    "128x128x24",
+    "128x128x40",
+    "128x128x64",
+    "192x192x24",
+    "192x192x40",
+    "192x192x64",
 ];
 const DENSE_EXPLICIT: &[&str] = &[
     "48x48x24", "48x48x40", "48x48x64", "64x64x24", "64x64x40", "64x64x64", "96x96x24", "96x96x40",
@@ -87,8 +94,7 @@ const SPARSE: &[&str] = &[
     "32x32x40", "32x32x64", "32x32x96", "48x48x40", "48x48x64", "48x48x96", "64x64x40", "64x64x64",
     "64x64x96",
 ];
-const CELLS: &[&str] =
-    &["12x12x12", "16x16x16", "20x20x20", "24x24x24", "28x28x28", "40x12x20"];
+const CELLS: &[&str] = &["12x12x12", "16x16x16", "20x20x20", "24x24x24", "28x28x28", "40x12x20"];
 
 const FULL: Extent = Extent {
     size: Size { width: 1920, height: 1080 },
@@ -187,7 +193,11 @@ const QUICK: Extent = Extent {
     scaling: &[100, 300, 600, 1_000],
     scaled: "T-E,DC-E,SC-E,SC-I,G",
     scaled_whole: "",
-    linear_sizes: &[("T-E", &["16x16", "28x28"]), ("SC-E", &["16x16x16", "32x32x16"]), ("G", &["8x8x8", "16x16x16"])],
+    linear_sizes: &[
+        ("T-E", &["16x16", "28x28"]),
+        ("SC-E", &["16x16x16", "32x32x16"]),
+        ("G", &["8x8x8", "16x16x16"]),
+    ],
     bvh_sizes: &[("SC-E", &["16x16x16", "32x32x16"])],
     tested: &["T-E", "SC-I"],
     tests: &["hs", "hs+sat-n", "hs+sat-e+sat-p+sat-v"],

@@ -30,7 +30,8 @@ pub(super) const PAPER: Paper = Paper {
 /// Figures up to this factor apart are called alike; the paper draws bars and gives no bound.
 const ALIKE: f64 = 1.5;
 
-const NO_PRE_PASS: &str = "the depth pre-pass is on no bill, so methods that need it lose less at few lights";
+const NO_PRE_PASS: &str =
+    "the depth pre-pass is on no bill, so methods that need it lose less at few lights";
 
 const CHECKS: [Check; 28] = [
     Check {

@@ -134,7 +134,6 @@ pub(super) fn ordered(done: &Done, scene: &str, wanted: u64, chain: &[&[&str]]) 
     let order = |less: &str, more: &str| Some(Order::of_times(field.of(less)?, field.of(more)?));
     let pairs = Pairs::of_chain(chain, order);
     let families: Vec<&str> = chain.concat();
-    let figure =
-        format!("{}: {}{}", field.basis(), field.times(&families), pairs.exceptions());
+    let figure = format!("{}: {}{}", field.basis(), field.times(&families), pairs.exceptions());
     Answer { figure, verdict: pairs.verdict() }
 }

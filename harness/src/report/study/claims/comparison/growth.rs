@@ -51,7 +51,13 @@ pub(super) fn linear(done: &Done, scene: &str) -> Answer {
         all += 1;
         good += usize::from(within.holds());
         let plain = fit(records, Record::assign_and_shade_ms);
-        figures.push(said(id, &within, straight(records, Record::assign_and_shade_ms), plain, records));
+        figures.push(said(
+            id,
+            &within,
+            straight(records, Record::assign_and_shade_ms),
+            plain,
+            records,
+        ));
     }
     if all == 0 {
         return Answer::unknown("scaling over four counts of lights");

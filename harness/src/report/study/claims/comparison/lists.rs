@@ -135,8 +135,7 @@ pub(super) fn models(done: &Done, scene: &str) -> Answer {
     let ([Some(long), Some(short)], [Some(whole), Some(parts)]) = (lists, times) else {
         return Answer::unknown("M and M/2");
     };
-    let (Some(of_whole), Some(of_parts)) = (long.listed_per_sample, short.listed_per_sample)
-    else {
+    let (Some(of_whole), Some(of_parts)) = (long.listed_per_sample, short.listed_per_sample) else {
         return Answer::unknown("lengths of lists");
     };
     let ms = [whole, parts].map(Record::assign_and_shade_ms);

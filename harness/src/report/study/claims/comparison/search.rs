@@ -52,13 +52,22 @@ fn time(record: &Record) -> f64 {
     record.assign_and_shade_ms()
 }
 
+/// Whether a grid has as many cells along each side of its box.
+fn is_cubic(record: &Record) -> bool {
+    let mut counts = parameters(&record.strategy).split('x');
+    let first = counts.next();
+    counts.all(|count| Some(count) == first)
+}
+
 /// The paper's size leads each family, or cannot be told from what leads.
 pub(super) fn sizes(done: &Done, scene: &str) -> Answer {
     let all = entries(done, scene, "sizes");
     let (mut good, mut decided, mut figures) = (0, 0, Vec::new());
     let mut basis = String::new();
     for (name, selected) in SELECTED {
-        let records = searched(&all, name);
+        let mut records = searched(&all, name);
+        // The paper tried grids of equal counts only.
+        records.retain(|record| name != "G" || is_cubic(record));
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
         let own = records.iter().find(|record| parameters(&record.strategy) == selected);
@@ -87,11 +96,6 @@ pub(super) fn sizes(done: &Done, scene: &str) -> Answer {
 /// Grids whose cells are about cubes against grids with the same number of cells along each side.
 pub(super) fn grids(done: &Done, scene: &str) -> Answer {
     let records = searched(&entries(done, scene, "sizes"), "G");
-    let is_cubic = |record: &&&Record| {
-        let mut counts = parameters(&record.strategy).split('x');
-        let first = counts.next();
-        counts.all(|count| Some(count) == first)
-    };
     let least = |cubic: bool| {
         let own = records.iter().filter(|record| is_cubic(record) == cubic);
         own.min_by(|a, b| time(a).total_cmp(&time(b)))

@@ -47,12 +47,7 @@ impl<'a> Spreads<'a> {
     }
 
     /// `SD G 0.007, SC-E 0.01 ms`: the strategies that are there by a figure, least first.
-    fn ascending(
-        &self,
-        names: &[&str],
-        of: fn(&Spread) -> f64,
-        show: fn(f64) -> String,
-    ) -> String {
+    fn ascending(&self, names: &[&str], of: fn(&Spread) -> f64, show: fn(f64) -> String) -> String {
         let mut all: Vec<(&str, f64)> =
             names.iter().filter_map(|name| Some((*name, of(self.of(name)?)))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -135,10 +130,7 @@ pub(super) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
     };
     let ratio = (grid.deviation / dense.deviation).max(dense.deviation / grid.deviation);
     let verdict = if ratio <= ALIKE { Verdict::Holds } else { Verdict::Fails };
-    let figure = format!(
-        "{}; a factor of {} apart",
-        spreads.figure(&["G", "DC-I"]),
-        significant(ratio)
-    );
+    let figure =
+        format!("{}; a factor of {} apart", spreads.figure(&["G", "DC-I"]), significant(ratio));
     Answer { figure, verdict }
 }
