@@ -29,6 +29,7 @@ pub use names::{did_you_mean, nearest};
 pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
+pub(crate) use values::MAX_CHECKS;
 pub use values::{Camera, CameraPose, DirectionCounts, Size, Sizes, Span, Strategies};
 pub use vpl::{BuildChoice, DeepArgs, PrimaryRay, RangeChoice, SpreadChoice, VplArgs};
 
@@ -59,9 +60,11 @@ Examples:
 
 How to read the result:
   both ms        assigning and shading together: compare strategies by it
+  span ms        the same with the gaps between passes; not known on a software adapter
   listed         lights in the list that a pixel reads, mean; contributing is what a perfect list holds
   missed         (light, pixel) pairs that the lists lack: 0, or the image is wrong
   max diff       largest difference to the image of no culling: 0 means the same in every bit
+  memory         everything that assignment needs on the GPU, MiB
   overflow       groups whose list did not fit and that fell back to all lights: slow, still correct
 
 Times on a software adapter are wall-clock times of a CPU, not a GPU's.
@@ -191,6 +194,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::laps)]
     pub laps: Option<u32>,
 
+    /// With --path, poses at which images are compared with that of no culling, 1 to 8 [default: 8]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::checks)]
+    pub checks: Option<u32>,
+
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed")]
     pub cut: CutChoice,
@@ -275,8 +282,17 @@ pub enum ModeChoice {
     Deferred,
     /// In the fragment shader that draws the surfaces
     Forward,
-    /// One after the other
+    /// deferred and forward, one after the other
     Both,
+    /// From a G-buffer that also holds the model of each pixel, which M reads
+    DeferredIds,
+    /// In the fragment shader, without a depth pre-pass but for strategies that read depth, which pay
+    /// for it
+    ForwardNoPrepass,
+    /// The three frames of a renderer: forward-no-prepass, forward and deferred-ids
+    Frames,
+    /// All four
+    All,
 }
 
 impl ModeChoice {
@@ -286,6 +302,10 @@ impl ModeChoice {
             Self::Deferred => &[Mode::Deferred],
             Self::Forward => &[Mode::Forward],
             Self::Both => &[Mode::Deferred, Mode::Forward],
+            Self::DeferredIds => &[Mode::DeferredIds],
+            Self::ForwardNoPrepass => &[Mode::ForwardNoPrepass],
+            Self::Frames => &[Mode::ForwardNoPrepass, Mode::Forward, Mode::DeferredIds],
+            Self::All => &Mode::ALL,
         }
     }
 }

@@ -13,9 +13,9 @@ use scenes::Scene;
 use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
-    checks::{RASTER_SPHERE, check_modes, check_writable, checked, remove_stale, served},
+    checks::{check_modes, check_writable, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, StageArgs, TruthChoice},
+    cli::{CliError, CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
@@ -178,6 +178,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(defaults[kind]),
         laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
+        checks: args.checks.unwrap_or(MAX_CHECKS),
         seed: args.stage.seed,
         cut: args.cut.into(),
         operations: args.operations,
@@ -222,12 +223,14 @@ impl Run<'_> {
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
         for &mode in modes {
             let mut served = choices.to_vec();
-            if mode == Mode::Forward {
-                served.retain(|choice| choice.family() != RASTER_SPHERE);
-                if served.len() < choices.len() {
-                    self.results.warnings.push(format!("{RASTER_SPHERE} has no forward mode"));
-                    bar.inc(per_method);
-                }
+            served.retain(|choice| has_mode(choice, mode));
+            for choice in choices.iter().filter(|choice| !has_mode(choice, mode)) {
+                let words = format!("{} has no mode {}", choice.family(), mode.name());
+                self.results.warnings.push(words);
+                bar.inc(per_method);
+            }
+            if served.is_empty() {
+                continue;
             }
             self.measure_mode(served, mode, bvh.as_ref(), &bar)?;
         }

@@ -20,7 +20,7 @@ use crate::{
     painter::Painter,
     pass_samples::PassSamples,
     registry::Method,
-    results::Passes,
+    results::{Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
 };
@@ -34,6 +34,9 @@ pub struct ListsFigures {
     pub counters: Counters,
     /// Bytes of the lists on the GPU.
     pub bytes: u64,
+    /// Bytes of everything that the strategy needs on the GPU, images that are drawn only for it
+    /// included.
+    pub memory_bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
     /// How long the lists are that samples read; empty where the truth was not asked for.
@@ -54,6 +57,8 @@ pub struct Checked {
 pub struct Timed {
     /// Times per pass.
     pub passes: Passes,
+    /// From first to last pass, frame by frame, where the clock can tell.
+    pub spans: Option<Spans>,
     /// Frames on the clock that followed one in which a group overflowed.
     pub overflowed_frames: u32,
 }
@@ -84,6 +89,8 @@ pub struct Plan {
     pub timed: u32,
     /// How often the camera goes along its path, one pose per frame; 0: it stands still.
     pub laps: u32,
+    /// Poses along the path at which images are compared, 8 at most.
+    pub checks: u32,
     /// Decides the order of methods in each round.
     pub seed: u64,
     /// How fall-off ends.
@@ -127,7 +134,7 @@ impl<'a> Contest<'a> {
         for method in methods {
             contenders.push(Contender {
                 painter: Painter::new(stage, method, mode, plan.cut)?,
-                samples: PassSamples::default(),
+                samples: PassSamples::new(mode),
                 overflowed_frames: 0,
             });
         }
@@ -225,8 +232,8 @@ impl<'a> Contest<'a> {
     fn frame(&mut self, stage: &Stage, method: usize) -> Result<(), HarnessError> {
         let contender = &mut self.contenders[method];
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
-        let times = self.clock.finish()?;
-        contender.samples.collect(times);
+        let times = self.clock.finish_frame()?;
+        contender.samples.collect_frame(times);
         contender.overflowed_frames += u32::from(!settled);
         Ok(())
     }
@@ -235,10 +242,10 @@ impl<'a> Contest<'a> {
     pub fn finish(self) -> Vec<Timed> {
         self.contenders
             .into_iter()
-            .map(|contender| Timed {
-                overflowed_frames: contender.overflowed_frames,
-                passes: contender.samples.finish(),
+            .map(|Contender { samples, overflowed_frames, .. }| {
+                (samples.finish_frames(), overflowed_frames)
             })
+            .map(|((passes, spans), overflowed_frames)| Timed { overflowed_frames, passes, spans })
             .collect()
     }
 }
@@ -290,7 +297,7 @@ fn count(
     let snapshot = strategy.lists().snapshot(gpu)?;
     let mut lengths = ListLengths::default();
     let Stage { renderer, view, lights, .. } = stage;
-    if mode == Mode::Forward && (truth.is_some() || seen.is_some()) {
+    if mode.is_forward() && (truth.is_some() || seen.is_some()) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut passes = EncoderPasses { encoder: &mut encoder };
         record_for_probe(renderer, view, strategy, &mut passes);
@@ -316,6 +323,8 @@ fn count(
         groups: u64::from(strategy.lists().group_count()),
         counters: snapshot.counters,
         bytes: strategy.lists().bytes(),
+        memory_bytes: strategy.memory_bytes()
+            + renderer.targets().bytes_for(mode, strategy.needs()),
         truth,
         lengths,
         operations,

@@ -134,6 +134,9 @@ pub fn record(
         assign_ms: 0.0,
         shade_ms: 0.0,
         frame_ms: 0.0,
+        spans: timed.spans,
+        span_ms: None,
+        frame_span_ms: None,
         groups: lists.groups,
         occupied_groups: u64::from(lists.counters.occupied_groups),
         list_entries: match lists.groups {
@@ -150,6 +153,7 @@ pub fn record(
         max_rel_diff: known(seen.max_rel),
         differing_channels: seen.compared.then_some(seen.differing_channels),
         lists_bytes: lists.bytes,
+        memory_bytes: has_lists.then_some(lists.memory_bytes),
         histogram: lists.lengths.histogram,
         all_groups: lists.lengths.all_groups,
         light_order: Some(stage.lights.order().to_string()),
@@ -157,7 +161,7 @@ pub fn record(
         tolerance: choice.tolerance(),
         overflowed_groups: u64::from(lists.counters.overflowed_groups),
         images,
-        note: note(gpu, mode, timed.overflowed_frames),
+        note: note(timed.overflowed_frames),
     };
     record.set_times();
     record
@@ -172,16 +176,10 @@ fn places(light_box: LightBox) -> &'static str {
 }
 
 /// What a reader of the record has to know.
-fn note(gpu: &Gpu, mode: Mode, overflowed_frames: u32) -> Option<String> {
-    let mut notes = Vec::new();
-    let mut words = gpu.info.name.split_whitespace();
-    if mode == Mode::Forward && words.any(|word| ["H100", "H200"].contains(&word)) {
-        notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
-    }
-    if overflowed_frames > 0 {
-        notes.push(format!(
+fn note(overflowed_frames: u32) -> Option<String> {
+    (overflowed_frames > 0).then(|| {
+        format!(
             "lists overflowed in {overflowed_frames} of the timed frames, which shaded all lights where they did"
-        ));
-    }
-    (!notes.is_empty()).then(|| notes.join("; "))
+        )
+    })
 }

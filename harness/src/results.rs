@@ -13,6 +13,7 @@
 #![doc = include_str!("results/example.json")]
 //! ```
 
+mod bill;
 mod file;
 mod indirect;
 mod machine;
@@ -26,10 +27,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 pub use shading::Mode;
 
+pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
 pub use file::{ResultsError, write_atomically};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use machine::{DeviceType, Machine};
-pub use passes::{PassKind, PassTimes, Passes};
+pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
 
@@ -215,6 +217,17 @@ pub struct Record {
     /// Median over frames of all passes, summed per frame, ms.
     #[serde(deserialize_with = "nan_from_null")]
     pub frame_ms: f64,
+    /// What passes took together, from the first to the last, frame by frame: the second total.
+    /// `null` in older results, and where each pass was submitted alone.
+    #[serde(default)]
+    pub spans: Option<Spans>,
+    /// Median over frames (mean along a path) of the time from the first pass that assigns lights to
+    /// the end of the last that lights pixels, gaps between them included, ms.
+    #[serde(default)]
+    pub span_ms: Option<f64>,
+    /// The same from the first pass of the frame to its last, ms.
+    #[serde(default)]
+    pub frame_span_ms: Option<f64>,
     /// Groups that the strategy divides the view into.
     pub groups: u64,
     /// Groups with at least one light in their list.
@@ -250,6 +263,11 @@ pub struct Record {
     pub differing_channels: Option<u64>,
     /// GPU memory of groups and lists, bytes.
     pub lists_bytes: u64,
+    /// GPU memory of everything that assignment needs, bytes: lists, marks, bounds, pools, the
+    /// hierarchy over the lights, and images that the renderer draws only for this method. `null` in
+    /// older results, and for methods without lists.
+    #[serde(default)]
+    pub memory_bytes: Option<u64>,
     /// Groups that some sample reads, by the length of their list: none, 1, 2 to 3, 4 to 7 and so
     /// on. Empty where lists were not checked.
     #[serde(default)]

@@ -195,6 +195,7 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["--lights", "99999999", "--out", &out], vec!["--lights", "16,777,216"]),
         (vec!["--size", "0x10", "--out", &out], vec!["--size", "0x10"]),
         (vec!["--frames", "0", "--out", &out], vec!["--frames", "0"]),
+        (vec!["--checks", "3", "--out", &out], vec!["--checks is 3", "--path"]),
         (vec!["--laps", "3", "--out", &out], vec!["--laps is 3", "--path"]),
         (
             vec!["--path", "--laps", "101", "--frames", "1000", "--out", &out],

@@ -11,15 +11,7 @@
 use shading::HdrImage;
 
 use super::{Compare, Contest, Timetable, read};
-use crate::{error::HarnessError, schedule::Orders, stage::Stage};
-
-/// Poses along the path at which the images are compared: of long laps, and of short ones, which search
-/// among many methods.
-const PATH_CHECKS: u32 = 8;
-const SHORT_CHECKS: u32 = 2;
-
-/// Laps of fewer poses are short.
-const SHORT: u32 = 60;
+use crate::{cli::MAX_CHECKS, error::HarnessError, schedule::Orders, stage::Stage};
 
 /// Poses along the path at which pools grow before the clock starts: on a GPU, and on a software
 /// adapter.
@@ -45,7 +37,7 @@ impl Contest<'_> {
             }
         }
         self.expire_lists();
-        let checks = checked_poses(count);
+        let checks = checked_poses(count, self.plan.checks);
         for pose in 0..=checks.last().copied().unwrap_or(0) {
             let is_checked = checks.contains(&pose);
             if !is_checked && remember.is_empty() {
@@ -104,9 +96,8 @@ impl Contest<'_> {
 
 /// The poses at which images are compared: an odd number of poses apart, so that lists used for 2, 4
 /// or 8 frames are seen at every age.
-fn checked_poses(poses: u32) -> Vec<u32> {
-    let checks = if poses < SHORT { SHORT_CHECKS } else { PATH_CHECKS };
-    let step = (poses / checks).saturating_sub(1).max(1) | 1;
+fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
+    let step = (poses / MAX_CHECKS).saturating_sub(1).max(1) | 1;
     (0..poses).step_by(step as usize).take(checks as usize).collect()
 }
 
@@ -117,15 +108,15 @@ mod tests {
     #[test]
     fn reused_lists_are_seen_at_every_age() {
         for poses in [60, 120, 240, 1_200] {
-            let checks = checked_poses(poses);
-            assert_eq!(checks.len(), PATH_CHECKS as usize, "{poses}");
+            let checks = checked_poses(poses, MAX_CHECKS);
+            assert_eq!(checks.len(), MAX_CHECKS as usize, "{poses}");
             assert!(checks.iter().all(|pose| *pose < poses), "{poses}: {checks:?}");
             let ages: std::collections::BTreeSet<u32> =
                 checks.iter().map(|pose| pose % 8).collect();
             assert_eq!(ages.len(), 8, "{poses}: {checks:?}");
         }
-        assert_eq!(checked_poses(1), [0]);
-        assert_eq!(checked_poses(3), [0, 1]);
-        assert_eq!(checked_poses(24), [0, 11]);
+        assert_eq!(checked_poses(1, MAX_CHECKS), [0]);
+        assert_eq!(checked_poses(3, MAX_CHECKS), [0, 1, 2]);
+        assert_eq!(checked_poses(240, 1), [0]);
     }
 }

@@ -107,10 +107,18 @@ pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
     ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
 }
 
-/// Says that the first rank is shared: `A and B cannot be told apart: ...`. `None` where it is not.
+/// Says that the first rank is shared, `A and B cannot be told apart: ...`, or that one lap cannot
+/// tell. `None` where neither is so.
 pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
+    if leader.along_path && leader.laps() < 2 && ranked.len() > 1 {
+        return Some(
+            "one lap says nothing about noise, so ranks follow the means alone (--laps 6 or more tells \
+             methods apart)"
+                .to_owned(),
+        );
+    }
     let widest = others
         .iter()
         .filter_map(|record| Ratio::of(record, leader))
@@ -289,6 +297,8 @@ mod tests {
             assert_eq!((record.laps(), record.interval_ms()), (1, None));
             assert_eq!(Ratio::of(record, record), None);
         }
+        let said = tie(&ranks(&[one.clone(), old])).expect("one lap");
+        assert!(said.starts_with("one lap") && said.contains("--laps 6"), "{said}");
         let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
         assert_eq!(Ratio::of(&a, &b), None);
         let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];

@@ -1,7 +1,7 @@
 //! What a record's figures come to.
 
 use super::{
-    BASELINE, CONTROL, EARLY_EXIT, Interval, PassKind, Record, mean, median, median_interval,
+    BASELINE, CONTROL, EARLY_EXIT, Interval, PassKind, Record, Spans, mean, median, median_interval,
 };
 use crate::schedule::frames_of_round;
 
@@ -11,17 +11,32 @@ impl Record {
         self.assign_ms + self.shade_ms
     }
 
-    /// Sets the three times from the passes: medians, and means along a path.
+    /// Sets its times from passes and spans: medians, and means along a path.
     pub fn set_times(&mut self) {
-        let along_path = self.along_path;
-        let passes = &self.passes;
-        let of = |kind: Option<PassKind>| match along_path {
-            true if passes.has(kind) => mean(&passes.per_frame_ms(kind)),
-            true => 0.0,
-            false => passes.median_ms(kind),
+        self.assign_ms = self.time_of(|_, kind| kind == PassKind::Assign);
+        self.shade_ms = self.time_of(|_, kind| kind == PassKind::Shade);
+        self.frame_ms = self.time_of(|_, _| true);
+        let of = |samples: fn(&Spans) -> &[f64]| {
+            let samples = samples(self.spans.as_ref()?);
+            (!samples.is_empty()).then(|| self.middle_ms(samples))
         };
-        [self.assign_ms, self.shade_ms, self.frame_ms] =
-            [of(Some(PassKind::Assign)), of(Some(PassKind::Shade)), of(None)];
+        [self.span_ms, self.frame_span_ms] =
+            [of(|spans| &spans.assign_and_shade_ms), of(|spans| &spans.frame_ms)];
+    }
+
+    /// The time of the passes that are counted by name and kind, summed per frame, ms: median, or mean
+    /// along a path. 0 where there is no such pass.
+    pub fn time_of(&self, is_counted: impl Fn(&str, PassKind) -> bool) -> f64 {
+        let samples = self.passes.per_frame_where(&is_counted);
+        match self.passes.iter().any(|(name, times)| is_counted(name, times.kind)) {
+            true => self.middle_ms(&samples),
+            false => 0.0,
+        }
+    }
+
+    /// The mean along a path, whose frames are a population; else the median.
+    fn middle_ms(&self, samples: &[f64]) -> f64 {
+        if self.along_path { mean(samples) } else { median(samples) }
     }
 
     /// Assigning and lighting together, frame by frame, ms.

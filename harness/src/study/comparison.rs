@@ -40,6 +40,8 @@ pub(super) fn jobs(
     plan.scaling();
     plan.beyond();
     plan.accuracy();
+    let Extent { size, frames_at, .. } = plan.extent;
+    plan.jobs.extend(super::frames::jobs(scene, size, args.seed, frames_at, args.quick));
     Ok(plan.jobs)
 }
 
@@ -85,8 +87,11 @@ impl Plan<'_> {
 
     /// Options of strategies along the path, with that many poses a lap.
     fn along(&self, poses: u32, strategies: &str) -> Vec<String> {
+        // Searches try many methods, so they compare the images of one pose only.
+        let checks = if poses >= extent::LONG { "4" } else { "1" };
         let (poses, laps) = (poses.to_string(), self.extent.laps.to_string());
         let options = ["--strategies", strategies, "--path", "--frames", &poses, "--laps", &laps];
+        let options = [&options[..], &["--checks", checks]].concat();
         let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
         options.into_iter().map(str::to_owned).collect()
     }

@@ -169,12 +169,16 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let best = first(&ranked);
     let leader = *best.first()?;
     let lights = super::super::finding::lights(comparison.first().lights);
-    let mut text = format!("In {scene} at {lights}, {}", lead(&best)?);
+    let mut text = format!("In {scene} at {lights}, {}", lead(comparison, &best)?);
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
             format!(", {} to {} times as long", significant(ratio.low), significant(ratio.high))
         });
-        text += &format!("; next is {} with {}{slower}", next.record.strategy, timed(next.record));
+        text += &format!(
+            "; next is {} with {}{slower}",
+            comparison.name(next.record),
+            timed(next.record)
+        );
     }
     if let Some(faster) = comparison.speedup(leader) {
         text += &format!(". No culling takes {} times as long", significant(faster));
@@ -183,12 +187,12 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
 }
 
 /// Who is fastest: never a winner where there is a tie.
-fn lead(best: &[&Record]) -> Option<String> {
+fn lead(comparison: &Comparison<'_>, best: &[&Record]) -> Option<String> {
     match best {
         [] => None,
-        [leader] => Some(format!("{} is fastest with {}", leader.strategy, timed(leader))),
+        [leader] => Some(format!("{} is fastest with {}", comparison.name(leader), timed(leader))),
         [leader, ..] => {
-            let names: Vec<&str> = best.iter().map(|record| record.strategy.as_str()).collect();
+            let names: Vec<String> = best.iter().map(|record| comparison.name(record)).collect();
             let times: Vec<String> = best.iter().map(|record| ms(record)).collect();
             let (names, times) = (listed(&names), listed(&times));
             Some(format!("{names} tie for fastest ({times} ms; {})", stand(leader)))
@@ -217,7 +221,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
         let Some(results) = rankings(done, scene).pop() else { continue };
         let Some(comparison) = comparison(&results) else { continue };
         let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-        let names: Vec<&str> = first(&ranked).iter().map(|r| r.strategy.as_str()).collect();
+        let names: Vec<String> = first(&ranked).iter().map(|r| comparison.name(r)).collect();
         let says = match names.as_slice() {
             [] => continue,
             [one] => format!("{one} is fastest"),

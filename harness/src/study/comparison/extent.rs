@@ -9,6 +9,9 @@ const HEAVY_TRIANGLES: u64 = 2_000_000;
 /// One of each kind, for the lossy knobs, through the hierarchy.
 pub(super) const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
 
+/// From this many poses on the images of several are compared.
+pub(super) const LONG: u32 = 60;
+
 /// A family with the sizes that its search tries.
 type Sizes = (&'static str, &'static [&'static str]);
 
@@ -29,6 +32,8 @@ pub(super) struct Extent {
     pub(super) counts: &'static [u32],
     /// The most of them: those of the views and the searches too.
     pub(super) most: u32,
+    /// The counts of lights at which the frames that a renderer may draw are timed.
+    pub(super) frames_at: &'static [u32],
     /// How often each pose is drawn: six laps tell ties with a coverage of 95 %.
     pub(super) laps: u32,
     /// Poses of a lap of the ranking: at fewer lights, and at the most lights.
@@ -106,6 +111,7 @@ const FULL: Extent = Extent {
     lossy_frames: 8,
     counts: &[100, 1_000, 10_000],
     most: 10_000,
+    frames_at: &[100, 10_000],
     laps: 6,
     rank_poses: [120, 240],
     ranked: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2,T-E/bvh,SC-E/bvh,G/bvh",
@@ -162,6 +168,7 @@ const HEAVY: Extent = Extent {
     search_poses: 8,
     scaling: &[100, 1_000, 3_000, 10_000],
     scaled: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G",
+    frames_at: &[],
     linear_sizes: &[("T-E", TILES), ("SC-E", SPARSE), ("G", CELLS)],
     bvh_sizes: &[("SC-E", SPARSE)],
     tested: &["T-E"],
@@ -183,6 +190,7 @@ const QUICK: Extent = Extent {
     lossy_frames: 6,
     counts: &[100, 500],
     most: 500,
+    frames_at: &[100, 500],
     laps: 6,
     rank_poses: [1, 2],
     ranked: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,SC-E/bvh",

@@ -43,7 +43,10 @@ pub(super) fn dense_before_sparse(done: &Done, scene: &str) -> Answer {
 
 /// Bytes that a strategy keeps on the GPU, and what they count.
 fn memory(record: &Record) -> (u64, &'static str) {
-    (record.lists_bytes, "groups and lists")
+    match record.memory_bytes {
+        Some(bytes) => (bytes, "all that assignment needs"),
+        None => (record.lists_bytes, "groups and lists only"),
+    }
 }
 
 /// SC-E keeps far less than DC-E: half at most.
