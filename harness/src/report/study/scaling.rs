@@ -257,13 +257,12 @@ fn r2(fit: &Fit) -> String {
 
 fn density(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let scaling = entries(done, scene, "scaling");
-    let main = ranking(done, scene);
     let bvh = |entry: &&Entry<'_>| is_bvh(&entry.record.strategy);
-    let most = counts(&main).last().copied();
+    let most = counts(&ranking(done, scene)).last().copied();
     let mut html = String::new();
     for (section, title, base) in [
         ("growing", "More lights in the same box", &scaling),
-        ("constant", "More lights in a larger scene, as dense as before", &main),
+        ("constant", "More lights in a larger scene, as dense as before", &scaling),
     ] {
         let own = entries(done, scene, section);
         if own.is_empty() {

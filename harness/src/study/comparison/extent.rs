@@ -198,8 +198,8 @@ const QUICK: Extent = Extent {
     slow: "",
     slow_poses: 1,
     search_poses: 1,
-    scaling: &[100, 300, 600, 1_000],
-    scaled: "T-E,DC-E,SC-E,SC-I,G",
+    scaling: &[100, 300, 500, 1_000],
+    scaled: "T-E,DC-E,SC-E,SC-I,G,SC-E/bvh",
     scaled_whole: "",
     linear_sizes: &[
         ("T-E", &["16x16", "28x28"]),
