@@ -29,7 +29,7 @@ pub use names::{did_you_mean, nearest};
 pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
-pub use values::{Camera, CameraPose, DirectionCounts, Size, Sizes, Span, Strategies};
+pub use values::{Camera, CameraPose, DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
 pub use vpl::{BuildChoice, DeepArgs, PrimaryRay, RangeChoice, SpreadChoice, VplArgs};
 
 use crate::results::{Mode, TruthLevel};

@@ -77,7 +77,11 @@ impl Results {
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
                 Err(ResultsError::Version { path: path.to_owned(), found })
             }
-            _ => serde_json::from_str(&text).map_err(parse_error),
+            _ => {
+                let mut results: Self = serde_json::from_str(&text).map_err(parse_error)?;
+                results.rename_records();
+                Ok(results)
+            }
         }
     }
 }

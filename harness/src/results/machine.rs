@@ -27,6 +27,12 @@ pub struct Machine {
 }
 
 impl Machine {
+    /// Whether the adapter runs fragment shaders on a few of its processors, as the data-centre GPUs H100
+    /// and H200 do: forward lighting and rasterised volumes are slow on it.
+    pub fn runs_few_fragments(&self) -> bool {
+        self.adapter.split_whitespace().any(|word| ["H100", "H200"].contains(&word))
+    }
+
     /// What must be the same where times are put side by side: fields and their values.
     pub fn identity(&self) -> [(&'static str, &str); 4] {
         [
