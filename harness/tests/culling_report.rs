@@ -73,7 +73,8 @@ fn study(turned: &str) -> Done {
                 command: vec!["lightbench".into(), "compare".into()],
             });
             let all = ["Clay", "None", "Sphere", "RasterSphere", CAPPED, WHOLE];
-            let served = all.into_iter().filter(|id| mode == Mode::Deferred || *id != "RasterSphere");
+            let served =
+                all.into_iter().filter(|id| mode == Mode::Deferred || *id != "RasterSphere");
             let records = served.map(|id| made(turned, mode, id, lights)).collect();
             results.insert(name, Results { records, ..empty() });
         }
@@ -130,6 +131,9 @@ fn lossy_rows_state_their_error_and_never_lead() {
         }
     }
     let (text, _) = page(&done);
-    assert!(text.contains(&format!("without a loss: deferred {WHOLE}; forward {WHOLE}.")), "{text}");
+    assert!(
+        text.contains(&format!("without a loss: deferred {WHOLE}; forward {WHOLE}.")),
+        "{text}"
+    );
     assert!(text.contains(&format!("{CAPPED} 0.500 ms (lossy, relMSE 0.250)")), "{text}");
 }

@@ -3,6 +3,7 @@
 use super::comparison::{Comparison, comparisons};
 use super::format::{difference, factor, number, short_adapter, significant};
 use super::rank::tie;
+use super::raster;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
 /// Ratios nearer to 1 are called equal: no more is known from a handful of samples.
@@ -49,12 +50,12 @@ fn sentence(comparison: &Comparison<'_>) -> String {
     let Some(fastest) = comparison.fastest() else {
         return format!(
             "{} takes {} ms to shade {}",
-            if first.is_baseline() { "no culling" } else { &first.strategy },
+            if first.is_baseline() { "no culling".to_owned() } else { comparison.name(first) },
             significant(first.assign_and_shade_ms()),
             lights(first.lights),
         );
     };
-    let name = &fastest.strategy;
+    let name = &comparison.name(fastest);
     let took = significant(fastest.assign_and_shade_ms());
     let lights = lights(first.lights);
     let Some(baseline) = comparison.baseline() else {
@@ -145,6 +146,7 @@ pub(super) fn lights(count: u64) -> String {
 pub fn notices(results: &Results) -> Vec<String> {
     let mut notices = Vec::new();
     notices.extend(clock_notice(results));
+    notices.extend(raster::notice(&results.machine, &results.records));
     for comparison in comparisons(results) {
         if let Some(tie) = tie(&comparison.ranks()) {
             let first = comparison.first();
@@ -192,8 +194,8 @@ pub fn notices(results: &Results) -> Vec<String> {
     notices.extend(results.warnings.iter().cloned());
     notices.extend(results.truth.notes.iter().cloned());
     for record in &results.records {
-        if let Some(note) = record.note.as_ref().filter(|note| !notices.contains(note)) {
-            notices.push(note.clone());
+        if let Some(note) = raster::unmarked_note(record).filter(|note| !notices.contains(note)) {
+            notices.push(note);
         }
     }
     notices

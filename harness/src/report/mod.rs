@@ -7,11 +7,13 @@ mod comparison;
 mod finding;
 mod fit;
 mod format;
+mod frames;
 mod html;
 mod markdown;
 mod metrics;
 mod page;
 mod rank;
+mod raster;
 mod study;
 mod table;
 

@@ -135,7 +135,8 @@ pub(super) fn table(
     classes: &BTreeMap<&str, String>,
 ) -> String {
     let mut heads = String::new();
-    for metric in METRICS {
+    let metrics = || METRICS.iter().filter(|metric| metric.is_shown(comparison));
+    for metric in metrics() {
         let _ = write!(
             heads,
             "<th scope=\"col\" title=\"{}\"><button type=\"button\">{} <span class=\"unit\">{}</span></button></th>",
@@ -146,12 +147,12 @@ pub(super) fn table(
     }
     let mut rows = String::new();
     for (_, record) in &comparison.records {
-        let cells: String = METRICS.iter().map(|metric| cell(metric, comparison, record)).collect();
+        let cells: String = metrics().map(|metric| cell(metric, comparison, record)).collect();
         let _ = writeln!(
             rows,
             "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{cells}</tr>",
             classes.get(record.strategy.as_str()).map_or("", String::as_str),
-            with_names_whole(&record.strategy),
+            with_names_whole(&comparison.name(record)),
         );
     }
     format!(

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::{Results, SCHEMA_VERSION};
+use super::{Record, Results, SCHEMA_VERSION};
 
 /// Why results cannot be written or read; one line each.
 #[derive(Debug, Error)]
@@ -80,6 +80,7 @@ impl Results {
             _ => {
                 let mut results: Self = serde_json::from_str(&text).map_err(parse_error)?;
                 results.rename_records();
+                results.records.iter_mut().for_each(Record::bill_again);
                 Ok(results)
             }
         }

@@ -27,10 +27,12 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Whether the adapter runs fragment shaders on a few of its processors, as the data-centre GPUs H100
-    /// and H200 do: forward lighting and rasterised volumes are slow on it.
-    pub fn runs_few_fragments(&self) -> bool {
-        self.adapter.split_whitespace().any(|word| ["H100", "H200"].contains(&word))
+    /// The GPU's short name where it runs fragment shaders on a few of its processors, as NVIDIA's
+    /// data-centre GPUs of the Hopper generation do: figures of raster passes are then not those of
+    /// another chip.
+    pub fn weak_raster(&self) -> Option<&str> {
+        const CHIPS: [&str; 5] = ["H100", "H200", "GH200", "H800", "H20"];
+        self.adapter.split_whitespace().find(|word| CHIPS.contains(word))
     }
 
     /// What must be the same where times are put side by side: fields and their values.

@@ -50,7 +50,7 @@ pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> String {
                 note: String::new(),
             };
             let body = charts.xy(&format!("{scene}-{mode}"), &chart) + &times(&all);
-            let caution = match done.results.values().any(|r| r.machine.runs_few_fragments()) {
+            let caution = match done.results.values().any(|r| r.machine.weak_raster().is_some()) {
                 true if *mode == "forward" => FORWARD_CAUTION,
                 true => DEFERRED_CAUTION,
                 false => "",

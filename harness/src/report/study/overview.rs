@@ -121,7 +121,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let lights = super::super::finding::lights(comparison.first().lights);
     let mut text = format!("In {scene} at {lights}, ");
     if best.len() == 1 {
-        text += &format!("{} is fastest with {}", leader.strategy, timed(leader));
+        text += &format!("{} is fastest with {}", comparison.name(leader), timed(leader));
     } else {
         let others: Vec<String> = best
             .iter()
@@ -130,7 +130,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
             .collect();
         text += &format!(
             "{} is fastest with {}, but cannot be told from {}",
-            leader.strategy,
+            comparison.name(leader),
             timed(leader),
             listed(&others)
         );
@@ -164,7 +164,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     let first_of = |scene: &&str| {
         let (_, comparison) = by_lights(done, scene, "main").pop()?;
         let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-        let leader = first(&ranked).first().map(|record| record.strategy.clone())?;
+        let leader = first(&ranked).first().map(|record| comparison.name(record))?;
         Some(((*scene).to_owned(), leader, comparison.first().lights))
     };
     let scenes = done.scenes();

@@ -184,7 +184,7 @@ pub(super) fn deferred(done: &Done, scene: &str) -> Answer {
         tally.add(is_slower(other, own), figure);
     }
     let mut answer = tally.answer("methods", "no culling in both renderers");
-    if done.results.values().any(|results| results.machine.runs_few_fragments()) {
+    if done.results.values().any(|results| results.machine.weak_raster().is_some()) {
         let why =
             "this GPU runs fragment shaders, and so forward lighting, on a few of its processors";
         answer.verdict = Verdict::Unknown(why.to_owned());
