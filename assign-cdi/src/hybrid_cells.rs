@@ -109,8 +109,9 @@ impl CellsUniform {
     /// Cuts `view` into cells.
     ///
     /// Slices run from the near to the far plane, exponentially in a perspective view, evenly in an
-    /// orthographic one. Without a far plane they run to the farthest point that a light reaches
-    /// (`light_bounds`), and the last one goes on to infinity.
+    /// orthographic one. In a perspective view they end at the farthest point that a light reaches
+    /// (`light_bounds`) where the far plane lies behind it, and the last slice goes on to the far
+    /// plane or to infinity ([`View::slices_end_m`]).
     pub fn new(
         size: CellSize,
         view: &View,
@@ -128,10 +129,11 @@ impl CellsUniform {
             });
         }
         let near = view.near_m;
-        let deepest = || light_bounds.map_or(0.0, |(min, max)| view.deepest_m(min, max));
-        let last = view.far_m.unwrap_or_else(|| deepest().max(2.0 * near));
         let exponential = matches!(view.projection, Projection::Perspective { .. });
-        let last = if exponential { last.min(near * MAX_DEPTH_RATIO) } else { last };
+        let last = match (exponential, view.far_m) {
+            (false, Some(far)) => far,
+            _ => view.slices_end_m(light_bounds).min(near * MAX_DEPTH_RATIO),
+        };
         let span = if exponential { (last / near).log2() } else { last - near };
         Ok(Self {
             counts,
@@ -199,6 +201,9 @@ mod tests {
         // Lights behind the camera leave one octave.
         let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
         assert_eq!(CellsUniform::new(size, &view, behind).unwrap().slices_per_unit, 8.0);
+        // A far plane behind all lights takes no slices from them.
+        let bounded = View { far_m: Some(1_024.0), ..view };
+        assert_eq!(CellsUniform::new(size, &bounded, bounds).unwrap().slices_per_unit, 2.0);
     }
 
     #[test]

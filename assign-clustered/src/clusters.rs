@@ -113,8 +113,9 @@ impl ClustersUniform {
     /// Each cluster has a group for every bin of `normals`.
     ///
     /// Slices run from the near to the far plane, exponentially in a perspective view (Enhuber
-    /// 2019, equation 3.3), evenly in an orthographic one. Without a far plane they run to the
-    /// farthest point that a light reaches (`light_bounds`), and the last one goes on to infinity.
+    /// 2019, equation 3.3), evenly in an orthographic one. In a perspective view they end at the
+    /// farthest point that a light reaches (`light_bounds`) where the far plane lies behind it, and
+    /// the last slice goes on to the far plane or to infinity ([`View::slices_end_m`]).
     pub fn new(
         size: ClusterSize,
         normals: Normals,
@@ -144,11 +145,11 @@ impl ClustersUniform {
             });
         }
         let near = view.near_m;
-        let last = view.far_m.unwrap_or_else(|| {
-            light_bounds.map_or(0.0, |(min, max)| view.deepest_m(min, max)).max(2.0 * near)
-        });
         let exponential = matches!(view.projection, Projection::Perspective { .. });
-        let last = if exponential { last.min(near * MAX_DEPTH_RATIO) } else { last };
+        let last = match (exponential, view.far_m) {
+            (false, Some(far)) => far,
+            _ => view.slices_end_m(light_bounds).min(near * MAX_DEPTH_RATIO),
+        };
         let span = if exponential { (last / near).log2() } else { last - near };
         Ok(Self {
             counts,
@@ -210,6 +211,25 @@ mod tests {
         let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
         let clusters = ClustersUniform::new(size, Normals::None, &view, behind).unwrap();
         assert_eq!(clusters.slices_per_unit, 8.0);
+    }
+
+    #[test]
+    fn slices_end_with_the_lights_where_the_far_plane_lies_behind_them() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [64, 64]);
+        view.far_m = Some(1_024.0);
+        let size = "64x64x8".parse().unwrap();
+        let per_octave = |view: &View, bounds| {
+            ClustersUniform::new(size, Normals::None, view, Some(bounds)).unwrap().slices_per_unit
+        };
+        // Four octaves to the farthest light, as without a far plane.
+        let bounds = (Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE);
+        assert_eq!(per_octave(&view, bounds), 2.0);
+        assert_eq!(per_octave(&View { far_m: None, ..view }, bounds), 2.0);
+        // The far plane is nearer than the lights end: two octaves.
+        assert_eq!(per_octave(&View { far_m: Some(4.0), ..view }, bounds), 4.0);
+        // The last slice goes on to the far plane.
+        let clusters = ClustersUniform::new(size, Normals::None, &view, Some(bounds)).unwrap();
+        assert!((1_023.0..1_025.0).contains(&clusters.far_m), "{clusters:?}");
     }
 
     #[test]

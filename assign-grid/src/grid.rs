@@ -12,29 +12,48 @@ use glam::Vec3;
 
 use crate::cells::{CellCounts, CellsUniform};
 
-/// Which box is cut into cells.
+/// Which box is cut into cells. Look-ups outside the box stay exact: a sample belongs to the nearest
+/// cell, and the cells at the border reach outwards as far as any light does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum GridBox {
-    /// The box around the lights' supports: beyond it no list holds a light.
+    /// The box around the lights' positions, as in the comparison paper (Enhuber 2019, sections 3.3
+    /// and 4.1).
+    ///
+    /// Reaching outwards adds no point light to a border cell: its centre lies in the box, so the
+    /// point of the longer cell that is nearest to it lies in the box as well.
     #[default]
-    Lights,
-    /// The same, cut to the box around the surfaces. Look-ups outside stay exact, through the
-    /// cells at the border.
+    Positions,
+    /// The box around the lights' supports: beyond it no sample is lit. Larger than that of the
+    /// positions by a range on each side, so cells are coarser.
+    Supports,
+    /// The box around the supports, cut to the box around the surfaces.
     Surfaces,
+}
+
+impl GridBox {
+    /// As an id says it: `positions`, `supports` or `surfaces`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Positions => "positions",
+            Self::Supports => "supports",
+            Self::Surfaces => "surfaces",
+        }
+    }
 }
 
 impl FromStr for GridBox {
     type Err = AssignError;
 
-    /// Reads `lights` or `surfaces`.
+    /// Reads `positions`, `supports` or `surfaces`, and `lights`, the former name of `supports`.
     fn from_str(text: &str) -> Result<Self, AssignError> {
         match text {
-            "lights" => Ok(Self::Lights),
+            "positions" => Ok(Self::Positions),
+            "supports" | "lights" => Ok(Self::Supports),
             "surfaces" => Ok(Self::Surfaces),
             _ => Err(AssignError::Parameter {
                 field: "grid box".into(),
                 value: text.into(),
-                accepted: "lights or surfaces".into(),
+                accepted: "positions, supports or surfaces".into(),
             }),
         }
     }
@@ -87,9 +106,12 @@ impl Grid {
 
     /// The box to cut, world space; a unit box where there are no lights.
     fn cut(&self, frame: &Frame<'_>) -> Result<(Vec3, Vec3), AssignError> {
-        let lights = frame.lights.bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
-        if self.grid_box == GridBox::Lights {
-            return Ok(lights);
+        let none = (Vec3::ZERO, Vec3::ONE);
+        let lights = frame.lights.bounds().unwrap_or(none);
+        match self.grid_box {
+            GridBox::Positions => return Ok(frame.lights.position_bounds().unwrap_or(none)),
+            GridBox::Supports => return Ok(lights),
+            GridBox::Surfaces => {}
         }
         let missing = || AssignError::Missing { strategy: self.id(), missing: "surface_bounds" };
         let surfaces = frame.surface_bounds.ok_or_else(missing)?;
@@ -108,8 +130,8 @@ impl Grid {
 impl Assignment for Grid {
     fn id(&self) -> String {
         let grid_box = match self.grid_box {
-            GridBox::Lights => "",
-            GridBox::Surfaces => "/surfaces",
+            GridBox::Positions => String::new(),
+            other => format!("/{}", other.name()),
         };
         format!("G/{}{grid_box}{}", self.counts, self.settings.suffix(GroupShape::Box))
     }
@@ -152,5 +174,39 @@ impl Assignment for Grid {
 
     fn memory_bytes(&self) -> u64 {
         self.cells.size() + self.culler.memory_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use assign::{Light, LightBuffer, View};
+
+    use super::*;
+
+    #[test]
+    fn the_box_of_an_id_is_the_one_that_is_cut() {
+        let gpu = Gpu::noop().unwrap();
+        let at = |place: f32| Light::point(Vec3::splat(place), 2.0, Vec3::ONE);
+        let lights = LightBuffer::new(&gpu, &[at(0.0), at(8.0)]).unwrap();
+        let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
+        let frame = Frame::new(&view, &lights).with_surface_bounds(Vec3::NEG_ONE, Vec3::splat(9.0));
+        for (grid_box, low, high, id) in [
+            (GridBox::default(), 0.0, 8.0, "G/4x4x4"),
+            (GridBox::Positions, 0.0, 8.0, "G/4x4x4"),
+            (GridBox::Supports, -2.0, 10.0, "G/4x4x4/supports"),
+            (GridBox::Surfaces, -1.0, 9.0, "G/4x4x4/surfaces"),
+        ] {
+            let settings = CullSettings::default();
+            let grid = Grid::new(&gpu, CellCounts([4, 4, 4]), grid_box, settings).unwrap();
+            let cut = (Vec3::splat(low), Vec3::splat(high));
+            assert_eq!((grid.cut(&frame).unwrap(), grid.id().as_str()), (cut, id));
+            assert_eq!(grid_box.name().parse::<GridBox>().unwrap(), grid_box);
+            // Samples beyond the box find every light that may reach them there.
+            let cells = CellsUniform::new(grid.counts, cut, lights.bounds());
+            assert_eq!((cells.lights_min, cells.lights_max), ([-2.0; 3], [10.0; 3]), "{id}");
+        }
+        assert_eq!("lights".parse::<GridBox>().unwrap(), GridBox::Supports);
+        let error = "cells".parse::<GridBox>().unwrap_err().to_string();
+        assert!(error.contains("positions, supports or surfaces"), "{error}");
     }
 }

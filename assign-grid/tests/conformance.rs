@@ -22,10 +22,15 @@ fn conforms(counts: &str, grid_box: GridBox, settings: CullSettings) {
 }
 
 #[test]
-fn cells_of_the_lights_box_conform() {
-    conforms("12x7x9", GridBox::Lights, CullSettings::default());
-    conforms("23x1x5", GridBox::Lights, CullSettings::default());
-    conforms("1x1x1", GridBox::Lights, CullSettings::default());
+fn cells_of_the_positions_box_conform() {
+    conforms("12x7x9", GridBox::Positions, CullSettings::default());
+    conforms("23x1x5", GridBox::Positions, CullSettings::default());
+    conforms("1x1x1", GridBox::Positions, CullSettings::default());
+}
+
+#[test]
+fn cells_of_the_supports_box_conform() {
+    conforms("12x7x9", GridBox::Supports, CullSettings::default());
 }
 
 #[test]
@@ -37,7 +42,7 @@ fn cells_of_the_surfaces_box_conform() {
 #[test]
 fn all_conform_through_the_hierarchy() {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
-    conforms("8x8x8", GridBox::Lights, settings);
+    conforms("8x8x8", GridBox::Positions, settings);
     conforms("8x8x8", GridBox::Surfaces, settings);
 }
 
@@ -66,7 +71,7 @@ fn boxes_of_surfaces_are_checked() {
     let lights = LightBuffer::new(&gpu, &[Light::point(Vec3::ZERO, 2.0, Vec3::ONE)]).unwrap();
     let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
     let frame = Frame::new(&view, &lights);
-    let mut of_lights = grid("8x8x8", GridBox::Lights, CullSettings::default())(&gpu).unwrap();
+    let mut of_lights = grid("8x8x8", GridBox::Positions, CullSettings::default())(&gpu).unwrap();
     of_lights.prepare(&gpu, &frame).unwrap();
     let mut strategy = grid("8x8x8", GridBox::Surfaces, CullSettings::default())(&gpu).unwrap();
     assert_eq!(strategy.id(), "G/8x8x8/surfaces");
@@ -87,6 +92,6 @@ fn boxes_of_surfaces_are_checked() {
 
 #[test]
 fn faults_are_rejected() {
-    let make = grid("8x8x8", GridBox::Lights, CullSettings::default());
+    let make = grid("8x8x8", GridBox::Positions, CullSettings::default());
     assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
 }

@@ -32,6 +32,7 @@ pub struct LightBuffer {
     rejected: Vec<RejectedLight>,
     kinds: LightKinds,
     bounds: Option<(Vec3, Vec3)>,
+    position_bounds: Option<(Vec3, Vec3)>,
     spheres: wgpu::Buffer,
     emissions: wgpu::Buffer,
     shapes: wgpu::Buffer,
@@ -57,6 +58,7 @@ impl LightBuffer {
             rejected: Vec::new(),
             kinds: LightKinds::default(),
             bounds: None,
+            position_bounds: None,
             spheres: gpu.storage("light spheres", 0)?,
             emissions: gpu.storage("light emissions", 0)?,
             shapes: gpu.storage("light shapes", 0)?,
@@ -114,10 +116,12 @@ impl LightBuffer {
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
         gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
         self.kinds = LightKinds::of(&accepted);
+        let around = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
         self.bounds = accepted
             .iter()
             .map(|l| (l.position - l.radius_m(), l.position + l.radius_m()))
-            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+            .reduce(around);
+        self.position_bounds = accepted.iter().map(|l| (l.position, l.position)).reduce(around);
         self.lights = accepted;
         self.given = given;
         self.build_time = build_time;
@@ -163,6 +167,11 @@ impl LightBuffer {
     /// World-space box around all supports, metres; `None` without lights.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
+    }
+
+    /// World-space box around all positions, metres, whatever the ranges; `None` without lights.
+    pub fn position_bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.position_bounds
     }
 
     /// The spheres: `array<LightSphere>`.

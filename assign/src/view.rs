@@ -286,6 +286,26 @@ impl View {
         (axis * min_world).max(axis * max_world).element_sum() + depth.w
     }
 
+    /// The distance from the eye to the farthest point of a world-space box, metres: whichever way
+    /// the camera turns, no point of the box has a greater view depth.
+    pub fn farthest_m(&self, min_world: Vec3, max_world: Vec3) -> f32 {
+        let eye = self.eye();
+        (eye - min_world).abs().max((max_world - eye).abs()).length()
+    }
+
+    /// The view depth at which slices of a perspective view end, metres: the far plane, or the
+    /// farthest point that a light reaches (`light_bounds`) where that is nearer. No light reaches the
+    /// samples behind it, so the last slice takes them all. At least two near planes away where no far
+    /// plane is nearer.
+    pub fn slices_end_m(&self, light_bounds: Option<(Vec3, Vec3)>) -> f32 {
+        let lit = |(min, max)| self.deepest_m(min, max).max(2.0 * self.near_m);
+        match (self.far_m, light_bounds.map(lit)) {
+            (Some(far), Some(lit)) => far.min(lit),
+            (Some(end), None) | (None, Some(end)) => end,
+            (None, None) => 2.0 * self.near_m,
+        }
+    }
+
     /// View depth of a clip depth as `view.wesl` computes it, metres.
     fn rebuilt_m(&self, depth_clip: f32) -> f32 {
         let clip = self.view_to_clip();
@@ -345,6 +365,20 @@ mod tests {
         view.far_m = Some(f32::MAX);
         view.depth = DepthMapping::Standard;
         assert_eq!(view.check(), Ok(()));
+    }
+
+    #[test]
+    fn a_far_plane_at_the_farthest_corner_sees_all_of_a_box_from_any_pose() {
+        let (min, max) = (Vec3::new(-3.0, 0.0, -9.0), Vec3::new(5.0, 4.0, 2.0));
+        for target in [Vec3::ZERO, Vec3::Z, Vec3::new(-8.0, 3.0, 1.0), Vec3::NEG_Y] {
+            for eye in [Vec3::new(1.0, 1.7, 0.5), Vec3::new(40.0, -3.0, 7.0)] {
+                let view = View::look_at(eye, target, 1.0, 0.1, [64, 48]);
+                let far_m = view.farthest_m(min, max);
+                assert!(view.deepest_m(min, max) <= far_m * (1.0 + 1e-5), "{eye} to {target}");
+            }
+        }
+        let view = View::look_at(Vec3::ZERO, Vec3::X, 1.0, 0.1, [64, 48]);
+        assert_eq!(view.farthest_m(Vec3::ZERO, Vec3::new(2.0, 3.0, 6.0)), 7.0);
     }
 
     #[test]

@@ -211,7 +211,7 @@ impl Choice {
                     ("source", "bvh".into())
                 }
                 Axis::Source => ("source", "linear".into()),
-                Axis::Box => ("box", format!("{:?}", self.spec.grid_box).to_lowercase()),
+                Axis::Box => ("box", self.spec.grid_box.name().to_owned()),
                 Axis::Normals | Axis::Specular | Axis::Cap | Axis::Reuse => continue,
             };
             all.insert(name.to_owned(), value.into());
@@ -258,6 +258,12 @@ impl Choice {
         self.entry.axes.contains(&Axis::Cap)
     }
 
+    /// Whether it tests lights against frusta by more than their half spaces: by their corners.
+    pub fn tests_corners(&self) -> bool {
+        let half_spaces = FrustumTests { hs: true, ..self.spec.settings.tests };
+        self.entry.axes.contains(&Axis::Tests) && half_spaces.to_string() != "hs"
+    }
+
     /// The largest relative difference of a channel that the method states of itself; `None` where
     /// it states that no bit differs.
     pub fn tolerance(&self) -> Option<f64> {
@@ -297,7 +303,7 @@ fn threshold_of(segment: &str) -> Option<f32> {
 fn axis_of(segment: &str) -> Option<Axis> {
     match segment {
         "linear" | "bvh" => Some(Axis::Source),
-        "lights" | "surfaces" => Some(Axis::Box),
+        "positions" | "supports" | "lights" | "surfaces" => Some(Axis::Box),
         _ if segment.starts_with(CAP) => Some(Axis::Cap),
         _ if number_of(segment, NORMALS).is_some() => Some(Axis::Normals),
         _ if threshold_of(segment).is_some() => Some(Axis::Specular),
@@ -333,6 +339,8 @@ mod tests {
         let lights_first = asked(&["--strategies", "hg,HG/32x32x8/CAP8", "--source", "both"]);
         assert_eq!(lights_first, ["HG/48x48x40", "HG/32x32x8/cap8"]);
         assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
+        let boxes = asked(&["--strategies", "G/positions,G/Supports/bvh,G/8x8x8/lights"]);
+        assert_eq!(boxes, ["G/20x20x20", "G/20x20x20/supports/bvh", "G/8x8x8/supports"]);
         let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
         assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
         let normals = asked(&["--strategies", "sc-e/BVH/N6,SC-E/s0.001/n24"]);

@@ -30,7 +30,7 @@ pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
 pub(crate) use values::MAX_CHECKS;
-pub use values::{Camera, CameraPose, DirectionCounts, Size, Sizes, Span, Strategies};
+pub use values::{Camera, CameraPose, DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
 pub use vpl::{BuildChoice, DeepArgs, PrimaryRay, RangeChoice, SpreadChoice, VplArgs};
 
 use crate::results::{Mode, TruthLevel};

@@ -162,7 +162,7 @@ impl Bench {
             pictures: Vec::new(),
         };
         run.results.warnings.extend(left_out);
-        run.warn();
+        run.warn(&choices);
         remove_stale(&args.out)?;
         run.measure_all(&choices)?;
         Ok((run.results, run.pictures))
@@ -197,7 +197,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// Notes what a reader of the figures has to know.
-    fn warn(&mut self) {
+    fn warn(&mut self, choices: &[Choice]) {
         note_faults(&mut self.results, self.stage);
         if let Some(vpls) = &self.stage.vpls {
             let words = vpls.summary();
@@ -206,6 +206,13 @@ impl Run<'_> {
                 let none = "no virtual point light is left: every image is black";
                 self.results.warnings.push(format!("{words}: {none}"));
             }
+        }
+        if self.stage.view.far_m.is_none() && choices.iter().any(Choice::tests_corners) {
+            self.results.warnings.push(
+                "the view has no far plane: lights are tested against the tiles of T-I, and against the \
+                 last slices of DC-I and SC-I, by HS alone, for these have no far corners"
+                    .to_owned(),
+            );
         }
         let name = &self.stage.scene.name;
         if self.args.path && !self.stage.scene.path.moves() {

@@ -17,6 +17,7 @@ pub mod fit_ltc;
 pub mod list_lengths;
 pub mod machine;
 pub mod measure;
+pub mod optics;
 pub mod painter;
 pub mod pass_samples;
 pub mod pictures;

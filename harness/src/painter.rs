@@ -3,9 +3,7 @@
 use assign::{Assignment, Gpu, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
-use crate::{
-    checks::RASTER_SPHERE, cli::CliError, error::HarnessError, registry::Method, stage::Stage,
-};
+use crate::{error::HarnessError, registry::Method, stage::Stage};
 
 /// A method with the pipelines that draw with it.
 pub enum Painter<'a> {
@@ -101,11 +99,7 @@ impl<'a> Painter<'a> {
     }
 }
 
-/// Light volumes, whose shader knows no hard cut.
+/// Light volumes.
 pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, HarnessError> {
-    if cut == Cut::Hard {
-        let accepted = format!("windowed for {RASTER_SPHERE}");
-        return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
-    }
-    Ok(RasterSpheres::new(&stage.renderer, stage.lights.kinds(), stage.area_model)?)
+    Ok(RasterSpheres::new(&stage.renderer, stage.lights.kinds(), stage.area_model, cut)?)
 }

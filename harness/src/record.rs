@@ -1,7 +1,7 @@
 //! The record of one method in one mode, from what was seen and timed of it.
 
 use assign::Gpu;
-use shading::Mode;
+use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
@@ -108,6 +108,7 @@ pub fn record(
         radius_scale: stage.radius_scale,
         eye: stage.view.eye().to_array().map(f64::from),
         forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
+        planes: Some(stage.planes()),
         light_box: [stage.light_box.min, stage.light_box.max]
             .map(|corner| corner.to_array().map(f64::from)),
         own_lights: stage.own_lights as u64,
@@ -122,7 +123,7 @@ pub fn record(
         light_places: Some(places(args.stage.light_box).to_owned()),
         threshold: args.stage.threshold,
         cut: Some(plan.cut.name().to_owned()),
-        is_lossy: choice.is_lossy(count),
+        is_lossy: choice.is_lossy(count) || loses_edges(choice, plan.cut),
         errors: stored(errors.into_iter().map(|(id, all)| (id, mean(&all)))),
         unbounded_errors: stored(unbounded_errors),
         truth_errors: Errors::new(),
@@ -165,6 +166,12 @@ pub fn record(
     };
     record.set_times();
     record
+}
+
+/// Whether a method that rounds in its own way may gain or lose a light at the edge of its range, where
+/// the light ends at once.
+fn loses_edges(choice: &Choice, cut: Cut) -> bool {
+    choice.tolerance().is_some() && cut == Cut::Hard
 }
 
 fn places(light_box: LightBox) -> &'static str {

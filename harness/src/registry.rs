@@ -43,7 +43,7 @@ pub enum Axis {
     Tests,
     /// Where lights come from: `linear` or `bvh`.
     Source,
-    /// The box that is cut into cells: `lights` or `surfaces`.
+    /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
     Box,
     /// Bins of normals that clusters are split into: `n6`.
     Normals,
@@ -61,7 +61,7 @@ impl Axis {
         match self {
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
-            Self::Box => "lights or surfaces",
+            Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the bins of normals: n1, n6, n24 or n54",
             Self::Specular => "s and the specular radiance that is left out, such as s0.001",
             Self::Cap => "cap and the most lights of a list, such as cap32",
@@ -249,7 +249,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         parameters: &["cells_x", "cells_y", "cells_z"],
         default: "20x20x20",
         axes: &[Axis::Box, Axis::Source, Axis::Cap, Axis::Reuse],
-        summary: "a grid of cells in world space, over the lights' box or the surfaces'",
+        summary: "a grid of cells in world space, over the box of the lights' positions, of their supports, or of the surfaces",
         reads_depth: false,
         make: |gpu, spec| {
             let counts = spec.parameters.parse()?;

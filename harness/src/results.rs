@@ -18,7 +18,9 @@ mod file;
 mod indirect;
 mod machine;
 mod passes;
+mod planes;
 mod record;
+mod renamed;
 mod stats;
 mod truth_image;
 
@@ -32,6 +34,7 @@ pub use file::{ResultsError, write_atomically};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use machine::{DeviceType, Machine};
 pub use passes::{PassKind, PassTimes, Passes, Spans};
+pub use planes::{PlaneSource, Planes};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
 
@@ -182,6 +185,10 @@ pub struct Record {
     /// The direction it looks in, of unit length, world space.
     #[serde(default)]
     pub forward: [f64; 3],
+    /// Near and far plane; unknown in results of earlier versions, whose far planes were infinite
+    /// but for orthographic cameras.
+    #[serde(default)]
+    pub planes: Option<Planes>,
     /// Where lights were scattered: lower and upper corner, world space, metres.
     #[serde(default)]
     pub light_box: [[f64; 3]; 2],

@@ -1,22 +1,17 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, Projection, View};
-use glam::{Vec2, Vec3};
-use scenes::{Aabb, Lens, LightSpec, Places, Pose, Scene, primary_light, scatter_lights};
+use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, View};
+use glam::Vec3;
+use scenes::{Aabb, LightSpec, Places, Pose, Scene, primary_light, scatter_lights};
 use shading::{AreaModel, Renderer};
 
 use crate::{
     cli::{Camera, CliError, LightBox, StageArgs},
     error::HarnessError,
-    results::Vpls,
+    optics::Optics,
+    results::{Planes, Vpls},
     vpls::VplMaker,
 };
-
-/// Vertical field of view where the scene names none, radians.
-const FOV_Y: f32 = 60.0 * std::f32::consts::PI / 180.0;
-
-/// The near plane as a share of the scene's size: 5 cm in a hall of 25 m.
-const NEAR_SHARE: f32 = 0.002;
 
 /// What all strategies of a run share.
 pub struct Stage {
@@ -43,14 +38,14 @@ pub struct Stage {
     /// The pipeline.
     pub renderer: Renderer,
     vpl_maker: VplMaker,
-    lens: Option<Lens>,
+    optics: Optics,
     /// The diagonal of the scene's core before it was scaled, metres.
     unscaled_m: f32,
 }
 
 /// What arguments make of a scene.
 struct Set {
-    lens: Option<Lens>,
+    optics: Optics,
     view: View,
     radius_scale: f64,
     lit: Lit,
@@ -58,12 +53,11 @@ struct Set {
 
 impl Set {
     fn new(scene: &Scene, unscaled_m: f32, args: &StageArgs) -> Result<Self, HarnessError> {
-        let is_posed = matches!(args.camera, Some(Camera::Pose(_)));
-        let lens = scene.cameras.first().map(|camera| camera.lens).filter(|_| !is_posed);
-        let view = view_of(scene, pose_of(scene, args), lens, [args.size.width, args.size.height]);
+        let optics = Optics::new(scene, args)?;
+        let view = optics.view(scene, pose_of(scene, args), [args.size.width, args.size.height]);
         let radius_scale = args.radius_scale.unwrap_or_else(|| radius_scale_of(unscaled_m));
         let lit = Lit::new(scene, radius_scale, args)?;
-        Ok(Self { lens, view, radius_scale, lit })
+        Ok(Self { optics, view, radius_scale, lit })
     }
 }
 
@@ -83,7 +77,7 @@ impl Stage {
             // What is seen is what the primary light sends, and the truth knows nothing else.
             scene = scene.without_emission();
         }
-        let Set { lens, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
+        let Set { optics, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
         Ok(Self {
             scene_hash: scene.hash(),
             radius_scale,
@@ -97,7 +91,7 @@ impl Stage {
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
-            lens,
+            optics,
             unscaled_m,
         })
     }
@@ -105,13 +99,13 @@ impl Stage {
     /// The same scene under the lights and from the camera of other arguments, which must name the
     /// same scene at the same scale.
     pub fn set_up(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
-        let Set { lens, view, radius_scale, lit } = Set::new(&self.scene, self.unscaled_m, args)?;
+        let Set { optics, view, radius_scale, lit } = Set::new(&self.scene, self.unscaled_m, args)?;
         self.radius_scale = radius_scale;
         self.light_box = lit.bounds;
         self.own_lights = lit.own;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
         self.view = view;
-        self.lens = lens;
+        self.optics = optics;
         self.bounce(gpu, args)
     }
 
@@ -143,8 +137,13 @@ impl Stage {
     /// Moves the camera to frame `frame` of `count` along the scene's path, and uploads it.
     pub fn go_to(&mut self, frame: u32, count: u32) -> Result<(), HarnessError> {
         let size = [self.view.viewport.width, self.view.viewport.height];
-        self.view = view_of(&self.scene, self.scene.path.pose(frame, count), self.lens, size);
+        self.view = self.optics.view(&self.scene, self.scene.path.pose(frame, count), size);
         self.prepare()
+    }
+
+    /// Near and far plane of the view.
+    pub fn planes(&self) -> Planes {
+        self.optics.planes(&self.view)
     }
 
     /// Lights of each kind, by name.
@@ -246,27 +245,6 @@ fn pose_of(scene: &Scene, args: &StageArgs) -> Pose {
         Some(Camera::OnPath { frame, count }) => scene.path.pose(frame, count),
         Some(Camera::Pose(pose)) => Pose::new(Vec3::from(pose.eye), Vec3::from(pose.target)),
     }
-}
-
-/// A view from a pose through a lens.
-fn view_of(scene: &Scene, pose: Pose, lens: Option<Lens>, size: [u32; 2]) -> View {
-    let fov_y = match lens {
-        Some(Lens::Perspective { fov_y }) => fov_y,
-        _ => FOV_Y,
-    };
-    let near = (scene.core_bounds.diagonal() * NEAR_SHARE).max(1e-6);
-    let mut view = View {
-        world_to_view: pose.world_to_view(),
-        ..View::look_at(pose.eye, pose.target, fov_y, near, size)
-    };
-    if let Some(Lens::Orthographic { half_height, .. }) = lens {
-        // The picture's own shape decides its width.
-        let corner = Vec2::new(half_height * size[0] as f32 / size[1].max(1) as f32, half_height);
-        view.projection = Projection::Orthographic { min: -corner, max: corner };
-        let to_center = scene.bounds.center().distance(pose.eye);
-        view.far_m = Some(to_center + scene.bounds.diagonal());
-    }
-    view
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::{
-    AreaModel, LightingOptions, Renderer, ShadingError,
+    AreaModel, Cut, LightingOptions, Renderer, ShadingError,
     lighting::{TEXELS, texture, texture_entry},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
@@ -37,12 +37,16 @@ pub struct RasterSpheres {
 
 impl RasterSpheres {
     /// Makes the pipelines. An error where the device cannot blend into single precision.
+    ///
+    /// With [`Cut::Hard`] a light ends at once, so where this shader rounds otherwise than that of no
+    /// culling, a sample at the very edge of a range gains or loses that light's whole share.
     pub fn new(
         renderer: &Renderer,
         kinds: LightKinds,
         area: AreaModel,
+        cut: Cut,
     ) -> Result<Self, ShadingError> {
-        let options = LightingOptions { kinds, area, ..LightingOptions::default() };
+        let options = LightingOptions { kinds, area, cut, ..LightingOptions::default() };
         let gpu = &renderer.gpu;
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {

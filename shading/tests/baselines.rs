@@ -13,8 +13,8 @@ use assign::{
 use assign_model::PerModel;
 use glam::{Vec2, Vec3};
 use shading::{
-    AreaModel, HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE, RasterSpheres,
-    Renderer, probe, record_before_lighting, record_for_probe,
+    AreaModel, Cut, HdrImage, Lighting, LightingOptions, Mode, RASTER_SPHERE_TOLERANCE,
+    RasterSpheres, Renderer, probe, record_before_lighting, record_for_probe,
 };
 
 /// Points, spots, one around the camera and one beyond any far plane that reaches in.
@@ -147,13 +147,20 @@ fn raster_spheres_show_the_image_of_no_culling() {
         println!("skipped: {} does not blend 32-bit floats", gpu.info.name);
         return;
     }
-    for (name, view) in views() {
+    let cuts = [Cut::Windowed, Cut::Hard];
+    for ((name, view), cut) in views().into_iter().flat_map(|view| cuts.map(|cut| (view, cut))) {
         let all = lights(&view);
         let lights = LightBuffer::new(&gpu, &all).unwrap();
         let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
-        let reference =
-            everything(&gpu, &mut renderer, &view, &lights, Mode::Deferred, EVALUATE_ALL);
-        let spheres = RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default()).unwrap();
+        let options = LightingOptions {
+            kinds: lights.kinds(),
+            exit_weight: EVALUATE_ALL,
+            cut,
+            ..LightingOptions::default()
+        };
+        let reference = image_of(&gpu, &mut renderer, &view, &lights, Mode::Deferred, options);
+        let spheres =
+            RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default(), cut).unwrap();
         let draw = |lights: &LightBuffer| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -164,7 +171,7 @@ fn raster_spheres_show_the_image_of_no_culling() {
             HdrImage::read(&gpu, renderer.targets(), view.viewport).unwrap()
         };
         let difference = draw(&lights).difference(&reference).unwrap();
-        println!("{name}: {difference:?}");
+        println!("{name}, {cut:?}: {difference:?}");
         assert!(difference.max_rel <= RASTER_SPHERE_TOLERANCE, "{name}: {difference:?}");
         // The camera's own light left out must show.
         let fewer = LightBuffer::new(&gpu, &all[..60]).unwrap();

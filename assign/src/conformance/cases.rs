@@ -95,6 +95,9 @@ pub const CASES: &[Case] = &[
     case("finite-far", "a far plane, depth reversed", |r| {
         still(r, &View { far_m: Some(40.0), ..default_view() }, 300, default_mix)
     }),
+    case("lights-end-before-far", "a far plane far behind the last light", |r| {
+        still(r, &View { far_m: Some(2_000.0), ..default_view() }, 300, default_mix)
+    }),
     case("standard-depth", "a far plane, depth not reversed", |r| {
         still(r, &views::standard(0.1, Some(40.0)), 300, default_mix)
     }),

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use scenes::{Outlines, Radii};
 
 use super::{
-    values::{self, Camera, Size},
+    values::{self, Camera, FarPlane, Size},
     vpl::VplArgs,
 };
 
@@ -83,6 +83,16 @@ pub struct StageArgs {
     /// along the scene's path; else the scene's own view
     #[arg(long, value_name = "X,Y,Z:X,Y,Z", allow_hyphen_values = true)]
     pub camera: Option<Camera>,
+
+    /// View depth of the near plane in metres, 1e-6 to 1e6
+    /// [default: that of the file's camera, else a 500th of the size of the scene]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = values::scale)]
+    pub near: Option<f64>,
+
+    /// View depth of the far plane in metres, 1e-6 to 1e9, or infinite
+    /// [default: that of the file's camera, else just beyond the scene's bounds]
+    #[arg(long, value_name = "M|infinite", allow_hyphen_values = true)]
+    pub far: Option<FarPlane>,
 
     /// Seed of the scattered lights
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]

@@ -93,6 +93,12 @@ fn every_value_out_of_range_is_named_with_its_range() {
         ("--diffuse-share", &["0", "1.01", "NaN"], "a number above 0 and at most 1"),
         ("--replicate", &["0", "65", "1.5"], "a whole number from 1 to 64"),
         ("--spots", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
+        ("--near", &["0", "-1", "1e7", "NaN", "x"], "a number from 1e-6 to 1e6"),
+        (
+            "--far",
+            &["0", "-1", "2e9", "NaN", "inf", "none"],
+            "a number of metres from 1e-6 to 1e9, or infinite",
+        ),
         ("--lights", &["-1", "16777217", "1.5", "99999999999999999999"], counts),
         ("--frames", &["0", "100001", "-3", "all"], counts),
         ("--warmup", &["-1", "100001", "x"], counts),

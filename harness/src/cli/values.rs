@@ -106,6 +106,28 @@ impl FromStr for Camera {
     }
 }
 
+/// Where the far plane is: `100`, metres, or `infinite`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FarPlane {
+    /// At a view depth, metres.
+    At(f64),
+    /// Nowhere.
+    Infinite,
+}
+
+impl FromStr for FarPlane {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "infinite" {
+            return Ok(Self::Infinite);
+        }
+        number(text, SCALES.0, 1e9)
+            .map(Self::At)
+            .ok_or_else(|| "a number of metres from 1e-6 to 1e9, or infinite".to_owned())
+    }
+}
+
 /// Ids of strategies, none empty, none twice, in the order given: `None,DC-I/64x64x24`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies(pub Vec<String>);

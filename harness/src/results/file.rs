@@ -79,6 +79,7 @@ impl Results {
             }
             _ => {
                 let mut results: Self = serde_json::from_str(&text).map_err(parse_error)?;
+                results.rename_records();
                 results.records.iter_mut().for_each(Record::bill_again);
                 Ok(results)
             }

@@ -74,6 +74,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         radius_scale: 1.0,
         eye: [0.0, 1.7, 8.0],
         forward: [0.0, 0.0, -1.0],
+        planes: None,
         light_box: [[-15.0, 0.0, -7.0], [15.0, 10.0, 7.0]],
         own_lights: 0,
         width: 640,

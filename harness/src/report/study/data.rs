@@ -99,13 +99,19 @@ pub(super) fn parameters(id: &str) -> &str {
     if second.starts_with(|c: char| c.is_ascii_digit()) { second } else { "" }
 }
 
-/// The family, and for models the size of their parts: what tells strategies apart that have
-/// their default parameters.
+/// The family, for models the size of their parts, and for grids a box that is not the paper's: what
+/// tells strategies apart that have their default parameters.
 pub(super) fn short(id: &str) -> String {
     match (family(id), parameters(id)) {
         ("M", size) if !size.is_empty() => format!("M/{size}"),
+        ("G", _) => grid_box(id).map_or_else(|| "G".to_owned(), |name| format!("G/{name}")),
         (family, _) => family.to_owned(),
     }
+}
+
+/// The box of a grid, where it is not that of the lights' positions: `supports` or `surfaces`.
+fn grid_box(id: &str) -> Option<&str> {
+    id.split('/').find(|segment| ["supports", "surfaces"].contains(segment))
 }
 
 /// Whether it finds lights through the hierarchy.
@@ -145,17 +151,15 @@ pub(super) fn class(id: &str) -> String {
     }
 }
 
-/// Boxes of a grid that the comparison paper does not have.
-const OTHER_BOXES: [&str; 2] = ["surfaces", "supports"];
-
 /// Whether the comparison paper has a strategy: those that cut samples into groups, from the list of
-/// all lights, and models whole; not the grid of hybrid lighting, nor grids over other boxes.
+/// all lights, and models whole; not the grid of hybrid lighting, nor a grid over the surfaces. A grid
+/// over the lights' supports, as earlier versions measured it, stands in for the paper's under its own
+/// name: its cells are coarser.
 pub(super) fn is_of_the_paper(record: &Record) -> bool {
     let id = record.strategy.as_str();
     let is_parted = family(id) == "M" && !parameters(id).is_empty();
-    let is_other_box = id.split('/').any(|segment| OTHER_BOXES.contains(&segment));
-    let is_plain =
-        !is_bvh(id) && !is_other_box && !is_parted && !record.is_lossy && family(id) != "HG";
+    let is_other = family(id) == "HG" || grid_box(id) == Some("surfaces");
+    let is_plain = !is_bvh(id) && !is_parted && !record.is_lossy && !is_other;
     is_plain && STRATEGIES.iter().any(|entry| entry.family == family(id) && !entry.axes.is_empty())
 }
 
@@ -172,6 +176,8 @@ mod tests {
             (short("M/2/bvh"), short("M/bvh"), short("T-E/28x28")),
             ("M/2".into(), "M".into(), "T-E".into())
         );
+        assert_eq!(short("G/20x20x20/bvh"), "G");
+        assert_eq!(short("G/20x20x20/supports/bvh"), "G/supports");
         assert_eq!(knob("T-E/28x28/bvh/cap16"), Some("cap16"));
         assert_eq!(knob("T-E/28x28/reuse2"), Some("reuse2"));
         assert_eq!(knob("SC-E/48x48x40/n24/s0.001/bvh"), Some("s0.001"));

@@ -5,6 +5,7 @@
 //! paper's own statistic; others stand beside it.
 
 mod comparison;
+mod culling;
 mod endless;
 mod table;
 mod verdict;
@@ -45,6 +46,7 @@ pub(super) struct Paper {
 pub(super) fn paper(study: &str) -> Option<&'static Paper> {
     match study {
         "comparison" => Some(&comparison::PAPER),
+        "culling" => Some(&culling::PAPER),
         "endless" => Some(&endless::PAPER),
         _ => None,
     }

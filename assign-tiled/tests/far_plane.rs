@@ -1,0 +1,47 @@
+//! A far plane gives tiles far corners, and with them HS+SAT-N, the comparison paper's tests.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use assign::{
+    Assignment, Bounds, CullSettings, EncoderPasses, Frame, Gpu, Light, LightBuffer, View,
+};
+use assign_tiled::{TileSize, Tiled};
+use glam::Vec3;
+
+/// Small lights all over the view, to a depth of 30 metres.
+fn lights() -> Vec<Light> {
+    let at = |ix: u32| {
+        let share = |factor: f32| (ix as f32 * factor).fract() - 0.5;
+        let depth = 1.0 + 29.0 * (share(0.618_034) + 0.5);
+        let place = Vec3::new(share(0.754_878) * depth, share(0.569_84) * depth, -depth);
+        Light::point(place, 0.6, Vec3::ONE)
+    };
+    (0..400).map(at).collect()
+}
+
+/// Entries of all lists of T-I.
+fn entries(gpu: &Gpu, far_m: Option<f32>, tests: &str) -> u64 {
+    let lights = LightBuffer::new(gpu, &lights()).unwrap();
+    let view = View { far_m, ..View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.1, [256, 192]) };
+    let settings = CullSettings { tests: tests.parse().unwrap(), ..CullSettings::default() };
+    let mut tiles = Tiled::new(gpu, TileSize([16, 16]), Bounds::Implicit, settings).unwrap();
+    let frame = Frame::new(&view, &lights);
+    tiles.prepare(gpu, &frame).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    tiles.record(&frame, &mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
+    tiles.lists().snapshot(gpu).unwrap().counters.requested()
+}
+
+#[test]
+fn with_a_far_plane_hs_and_sat_n_list_fewer_lights_than_hs() {
+    let gpu = Gpu::open(None).unwrap();
+    let [open, far] = [None, Some(40.0)].map(|far_m| entries(&gpu, far_m, "hs+sat-n"));
+    let [open_hs, far_hs] = [None, Some(40.0)].map(|far_m| entries(&gpu, far_m, "hs"));
+    println!("HS+SAT-N {open} without a far plane, {far} with one; HS {open_hs} and {far_hs}");
+    // Without far corners HS runs alone, whatever is asked for.
+    assert_eq!(open, open_hs);
+    // All lights lie before the far plane: it changes nothing for HS.
+    assert_eq!(far_hs, open_hs);
+    assert!(far < far_hs);
+}

@@ -1,0 +1,125 @@
+//! The records of the survey by renderer and method, and what several parts say together.
+
+use super::super::super::super::format::significant;
+use super::super::super::super::rank::Ratio;
+use super::super::super::data::{counts, entries, family, knob};
+use super::{Answer, Verdict};
+use crate::results::{BASELINE, EARLY_EXIT, Record};
+use crate::study::Done;
+
+/// The sections of the study: how pixels are lit.
+const MODES: [&str; 2] = ["deferred", "forward"];
+
+/// Frames that differ by less are alike, where no laps tell them apart.
+const ALIKE: f64 = 0.05;
+
+/// The records of one renderer.
+pub(super) struct Mode<'a> {
+    pub(super) name: &'static str,
+    pub(super) records: Vec<&'a Record>,
+    pub(super) counts: Vec<u64>,
+}
+
+impl<'a> Mode<'a> {
+    /// Both renderers, where they were measured.
+    pub(super) fn all(done: &'a Done, scene: &'a str) -> Vec<Self> {
+        let of = |name: &'static str| {
+            let entries = entries(done, scene, name);
+            let counts = counts(&entries);
+            let times = entries.iter().map(|entry| entry.record);
+            Self { name, records: times.filter(|r| r.frame_ms.is_finite()).collect(), counts }
+        };
+        MODES.into_iter().map(of).filter(|mode| !mode.records.is_empty()).collect()
+    }
+
+    pub(super) fn most(&self) -> u64 {
+        self.counts.last().copied().unwrap_or(0)
+    }
+
+    /// Counts of at least one light.
+    pub(super) fn lit(&self) -> impl Iterator<Item = u64> + '_ {
+        self.counts.iter().copied().filter(|count| *count > 0)
+    }
+
+    pub(super) fn at(&self, lights: u64, is_it: impl Fn(&Record) -> bool) -> Option<&'a Record> {
+        self.records.iter().copied().find(|record| record.lights == lights && is_it(record))
+    }
+
+    /// At the most lights.
+    pub(super) fn last(&self, is_it: impl Fn(&Record) -> bool) -> Option<&'a Record> {
+        self.at(self.most(), is_it)
+    }
+
+    /// What lights cost: the frame at the most lights less that without a light, ms.
+    pub(super) fn growth(&self, is_it: impl Fn(&Record) -> bool + Copy) -> Option<f64> {
+        let frames = (self.last(is_it)?.frame_ms, self.at(0, is_it)?.frame_ms);
+        (self.most() > 0).then_some(frames.0 - frames.1)
+    }
+}
+
+pub(super) fn none(record: &Record) -> bool {
+    record.strategy == BASELINE
+}
+
+pub(super) fn bounding_sphere(record: &Record) -> bool {
+    record.strategy == EARLY_EXIT
+}
+
+pub(super) fn raster_sphere(record: &Record) -> bool {
+    record.strategy == "RasterSphere"
+}
+
+pub(super) fn is_cluster(record: &Record) -> bool {
+    family(&record.strategy) == "DC-I"
+}
+
+/// The paper's clusters, whose lists end at the cap.
+pub(super) fn capped(record: &Record) -> bool {
+    is_cluster(record) && knob(&record.strategy).is_some()
+}
+
+/// The same with whole lists.
+pub(super) fn whole(record: &Record) -> bool {
+    is_cluster(record) && knob(&record.strategy).is_none()
+}
+
+/// The methods of the survey that cull.
+pub(super) fn of_the_survey(record: &Record) -> bool {
+    bounding_sphere(record) || raster_sphere(record) || capped(record)
+}
+
+/// Whether a record is slower than another, beyond chance.
+pub(super) fn is_slower(record: &Record, other: &Record) -> bool {
+    match Ratio::of(other, record) {
+        Some(ratio) => ratio.is_faster(),
+        None => record.frame_ms > other.frame_ms * (1.0 + ALIKE),
+    }
+}
+
+pub(super) fn timed(record: &Record) -> String {
+    format!("{} {} ms", record.strategy, significant(record.frame_ms))
+}
+
+/// What modes said, and how many of them held.
+#[derive(Default)]
+pub(super) struct Tally {
+    pub(super) figures: Vec<String>,
+    pub(super) good: usize,
+    pub(super) all: usize,
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, holds: bool, figure: String) {
+        self.good += usize::from(holds);
+        self.all += 1;
+        self.figures.push(figure);
+    }
+
+    pub(super) fn answer(self, parts: &str, missing: &str) -> Answer {
+        if self.all == 0 {
+            return Answer::unknown(missing);
+        }
+        let verdict = Verdict::of_parts(self.good, self.all, parts);
+        Answer { figure: self.figures.join("; "), verdict }
+    }
+}

@@ -1,0 +1,139 @@
+//! The verdicts of the culling survey, from made-up records.
+
+mod report_data;
+
+use std::collections::BTreeMap;
+
+use harness::report::write_study;
+use harness::results::{Mode, PassKind, PassTimes, Passes, Record, Results};
+use harness::study::{Done, Job, Manifest};
+use report_data::{empty, record};
+
+const CAPPED: &str = "DC-I/40x40x24/cap128";
+const WHOLE: &str = "DC-I/40x40x24";
+
+/// The survey's claims, all but that of tiles, which lists without a loss contradict.
+const CLAIMS: [&str; 11] = [
+    "linear", "clay", "slowest", "gain", "sphere", "raster", "deferred", "clusters", "rate", "cap",
+    "range",
+];
+
+/// A frame of a method, ms: as the survey has it, but for the claim that is turned round.
+fn frame_ms(turned: &str, mode: Mode, strategy: &str, lights: u64) -> f64 {
+    let (offset, slope) = match (strategy, turned) {
+        ("Clay", "clay") => (100.0, 0.0),
+        ("Clay", _) => return 1.0,
+        ("None", _) => (2.0, 0.020),
+        ("Sphere", "slowest" | "gain") => (2.0, 0.030),
+        ("Sphere", "sphere") => (2.0, 0.018),
+        ("Sphere", _) => (2.0, 0.010),
+        ("RasterSphere", "raster") => (2.0, 0.005),
+        ("RasterSphere", "gain") => (2.0, 0.030),
+        ("RasterSphere", _) => (2.0, 0.012),
+        (CAPPED, "gain" | "clusters") => (2.0, 0.030),
+        (CAPPED, "rate") => (12.0, 0.0005),
+        _ => (2.0, 0.0005),
+    };
+    let bend = if turned == "linear" && lights == 750 { 9.0 } else { 0.0 };
+    let factor = match (mode, turned) {
+        (Mode::Forward, "deferred") => 0.5,
+        (Mode::Forward, _) => 1.3,
+        _ => 1.0,
+    };
+    factor * (offset + slope * lights as f64 + bend)
+}
+
+fn made(turned: &str, mode: Mode, strategy: &str, lights: u64) -> Record {
+    let mut made = record(strategy, mode, 0.0, 1.0);
+    made.lights = lights;
+    made.passes = Passes::default();
+    let times = vec![frame_ms(turned, mode, strategy, lights); 8];
+    made.passes.insert("shade", PassTimes::new(PassKind::Shade, times));
+    made.set_times();
+    made.is_lossy = strategy == CAPPED;
+    made.errors.insert("missing_energy".into(), Some(0.0));
+    made.longest_list = if turned == "cap" { 200 } else { 90 };
+    let lost = if turned == "range" { 0.0 } else { 0.2 };
+    made.unbounded_errors.insert("missing_energy".into(), Some(lost));
+    made.differing_channels = Some(if turned == "tiles" { 5 } else { 0 });
+    made
+}
+
+fn study(turned: &str) -> Done {
+    let identity = ["lightbench", "study", "culling"].map(str::to_owned).to_vec();
+    let mut manifest = Manifest { identity, study: "culling".into(), jobs: Vec::new() };
+    let mut results = BTreeMap::new();
+    for mode in [Mode::Deferred, Mode::Forward] {
+        for lights in [0, 750, 1_500] {
+            let name = format!("atrium-{}-{lights}", mode.name());
+            manifest.jobs.push(Job {
+                name: name.clone(),
+                scene: "atrium".into(),
+                section: mode.name().into(),
+                command: vec!["lightbench".into(), "compare".into()],
+            });
+            let all = ["Clay", "None", "Sphere", "RasterSphere", CAPPED, WHOLE];
+            let served =
+                all.into_iter().filter(|id| mode == Mode::Deferred || *id != "RasterSphere");
+            let records = served.map(|id| made(turned, mode, id, lights)).collect();
+            results.insert(name, Results { records, ..empty() });
+        }
+    }
+    Done { manifest, results, folders: BTreeMap::new() }
+}
+
+fn page(done: &Done) -> (String, String) {
+    let out = tempfile::tempdir().expect("a folder");
+    let text = write_study(done, out.path()).expect("writes");
+    let page = std::fs::read_to_string(out.path().join("index.html")).expect("the page");
+    (text.split_whitespace().collect::<Vec<_>>().join(" "), page)
+}
+
+fn verdict<'a>(page: &'a str, claim: &str) -> &'a str {
+    let start = format!("data-claim=\"survey-{claim}\" data-verdict=\"");
+    page.split_once(&start).expect("the claim").1.split('"').next().expect("a verdict")
+}
+
+#[test]
+fn every_claim_of_the_survey_holds_where_the_figures_say_so_and_fails_turned_round() {
+    let (text, holds) = page(&study(""));
+    for claim in CLAIMS {
+        assert_eq!(verdict(&holds, claim), "holds", "{claim}: {text}");
+        let (text, fails) = page(&study(claim));
+        assert_eq!(verdict(&fails, claim), "fails", "{claim}, turned round: {text}");
+    }
+    // Lists without a loss show no tiles.
+    assert_eq!(verdict(&holds, "tiles"), "fails");
+    assert_eq!(verdict(&page(&study("tiles")).1, "tiles"), "holds");
+}
+
+#[test]
+fn a_data_centre_gpu_does_not_judge_forward_against_deferred() {
+    let mut done = study("");
+    for results in done.results.values_mut() {
+        results.machine.adapter = "NVIDIA H200".into();
+    }
+    let (text, page) = page(&done);
+    assert_eq!(verdict(&page, "deferred"), "unknown", "{text}");
+    assert!(page.contains("RasterSphere and Clay shade there"), "the deferred times are cautioned");
+    assert!(page.contains("not with deferred ones"), "the forward times are cautioned");
+}
+
+#[test]
+fn lossy_rows_state_their_error_and_never_lead() {
+    let mut done = study("");
+    for results in done.results.values_mut() {
+        for record in results.records.iter_mut().filter(|record| record.strategy == CAPPED) {
+            record.errors.insert("rel_mse".into(), Some(0.25));
+            let times = vec![0.5; 8];
+            record.passes.insert("shade", PassTimes::new(PassKind::Shade, times));
+            record.set_times();
+        }
+    }
+    let (text, _) = page(&done);
+    assert!(
+        text.contains(&format!("without a loss: deferred {WHOLE}; forward {WHOLE}.")),
+        "{text}"
+    );
+    assert!(text.contains(&format!("{CAPPED} 0.500 ms (lossy, relMSE 0.250)")), "{text}");
+}
