@@ -4,6 +4,9 @@
 //! from the paper, and the function that decides it from the figures of one scene. It is judged by the
 //! paper's own statistic; others stand beside it.
 
+mod area;
+mod area_cost;
+mod area_ltc;
 mod comparison;
 mod endless;
 mod table;
@@ -45,6 +48,7 @@ pub(super) struct Paper {
 pub(super) fn paper(study: &str) -> Option<&'static Paper> {
     match study {
         "comparison" => Some(&comparison::PAPER),
+        "area" => Some(&area::PAPER),
         "endless" => Some(&endless::PAPER),
         _ => None,
     }
