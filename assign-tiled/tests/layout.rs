@@ -39,7 +39,8 @@ fn kernels_validate() {
         for source in [LightSource::Linear, LightSource::Hierarchy] {
             for union in ["hs+sat-n", "hs", "sat-e+sat-p+sat-v"] {
                 for kinds in LightKinds::ALL {
-                    let settings = CullSettings { tests: union.parse().unwrap(), source };
+                    let tests = union.parse().unwrap();
+                    let settings = CullSettings { tests, source, ..CullSettings::default() };
                     kernel(bounds, settings, kinds);
                 }
             }

@@ -4,8 +4,8 @@
 //! resources it reads. The driver supplies the kernel (`cull.wesl`), the tests and the lists.
 
 use crate::{
-    AssignError, CullSettings, Frame, FrameBindings, Gpu, LightKinds, LightLists, LightSource,
-    ListsBindings, LiveGroups, Lookup, Passes, Shader, StrategyModule,
+    AreaBounds, AssignError, CullSettings, Frame, FrameBindings, Gpu, LightKinds, LightLists,
+    LightSource, ListsBindings, LiveGroups, Lookup, Passes, Shader, StrategyModule,
     frame::{entry, storage_entry},
 };
 
@@ -325,6 +325,7 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Sh
         .flag("sat_p", tests.sat_p)
         .flag("sat_v", tests.sat_v)
         .flag("hierarchy", variant.settings.source == LightSource::Hierarchy)
+        .flag("area_balls", variant.settings.area_bounds == AreaBounds::Ball)
         .flag("sparse", variant.sparse)
         .light_kinds(kinds)
 }

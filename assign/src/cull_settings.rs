@@ -106,6 +106,18 @@ pub enum LightSource {
     Hierarchy,
 }
 
+/// What bounds the reach of an area light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AreaBounds {
+    /// The outline blown up by the range, cut by the emitter's plane where it is one-sided: the reach
+    /// itself for a rectangle.
+    #[default]
+    Outline,
+    /// The ball around it: the range and half the diagonal (Dobetsberger 2025, equation 5.1). A
+    /// baseline: its lists are longer and as complete.
+    Ball,
+}
+
 /// What a user chooses of the culling driver; the lists hold what they must under any choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CullSettings {
@@ -113,11 +125,13 @@ pub struct CullSettings {
     pub tests: FrustumTests,
     /// Where lights come from.
     pub source: LightSource,
+    /// What bounds the reach of an area light.
+    pub area_bounds: AreaBounds,
 }
 
 impl CullSettings {
     /// What an id says of these settings behind its parameters: nothing of a default, tests only
-    /// where groups are frusta. `/hs`, `/bvh`, `/hs/bvh`.
+    /// where groups are frusta. `/hs`, `/bvh`, `/hs/bvh`, `/ball`.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
         if shape == GroupShape::Frustum && self.tests != FrustumTests::default() {
@@ -125,6 +139,9 @@ impl CullSettings {
         }
         if self.source == LightSource::Hierarchy {
             suffix += "/bvh";
+        }
+        if self.area_bounds == AreaBounds::Ball {
+            suffix += "/ball";
         }
         suffix
     }

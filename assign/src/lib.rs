@@ -50,7 +50,7 @@ mod view;
 
 pub use assignment::{Assignment, Lookup, StrategyModule};
 pub use cull::{Culler, CullerDescriptor, Facing, GroupShape, Groups};
-pub use cull_settings::{Bounds, CullSettings, FrustumTests, LightSource};
+pub use cull_settings::{AreaBounds, Bounds, CullSettings, FrustumTests, LightSource};
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use error::AssignError;
 pub use everything::Everything;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-use assign::{CullSettings, Culler, GroupShape, LightKinds, LightSource};
+use assign::{AreaBounds, CullSettings, Culler, GroupShape, LightKinds, LightSource};
 
 const GROUP_OF: &str = "
 import package::sample::ViewSample;
@@ -24,7 +24,7 @@ const BOXES: [(GroupShape, &str); 2] = [
 type Permutation = (GroupShape, &'static str, CullSettings, bool);
 
 fn settings(tests: &str, source: LightSource) -> CullSettings {
-    CullSettings { tests: tests.parse().unwrap(), source }
+    CullSettings { tests: tests.parse().unwrap(), source, ..CullSettings::default() }
 }
 
 /// Every subset of the frustum tests but none, and the boxes; from both sources, all or live.
@@ -111,6 +111,26 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
     };
     let most = 65_535 * u64::from(careful) + (1 << 30);
     assert!(careful > 0 && most < 1 << 32, "{careful}: {most}");
+}
+
+/// Bounds of area lights change the kernel of scenes with area lights, and no other.
+#[test]
+fn area_bounds_change_only_kernels_with_area_lights() {
+    let boxes = BOXES.map(|(shape, bounds)| (shape, bounds, CullSettings::default(), true));
+    for (shape, bounds, settings, sparse) in boxes.into_iter().chain([permutations()[0]]) {
+        for kinds in LightKinds::ALL {
+            let source = |area_bounds| {
+                let settings = CullSettings { area_bounds, ..settings };
+                let linked =
+                    Culler::kernel_source(shape, settings, sparse, &strategy(bounds), kinds);
+                let source = linked.unwrap();
+                validate(&source).unwrap();
+                source
+            };
+            let differs = source(AreaBounds::Ball) != source(AreaBounds::Outline);
+            assert_eq!(differs, kinds.areas, "{shape:?}, {kinds:?}");
+        }
+    }
 }
 
 /// Permutations differ where they should: the flags reach the module.

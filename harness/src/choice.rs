@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use assign::{AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
+use assign::{AreaBounds, AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
 use assign_clustered::Normals;
 use serde_json::Value;
 use shading::RASTER_SPHERE_TOLERANCE;
@@ -95,6 +95,12 @@ impl Choice {
                         _ => LightSource::Linear,
                     };
                     choice.says.1 = true;
+                }
+                Some(Axis::AreaBounds) => {
+                    choice.spec.settings.area_bounds = match segment.as_str() {
+                        "ball" => AreaBounds::Ball,
+                        _ => AreaBounds::Outline,
+                    };
                 }
                 Some(Axis::Box) => {
                     choice.spec.grid_box = segment.parse().map_err(|_| choice.refuse(&segment))?;
@@ -212,6 +218,10 @@ impl Choice {
                 }
                 Axis::Source => ("source", "linear".into()),
                 Axis::Box => ("box", self.spec.grid_box.name().to_owned()),
+                Axis::AreaBounds if settings.area_bounds == AreaBounds::Ball => {
+                    ("area_bounds", "ball".into())
+                }
+                Axis::AreaBounds => continue,
                 Axis::Normals | Axis::Specular | Axis::Cap | Axis::Reuse => continue,
             };
             all.insert(name.to_owned(), value.into());
@@ -304,6 +314,7 @@ fn axis_of(segment: &str) -> Option<Axis> {
     match segment {
         "linear" | "bvh" => Some(Axis::Source),
         "positions" | "supports" | "lights" | "surfaces" => Some(Axis::Box),
+        "ball" | "outline" => Some(Axis::AreaBounds),
         _ if segment.starts_with(CAP) => Some(Axis::Cap),
         _ if number_of(segment, NORMALS).is_some() => Some(Axis::Normals),
         _ if threshold_of(segment).is_some() => Some(Axis::Specular),
@@ -343,6 +354,10 @@ mod tests {
         assert_eq!(boxes, ["G/20x20x20", "G/20x20x20/supports/bvh", "G/8x8x8/supports"]);
         let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
         assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
+        let balls = asked(&["--strategies", "sc-e/ball/bvh,T-I/outline,g/BALL/surfaces"]);
+        let told = ["SC-E/48x48x40/bvh/ball", "T-I/28x28", "G/20x20x20/surfaces/ball"];
+        assert_eq!(balls, told);
+        assert_eq!(Choice::parse("SC-E/ball").unwrap().parameters()["area_bounds"], "ball");
         let normals = asked(&["--strategies", "sc-e/BVH/N6,SC-E/s0.001/n24"]);
         assert_eq!(normals, ["SC-E/48x48x40/n6/bvh", "SC-E/48x48x40/n24/s0.001"]);
         assert!(Choice::parse("SC-E/n24/s0.001").unwrap().is_lossy(1));

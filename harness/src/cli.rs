@@ -172,7 +172,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "SOURCE", default_value = "linear")]
     pub source: SourceChoice,
 
-    /// How the light of area lights is integrated
+    /// How the light of area lights is integrated: from one point (point, mrp, mrp-published), by linearly
+    /// transformed cosines (ltc, ltc-hammon, ltc-unsplit, ltc-per-light, ltc-polynomial,
+    /// ltc-polynomial-per-light), or by samples (monte-carlo:N, monte-carlo-reflected:N)
     #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
     pub area_model: AreaModel,
 

@@ -13,7 +13,7 @@ use crate::{cli::FitLtcArgs, error::HarnessError};
 pub fn fit_ltc(args: &FitLtcArgs) -> Result<String, HarnessError> {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} lobes, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::new((args.size * args.size) as u64).with_style(style);
+    let bar = ProgressBar::new(2 * (args.size * args.size) as u64).with_style(style);
     let report = generate(args.out.as_deref(), args.size, |lobes| bar.inc(lobes as u64))?;
     bar.finish_and_clear();
     Ok(text_of(&report))
@@ -21,7 +21,9 @@ pub fn fit_ltc(args: &FitLtcArgs) -> Result<String, HarnessError> {
 
 fn text_of(report: &FitReport) -> String {
     let mut text = String::from("Specular error over random rectangles, relative:\n");
-    for (name, accuracy) in [("table", report.table), ("polynomials", report.polynomial)] {
+    let rows =
+        [("table", report.table), ("Hammon's", report.hammon), ("polynomials", report.polynomial)];
+    for (name, accuracy) in rows {
         let Accuracy { median, bias, p95 } = accuracy;
         text += &format!(
             "  {name:<12} median {:.1} %, mean {:+.1} %, p95 {:.0} %\n",

@@ -43,6 +43,8 @@ pub enum Axis {
     Tests,
     /// Where lights come from: `linear` or `bvh`.
     Source,
+    /// What bounds the reach of an area light: `ball` instead of its outline.
+    AreaBounds,
     /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
     Box,
     /// Bins of normals that clusters are split into: `n6`.
@@ -61,6 +63,7 @@ impl Axis {
         match self {
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
+            Self::AreaBounds => "ball or outline",
             Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the bins of normals: n1, n6, n24 or n54",
             Self::Specular => "s and the specular radiance that is left out, such as s0.001",
@@ -120,8 +123,8 @@ impl StrategyEntry {
 
 const CLUSTER: &[&str] = &["tile_width_px", "tile_height_px", "slices"];
 const TILE: &[&str] = &["tile_width_px", "tile_height_px"];
-const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source, Axis::Cap, Axis::Reuse];
-const BOXES: &[Axis] = &[Axis::Source, Axis::Cap, Axis::Reuse];
+const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse];
+const BOXES: &[Axis] = &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse];
 
 /// All methods; those of the comparison paper at its parameters (Enhuber 2019, table 4.3).
 pub const STRATEGIES: &[StrategyEntry] = &[
@@ -227,7 +230,14 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "SC-E",
         parameters: CLUSTER,
         default: "48x48x40",
-        axes: &[Axis::Normals, Axis::Specular, Axis::Source, Axis::Cap, Axis::Reuse],
+        axes: &[
+            Axis::Normals,
+            Axis::Specular,
+            Axis::Source,
+            Axis::AreaBounds,
+            Axis::Cap,
+            Axis::Reuse,
+        ],
         summary: "sparse clusters, explicit bounds: both at once",
         reads_depth: true,
         make: |gpu, spec| {
@@ -248,7 +258,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "G",
         parameters: &["cells_x", "cells_y", "cells_z"],
         default: "20x20x20",
-        axes: &[Axis::Box, Axis::Source, Axis::Cap, Axis::Reuse],
+        axes: &[Axis::Box, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse],
         summary: "a grid of cells in world space, over the box of the lights' positions, of their supports, or of the surfaces",
         reads_depth: false,
         make: |gpu, spec| {

@@ -40,6 +40,9 @@ pub const TRUTH: &str = "truth";
 /// The section whose images are compared with them.
 pub const MODELS: &str = "models";
 
+/// The section whose records list area lights by their outlines and by balls around them.
+pub const BOUNDS: &str = "bounds";
+
 /// Runs a study, or a share of it, and writes its report; returns what to print.
 pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
     let scenes = StudyScene::all(args)?;

@@ -5,6 +5,8 @@ use std::{fmt, str::FromStr};
 use assign::AssignError;
 use serde::{Deserialize, Serialize};
 
+use crate::ltc::Masking;
+
 /// The most samples of [`AreaModel::MonteCarlo`].
 pub const MAX_AREA_SAMPLES: u32 = 4096;
 
@@ -14,15 +16,37 @@ pub const MAX_AREA_SAMPLES: u32 = 4096;
 pub enum AreaModel {
     /// All light comes from the emitter's middle.
     Point,
-    /// The most representative point of each term (Drobot 2014; Dobetsberger 2025, section 5.3).
+    /// The most representative point of each term (Drobot 2014), weighed by solid angles that are
+    /// derived in `area_mrp.wesl`.
     Mrp,
-    /// Linearly transformed cosines, their matrices looked up in the fitted table.
+    /// The most representative point with the weights of Dobetsberger 2025, section 5.3: the cone of
+    /// equation 5.5 for the specular term.
+    MrpPublished,
+    /// Linearly transformed cosines: each sample looks its matrix up once in the fitted table.
     #[default]
     LtcTable,
-    /// The same, their matrices from the fitted polynomials.
+    /// The same with a table fitted to GGX with Hammon's approximate masking, which some engines
+    /// have. The truth stays that of the exact masking (Dobetsberger 2025, table 5.1).
+    LtcHammon,
+    /// The table, without splitting edges that span more than a right angle (Dobetsberger 2025,
+    /// section 5.4.4, before the fix).
+    LtcUnsplit,
+    /// The table, looked up once per light and sample: the image of [`Self::LtcTable`], bit for
+    /// bit.
+    LtcPerLight,
+    /// Matrices from the fitted polynomials, evaluated once per sample.
     LtcPolynomial,
+    /// The polynomials, evaluated once per light and sample: the image of [`Self::LtcPolynomial`],
+    /// bit for bit.
+    LtcPolynomialPerLight,
     /// Samples over the spherical rectangle: the integral itself, with noise.
     MonteCarlo {
+        /// Samples of a light, 1 to [`MAX_AREA_SAMPLES`].
+        samples: u32,
+    },
+    /// The same, but specular samples come only from the part that the surface mirrors
+    /// (Dobetsberger 2025, section 5.2): less noise, and biased.
+    MonteCarloReflected {
         /// Samples of a light, 1 to [`MAX_AREA_SAMPLES`].
         samples: u32,
     },
@@ -33,29 +57,49 @@ const DEFAULT_SAMPLES: u32 = 16;
 
 impl AreaModel {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 11] = [
         Self::Point,
         Self::Mrp,
+        Self::MrpPublished,
         Self::LtcTable,
+        Self::LtcHammon,
+        Self::LtcUnsplit,
+        Self::LtcPerLight,
         Self::LtcPolynomial,
+        Self::LtcPolynomialPerLight,
         Self::MonteCarlo { samples: DEFAULT_SAMPLES },
+        Self::MonteCarloReflected { samples: DEFAULT_SAMPLES },
     ];
 
-    /// The flag that compiles it, together with `areas`.
-    pub fn flag(self) -> &'static str {
+    /// The flags that compile it, together with `areas`.
+    pub fn flags(self) -> &'static [&'static str] {
         match self {
-            Self::Point => "area_point",
-            Self::Mrp => "area_mrp",
-            Self::LtcTable => "area_ltc_table",
-            Self::LtcPolynomial => "area_ltc_polynomial",
-            Self::MonteCarlo { .. } => "area_monte_carlo",
+            Self::Point => &["area_point"],
+            Self::Mrp => &["area_mrp"],
+            Self::MrpPublished => &["area_mrp_published"],
+            Self::LtcTable | Self::LtcHammon => &["area_ltc_table"],
+            Self::LtcUnsplit => &["area_ltc_table", "ltc_unsplit"],
+            Self::LtcPerLight => &["area_ltc_table", "ltc_per_light"],
+            Self::LtcPolynomial => &["area_ltc_polynomial"],
+            Self::LtcPolynomialPerLight => &["area_ltc_polynomial", "ltc_per_light"],
+            Self::MonteCarlo { .. } => &["area_monte_carlo"],
+            Self::MonteCarloReflected { .. } => &["area_monte_carlo", "area_reflected"],
+        }
+    }
+
+    /// The masking whose table shading looks up; `None` where it looks none up.
+    pub fn table(self) -> Option<Masking> {
+        match self {
+            Self::LtcTable | Self::LtcUnsplit | Self::LtcPerLight => Some(Masking::Correlated),
+            Self::LtcHammon => Some(Masking::Hammon),
+            _ => None,
         }
     }
 
     /// Samples of a light; 0 where none are drawn.
-    pub(crate) fn samples(self) -> u32 {
+    pub fn samples(self) -> u32 {
         match self {
-            Self::MonteCarlo { samples } => samples,
+            Self::MonteCarlo { samples } | Self::MonteCarloReflected { samples } => samples,
             _ => 0,
         }
     }
@@ -63,22 +107,47 @@ impl AreaModel {
     /// Checks the number of samples.
     pub fn check(self) -> Result<(), AssignError> {
         match self {
-            Self::MonteCarlo { samples } if !(1..=MAX_AREA_SAMPLES).contains(&samples) => {
+            Self::MonteCarlo { samples } | Self::MonteCarloReflected { samples }
+                if !(1..=MAX_AREA_SAMPLES).contains(&samples) =>
+            {
                 Err(refused(&self.to_string()))
             }
             _ => Ok(()),
+        }
+    }
+
+    /// The name without a number of samples.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Mrp => "mrp",
+            Self::MrpPublished => "mrp-published",
+            Self::LtcTable => "ltc",
+            Self::LtcHammon => "ltc-hammon",
+            Self::LtcUnsplit => "ltc-unsplit",
+            Self::LtcPerLight => "ltc-per-light",
+            Self::LtcPolynomial => "ltc-polynomial",
+            Self::LtcPolynomialPerLight => "ltc-polynomial-per-light",
+            Self::MonteCarlo { .. } => "monte-carlo",
+            Self::MonteCarloReflected { .. } => "monte-carlo-reflected",
+        }
+    }
+
+    fn with_samples(self, samples: u32) -> Option<Self> {
+        match self {
+            Self::MonteCarlo { .. } => Some(Self::MonteCarlo { samples }),
+            Self::MonteCarloReflected { .. } => Some(Self::MonteCarloReflected { samples }),
+            _ => None,
         }
     }
 }
 
 impl fmt::Display for AreaModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Point => f.write_str("point"),
-            Self::Mrp => f.write_str("mrp"),
-            Self::LtcTable => f.write_str("ltc"),
-            Self::LtcPolynomial => f.write_str("ltc-polynomial"),
-            Self::MonteCarlo { samples } => write!(f, "monte-carlo:{samples}"),
+        f.write_str(self.name())?;
+        match self.samples() {
+            _ if self.with_samples(1).is_none() => Ok(()),
+            samples => write!(f, ":{samples}"),
         }
     }
 }
@@ -86,14 +155,18 @@ impl fmt::Display for AreaModel {
 impl FromStr for AreaModel {
     type Err = AssignError;
 
-    /// Reads what [`Display`](fmt::Display) writes; `monte-carlo` alone draws 16 samples.
+    /// Reads what [`Display`](fmt::Display) writes; sampling without a number draws 16 samples.
     fn from_str(text: &str) -> Result<Self, AssignError> {
-        let model = match text.split_once(':') {
-            Some(("monte-carlo", samples)) => {
-                samples.parse().ok().map(|samples| Self::MonteCarlo { samples })
-            }
-            None if text == "monte-carlo" => Some(Self::MonteCarlo { samples: DEFAULT_SAMPLES }),
-            _ => Self::ALL.into_iter().find(|model| model.to_string() == text),
+        let (name, samples) = match text.split_once(':') {
+            Some((name, samples)) => (name, Some(samples)),
+            None => (text, None),
+        };
+        let known = Self::ALL.into_iter().find(|model| model.name() == name);
+        let model = match samples {
+            None => known,
+            Some(samples) => known
+                .zip(samples.parse().ok())
+                .and_then(|(model, samples)| model.with_samples(samples)),
         };
         let model = model.ok_or_else(|| refused(text))?;
         model.check()?;
@@ -115,11 +188,16 @@ impl From<AreaModel> for String {
     }
 }
 
+/// What names a model.
+pub const ACCEPTED_AREA_MODELS: &str = "point, mrp, mrp-published, ltc, ltc-hammon, ltc-unsplit, \
+    ltc-per-light, ltc-polynomial, ltc-polynomial-per-light, monte-carlo:SAMPLES or \
+    monte-carlo-reflected:SAMPLES, 1 to 4096 samples";
+
 fn refused(value: &str) -> AssignError {
     AssignError::Parameter {
         field: "area model".into(),
         value: value.into(),
-        accepted: "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4096".into(),
+        accepted: ACCEPTED_AREA_MODELS.into(),
     }
 }
 
@@ -133,9 +211,12 @@ mod tests {
             assert_eq!(model.to_string().parse::<AreaModel>().unwrap(), model);
         }
         assert_eq!("monte-carlo".parse::<AreaModel>().unwrap().samples(), 16);
-        for bad in ["", "LTC", "ltc:3", "monte-carlo:0", "monte-carlo:4097", "monte-carlo:x"] {
+        for bad in ["", "LTC", "ltc:3", "monte-carlo:0", "monte-carlo:4097", "mrp:1"] {
             let error = bad.parse::<AreaModel>().unwrap_err().to_string();
             assert!(error.contains("area model") && error.contains("4096"), "{bad}: {error}");
+            for model in AreaModel::ALL {
+                assert!(error.contains(model.name()), "{model} is not named: {error}");
+            }
         }
     }
 }

@@ -43,7 +43,7 @@ pub mod traced;
 mod truth;
 mod world_triangles;
 
-pub use area_model::{AreaModel, MAX_AREA_SAMPLES};
+pub use area_model::{ACCEPTED_AREA_MODELS, AreaModel, MAX_AREA_SAMPLES};
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};

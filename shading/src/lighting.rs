@@ -66,11 +66,12 @@ impl LightingOptions {
 
     /// Compiles what they ask for.
     pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
-        shader
+        let shader = shader
             .light_kinds(self.kinds)
             .flag("hard_cut", self.cut == Cut::Hard)
-            .flag("compensation", self.compensation.is_some())
-            .flag(self.area.flag(), self.kinds.areas)
+            .flag("compensation", self.compensation.is_some());
+        let flags = self.area.flags().iter();
+        flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }
 }
 

@@ -4,7 +4,7 @@
 use assign::{Gpu, entry, storage_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
 
-use crate::{AreaModel, LightingOptions, ShadingError, ltc};
+use crate::{LightingOptions, ShadingError, ltc};
 
 /// Where `LightingUniform` is bound in group 2.
 pub(crate) const LIGHTING_BINDING: u32 = 6;
@@ -43,10 +43,10 @@ impl LightingInputs {
             applicable_lights: options.compensation.unwrap_or(0.0),
         };
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&record));
-        let table = match options.reads_table() {
-            false => None,
-            true => {
-                let table = ltc::Table::ggx()?;
+        let table = match options.area.table().filter(|_| options.kinds.areas) {
+            None => None,
+            Some(masking) => {
+                let table = ltc::Table::of(masking)?;
                 let bytes = table.as_bytes();
                 let buffer = gpu.storage("LTC table", bytes.len() as u64)?;
                 gpu.queue.write_buffer(&buffer, 0, bytes);
@@ -80,6 +80,6 @@ impl LightingInputs {
 impl LightingOptions {
     /// Whether shading looks the table up.
     pub(crate) fn reads_table(&self) -> bool {
-        self.kinds.areas && self.area == AreaModel::LtcTable
+        self.kinds.areas && self.area.table().is_some()
     }
 }

@@ -16,6 +16,10 @@ pub(crate) struct LightTotals {
     vertices: u64,
 }
 
+/// Four corners, each with two steps, and the end of every loop: `angle_above` of
+/// `area_mrp_published.wesl`.
+const PUBLISHED_ROUNDS: u64 = 5 + 4 * 3;
+
 impl LightTotals {
     pub(crate) fn of(lights: &[Light]) -> Self {
         let areas = lights.iter().filter_map(|light| match &light.shape {
@@ -27,18 +31,24 @@ impl LightTotals {
     }
 
     /// Rounds of lighting a sample by all of them: a round a light; of an area light one a vertex for
-    /// the closest point, one for the horizon, and one a vertex and another for each term, or a sample
-    /// and its test for each term. Every loop takes one more to end.
+    /// the closest point, one for the horizon, and those of its model: a walk around the vertices for
+    /// each term, one for both, a rectangle's corners twice, or a sample and its test for each term.
+    /// Every loop takes one more to end.
     fn rounds(&self, model: AreaModel) -> u64 {
         let walks = 2 * (self.vertices + self.areas);
         let terms = match model {
             AreaModel::Point => 0,
-            AreaModel::Mrp | AreaModel::LtcTable | AreaModel::LtcPolynomial => {
-                2 * (self.vertices + 2 * self.areas)
-            }
-            AreaModel::MonteCarlo { samples } => {
+            AreaModel::Mrp => self.vertices + 2 * self.areas,
+            AreaModel::MrpPublished => PUBLISHED_ROUNDS * self.areas,
+            AreaModel::MonteCarlo { samples } | AreaModel::MonteCarloReflected { samples } => {
                 2 * u64::from(samples) * (self.vertices + 2 * self.areas)
             }
+            AreaModel::LtcTable
+            | AreaModel::LtcHammon
+            | AreaModel::LtcUnsplit
+            | AreaModel::LtcPerLight
+            | AreaModel::LtcPolynomial
+            | AreaModel::LtcPolynomialPerLight => 2 * (self.vertices + 2 * self.areas),
         };
         self.count + walks + terms
     }
@@ -90,6 +100,7 @@ mod tests {
         assert_eq!(rounds(&[point; 7], AreaModel::LtcTable), 7);
         assert_eq!(rounds(&[point, area], AreaModel::Point), 2 + 10);
         assert_eq!(rounds(&[area], AreaModel::LtcTable), 1 + 10 + 12);
+        assert_eq!(rounds(&[area], AreaModel::Mrp), 1 + 10 + 6);
         assert_eq!(rounds(&[area], AreaModel::MonteCarlo { samples: 10 }), 1 + 10 + 120);
     }
 }

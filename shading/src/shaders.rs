@@ -20,9 +20,13 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "compensation",
         "area_point",
         "area_mrp",
+        "area_mrp_published",
         "area_monte_carlo",
+        "area_reflected",
         "area_ltc_table",
         "area_ltc_polynomial",
+        "ltc_per_light",
+        "ltc_unsplit",
         "mask",
         "emissive",
         "uv_transforms",
@@ -36,6 +40,10 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::area", include_str!("shaders/area.wesl"))
         .module("package::area_point", include_str!("shaders/area_point.wesl"))
         .module("package::area_mrp", include_str!("shaders/area_mrp.wesl"))
+        .module("package::area_mrp_published", include_str!("shaders/area_mrp_published.wesl"))
+        .module("package::solid_angle", include_str!("shaders/solid_angle.wesl"))
+        .module("package::spherical_rectangle", include_str!("shaders/spherical_rectangle.wesl"))
+        .module("package::reflected_region", include_str!("shaders/reflected_region.wesl"))
         .module("package::area_monte_carlo", include_str!("shaders/area_monte_carlo.wesl"))
         .module("package::lighting_uniform", include_str!("shaders/lighting_uniform.wesl"))
         .module("package::area_ltc", include_str!("shaders/area_ltc.wesl"))

@@ -29,14 +29,24 @@ fn subsets(flags: &[&'static str]) -> Vec<Flags> {
     (0..1 << flags.len()).map(|bits| chosen(bits).map(|i| flags[i]).collect()).collect()
 }
 
-/// The flags of each model of area lights.
-const AREA_MODELS: [&str; 5] =
-    ["area_point", "area_mrp", "area_ltc_table", "area_ltc_polynomial", "area_monte_carlo"];
+/// The flags of each model of area lights, each set once.
+fn area_models() -> Vec<&'static [&'static str]> {
+    let mut sets: Vec<&'static [&'static str]> = Vec::new();
+    for model in shading::AreaModel::ALL {
+        if !sets.contains(&model.flags()) {
+            sets.push(model.flags());
+        }
+    }
+    sets
+}
 
 /// Each set as it is, and with area lights of each model.
 fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
-    let areas = |set: &Flags, model| set.iter().copied().chain(["areas", model]).collect();
-    let with = |set: &Flags| AREA_MODELS.map(|model| areas(set, model));
+    let models = area_models();
+    let areas = |set: &Flags, model: &[&'static str]| {
+        set.iter().copied().chain(["areas"]).chain(model.iter().copied()).collect()
+    };
+    let with = |set: &Flags| models.iter().map(|model| areas(set, model)).collect::<Vec<Flags>>();
     sets.iter().flat_map(|set| with(set).into_iter().chain([set.clone()])).collect()
 }
 
@@ -247,4 +257,25 @@ fn flags_change_the_shader() {
     let shapes = (0, 3);
     let spots = source(&["forward", "base_color_texture", "spots"]);
     assert!(spots.bindings.contains(&shapes) && !forward.bindings.contains(&shapes));
+}
+
+/// A scene without area lights compiles nothing of them and binds nothing for them, whatever the model.
+#[test]
+fn without_area_lights_no_model_changes_the_shader() {
+    let source = |flags: &[&'static str]| {
+        let flags = flags.iter().copied().collect();
+        link("package::deferred", &flags, Some(LOOK_UPS[0]))
+    };
+    let plain = source(&["spots"]);
+    assert!(!plain.bindings.contains(&(2, 7)), "no table");
+    for word in ["area_lobes", "Emitter", "ltc_"] {
+        assert!(!plain.source.contains(word), "{word} in a shader without area lights");
+    }
+    let mut sources: Vec<String> = Vec::new();
+    for model in area_models() {
+        let with = source(&[&["spots", "areas"], model].concat());
+        assert!(with.source.contains("Emitter"), "{model:?}");
+        assert!(!sources.contains(&with.source), "{model:?} compiles as another does");
+        sources.push(with.source);
+    }
 }

@@ -84,11 +84,7 @@ fn every_value_out_of_range_is_named_with_its_range() {
             "a number from 1e-6 to 1e6",
         ),
         ("--radius-scale", &["0", "-0.5", "1e-7", "nan", "x"], "a number from 1e-6 to 1e6"),
-        (
-            "--area-model",
-            &["LTC", "disc", "monte-carlo:0"],
-            "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples",
-        ),
+        ("--area-model", &["LTC", "disc", "monte-carlo:0"], shading::ACCEPTED_AREA_MODELS),
         ("--areas", &["-0.1", "1.01", "NaN", "half"], "a number from 0 to 1"),
         ("--diffuse-share", &["0", "1.01", "NaN"], "a number above 0 and at most 1"),
         ("--replicate", &["0", "65", "1.5"], "a whole number from 1 to 64"),

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use assign::{AssignError, FrustumTests, LightOrder};
 
-use shading::AreaModel;
+use shading::{ACCEPTED_AREA_MODELS, AreaModel};
 
 use super::MAX_LIGHTS;
 
@@ -268,8 +268,7 @@ pub(super) fn part(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn area_model(text: &str) -> Result<AreaModel, String> {
-    let accepted = "point, mrp, ltc, ltc-polynomial or monte-carlo:SAMPLES, 1 to 4,096 samples";
-    text.parse().map_err(|_| accepted.to_owned())
+    text.parse().map_err(|_| ACCEPTED_AREA_MODELS.to_owned())
 }
 
 pub(super) fn copies(text: &str) -> Result<u32, String> {

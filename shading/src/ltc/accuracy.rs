@@ -11,8 +11,9 @@ use super::{polygon::ltc_integral, quadrature::integrate, table::Entry};
 
 /// Tolerance of the true integrals, relative.
 const TOLERANCE: f64 = 1e-3;
-/// Farthest that a rectangle's centre is from the mirror direction.
-const FARTHEST_DEGREES: f64 = 25.0;
+/// How far a rectangle's centre is from the mirror direction at most, where nothing else is said.
+/// The errors depend on it: the farther off, the more rectangles lie in the lobe's tail.
+pub const ACCURACY_DEGREES: f64 = 25.0;
 
 /// A rectangle seen from a surface, and the true integral of the specular lobe over it.
 #[derive(Clone, Debug)]
@@ -41,12 +42,12 @@ pub struct Accuracy {
 /// Cases drawn at random, the same for each seed.
 ///
 /// Roughness and cosine of the view are uniform in 0.1 to 1. A rectangle's centre lies at a distance
-/// of 1 to 3, within 25 degrees of the mirror direction and above the horizon; half its sides are
+/// of 1 to 3, within `degrees` of the mirror direction and above the horizon; half its sides are
 /// log-uniform in 0.1 to 1, and it is turned in any way but nearly edge-on. Parts of it may lie below
 /// the horizon.
-pub fn accuracy_cases(count: usize, seed: u64) -> Vec<AccuracyCase> {
+pub fn accuracy_cases(count: usize, seed: u64, degrees: f64) -> Vec<AccuracyCase> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut cases: Vec<AccuracyCase> = (0..count).map(|_| draw(&mut rng)).collect();
+    let mut cases: Vec<AccuracyCase> = (0..count).map(|_| draw(&mut rng, degrees)).collect();
     cases.par_iter_mut().for_each(|case| {
         let to_eye = to_eye(case.cos_view);
         let truth = integrate(&case.rectangle, to_eye, case.roughness, TOLERANCE);
@@ -80,11 +81,11 @@ fn to_eye(cos_view: f64) -> DVec3 {
 }
 
 /// A case that lacks its true integral.
-fn draw(rng: &mut Pcg64Mcg) -> AccuracyCase {
+fn draw(rng: &mut Pcg64Mcg, degrees: f64) -> AccuracyCase {
     let roughness = rng.random_range(0.1..1.0);
     let cos_view = rng.random_range(0.1..1.0);
     let mirror = to_eye(cos_view) * DVec3::new(-1.0, 1.0, 1.0);
-    let nearest = FARTHEST_DEGREES.to_radians().cos();
+    let nearest = degrees.to_radians().cos();
     let direction = draw_until(rng, |at| at.dot(mirror) > nearest && at.z > 0.0);
     let normal = draw_until(rng, |normal| normal.dot(direction).abs() > 0.1);
     let x = draw_until(rng, |x| x.cross(normal).length() > 0.1).cross(normal).normalize();

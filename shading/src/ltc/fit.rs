@@ -11,7 +11,10 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec3};
 
-use super::{lobe::Lobe, nelder_mead::minimize};
+use super::{
+    lobe::{Lobe, Masking},
+    nelder_mead::minimize,
+};
 
 /// Grid of the samples of one side of the plane of incidence; the other mirrors them.
 const AROUND: u32 = 16;
@@ -40,7 +43,17 @@ pub struct Fit {
 /// Fits a lobe to the BRDF of a perceptual roughness seen under a cosine of 0 to 1, starting from a
 /// neighbour's parameters. Where the view is the normal, the lobe is round and upright.
 pub fn fit(roughness: f64, cos_view: f64, start: Option<DVec3>) -> Fit {
-    let lobe = Lobe::seen_under(roughness, cos_view);
+    fit_masked(Masking::Correlated, roughness, cos_view, start)
+}
+
+/// The same for GGX with a masking.
+pub(super) fn fit_masked(
+    masking: Masking,
+    roughness: f64,
+    cos_view: f64,
+    start: Option<DVec3>,
+) -> Fit {
+    let lobe = Lobe::seen_under(roughness, cos_view).masked(masking);
     let seen = Mean::of(&lobe);
     let is_round = cos_view >= 1.0;
     let start = start.unwrap_or_else(|| {

@@ -5,7 +5,8 @@ use std::{fs, path::Path};
 use glam::{DMat3, DVec3};
 
 use super::{
-    accuracy::{Accuracy, accuracy_cases},
+    accuracy::{ACCURACY_DEGREES, Accuracy, accuracy_cases},
+    lobe::Masking,
     polygon::ltc_integral,
     polynomial::Polynomial,
     table::{Entry, Table, cos_view},
@@ -21,6 +22,8 @@ const SEED: u64 = 1;
 pub struct FitReport {
     /// The table against the BRDF.
     pub table: Accuracy,
+    /// The table of GGX with Hammon's masking, against the same BRDF.
+    pub hammon: Accuracy,
     /// The polynomials against the BRDF.
     pub polynomial: Accuracy,
     /// Root mean square errors of the polynomials against the table, in the order of
@@ -39,9 +42,10 @@ pub struct TableDifference {
     pub covered: f64,
 }
 
-/// Fits a table of `size` texels each way and polynomials of it. Writes `ggx.bin`,
-/// `polynomial_coefficients.rs` and `ltc_polynomial.wesl` to a folder, if there is one. `progress` is
-/// called with the number of entries just done, from several threads.
+/// Fits tables of `size` texels each way for both maskings, and polynomials of the first. Writes
+/// `ggx.bin`, `ggx_hammon.bin`, `polynomial_coefficients.rs` and `ltc_polynomial.wesl` to a folder, if
+/// there is one. `progress` is called with the number of entries just done, of `2 * size * size`, from
+/// several threads.
 ///
 /// # Errors
 ///
@@ -55,18 +59,21 @@ pub fn generate(
     if let Some(dir) = out_dir {
         write(dir, |dir| fs::create_dir_all(dir))?;
     }
-    let table = Table::fit(size, progress)?;
+    let table = Table::fit(Masking::Correlated, size, &progress)?;
+    let hammon = Table::fit(Masking::Hammon, size, &progress)?;
     let polynomial = Polynomial::of(&table);
     if let Some(dir) = out_dir {
         write(&dir.join("ggx.bin"), |path| fs::write(path, table.to_bytes()))?;
+        write(&dir.join("ggx_hammon.bin"), |path| fs::write(path, hammon.to_bytes()))?;
         write(&dir.join("polynomial_coefficients.rs"), |path| {
             fs::write(path, polynomial.to_rust())
         })?;
         write(&dir.join("ltc_polynomial.wesl"), |path| fs::write(path, polynomial.to_wesl()))?;
     }
-    let cases = accuracy_cases(CASES, SEED);
+    let cases = accuracy_cases(CASES, SEED, ACCURACY_DEGREES);
     Ok(FitReport {
         table: Accuracy::of(&cases, |roughness, cos| table.look_up(roughness, cos)),
+        hammon: Accuracy::of(&cases, |roughness, cos| hammon.look_up(roughness, cos)),
         polynomial: Accuracy::of(&cases, |roughness, cos| polynomial.entry(roughness, cos)),
         rms_errors: polynomial.rms_errors(&table),
         difference: Table::ggx()?.difference(&table),
@@ -123,9 +130,11 @@ mod tests {
             entries.fetch_add(done, std::sync::atomic::Ordering::Relaxed);
         };
         let report = generate(Some(&dir), 8, count).unwrap();
-        assert_eq!(entries.into_inner(), 64);
+        assert_eq!(entries.into_inner(), 2 * 64);
         let table = Table::from_bytes(&fs::read(dir.join("ggx.bin")).unwrap()).unwrap();
         assert_eq!(table.size(), 8);
+        let hammon = Table::from_bytes(&fs::read(dir.join("ggx_hammon.bin")).unwrap()).unwrap();
+        assert!(hammon.difference(&table).integrals > 1e-3, "both maskings give one table");
         let polynomial = Polynomial::of(&table);
         let text = |name| fs::read_to_string(dir.join(name)).unwrap();
         assert_eq!(text("polynomial_coefficients.rs"), polynomial.to_rust());

@@ -11,10 +11,28 @@ pub(crate) fn alpha_of(roughness: f64) -> f64 {
     roughness.max(MIN_ROUGHNESS).powi(2)
 }
 
-/// GGX with height-correlated Smith, seen from one direction.
+/// How microfacets hide each other, over `4 cos cos`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Masking {
+    /// Height-correlated Smith (Heitz 2014, equation 99): that of the BRDF here, and of the published
+    /// tables of linearly transformed cosines.
+    #[default]
+    Correlated,
+    /// Its approximation without roots (Hammon 2017), which engines use: Dobetsberger 2025, section
+    /// 5.4.2, fits a second table to it.
+    Hammon,
+}
+
+impl Masking {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Correlated, Self::Hammon];
+}
+
+/// GGX, seen from one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lobe {
     pub(crate) to_eye: DVec3,
+    masking: Masking,
     alpha: f64,
     alpha_2: f64,
     cos_view: f64,
@@ -22,19 +40,24 @@ pub(crate) struct Lobe {
 }
 
 impl Lobe {
-    /// The lobe of a perceptual roughness and a unit direction to the eye.
+    /// The BRDF's lobe of a perceptual roughness and a unit direction to the eye.
     pub(crate) fn new(roughness: f64, to_eye: DVec3) -> Self {
         let alpha = alpha_of(roughness);
         let alpha_2 = alpha * alpha;
         let cos_view = to_eye.z.abs().max(MIN_COS_VIEW);
         let root_view = (cos_view * cos_view * (1.0 - alpha_2) + alpha_2).sqrt();
-        Self { to_eye, alpha, alpha_2, cos_view, root_view }
+        Self { to_eye, masking: Masking::Correlated, alpha, alpha_2, cos_view, root_view }
     }
 
     /// Seen from the x-z plane under a cosine of 0 to 1.
     pub(crate) fn seen_under(roughness: f64, cos_view: f64) -> Self {
         let cos = cos_view.clamp(MIN_COS_VIEW, 1.0);
         Self::new(roughness, DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos))
+    }
+
+    /// The same with another masking.
+    pub(crate) fn masked(self, masking: Masking) -> Self {
+        Self { masking, ..self }
     }
 
     pub(crate) fn alpha(&self) -> f64 {
@@ -60,8 +83,17 @@ impl Lobe {
     pub(crate) fn evaluate(&self, to_light: DVec3) -> (f64, f64) {
         let cos_light = to_light.z.max(0.0);
         let half_way = self.half_way(to_light);
-        let root_light = (cos_light * cos_light * (1.0 - self.alpha_2) + self.alpha_2).sqrt();
-        let smith = cos_light * self.root_view + self.cos_view * root_light;
+        let smith = match self.masking {
+            Masking::Correlated => {
+                let root_light =
+                    (cos_light * cos_light * (1.0 - self.alpha_2) + self.alpha_2).sqrt();
+                cos_light * self.root_view + self.cos_view * root_light
+            }
+            Masking::Hammon => {
+                let (product, sum) = (2.0 * cos_light * self.cos_view, cos_light + self.cos_view);
+                product + self.alpha * (sum - product)
+            }
+        };
         let lobe =
             self.distribution(half_way.z.clamp(0.0, 1.0)) * 0.5 * cos_light / smith.max(1e-6);
         (lobe, (1.0 - self.to_eye.dot(half_way).clamp(0.0, 1.0)).powi(5))
@@ -94,6 +126,17 @@ impl Lobe {
 mod tests {
     use super::*;
     use crate::reference::{Surface, reflect_light};
+
+    /// Both maskings are 1 / (4 cos cos) on a mirror, and the same where both cosines are 1.
+    #[test]
+    fn the_approximate_masking_agrees_where_it_must() {
+        for (roughness, cos_view, same) in [(0.0, 0.7, true), (0.6, 1.0, true), (0.6, 0.3, false)] {
+            let exact = Lobe::seen_under(roughness, cos_view);
+            let mirror = exact.to_eye * DVec3::new(-1.0, 1.0, 1.0);
+            let ratio = exact.masked(Masking::Hammon).evaluate(mirror).0 / exact.evaluate(mirror).0;
+            assert_eq!((ratio - 1.0).abs() < 5e-3, same, "{roughness}, {cos_view}: {ratio}");
+        }
+    }
 
     #[test]
     fn the_lobe_is_the_reference_s_specular_term() {

@@ -40,10 +40,11 @@ mod quadrature;
 mod spherical_rectangle;
 mod table;
 
-pub use accuracy::{Accuracy, AccuracyCase, accuracy_cases};
+pub use accuracy::{ACCURACY_DEGREES, Accuracy, AccuracyCase, accuracy_cases};
 pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
 pub use fit::{Fit, fit};
 pub use generate::{FitReport, TableDifference, generate};
+pub use lobe::Masking;
 pub use polygon::{cosine_integral, ltc_integral};
 pub use polynomial::{LTC_POLYNOMIAL_WESL, POLYNOMIAL_COMPONENTS, Polynomial};
 pub use quadrature::{Estimate, Integrals, integrate};

@@ -11,7 +11,10 @@
 use glam::DMat3;
 use rayon::prelude::*;
 
-use super::fit::{Fit, fit};
+use super::{
+    fit::{Fit, fit_masked},
+    lobe::Masking,
+};
 use crate::ShadingError;
 
 const MAGIC: [u8; 4] = *b"LTCT";
@@ -80,16 +83,33 @@ impl Table {
     ///
     /// As of [`Self::from_bytes`], if the file was not what [`Self::to_bytes`] wrote.
     pub fn ggx() -> Result<Self, ShadingError> {
-        Self::from_bytes(include_bytes!("ggx.bin"))
+        Self::of(Masking::Correlated)
     }
 
-    /// Fits a table of `size` texels each way, 2 to 1,024; `progress` is called after every row of
-    /// roughness, with the number of entries done, from several threads.
+    /// The table of GGX with a masking, 64 x 64.
+    ///
+    /// # Errors
+    ///
+    /// As of [`Self::from_bytes`], if the file was not what [`Self::to_bytes`] wrote.
+    pub fn of(masking: Masking) -> Result<Self, ShadingError> {
+        Self::from_bytes(match masking {
+            Masking::Correlated => include_bytes!("ggx.bin"),
+            Masking::Hammon => include_bytes!("ggx_hammon.bin"),
+        })
+    }
+
+    /// Fits a table of `size` texels each way, 2 to 1,024, to GGX with a masking; `progress` is called
+    /// after every row of roughness, with the number of entries done, from several threads.
     ///
     /// # Errors
     ///
     /// [`ShadingError::LtcTable`] for any other size.
-    pub fn fit(size: usize, progress: impl Fn(usize) + Sync) -> Result<Self, ShadingError> {
+    pub fn fit(
+        masking: Masking,
+        size: usize,
+        progress: impl Fn(usize) + Sync,
+    ) -> Result<Self, ShadingError> {
+        let fit = |roughness, cos_view, start| fit_masked(masking, roughness, cos_view, start);
         check_size(size)?;
         // Down the first row, where the view is the normal, from rough to smooth; then from there to
         // grazing views, each roughness by itself. Every search starts at its neighbour's end.
@@ -245,7 +265,7 @@ mod tests {
 
     #[test]
     fn a_file_that_is_no_table_is_refused() {
-        let good = Table::fit(2, |_| ()).unwrap().to_bytes();
+        let good = Table::fit(Masking::Correlated, 2, |_| ()).unwrap().to_bytes();
         let with = |at: usize, bytes: &[u8]| {
             let mut file = good.clone();
             file[at..at + bytes.len()].copy_from_slice(bytes);

@@ -54,13 +54,10 @@ pub(crate) fn evaluate(
             storage_entry(7, stages, true),
         ],
     });
-    let samples = match area {
-        AreaModel::MonteCarlo { samples } => samples,
-        _ => 0,
-    };
+    let samples = area.samples();
     let numbers = gpu.uniform("lighting", 16);
     gpu.queue.write_buffer(&numbers, 0, bytemuck::bytes_of(&[0, samples, 0, 0]));
-    let table = shading::ltc::Table::ggx().unwrap();
+    let table = shading::ltc::Table::of(area.table().unwrap_or_default()).unwrap();
     let looked_up = gpu.storage("table", table.as_bytes().len() as u64).unwrap();
     gpu.queue.write_buffer(&looked_up, 0, table.as_bytes());
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -68,13 +65,13 @@ pub(crate) fn evaluate(
         layout: &layout,
         entries: &[entry(0, &asked), entry(1, &answered), entry(6, &numbers), entry(7, &looked_up)],
     });
-    let module = shading::lighting_shader()
+    let shader = shading::lighting_shader()
         .module("package::evaluate", EVALUATE)
         .module("package::strategy", include_str!("../../../assign/src/shaders/everything.wesl"))
-        .light_kinds(lights.kinds())
-        .flag(area.flag(), lights.kinds().areas)
-        .create(&gpu.device, "package::evaluate")
-        .unwrap();
+        .light_kinds(lights.kinds());
+    let flags = area.flags().iter();
+    let shader = flags.fold(shader, |shader, flag| shader.flag(flag, lights.kinds().areas));
+    let module = shader.create(&gpu.device, "package::evaluate").unwrap();
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &[Some(bindings.layout()), None, Some(&layout)],

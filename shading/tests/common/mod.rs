@@ -1,5 +1,6 @@
 //! A small scene with one of everything the pipeline draws.
 
+pub(crate) mod areas;
 pub(crate) mod evaluate;
 
 use assign::{Gpu, Light, LightShape, View};

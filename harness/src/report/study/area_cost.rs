@@ -55,7 +55,8 @@ pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "Cost of area lights and of spots",
         "The lighting pass alone, every light at every sample. Behind each time stands how many times as \
          long it takes as with as many spots; the slope is that of the straight line through the times, \
-         and it is set against that of spots. The paper measured about two spots to one area light.",
+         and it is set against that of spots. The paper measured about two spots to one area light, of \
+         whole frames: its row among the claims has both.",
         &body,
     )
 }

@@ -4,6 +4,9 @@
 //! from the paper, and the function that decides it from the figures of one scene. It is judged by the
 //! paper's own statistic; others stand beside it.
 
+mod area;
+mod area_cost;
+mod area_ltc;
 mod comparison;
 mod culling;
 mod endless;
@@ -47,6 +50,7 @@ pub(super) fn paper(study: &str) -> Option<&'static Paper> {
     match study {
         "comparison" => Some(&comparison::PAPER),
         "culling" => Some(&culling::PAPER),
+        "area" => Some(&area::PAPER),
         "endless" => Some(&endless::PAPER),
         _ => None,
     }

@@ -1,0 +1,91 @@
+//! Area lights bounded by balls, a baseline: lists are as complete as with outlines, and longer.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use assign::{
+    AreaBounds, Assignment, Bounds, CullSettings, Emitter, EncoderPasses, Frame, Gpu, Light,
+    LightBuffer, View,
+    conformance::{self, flat_depth},
+};
+use assign_clustered::{Clustered, Occupancy};
+use glam::Vec3;
+
+const SIZE: [u32; 2] = [64, 48];
+
+fn settings(area_bounds: AreaBounds) -> CullSettings {
+    CullSettings { area_bounds, ..CullSettings::default() }
+}
+
+fn clusters(gpu: &Gpu, bounds: Bounds, settings: CullSettings) -> Clustered {
+    let size = "16x16x8".parse().unwrap();
+    Clustered::new(gpu, size, bounds, Occupancy::Sparse, settings).unwrap()
+}
+
+#[test]
+fn lists_by_balls_are_complete() {
+    for bounds in [Bounds::Explicit, Bounds::Implicit] {
+        for case in ["area-lights", "area-lights-grazing"] {
+            let make = |gpu: &Gpu| -> Result<Box<dyn Assignment>, assign::AssignError> {
+                Ok(Box::new(clusters(gpu, bounds, settings(AreaBounds::Ball))))
+            };
+            conformance::run_case(case, &make).expect("conforms");
+        }
+    }
+}
+
+/// Entries of all lists of a wall two metres from the eye.
+fn entries(gpu: &Gpu, bounds: Bounds, area_bounds: AreaBounds, lights: &[Light]) -> u64 {
+    let view = View::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 1.0, 0.1, SIZE);
+    let depth = flat_depth(gpu, SIZE, 0.05);
+    let lights = LightBuffer::new(gpu, lights).unwrap();
+    let frame = Frame::new(&view, &lights).with_depth(&depth);
+    let mut strategy = clusters(gpu, bounds, settings(area_bounds));
+    strategy.prepare(gpu, &frame).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    strategy.record(&frame, &mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
+    let lists = strategy.lists().snapshot(gpu).unwrap();
+    let groups = 0..strategy.lists().group_count();
+    groups.map(|group| lists.entries_of(group).unwrap().len() as u64).sum()
+}
+
+#[test]
+fn balls_list_what_lies_behind_an_emitter_or_beside_a_long_one() {
+    let gpu = Gpu::open(None).expect("an adapter: scripts/test installs the software one");
+    let at = |emitter, z: f32, range| Light::area(emitter, Vec3::Z * z, range, Vec3::ONE);
+    // Emits away from the wall, and a bar along the view whose ends are far and whose range is short.
+    let behind = at(Emitter::rectangle(Vec3::X, Vec3::Y), 1.0, 5.0);
+    let along = at(Emitter::rectangle(Vec3::Z * 3.0, Vec3::Y * 0.01), 4.5, 0.5).shape;
+    let long = Light { shape: along, ..at(Emitter::rectangle(Vec3::X, Vec3::Y), 4.5, 0.5) };
+    for bounds in [Bounds::Explicit, Bounds::Implicit] {
+        for light in [behind, long] {
+            let of = |area_bounds| entries(&gpu, bounds, area_bounds, &[light]);
+            let (outline, ball) = (of(AreaBounds::Outline), of(AreaBounds::Ball));
+            assert!(outline == 0 && ball > 0, "{bounds:?}: {outline} by outline, {ball} by ball");
+        }
+        // A point is its own ball.
+        let point = [Light::point(Vec3::Z, 5.0, Vec3::ONE)];
+        let of = |area_bounds| entries(&gpu, bounds, area_bounds, &point);
+        assert_eq!(of(AreaBounds::Outline), of(AreaBounds::Ball));
+    }
+}
+
+/// Dobetsberger 2025, section 5.1: a box around the reach of a one-sided rectangle is always smaller
+/// than the ball, by a factor of pi / 3 at least. What the outline bounds is smaller still.
+#[test]
+fn the_ball_is_larger_than_the_box_and_the_box_than_the_reach() {
+    let pi = std::f64::consts::PI;
+    for width in [0.0, 0.1, 1.0, 10.0] {
+        for height in [0.0, 0.5, 2.0] {
+            for range in [0.1_f64, 1.0, 20.0] {
+                let ball = 4.0 / 3.0 * pi * (range + 0.5 * f64::hypot(width, height)).powi(3);
+                let boxed = (2.0 * range + width) * (2.0 * range + height) * range;
+                let reach = width * height * range
+                    + 0.5 * pi * range * range * (width + height)
+                    + 2.0 / 3.0 * pi * range.powi(3);
+                assert!(ball >= pi / 3.0 * boxed * (1.0 - 1e-12), "{width} {height} {range}");
+                assert!(boxed > reach, "{width} {height} {range}");
+            }
+        }
+    }
+}
