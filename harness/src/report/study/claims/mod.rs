@@ -6,6 +6,9 @@
 
 mod comparison;
 mod endless;
+mod endless_operations;
+mod endless_rows;
+mod endless_times;
 mod table;
 mod verdict;
 
