@@ -18,8 +18,8 @@ use shading::{
 };
 
 const SIZE: [u32; 2] = [48, 32];
-/// From radiance to the display's scale: 0.005 there is a radiance of 8.7e-3, amid those of the lights.
-const EXPOSURE: f32 = 1e-3;
+/// From radiance to the display's scale: 0.005 there is a radiance of 8.7e-4, amid those of the lights.
+const EXPOSURE: f32 = 1e-2;
 const ROUGHNESS: f32 = 0.5;
 /// Nearer than this to an edge or a threshold, f32 may decide otherwise.
 const DOUBT: f64 = 1e-3;
@@ -222,19 +222,23 @@ fn operations_are_those_of_f64() {
     let mut lossless = clusters(&gpu, SpecularCut::None);
     check("clusters", &count(&gpu, &all, &mut lossless, 0.0), true);
 
-    let mut cut = clusters(&gpu, SpecularCut::Below(0.1));
+    let mut cut = clusters(&gpu, SpecularCut::Below(0.5));
     let counted = count(&gpu, &all, &mut cut, 0.0);
     let truth = check("clusters, cut", &counted, true);
     // The cut takes terms that would be seen: a count that ignores the list's flags fails here.
     let lost = truth.perceptible_of_lights - truth.perceptible;
-    assert!(lost > 100, "{lost} are lost: {truth:?}");
+    assert!(lost > 20, "{lost} are lost: {truth:?}");
 }
 
-/// What is counted as evaluated is what shading draws: one light, and the pixels that it lights.
+/// What is counted as evaluated is what shading draws: one light, and the pixels that it lights. Its diffuse
+/// light goes as far as the specular, whose lobe may be exactly 0.
 #[test]
 fn a_pixel_is_lit_exactly_where_a_term_is_evaluated() {
     let gpu = common::gpu();
-    for light in lights() {
+    for mut light in lights() {
+        if let LightShape::Area(emitter) = &mut light.shape {
+            *emitter = emitter.with_diffuse_share(1.0);
+        }
         let mut none = Everything::new(&gpu).unwrap();
         let counted = count(&gpu, &[light], &mut none, 0.0);
         let lit =

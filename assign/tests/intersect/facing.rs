@@ -19,9 +19,9 @@ const DULL: f64 = 1e-3;
 /// Half angles of the cones, radians (the last is that of 6 bins), with the per cent of pairs whose
 /// light is below all horizons, and of those that are dull.
 const RATES: [(f32, [f64; 2]); 4] =
-    [(0.05, [30.8, 14.3]), (0.3, [18.0, 6.5]), (0.7, [6.9, 1.6]), (0.955, [2.5, 1.0])];
+    [(0.05, [31.6, 17.4]), (0.3, [19.4, 8.5]), (0.7, [7.4, 2.2]), (0.955, [2.6, 1.5])];
 /// The same of emitters of 100 : 1.
-const LONG_RATES: [(f32, [f64; 2]); 2] = [(0.05, [0.0, 0.0]), (0.3, [0.0, 0.0])];
+const LONG_RATES: [(f32, [f64; 2]); 2] = [(0.05, [13.4, 17.7]), (0.3, [3.9, 6.7])];
 
 /// Draws pairs by half angle; asserts that no sample is above the bound or seen from below all horizons.
 /// Returns per cents below all horizons and dull, how many samples a narrower cone would lose, and how

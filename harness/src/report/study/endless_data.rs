@@ -150,7 +150,7 @@ impl<'a> Case<'a> {
     /// The record by position alone, with the usual clusters and the early exit where it is there.
     pub(super) fn position(&self) -> Option<&'a Record> {
         self.find(|s| s.is_position() && s.grid == USUAL && s.exits)
-            .or_else(|| self.find(Setting::is_position))
+            .or_else(|| self.find(|s| s.is_position()))
     }
 
     /// The record of no culling.
