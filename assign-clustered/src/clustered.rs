@@ -2,13 +2,13 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
-    FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs,
-    Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
+    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
-    Normals,
+    Normals, SpecularCut,
     clusters::{ClusterSize, ClustersUniform},
     gather::{Gather, Images},
 };
@@ -29,8 +29,7 @@ pub struct Clustered {
     bounds: Bounds,
     occupancy: Occupancy,
     normals: Normals,
-    /// 0 where no specular light is left out.
-    specular_threshold: f32,
+    cut: SpecularCut,
     settings: CullSettings,
     clusters: wgpu::Buffer,
     gather: Option<Gather>,
@@ -53,11 +52,12 @@ pub const EXPLICIT_WESL: &str = concat!(
 );
 
 /// The WESL module of clusters bounded by the samples in them and split by their normals:
-/// `group_of`, `group_bounds` and `group_facing`.
+/// `group_of`, `group_bounds`, `group_facing` and `group_reflection`.
 pub const BINS_WESL: &str = concat!(
     include_str!("shaders/clusters.wesl"),
     include_str!("shaders/by_bin.wesl"),
     include_str!("shaders/explicit.wesl"),
+    include_str!("shaders/reflection_of_bin.wesl"),
     "const WORDS: u32 = 12u;\n",
 );
 
@@ -70,9 +70,6 @@ pub const GLOSSY_BINS_WESL: &str = concat!(
     "const WORDS: u32 = 15u;\n",
 );
 
-/// How far the specular cut goes.
-const THRESHOLDS: std::ops::RangeInclusive<f32> = 0.0..=1e18;
-
 impl Clustered {
     /// Makes the strategy; `size` is checked.
     pub fn new(
@@ -82,33 +79,36 @@ impl Clustered {
         occupancy: Occupancy,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
-        Self::with_normals(gpu, size, bounds, occupancy, Normals::None, 0.0, settings)
+        let (normals, cut) = (Normals::None, SpecularCut::None);
+        Self::with_normals(gpu, size, bounds, occupancy, normals, cut, settings)
     }
 
-    /// Makes the strategy with clusters split by normals. Only sparse clusters with explicit bounds
-    /// can be split.
-    ///
-    /// A `specular_threshold` above 0, a radiance, is **lossy**: area lights lose their specular
-    /// term where less than that of it reaches the eye from any sample of a group. It takes normals.
-    /// All parameters are checked.
+    /// Makes the strategy with clusters split by normals, and with a cut of specular light. Only sparse
+    /// clusters with explicit bounds can have either. All parameters are checked.
     pub fn with_normals(
         gpu: &Gpu,
         size: ClusterSize,
         bounds: Bounds,
         occupancy: Occupancy,
         normals: Normals,
-        specular_threshold: f32,
+        cut: SpecularCut,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
         size.check()?;
         normals.check()?;
-        check_threshold(specular_threshold, normals)?;
-        let glossy = specular_threshold > 0.0;
-        if normals.is_some() && (bounds, occupancy) != (Bounds::Explicit, Occupancy::Sparse) {
+        cut.check(normals)?;
+        let glossy = cut.is_glossy();
+        let is_plain = !normals.is_some() && cut == SpecularCut::None;
+        if !is_plain && (bounds, occupancy) != (Bounds::Explicit, Occupancy::Sparse) {
+            let asked = match normals.is_some() {
+                true => format!("{} bins of normals", normals.bins()),
+                false => format!("the specular cut {cut:?}"),
+            };
             return Err(AssignError::Unsupported {
                 strategy: family(bounds, occupancy).into(),
-                asked: format!("{} bins of normals", normals.bins()),
-                reason: "only sparse clusters with explicit bounds, SC-E, are split by normals"
+                asked,
+                reason: "only sparse clusters with explicit bounds, SC-E, are split by normals \
+                         or leave specular light out"
                     .into(),
             });
         }
@@ -128,7 +128,7 @@ impl Clustered {
             bounds,
             occupancy,
             normals,
-            specular_threshold,
+            cut,
             settings,
             clusters: gpu.uniform("clusters", size_of::<ClustersUniform>() as u64),
             gather: match reads_samples {
@@ -142,11 +142,7 @@ impl Clustered {
                     shape: shape(bounds),
                     settings,
                     sparse,
-                    facing: match normals.is_some() {
-                        true if glossy => Facing::HorizonAndGloss,
-                        true => Facing::Horizon,
-                        false => Facing::Unknown,
-                    },
+                    facing: cut.facing(normals),
                     // SAFETY: it has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(module) },
@@ -155,24 +151,6 @@ impl Clustered {
             )?,
         })
     }
-}
-
-fn check_threshold(threshold: f32, normals: Normals) -> Result<(), AssignError> {
-    let accepted = match normals {
-        Normals::None => 0.0..=0.0,
-        Normals::Bins(_) => THRESHOLDS,
-    };
-    if accepted.contains(&threshold) {
-        return Ok(());
-    }
-    Err(AssignError::Parameter {
-        field: "specular threshold".into(),
-        value: threshold.to_string(),
-        accepted: match normals {
-            Normals::None => "0 without bins of normals".into(),
-            Normals::Bins(_) => "a radiance from 0 to 1e18".into(),
-        },
-    })
 }
 
 fn family(bounds: Bounds, occupancy: Occupancy) -> &'static str {
@@ -195,10 +173,7 @@ impl Assignment for Clustered {
     fn id(&self) -> String {
         let suffix = self.settings.suffix(shape(self.bounds));
         let normals = self.normals.segment();
-        let cut = match self.specular_threshold > 0.0 {
-            true => format!("/s{}", self.specular_threshold),
-            false => String::new(),
-        };
+        let cut = self.cut.segment();
         format!("{}/{}{normals}{cut}{suffix}", family(self.bounds, self.occupancy), self.size)
     }
 
@@ -206,7 +181,7 @@ impl Assignment for Clustered {
         Needs {
             depth: self.gather.is_some(),
             normals: self.normals.is_some(),
-            materials: self.specular_threshold > 0.0,
+            materials: self.cut.is_glossy(),
             ..Needs::default()
         }
     }
@@ -234,13 +209,13 @@ impl Assignment for Clustered {
                     Normals::None => None,
                     Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),
                 },
-                base_color: match self.specular_threshold > 0.0 {
+                base_color: match self.cut.is_glossy() {
                     false => None,
                     true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
                 },
             };
             clusters.surfaces_only = 1;
-            clusters.specular_threshold = self.specular_threshold;
+            clusters.specular_limit = self.cut.limit();
             gather.prepare(gpu, frame, images, &self.clusters, count)?;
             if self.occupancy == Occupancy::Sparse {
                 groups = Groups::Live { count, live: gather.live() };

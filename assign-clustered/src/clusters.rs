@@ -98,8 +98,8 @@ pub struct ClustersUniform {
     pub surfaces_only: u32,
     /// Cells along an edge of a face of the cube of normals; 0: normals are not told apart.
     pub bin_side: u32,
-    /// Specular radiance of an area light that is left out; 0: none is.
-    pub specular_threshold: f32,
+    /// The number of the [`SpecularCut`](crate::SpecularCut): a radiance, or an angle in radians.
+    pub specular_limit: f32,
     /// Pads to 64 bytes.
     pub padding: u32,
 }
@@ -162,7 +162,7 @@ impl ClustersUniform {
             exponential: u32::from(exponential),
             surfaces_only: 0,
             bin_side: normals.side(),
-            specular_threshold: 0.0,
+            specular_limit: 0.0,
             padding: 0,
         })
     }

@@ -37,6 +37,11 @@
 //! the group stays below it (`gloss.wesl`). `bounds` then keeps the range of roughness and the greatest
 //! reflectance at normal incidence too. That is lossy by what is left out, light by light.
 //!
+//! Two more cuts are Swarbrick's own, as baselines, and lossy too ([`SpecularCut`]). `/n54/cone45` tests
+//! whether a bin's normals mirror the light's middle to the eye, give or take a lobe of 45 degrees
+//! (`reflected.wesl`), and looks only at lights whose diffuse term does not reach. `/dif` ends specular light
+//! where diffuse light ends.
+//!
 //! # Cost
 //!
 //! `bounds` grows with pixels, `cull` with clusters that get a list times lights. Memory is 8 bytes
@@ -65,6 +70,7 @@ mod clustered;
 mod clusters;
 mod gather;
 mod normals;
+mod specular_cut;
 
 pub use clustered::{
     BINS_WESL, Clustered, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL, Occupancy,
@@ -72,3 +78,4 @@ pub use clustered::{
 pub use clusters::{ClusterSize, ClustersUniform, UNBOUNDED};
 pub use gather::gather_source;
 pub use normals::Normals;
+pub use specular_cut::{PAPERS_LOBE_DEGREES, SpecularCut};

@@ -6,7 +6,7 @@ use assign::{
     AssignError, Assignment, Bounds, CullSettings, Gpu, LightSource,
     conformance::{self, faulty::Fault},
 };
-use assign_clustered::{Clustered, Normals, Occupancy};
+use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
 
 const DC_I: (Bounds, Occupancy) = (Bounds::Implicit, Occupancy::Dense);
 const DC_E: (Bounds, Occupancy) = (Bounds::Explicit, Occupancy::Dense);
@@ -83,7 +83,8 @@ fn split(
     move |gpu| {
         let (size, normals) = (size.parse()?, Normals::Bins(bins));
         let (bounds, occupancy) = SC_E;
-        Ok(Box::new(Clustered::with_normals(gpu, size, bounds, occupancy, normals, 0.0, settings)?))
+        let cut = SpecularCut::None;
+        Ok(Box::new(Clustered::with_normals(gpu, size, bounds, occupancy, normals, cut, settings)?))
     }
 }
 
@@ -113,7 +114,7 @@ fn only_sparse_explicit_clusters_are_split() {
                 bounds,
                 occupancy,
                 Normals::Bins(bins),
-                0.0,
+                SpecularCut::None,
                 settings,
             )
         };

@@ -54,9 +54,12 @@ fn kernels_that_know_normals_validate() {
     for source in [LightSource::Linear, LightSource::Hierarchy] {
         for kinds in LightKinds::ALL {
             let settings = CullSettings { source, ..CullSettings::default() };
-            for (facing, module) in
-                [(Facing::Horizon, BINS_WESL), (Facing::HorizonAndGloss, GLOSSY_BINS_WESL)]
-            {
+            for (facing, module) in [
+                (Facing::Horizon, BINS_WESL),
+                (Facing::HorizonAndGloss, GLOSSY_BINS_WESL),
+                (Facing::ReflectedCone, BINS_WESL),
+                (Facing::WhereDiffuse, EXPLICIT_WESL),
+            ] {
                 let source = Culler::facing_kernel_source(settings, facing, module, kinds);
                 validated(&format!("{facing:?}, {settings:?}, {kinds:?}"), &source.unwrap());
             }
@@ -102,7 +105,7 @@ fn clusters() {
         members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
     let rust = fields!(ClustersUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
         near_m, far_m, exponential, surfaces_only, bin_side,
-        specular_threshold);
+        specular_limit);
     assert_eq!(wesl, rust, "fields of WESL, then of Rust");
     assert_eq!(*span as usize, size_of::<ClustersUniform>());
 }

@@ -42,6 +42,12 @@ pub enum Facing {
     /// The same, and how they reflect: `group_gloss(group: u32) -> Gloss`. Specular terms of area
     /// lights that add less than a threshold are left out (`gloss.wesl`). Lossy.
     HorizonAndGloss,
+    /// How groups mirror light in the terms of Swarbrick 2025: `group_reflection(group: u32) ->
+    /// Reflection`, of groups that are boxes. Where a light's diffuse term does not reach, its specular
+    /// one is left out unless it is mirrored to the eye (`reflected.wesl`). Lossy.
+    ReflectedCone,
+    /// Nothing, and a light's specular term is left out where its diffuse term does not reach. Lossy.
+    WhereDiffuse,
 }
 
 /// Which groups get a list in a frame.
@@ -317,7 +323,10 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Sh
         .module("package::facing", include_str!("shaders/facing.wesl"))
         .module("package::strategy", module)
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
-        .flag("facing", variant.facing != Facing::Unknown)
+        .module("package::reflected", include_str!("shaders/reflected.wesl"))
+        .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))
+        .flag("reflected", variant.facing == Facing::ReflectedCone)
+        .flag("where_diffuse", variant.facing == Facing::WhereDiffuse)
         .flag("gloss", variant.facing == Facing::HorizonAndGloss)
         .flag("hs", tests.hs)
         .flag("sat_e", tests.sat_e)

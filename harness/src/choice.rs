@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use assign::{AreaBounds, AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
-use assign_clustered::Normals;
+use assign_clustered::{Normals, SpecularCut};
 use serde_json::Value;
 use shading::RASTER_SPHERE_TOLERANCE;
 
@@ -12,6 +12,10 @@ use crate::{
     cli::{CliError, CompareArgs, SourceChoice},
     registry::{Axis, Method, STRATEGIES, Spec, StrategyEntry},
 };
+
+mod specular;
+
+use specular::specular_of;
 
 /// Names every method, at its default parameters.
 pub const ALL: &str = "all";
@@ -112,9 +116,8 @@ impl Choice {
                         .ok_or_else(|| choice.refuse(&segment))?;
                 }
                 Some(Axis::Specular) => {
-                    let threshold =
-                        threshold_of(&segment).ok_or_else(|| choice.refuse(&segment))?;
-                    choice.spec.specular_threshold = threshold;
+                    choice.spec.specular =
+                        specular_of(&segment).ok_or_else(|| choice.refuse(&segment))?;
                 }
                 Some(Axis::Cap) => {
                     let cap = number_of(&segment, CAP).ok_or_else(|| choice.refuse(&segment))?;
@@ -125,6 +128,7 @@ impl Choice {
                         number_of(&segment, REUSE).ok_or_else(|| choice.refuse(&segment))?;
                     choice.spec.reuse = Some(frames);
                 }
+                Some(Axis::Exit) => choice.spec.evaluates_all = true,
                 None if !entry.parameters.is_empty() && !has_parameters && !segment.is_empty() => {
                     choice.spec.parameters = segment;
                     has_parameters = true;
@@ -154,7 +158,10 @@ impl Choice {
 
     /// Makes the method on a device.
     pub fn make(&self, gpu: &Gpu) -> Result<Method, AssignError> {
-        let method = (self.entry.make)(gpu, &self.spec)?;
+        let mut method = (self.entry.make)(gpu, &self.spec)?;
+        if let Method::Lists { early_exit, .. } = &mut method {
+            *early_exit &= !self.spec.evaluates_all;
+        }
         Ok(match (method, self.spec.cap, self.spec.reuse) {
             (method, None, None) => method,
             (Method::Lists { mut strategy, early_exit }, cap, reuse) => {
@@ -174,7 +181,7 @@ impl Choice {
         self.id = match self.make(gpu)? {
             Method::Lists { strategy, .. } if self.has_groups() => {
                 let cap = self.spec.cap.map_or_else(String::new, |most| format!("/{CAP}{most}"));
-                strategy.id() + &cap
+                strategy.id() + &cap + if self.spec.evaluates_all { "/no-exit" } else { "" }
             }
             _ => self.entry.family.to_owned(),
         };
@@ -222,7 +229,7 @@ impl Choice {
                     ("area_bounds", "ball".into())
                 }
                 Axis::AreaBounds => continue,
-                Axis::Normals | Axis::Specular | Axis::Cap | Axis::Reuse => continue,
+                Axis::Normals | Axis::Specular | Axis::Cap | Axis::Reuse | Axis::Exit => continue,
             };
             all.insert(name.to_owned(), value.into());
         }
@@ -235,8 +242,9 @@ impl Choice {
         for (name, value) in numbers {
             all.extend(value.map(|value| (name.to_owned(), value.into())));
         }
-        if self.spec.specular_threshold > 0.0 {
-            all.insert("specular_threshold".into(), self.spec.specular_threshold.into());
+        all.extend(specular::parameter(self.spec.specular));
+        if self.spec.evaluates_all {
+            all.insert("early_exit".into(), false.into());
         }
         all
     }
@@ -245,7 +253,7 @@ impl Choice {
     pub fn is_lossy(&self, lights: u64) -> bool {
         self.spec.cap.is_some_and(|most| u64::from(most) < lights)
             || self.is_reused()
-            || self.spec.specular_threshold > 0.0
+            || self.spec.specular != SpecularCut::None
     }
 
     /// The most lights of a list.
@@ -255,7 +263,7 @@ impl Choice {
 
     /// Whether area lights too dull over a group lose their specular term.
     pub fn is_specular_cut(&self) -> bool {
-        self.spec.specular_threshold > 0.0
+        matches!(self.spec.specular, SpecularCut::Below(_))
     }
 
     /// Whether lists are used for several frames.
@@ -301,14 +309,6 @@ fn number_of(segment: &str, word: &str) -> Option<u32> {
     segment.strip_prefix(word)?.parse().ok().filter(|number| *number > 0)
 }
 
-/// How a segment begins that says the specular radiance that is left out.
-const SPECULAR: &str = "s";
-
-/// The radiance behind an `s`, above 0.
-fn threshold_of(segment: &str) -> Option<f32> {
-    segment.strip_prefix(SPECULAR)?.parse().ok().filter(|number: &f32| *number > 0.0)
-}
-
 /// The axis that a segment speaks of; `None` where it can only be parameters.
 fn axis_of(segment: &str) -> Option<Axis> {
     match segment {
@@ -317,7 +317,8 @@ fn axis_of(segment: &str) -> Option<Axis> {
         "ball" | "outline" => Some(Axis::AreaBounds),
         _ if segment.starts_with(CAP) => Some(Axis::Cap),
         _ if number_of(segment, NORMALS).is_some() => Some(Axis::Normals),
-        _ if threshold_of(segment).is_some() => Some(Axis::Specular),
+        "no-exit" => Some(Axis::Exit),
+        _ if specular_of(segment).is_some() => Some(Axis::Specular),
         _ if segment.starts_with(REUSE) => Some(Axis::Reuse),
         _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
     }
@@ -360,7 +361,13 @@ mod tests {
         assert_eq!(Choice::parse("SC-E/ball").unwrap().parameters()["area_bounds"], "ball");
         let normals = asked(&["--strategies", "sc-e/BVH/N6,SC-E/s0.001/n24"]);
         assert_eq!(normals, ["SC-E/48x48x40/n6/bvh", "SC-E/48x48x40/n24/s0.001"]);
-        assert!(Choice::parse("SC-E/n24/s0.001").unwrap().is_lossy(1));
+        let papers = asked(&["--strategies", "SC-E/CONE45/n24,SC-E/dif/bvh/no-exit,t-e/No-Exit"]);
+        let expected = ["SC-E/48x48x40/n24/cone45", "SC-E/48x48x40/dif/bvh/no-exit"];
+        assert_eq!(papers, [expected[0], expected[1], "T-E/28x28/no-exit"]);
+        for id in ["SC-E/n24/s0.001", "SC-E/n24/cone45", "SC-E/dif"] {
+            assert!(Choice::parse(id).unwrap().is_lossy(1), "{id}");
+        }
+        assert!(!Choice::parse("SC-E/no-exit").unwrap().is_lossy(1));
         assert!(!Choice::parse("SC-E/n24").unwrap().is_lossy(1));
     }
 
@@ -398,6 +405,8 @@ mod tests {
         assert!(error("DC-E/hs").contains("linear or bvh"), "{}", error("DC-E/hs"));
         assert!(error("T-I/28x28/16x16").contains("16x16"), "{}", error("T-I/28x28/16x16"));
         assert!(error("SC-E/n7").contains("n54"), "{}", error("SC-E/n7"));
+        assert!(error("SC-E/cone").contains("cone45"), "{}", error("SC-E/cone"));
+        assert!(error("T-E/dif").contains("cap32"), "{}", error("T-E/dif"));
         assert!(error("DC-E/n6").contains("linear or bvh"), "{}", error("DC-E/n6"));
         assert!(error("DC-E/cap0").contains("cap32"), "{}", error("DC-E/cap0"));
         assert!(error("T-I/surfaces").contains("hs"), "{}", error("T-I/surfaces"));

@@ -229,8 +229,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::compensation)]
     pub compensate: Option<f64>,
 
-    /// Count the light operations of every method with lists: the terms that are evaluated, and those
-    /// that would be seen
+    /// Count the light operations of every method with lists: terms of lights at samples that its lists
+    /// name, those of them that shading evaluates, and those that would be seen
     #[arg(long)]
     pub operations: bool,
 

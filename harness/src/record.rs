@@ -99,12 +99,7 @@ pub fn record(
             .map(|(kind, count)| (kind.to_owned(), count))
             .collect(),
         area_model: stage.lights.kinds().areas.then(|| stage.area_model.to_string()),
-        operations: lists.operations.map(|counted| Operations {
-            diffuse: counted.diffuse,
-            specular: counted.specular,
-            outer_specular: counted.outer_specular,
-            perceptible: counted.perceptible,
-        }),
+        operations: lists.operations.map(Operations::from),
         radius_scale: stage.radius_scale,
         eye: stage.view.eye().to_array().map(f64::from),
         forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),

@@ -10,6 +10,7 @@ use assign_cdi::HybridGrid;
 use assign_clustered::{
     Clustered, Normals,
     Occupancy::{Dense, Sparse},
+    SpecularCut,
 };
 use assign_grid::{Grid, GridBox};
 use assign_model::PerModel;
@@ -49,12 +50,14 @@ pub enum Axis {
     Box,
     /// Bins of normals that clusters are split into: `n6`.
     Normals,
-    /// Specular radiance of area lights that is left out: `s0.001`. Lossy.
+    /// Which specular light of area lights is left out: `s0.001`, `cone45` or `dif`. Lossy.
     Specular,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
     /// Frames for which lists are used: `reuse4`. Lossy where groups or lights move.
     Reuse,
+    /// Whether shading evaluates every listed light, also where it adds nothing: `no-exit`.
+    Exit,
 }
 
 impl Axis {
@@ -66,9 +69,14 @@ impl Axis {
             Self::AreaBounds => "ball or outline",
             Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the bins of normals: n1, n6, n24 or n54",
-            Self::Specular => "s and the specular radiance that is left out, such as s0.001",
+            Self::Specular => {
+                "what specular light is left out: s and a radiance, such as s0.001, cone and the half \
+                 angle of a lobe in degrees, such as cone45 (Swarbrick 2025), or dif, all beyond the \
+                 reach of diffuse light"
+            }
             Self::Cap => "cap and the most lights of a list, such as cap32",
             Self::Reuse => "reuse and the frames for which lists are used, such as reuse4",
+            Self::Exit => "no-exit, which evaluates every listed light",
         }
     }
 }
@@ -84,12 +92,14 @@ pub struct Spec {
     pub grid_box: GridBox,
     /// Bins of normals.
     pub normals: Normals,
-    /// Specular radiance of area lights that is left out.
-    pub specular_threshold: f32,
+    /// Which specular light of area lights is left out.
+    pub specular: SpecularCut,
     /// The most lights of a list.
     pub cap: Option<u32>,
     /// Frames for which lists are used.
     pub reuse: Option<u32>,
+    /// Whether shading evaluates every listed light.
+    pub evaluates_all: bool,
 }
 
 /// One row: a method, or a family of methods with parameters.
@@ -123,8 +133,9 @@ impl StrategyEntry {
 
 const CLUSTER: &[&str] = &["tile_width_px", "tile_height_px", "slices"];
 const TILE: &[&str] = &["tile_width_px", "tile_height_px"];
-const FRUSTA: &[Axis] = &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse];
-const BOXES: &[Axis] = &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse];
+const FRUSTA: &[Axis] =
+    &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit];
+const BOXES: &[Axis] = &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit];
 
 /// All methods; those of the comparison paper at its parameters (Enhuber 2019, table 4.3).
 pub const STRATEGIES: &[StrategyEntry] = &[
@@ -237,20 +248,15 @@ pub const STRATEGIES: &[StrategyEntry] = &[
             Axis::AreaBounds,
             Axis::Cap,
             Axis::Reuse,
+            Axis::Exit,
         ],
         summary: "sparse clusters, explicit bounds: both at once",
         reads_depth: true,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
-            let Spec { normals, specular_threshold, settings, .. } = *spec;
+            let Spec { normals, specular, settings, .. } = *spec;
             Ok(Method::lists(Clustered::with_normals(
-                gpu,
-                size,
-                Explicit,
-                Sparse,
-                normals,
-                specular_threshold,
-                settings,
+                gpu, size, Explicit, Sparse, normals, specular, settings,
             )?))
         },
     },
@@ -258,7 +264,14 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "G",
         parameters: &["cells_x", "cells_y", "cells_z"],
         default: "20x20x20",
-        axes: &[Axis::Box, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse],
+        axes: &[
+            Axis::Box,
+            Axis::Source,
+            Axis::AreaBounds,
+            Axis::Cap,
+            Axis::Reuse,
+            Axis::Exit,
+        ],
         summary: "a grid of cells in world space, over the box of the lights' positions, of their supports, or of the surfaces",
         reads_depth: false,
         make: |gpu, spec| {
@@ -281,7 +294,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "HG",
         parameters: CLUSTER,
         default: "48x48x40",
-        axes: &[Axis::Cap, Axis::Reuse],
+        axes: &[Axis::Cap, Axis::Reuse, Axis::Exit],
         summary: "the grid of hybrid lighting: lights add themselves to the cells that hold samples",
         reads_depth: true,
         make: |gpu, spec| Ok(Method::lists(HybridGrid::new(gpu, spec.parameters.parse()?)?)),

@@ -17,6 +17,7 @@ mod bill;
 mod file;
 mod indirect;
 mod machine;
+mod operations;
 mod passes;
 mod planes;
 mod record;
@@ -33,6 +34,7 @@ pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
 pub use file::{ResultsError, write_atomically};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use machine::{DeviceType, Machine};
+pub use operations::{EvaluatedTerms, Operations};
 pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use planes::{PlaneSource, Planes};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
@@ -132,20 +134,6 @@ impl Clock {
             Self::WallClock => "wall-clock per pass",
         }
     }
-}
-
-/// Evaluations of one term of one light at one sample, summed over an image (Swarbrick 2025,
-/// appendix I).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Operations {
-    /// Diffuse terms that were evaluated.
-    pub diffuse: u64,
-    /// Specular terms that were evaluated.
-    pub specular: u64,
-    /// Of those, the ones at samples beyond the reach of the light's diffuse term.
-    pub outer_specular: u64,
-    /// Terms of either kind whose light would be seen: 0 to 2 of each pair.
-    pub perceptible: u64,
 }
 
 /// One strategy on one scene in one mode.

@@ -1,6 +1,6 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, Light, LightBuffer, LightKind, MAX_RANGE_M, MIN_RANGE_M, View};
+use assign::{Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MIN_RANGE_M, View};
 use glam::Vec3;
 use scenes::{Aabb, LightSpec, Places, Pose, Scene, primary_light, scatter_lights};
 use shading::{AreaModel, Renderer};
@@ -215,7 +215,22 @@ impl Lit {
                     .clamp(MIN_RANGE_M, MAX_RANGE_M);
             }
         }
+        if let Some(least) = args.influence {
+            set_influence(&mut lights, least as f32);
+        }
         Ok(Self { lights, bounds, own })
+    }
+}
+
+/// Gives area lights the range at which their light ends by the polygon-light paper's rule; other lights keep
+/// theirs.
+fn set_influence(lights: &mut [Light], least: f32) {
+    for light in lights {
+        if let LightShape::Area(emitter) = &light.shape {
+            let diffuse_m = Light::influence_radius(light.intensity, least);
+            let range_m = diffuse_m / emitter.diffuse_share;
+            light.range_m = range_m.clamp(MIN_RANGE_M, MAX_RANGE_M);
+        }
     }
 }
 
@@ -250,6 +265,19 @@ fn pose_of(scene: &Scene, args: &StageArgs) -> Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn influence_ends_diffuse_light_and_specular_light_goes_on() {
+        let emitter = assign::Emitter::rectangle(Vec3::X, Vec3::Y).with_diffuse_share(0.5);
+        let intensity = Vec3::new(1.0, 2.0, 3.0);
+        let point = Light::point(Vec3::ZERO, 7.0, intensity);
+        let mut lights = [point, Light::area(emitter, Vec3::ZERO, 7.0, intensity)];
+        set_influence(&mut lights, 0.02);
+        // sqrt(4.4 * (1 + 2 + 3) / (2 pi * 0.02)), by hand.
+        assert_eq!(lights[0].range_m, 7.0);
+        assert!((lights[1].diffuse_range_m() - 14.494).abs() < 1e-3, "{lights:?}");
+        assert!((lights[1].range_m - 28.988).abs() < 2e-3, "{lights:?}");
+    }
 
     #[test]
     fn halls_keep_the_papers_radii_and_towns_get_larger_ones() {

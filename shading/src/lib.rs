@@ -51,7 +51,7 @@ pub use image::{HdrImage, ImageDifference, luminance};
 pub use lighting::{Cut, Lighting, LightingOptions};
 pub use lighting_inputs::LightingRecord;
 pub use materials::MaterialRecord;
-pub use operations::{Operations, count_operations};
+pub use operations::{Operations, Terms, count_operations};
 pub use probe::{Samples, probe, record_for_probe};
 pub use raster_spheres::{RASTER_SPHERE_TOLERANCE, RasterSpheres};
 pub use renderer::{Mode, Renderer, record_before_lighting};

@@ -58,13 +58,14 @@ impl LightTotals {
         self.check_rounds(gpu, self.rounds(options.area))
     }
 
-    /// The same where light operations are counted, which walks the vertices once more.
+    /// The same where light operations are counted, which walks the vertices twice more: for the closest
+    /// point and for the horizon.
     pub(crate) fn check_counted(
         &self,
         gpu: &Gpu,
         options: LightingOptions,
     ) -> Result<(), ShadingError> {
-        self.check_rounds(gpu, self.rounds(options.area) + self.vertices + self.areas)
+        self.check_rounds(gpu, self.rounds(options.area) + 2 * (self.vertices + self.areas))
     }
 
     fn check_rounds(&self, gpu: &Gpu, rounds: u64) -> Result<(), ShadingError> {

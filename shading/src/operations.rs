@@ -1,6 +1,7 @@
-//! Light operations: how many terms of lights shading evaluates, and how many would be seen.
+//! Light operations: how many terms of lights the lists name, how many of those shading evaluates, and how
+//! many would be seen.
 
-use std::iter::Sum;
+use std::{iter::Sum, ops::Add};
 
 use assign::{Assignment, EncoderPasses, Frame, Passes, entry, storage_entry, uniform_entry};
 use bytemuck::pod_collect_to_vec;
@@ -13,27 +14,52 @@ use crate::{
     shaders,
 };
 
-/// Evaluations of one term of one light at one sample (Swarbrick 2025, appendix I).
+/// Terms of lights at samples, summed over an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Terms {
+    /// Diffuse terms.
+    pub diffuse: u64,
+    /// Specular terms.
+    pub specular: u64,
+    /// Of the specular terms, those at samples beyond the reach of the light's diffuse term.
+    pub outer_specular: u64,
+}
+
+/// Light operations: one term of one light at one sample each (Swarbrick 2025, appendix I).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
-    /// Diffuse terms that are evaluated.
-    pub diffuse: u64,
-    /// Specular terms that are evaluated.
-    pub specular: u64,
-    /// Of those, the ones at samples beyond the reach of the light's diffuse term.
-    pub outer_specular: u64,
-    /// Terms whose light would be seen, 0 to 2 of each pair: on a white surface, under a colourless
-    /// light, its luminance on a display of gamma 2.2 is above 0.005, or both terms' above 0.01.
+    /// Terms that the samples' lists name. The paper counts these.
+    pub listed: Terms,
+    /// Listed terms that shading evaluates: it leaves out, sample by sample, what adds nothing there.
+    pub evaluated: Terms,
+    /// Listed terms whose light would be seen, 0 to 2 of each pair: on a white surface, under a
+    /// colourless light, its luminance on a display of gamma 2.2 is above 0.005, or both terms' above
+    /// 0.01.
     pub perceptible: u64,
+    /// The same of every listed light's two terms, whichever of them its entry names. The difference to
+    /// [`perceptible`](Self::perceptible) would be seen and is not drawn.
+    pub perceptible_of_lights: u64,
+}
+
+impl Add for Terms {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            diffuse: self.diffuse + other.diffuse,
+            specular: self.specular + other.specular,
+            outer_specular: self.outer_specular + other.outer_specular,
+        }
+    }
 }
 
 impl Sum for Operations {
     fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
         all.fold(Self::default(), |a, b| Self {
-            diffuse: a.diffuse + b.diffuse,
-            specular: a.specular + b.specular,
-            outer_specular: a.outer_specular + b.outer_specular,
+            listed: a.listed + b.listed,
+            evaluated: a.evaluated + b.evaluated,
             perceptible: a.perceptible + b.perceptible,
+            perceptible_of_lights: a.perceptible_of_lights + b.perceptible_of_lights,
         })
     }
 }
@@ -55,7 +81,7 @@ pub fn count_operations(
     let gpu = &renderer.gpu;
     renderer.lights.check_counted(gpu, options)?;
     let viewport = frame.view.viewport;
-    let bytes = u64::from(viewport.width) * u64::from(viewport.height) * 16;
+    let bytes = u64::from(viewport.width) * u64::from(viewport.height) * 32;
     let counts = gpu.storage("operations", bytes)?;
     let shown = gpu.uniform("exposure", 16);
     gpu.queue.write_buffer(&shown, 0, bytemuck::bytes_of(&[exposure, 0.0, 0.0, 0.0]));
@@ -109,12 +135,17 @@ pub fn count_operations(
         pass.dispatch_workgroups(viewport.width.div_ceil(8), viewport.height.div_ceil(8), 1);
     });
     gpu.queue.submit([encoder.finish()]);
-    let counts: Vec<[u32; 4]> = pod_collect_to_vec(&gpu.read(&counts, bytes)?);
-    let of_pixel = |[diffuse, specular, outer, perceptible]: [u32; 4]| Operations {
+    let counts: Vec<[[u32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&counts, bytes)?);
+    let terms = |[diffuse, specular, outer, _]: [u32; 4]| Terms {
         diffuse: diffuse.into(),
         specular: specular.into(),
         outer_specular: outer.into(),
-        perceptible: perceptible.into(),
+    };
+    let of_pixel = |[listed, evaluated]: [[u32; 4]; 2]| Operations {
+        listed: terms(listed),
+        evaluated: terms(evaluated),
+        perceptible: listed[3].into(),
+        perceptible_of_lights: evaluated[3].into(),
     };
     Ok(counts.into_iter().map(of_pixel).sum())
 }

@@ -208,8 +208,7 @@ fn deferred() {
 fn operations() {
     for look_up in LOOK_UPS {
         for flags in with_areas(subsets(&["spots", "model_ids"])) {
-            let mut images = vec![0, 1, 2, 8, 9];
-            images.extend(flags.contains("area_monte_carlo").then_some(6));
+            let mut images = vec![0, 1, 2, 6, 8, 9];
             images.extend(flags.contains("model_ids").then_some(5));
             images.sort_unstable();
             check_compute("operations", &flags, look_up, look_up.2, &images);

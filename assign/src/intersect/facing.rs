@@ -19,7 +19,7 @@ pub struct NormalCone {
 const LENGTH_SLACK: f32 = 1.2e-3;
 /// How far rounding may leave a vertex off its emitter's plane, as a share of the emitter's size: far
 /// less than this, twice what is let in.
-const OFF_PLANE: f32 = 2e-4;
+pub(super) const OFF_PLANE: f32 = 2e-4;
 /// What half axes 1e-3 off a right angle add to an emitter's radius.
 pub(super) const OFF_SQUARE: f32 = 1.001;
 

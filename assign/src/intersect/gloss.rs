@@ -5,7 +5,11 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{Aabb, LightVolume, NormalCone, eye_world, facing::OFF_SQUARE};
+use super::{
+    Aabb, LightVolume, NormalCone, eye_world,
+    facing::{OFF_PLANE, OFF_SQUARE},
+    volume::PROJECTIONS,
+};
 use crate::{Light, LightShape, View};
 
 /// As `brdf.wesl` has it.
@@ -78,18 +82,68 @@ impl SeenGroup {
     pub fn specular_bound(&self, light: &Light) -> f32 {
         let LightShape::Area(emitter) = &light.shape else { return f32::INFINITY };
         let volume = LightVolume::from(light);
-        let outline = OFF_SQUARE * volume.outline_radius();
-        let on_box = volume.center.clamp(self.bounds.min_world, self.bounds.max_world);
-        let slack = self.bounds.slack_m + self.bounds.slack_per_m * volume.radius_m;
-        let nearest = (volume.center.distance(on_box) - outline - slack).max(0.0);
+        let area_m2 = emitter.area();
+        let slack_m = self.bounds.slack_m + self.bounds.slack_per_m * volume.radius_m;
+        let nearest = self.gap_to_outline(&volume, slack_m);
         let ratio_2 = nearest * nearest / (volume.range_m * volume.range_m);
         let window = (1.0 - ratio_2 * ratio_2).max(0.0);
-        let solid_angle = (2.0 * PI).min(emitter.area() / (nearest * nearest).max(1e-20));
+        let scale = light.intensity.max_element() / area_m2 * window * window * self.visibility;
+        let whole = self.reflected_of(&volume, area_m2, nearest, slack_m);
+
+        let [x, y] = volume.half_axes;
+        let [long, short] = if x.length_squared() >= y.length_squared() { [x, y] } else { [y, x] };
+        let count = pieces_of(long.length_squared(), short.length_squared());
+        if count == 1 {
+            return scale * whole;
+        }
+        let pieces = count as f32;
+        // A polygon may fill its rectangle unevenly, but no piece by more than the piece's own area.
+        let piece_m2 = area_m2.min(4.0 * OFF_SQUARE * long.length() * short.length() / pieces);
+        let sum: f32 = (0..count)
+            .map(|ix| {
+                let center = volume.center + ((2 * ix + 1) as f32 / pieces - 1.0) * long;
+                let piece = LightVolume { center, half_axes: [long / pieces, short], ..volume };
+                self.reflected_of(&piece, piece_m2, nearest, slack_m)
+            })
+            .sum();
+        scale * whole.min(sum)
+    }
+
+    /// Distance of the group's box from the ball around the outline, metres.
+    fn gap_to_ball(&self, volume: &LightVolume, slack_m: f32) -> f32 {
+        let on_box = volume.center.clamp(self.bounds.min_world, self.bounds.max_world);
+        let outline = OFF_SQUARE * volume.outline_radius();
+        (volume.center.distance(on_box) - outline - slack_m).max(0.0)
+    }
+
+    /// Distance of the group's box from the outline, metres: never more than the true one, and no
+    /// less than that from the ball. It is the gap along the axis between the nearest points.
+    fn gap_to_outline(&self, volume: &LightVolume, slack_m: f32) -> f32 {
+        let closest = |point: Vec3| point.clamp(self.bounds.min_world, self.bounds.max_world);
+        let mut on_box = closest(volume.center);
+        let mut on_outline = volume.center;
+        for _ in 0..PROJECTIONS {
+            on_outline = volume.closest_on_outline(on_box);
+            on_box = closest(on_outline);
+        }
+        let across = on_outline - on_box;
+        let axis = across / across.length().max(1e-20);
+        let off_plane = OFF_PLANE * OFF_SQUARE * volume.outline_radius();
+        let extent = volume.outline_extent(axis) + off_plane;
+        self.gap_to_ball(volume, slack_m).max(axis.dot(volume.center - on_box) - extent - slack_m)
+    }
+
+    /// The greatest of solid angle times D times F from a piece of an emitter: its outline as a
+    /// volume, its area, and the least distance of the whole emitter.
+    fn reflected_of(&self, volume: &LightVolume, area_m2: f32, least_m: f32, slack_m: f32) -> f32 {
+        let nearest = least_m.max(self.gap_to_ball(volume, slack_m));
+        let solid_angle = (2.0 * PI).min(area_m2 / (nearest * nearest).max(1e-20));
 
         let across = volume.center - self.center;
         let distance_m = across.length();
         let to_light = across / distance_m.max(1e-20);
-        let light_spread = spread_of(self.radius_m + outline + slack, distance_m);
+        let outline = OFF_SQUARE * volume.outline_radius();
+        let light_spread = spread_of(self.radius_m + outline + slack_m, distance_m);
 
         let off = angle_between(to_light, self.mirror) - self.mirror_spread - light_spread;
         let tilt = 0.5 * off.max(0.0);
@@ -101,10 +155,21 @@ impl SeenGroup {
         let apart =
             angle_between(to_light, self.to_eye) + self.eye_spread + light_spread + ANGLE_SLACK;
         let fresnel = self.f0 + (1.0 - self.f0) * (1.0 - (0.5 * apart.min(PI)).cos()).powi(5);
-
-        let radiance = light.intensity.max_element() / emitter.area() * window * window;
-        radiance * solid_angle * distribution * self.visibility * fresnel
+        solid_angle * distribution * fresnel
     }
+}
+
+/// The most pieces of a long emitter.
+const MOST_PIECES: u32 = 16;
+
+/// Pieces of an outline so that each is about as long as it is wide: a power of two.
+fn pieces_of(long_2: f32, short_2: f32) -> u32 {
+    let mut pieces = 1;
+    // From 1.5 widths a piece on it is halved.
+    while pieces < MOST_PIECES && (pieces * pieces) as f32 * 2.25 * short_2 < long_2 {
+        pieces *= 2;
+    }
+    pieces
 }
 
 /// Half the angle that a ball fills, radians; pi from inside.

@@ -2,8 +2,8 @@
 //!
 //! The culling kernel runs these tests in WESL; here they are in Rust, f32 for f32, under the same
 //! names: [`Frustum`] is `bounds_frustum.wesl`, [`Aabb`] `bounds_box.wesl`, [`OrientedBox`]
-//! `bounds_oriented_box.wesl`, [`NormalCone`] `facing.wesl`, [`SeenGroup`] `gloss.wesl`, and
-//! [`LightVolume`] what they share, `lights.wesl` and
+//! `bounds_oriented_box.wesl`, [`NormalCone`] `facing.wesl`, [`SeenGroup`] `gloss.wesl`,
+//! [`MirrorGroup`] `reflected.wesl`, and [`LightVolume`] what they share, `lights.wesl` and
 //! `volume.wesl`.
 //!
 //! # The tests
@@ -80,6 +80,7 @@ mod facing;
 mod frustum;
 mod gloss;
 mod oriented_box;
+mod reflected;
 mod volume;
 
 use glam::Vec3;
@@ -89,6 +90,7 @@ pub use facing::NormalCone;
 pub use frustum::Frustum;
 pub use gloss::{Gloss, SeenGroup};
 pub use oriented_box::OrientedBox;
+pub use reflected::MirrorGroup;
 pub use volume::LightVolume;
 
 use crate::ViewUniform;

@@ -68,7 +68,7 @@ const CONE_SINE_MIN: f32 = 1e-3;
 
 /// How often the nearest points of a box and an outline are projected onto each other. Any axis
 /// they give is a valid test; more rounds find a better one.
-const PROJECTIONS: usize = 3;
+pub(super) const PROJECTIONS: usize = 3;
 
 impl LightVolume {
     /// How far the volume extends from its centre along the unit vector `axis`, metres, `>= 0`.

@@ -10,6 +10,7 @@ mod cases;
 mod facing;
 mod groups;
 mod oracle;
+mod pairs;
 mod rates;
 mod spots;
 mod wesl;

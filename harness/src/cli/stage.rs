@@ -71,6 +71,11 @@ pub struct StageArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
     pub threshold: Option<f64>,
 
+    /// Give every area light the range of Swarbrick 2025 (listing 4.1): where its flux, times 4.4 and spread
+    /// over a hemisphere, falls to this irradiance, its diffuse light ends, 1e-9 to 1e9
+    #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold)]
+    pub influence: Option<f64>,
+
     /// Order of the lights in their buffer, for all methods alike
     #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order)]
     pub light_order: LightOrder,

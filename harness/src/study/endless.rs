@@ -25,6 +25,20 @@ const RANGE_SHARE: f32 = 0.55;
 /// Clusters through the hierarchy, by position alone.
 const CLUSTERS: &str = "SC-E/48x48x40/bvh";
 
+/// The numbers of cones that the paper has.
+const CONES: [u32; 3] = [6, 24, 54];
+
+/// The cone test of the paper: its lobe of 45 degrees.
+const CONE_TEST: &str = "cone45";
+
+/// The paper's clusters: 16 x 9 tiles, and depth slices.
+const GRID: [u32; 3] = [16, 9, 24];
+
+/// The irradiance at which the paper's rule gives these lights about the range that they have: their
+/// intensity is 0.02 times the square of their range in the brightest channel, and about twice that in the
+/// sum of three; 4.4 * 0.04 / (2 pi * 0.6667^2).
+const INFLUENCE: &str = "0.063";
+
 /// How much the study looks at.
 struct Extent {
     size: Size,
@@ -32,10 +46,10 @@ struct Extent {
     copies: [(&'static str, &'static str); 2],
     frames: &'static str,
     warmup: &'static str,
-    /// Whether no culling is timed.
+    /// Whether no culling is timed, at location A.
     none: bool,
     cones: &'static [u32],
-    /// Radiances below which specular light is left out.
+    /// Radiances below which 54 cones leave specular light out.
     cuts: &'static [&'static str],
 }
 
@@ -43,10 +57,11 @@ const FULL: Extent = Extent {
     // The paper's, for its counts of operations.
     size: Size { width: 1280, height: 720 },
     copies: [("1", "126"), ("4", "2016")],
-    frames: "32",
+    // A frame a round.
+    frames: "16",
     warmup: "4",
     none: true,
-    cones: &[1, 6, 24, 54],
+    cones: &CONES,
     cuts: &["0.001", "0.01"],
 };
 
@@ -57,53 +72,85 @@ const QUICK: Extent = Extent {
     frames: "6",
     warmup: "1",
     none: false,
-    cones: &[1, 6, 54],
+    cones: &[6, 54],
     cuts: &["0.01"],
 };
 
-/// The jobs of one scene: each place under each count of lights.
+/// The jobs of one scene: each place under each count of lights that the paper has figures of, and
+/// location A under the ranges that its own rule gives, cut hard.
 pub(super) fn jobs(
     bench: &mut Bench,
     args: &StudyArgs,
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let extent = if args.quick { QUICK } else { FULL };
-    let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
+    let size = args.size.unwrap_or(extent.size);
+    let drawn = scene.options(size, args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let [core, all] = scene.boxes(bench)?;
     let range = format!("{:.3}", range_m(core));
-    let strategies = strategies(&extent);
     let lit = ["--lights", LIGHTS, "--areas", "1"];
     let shaped = ["--outlines", "polygons", "--diffuse-share", DIFFUSE_SHARE, "--radii", "equal"];
     // Images say whether anything was lost; pairs in f64 would take minutes a job.
     let seen = ["--radius-scale", &range, "--area-model", "ltc", "--operations", "--truth", "none"];
-    let timed = ["--strategies", &strategies, "--frames", extent.frames, "--warmup", extent.warmup];
+    let timed = ["--frames", extent.frames, "--warmup", extent.warmup];
     let common = [&["compare"], &drawn[..], &lit, &shaped, &seen, &timed].concat();
     let mut jobs = Vec::new();
+    let mut add = |place: &str, count: &str, strategies: &str, own: &[&str]| {
+        let words = [&common[..], &["--strategies", strategies], own].concat();
+        jobs.push(Job::new(scene, place, count, &words));
+    };
+    let [(_, few), (_, many)] = extent.copies;
     for (side, count) in extent.copies {
         let far = afar(all, side.parse().unwrap_or(1));
         for (place, camera) in [("a", "path:0/12"), ("b", "path:7/12"), ("c", far.as_str())] {
-            let own = ["--replicate", side, "--camera", camera];
-            let words = [&common[..], &own].concat();
-            jobs.push(Job::new(scene, place, count, &words));
+            // The paper has no figures of few lights from afar.
+            if place != "c" || count != few {
+                let strategies = strategies(&extent, size, extent.none && place == "a");
+                add(place, count, &strategies, &["--replicate", side, "--camera", camera]);
+            }
+        }
+        if count == many {
+            let ruled = ["--influence", INFLUENCE, "--cut", "hard", "--unbounded"];
+            let own = [&["--replicate", side, "--camera", "path:0/12"], &ruled[..]].concat();
+            add("influence", count, &published(&extent, size).join(","), &own);
         }
     }
     Ok(jobs)
 }
 
-/// No culling, clusters by position alone, and by each number of cones without a loss and with each
-/// cut.
-fn strategies(extent: &Extent) -> String {
+/// Clusters by position, and by each number of cones: without a loss, by the paper's test, and by 54 with
+/// each cut; specular light that ends with the diffuse; some of it without the early exit; and the paper's
+/// own rows. One cone is not the paper's.
+fn strategies(extent: &Extent, size: Size, none: bool) -> String {
     let mut ids = Vec::new();
-    if extent.none {
+    if none {
         ids.push("None".to_owned());
     }
     ids.push(CLUSTERS.to_owned());
-    for cones in extent.cones {
-        ids.push(format!("{CLUSTERS}/n{cones}"));
-        ids.extend(extent.cuts.iter().map(|cut| format!("{CLUSTERS}/n{cones}/s{cut}")));
-    }
+    ids.push(format!("{CLUSTERS}/n1"));
+    ids.extend(extent.cones.iter().map(|cones| format!("{CLUSTERS}/n{cones}")));
+    ids.extend(extent.cones.iter().map(|cones| format!("{CLUSTERS}/n{cones}/{CONE_TEST}")));
+    ids.extend(extent.cuts.iter().map(|cut| format!("{CLUSTERS}/n54/s{cut}")));
+    ids.push(format!("{CLUSTERS}/dif"));
+    ids.extend(["", "/n54"].map(|cones| format!("{CLUSTERS}{cones}/no-exit")));
+    ids.extend(published(extent, size));
     ids.join(",")
+}
+
+/// The paper's rows: its clusters, its cone test, its `dif`, and half as many slices; each evaluates every
+/// listed light, for the paper's shading has no early exit.
+fn published(extent: &Extent, size: Size) -> Vec<String> {
+    let [across, down, slices] = GRID;
+    let grid = |slices: u32, rest: &str| {
+        let (width, height) = (size.width.div_ceil(across), size.height.div_ceil(down));
+        format!("SC-E/{width}x{height}x{slices}/bvh{rest}/no-exit")
+    };
+    let mut ids = vec![grid(slices, ""), grid(slices / 2, "")];
+    let test = |cones: &u32| grid(slices, &format!("/n{cones}/{CONE_TEST}"));
+    ids.extend(extent.cones.iter().map(test));
+    ids.push(grid(slices, "/dif"));
+    ids
 }
 
 /// The range of the lights, metres.
@@ -142,10 +189,23 @@ mod tests {
     }
 
     #[test]
-    fn every_number_of_cones_is_there_without_a_loss_and_with_each_cut() {
-        let ids = strategies(&FULL);
-        assert_eq!(ids.split(',').count(), 2 + 4 * 3);
-        assert!(ids.starts_with("None,SC-E/48x48x40/bvh,SC-E/48x48x40/bvh/n1,"), "{ids}");
-        assert!(ids.ends_with("/n54/s0.01"), "{ids}");
+    fn every_number_of_cones_is_there_without_a_loss_and_by_the_papers_test() {
+        let ids = strategies(&FULL, FULL.size, true);
+        let ids: Vec<&str> = ids.split(',').collect();
+        assert_eq!(ids.len(), 1 + 2 + 3 + 3 + 2 + 1 + 2 + 6, "{ids:?}");
+        assert_eq!(ids[..2], ["None", "SC-E/48x48x40/bvh"]);
+        // The paper's 16 x 9 x 24 clusters of its 1280 x 720 pixels.
+        for id in [
+            "SC-E/48x48x40/bvh/n54/cone45",
+            "SC-E/80x80x24/bvh/no-exit",
+            "SC-E/80x80x12/bvh/no-exit",
+            "SC-E/80x80x24/bvh/n24/cone45/no-exit",
+            "SC-E/80x80x24/bvh/dif/no-exit",
+        ] {
+            assert!(ids.contains(&id), "{id}: {ids:?}");
+        }
+        for id in ids {
+            crate::choice::Choice::parse(id).unwrap_or_else(|error| panic!("{error}"));
+        }
     }
 }

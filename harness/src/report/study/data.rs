@@ -119,12 +119,15 @@ pub(super) fn is_bvh(id: &str) -> bool {
     id.split('/').any(|segment| segment == "bvh")
 }
 
-/// The lossy knob of an id: `cap8`, `reuse4`, `s0.001`.
+/// The lossy knob of an id: `cap8`, `reuse4`, `s0.001`, `cone45`, `dif`.
 pub(super) fn knob(id: &str) -> Option<&str> {
     let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     let is_knob = |segment: &&str| {
         let is_threshold = |text: &str| text.parse::<f32>().is_ok();
-        ["cap", "reuse"].iter().any(|knob| segment.strip_prefix(knob).is_some_and(number))
+        *segment == "dif"
+            || ["cap", "reuse", "cone"]
+                .iter()
+                .any(|knob| segment.strip_prefix(knob).is_some_and(number))
             || segment.strip_prefix('s').is_some_and(is_threshold)
     };
     id.split('/').skip(1).find(is_knob)
@@ -181,6 +184,7 @@ mod tests {
         assert_eq!(knob("T-E/28x28/bvh/cap16"), Some("cap16"));
         assert_eq!(knob("T-E/28x28/reuse2"), Some("reuse2"));
         assert_eq!(knob("SC-E/48x48x40/n24/s0.001/bvh"), Some("s0.001"));
+        assert_eq!(knob("SC-E/48x48x40/n24/cone45/bvh"), Some("cone45"));
         assert_eq!(knob("T-E/28x28/bvh"), None);
         assert_eq!(knob("T-I/28x28/sat-n"), None);
         assert!(is_bvh("M/bvh") && !is_bvh("M/2"));

@@ -3,7 +3,7 @@
 
 use super::super::format::significant;
 use super::data::class;
-use super::endless_data::{Case, listed, setting};
+use super::endless_data::{Case, seen, setting};
 use super::figure::Charts;
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::{Operations, Record};
@@ -11,8 +11,7 @@ use crate::results::{Operations, Record};
 /// The charts that a case has figures for.
 pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> String {
     let slug = |what: &str| format!("{scene}-{}-{}-{what}", case.place, case.lights);
-    let culled: Vec<&Record> =
-        case.entries.iter().map(|entry| entry.record).filter(|record| record.culls()).collect();
+    let culled: Vec<&Record> = case.culled().collect();
     let mut html = String::new();
     let times = BarChart {
         title: "Assign and shade by cones".to_owned(),
@@ -28,13 +27,12 @@ pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> St
         html += &counted(&culled, title, "Outer specular operations", "%", share)
             .map_or_else(String::new, |chart| charts.bars(&slug("outer"), &chart));
     }
-    // A cut may lose terms that would be seen: they count as seen all the same.
-    let seen = case.position().and_then(|record| record.operations).map(|all| all.perceptible);
-    let waste = |operations: &Operations| match seen.unwrap_or(operations.perceptible) {
+    // Of what a setting lists, not of what it should.
+    let waste = |operations: &Operations| match seen(operations) {
         0 => f64::NAN,
-        seen => listed(operations) as f64 / seen as f64,
+        seen => operations.listed() as f64 / seen as f64,
     };
-    let title = "Operations over those whose light is seen";
+    let title = "Listed terms over those of them that would be seen";
     html + &counted(&culled, title, "Listed over perceptible", "", waste)
         .map_or_else(String::new, |chart| charts.bars(&slug("perceptible"), &chart))
 }

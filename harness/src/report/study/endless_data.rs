@@ -1,7 +1,7 @@
-//! What a study of polygon lights measured, by place, number of lights and number of cones, and what the
-//! paper measured.
+//! What a study of polygon lights measured, by place, number of lights and setting, and what the paper
+//! measured.
 
-use super::data::{Entry, entries};
+use super::data::{Entry, entries, parameters};
 use crate::results::{Operations, Record};
 use crate::study::Done;
 
@@ -12,25 +12,94 @@ pub(super) const PLACES: [(&str, &str); 3] = [
     ("c", "Location C: mostly far fragments"),
 ];
 
-/// The normal cones that a cluster is split by; `None` where lights are assigned by position alone.
-pub(super) fn cones(id: &str) -> Option<u32> {
-    id.split('/').skip(1).find_map(|segment| segment.strip_prefix('n')?.parse().ok())
+/// Location A under ranges by the paper's own rule. No claim is held against it.
+pub(super) const RULED: (&str, &str) =
+    ("influence", "Location A: ranges by the paper\u{2019}s influence radius, cut hard");
+
+/// The clusters of all settings but the paper's own.
+pub(super) const USUAL: &str = "48x48x40";
+
+/// What specular light a setting leaves out on purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cut<'a> {
+    /// None.
+    None,
+    /// What stays below a radiance.
+    Below(&'a str),
+    /// What the paper's cone test does not pass, with a lobe of so many degrees.
+    ConeTest(&'a str),
+    /// All beyond the reach of diffuse light: the paper's `dif`.
+    Diffuse,
 }
 
-/// The radiance below which specular light is left out, as the id has it.
-pub(super) fn cut(id: &str) -> Option<&str> {
-    let number = |text: &&str| text.parse::<f64>().is_ok();
-    id.split('/').skip(1).find_map(|segment| segment.strip_prefix('s').filter(number))
+/// A setting, read from its id.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Setting<'a> {
+    /// The clusters: `48x48x40`; empty where there are none.
+    pub(super) grid: &'a str,
+    /// Normal cones that a cluster is split by; `None` where lights are assigned by position alone.
+    pub(super) cones: Option<u32>,
+    pub(super) cut: Cut<'a>,
+    /// Whether shading leaves out, at each sample, what adds nothing there.
+    pub(super) exits: bool,
 }
 
-/// `position`, `54 cones` or `54 cones, cut 0.01`.
+impl<'a> Setting<'a> {
+    pub(super) fn of(id: &'a str) -> Self {
+        let mut setting = Self { grid: parameters(id), cones: None, cut: Cut::None, exits: true };
+        for segment in id.split('/').skip(1) {
+            let number =
+                |word| segment.strip_prefix(word).filter(|rest: &&str| rest.parse::<f64>().is_ok());
+            if let Some(cones) = number("n") {
+                setting.cones = cones.parse().ok();
+            } else if let Some(degrees) = number("cone") {
+                setting.cut = Cut::ConeTest(degrees);
+            } else if let Some(radiance) = number("s") {
+                setting.cut = Cut::Below(radiance);
+            } else if segment == "dif" {
+                setting.cut = Cut::Diffuse;
+            } else if segment == "no-exit" {
+                setting.exits = false;
+            }
+        }
+        setting
+    }
+
+    /// Whether its number of cones is one of the paper's: 6, 24 or 54, or none, by position.
+    pub(super) fn is_of_the_paper(&self) -> bool {
+        self.cones.is_none_or(|cones| [6, 24, 54].contains(&cones))
+    }
+
+    /// Position alone, without a cut.
+    pub(super) fn is_position(&self) -> bool {
+        self.cones.is_none() && self.cut == Cut::None
+    }
+}
+
+/// `position`, `54 cones`, `54 cones, cut 0.01`, `6 cones, 45° test, 80x80x24, no early exit`.
 pub(super) fn setting(id: &str) -> String {
-    let Some(cones) = cones(id) else {
-        return if id == crate::results::BASELINE { "no culling" } else { "position" }.to_owned();
+    if id == crate::results::BASELINE {
+        return "no culling".to_owned();
+    }
+    let setting = Setting::of(id);
+    let mut text = match setting.cones {
+        None if setting.cut == Cut::Diffuse => "diffuse reach".to_owned(),
+        None => "position".to_owned(),
+        Some(1) => "1 cone".to_owned(),
+        Some(cones) => format!("{cones} cones"),
     };
-    let plural = if cones == 1 { "" } else { "s" };
-    let cut = cut(id).map_or_else(String::new, |cut| format!(", cut {cut}"));
-    format!("{cones} cone{plural}{cut}")
+    match setting.cut {
+        Cut::Below(radiance) => text += &format!(", cut {radiance}"),
+        Cut::ConeTest(degrees) => text += &format!(", {degrees}\u{b0} test"),
+        Cut::None | Cut::Diffuse => {}
+    }
+    if setting.grid != USUAL {
+        text += &format!(", {}", setting.grid);
+    }
+    if !setting.exits {
+        text += ", no early exit";
+    }
+    text
 }
 
 /// One place under one count of lights.
@@ -43,10 +112,19 @@ pub(super) struct Case<'a> {
     pub(super) entries: Vec<Entry<'a>>,
 }
 
-/// All cases that were measured: by place, and by lights.
+/// All cases that were measured at the paper's places: by place, and by lights.
 pub(super) fn cases<'a>(done: &'a Done, scene: &'a str) -> Vec<Case<'a>> {
+    cases_at(done, scene, &PLACES)
+}
+
+/// All cases of some places.
+pub(super) fn cases_at<'a>(
+    done: &'a Done,
+    scene: &'a str,
+    places: &[(&'static str, &'static str)],
+) -> Vec<Case<'a>> {
     let mut cases: Vec<Case<'a>> = Vec::new();
-    for (place, _) in PLACES {
+    for &(place, _) in places {
         for entry in entries(done, scene, place) {
             let lights = entry.record.lights;
             match cases.iter_mut().find(|case| case.place == place && case.lights == lights) {
@@ -59,55 +137,103 @@ pub(super) fn cases<'a>(done: &'a Done, scene: &'a str) -> Vec<Case<'a>> {
 }
 
 impl<'a> Case<'a> {
-    /// The records of a number of cones.
-    pub(super) fn of(&self, wanted: Option<u32>) -> impl Iterator<Item = &'a Record> {
-        let culls = self.entries.iter().map(|entry| entry.record).filter(|record| record.culls());
-        culls.filter(move |record| cones(&record.strategy) == wanted)
+    /// All records that cull, in the order of their job.
+    pub(super) fn culled(&self) -> impl Iterator<Item = &'a Record> {
+        self.entries.iter().map(|entry| entry.record).filter(|record| record.culls())
     }
 
-    /// The record by position alone.
+    /// The record of one setting.
+    pub(super) fn find(&self, wanted: impl Fn(&Setting<'_>) -> bool) -> Option<&'a Record> {
+        self.culled().find(|record| wanted(&Setting::of(&record.strategy)))
+    }
+
+    /// The record by position alone, with the usual clusters and the early exit where it is there.
     pub(super) fn position(&self) -> Option<&'a Record> {
-        self.of(None).next()
+        self.find(|s| s.is_position() && s.grid == USUAL && s.exits)
+            .or_else(|| self.find(|s| s.is_position()))
     }
 
-    /// `a 2016`: for charts and figures.
+    /// The record of no culling.
+    pub(super) fn none(&self) -> Option<&'a Record> {
+        self.entries.iter().map(|entry| entry.record).find(|record| record.is_baseline())
+    }
+
+    /// `A 2016`: for charts and figures.
     pub(super) fn name(&self) -> String {
-        format!("{} {}", self.place.to_uppercase(), self.lights)
+        let place = match self.place {
+            "influence" => "A, paper\u{2019}s ranges,".to_owned(),
+            place => place.to_uppercase(),
+        };
+        format!("{place} {}", self.lights)
     }
 }
 
-/// Operations of both terms.
-pub(super) fn listed(operations: &Operations) -> u64 {
-    operations.diffuse + operations.specular
+/// Terms that would be seen and that the lists name; of files that do not tell, those of all listed lights.
+pub(super) fn seen(operations: &Operations) -> u64 {
+    operations.perceptible_listed.unwrap_or(operations.perceptible)
 }
 
-/// A row of the paper: a place, its lights, the cones (none is by position alone), operations of both
-/// terms, assignment and shading, ms.
-type Row = (&'static str, u64, Option<u32>, Option<u64>, f64, f64);
+/// Terms that would be seen and that a setting loses against position; and whether it may lose more, for
+/// its file counts both terms of every listed light.
+pub(super) fn lost(operations: &Operations, position: &Operations) -> (u64, bool) {
+    let lost = seen(position).saturating_sub(seen(operations));
+    (lost, operations.perceptible_listed.is_none())
+}
+
+/// A kind of row of the paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// By position, its `1`.
+    Position,
+    Cones(u32),
+    /// Its `dif`.
+    Diffuse,
+}
+
+impl Kind {
+    /// The paper's row that a setting stands beside: cones by its test, and without a loss.
+    fn of(setting: &Setting<'_>) -> Option<Self> {
+        match (setting.cones, setting.cut) {
+            (None, Cut::None) => Some(Self::Position),
+            (None, Cut::Diffuse) => Some(Self::Diffuse),
+            (Some(cones), Cut::None | Cut::ConeTest(_)) => Some(Self::Cones(cones)),
+            _ => None,
+        }
+    }
+}
+
+/// A row of the paper: a place, its lights, what it is, operations of both terms, assignment and shading,
+/// ms.
+type Row = (&'static str, u64, Kind, Option<u64>, f64, f64);
 
 /// Swarbrick 2025, table D.1: a GTX 1060 at 1280x720, clusters of 16 x 9 x 24.
-const PAPER: [Row; 20] = [
-    ("a", 126, None, Some(65_936_949), 0.43, 105.55),
-    ("a", 126, Some(6), Some(51_355_552), 2.8, 88.7),
-    ("a", 126, Some(24), Some(53_645_586), 11.0, 85.7),
-    ("a", 126, Some(54), Some(47_590_904), 24.75, 73.0),
-    ("a", 2_016, None, Some(70_101_700), 1.60, 119.7),
-    ("a", 2_016, Some(6), Some(51_519_648), 8.15, 84.0),
-    ("a", 2_016, Some(24), Some(55_694_960), 32.2, 95.5),
-    ("a", 2_016, Some(54), Some(48_230_849), 72.2, 80.45),
-    ("b", 126, None, Some(60_767_215), 0.43, 84.3),
-    ("b", 126, Some(6), Some(56_786_818), 2.8, 77.0),
-    ("b", 126, Some(24), Some(58_069_784), 10.0, 81.16),
-    ("b", 126, Some(54), Some(54_220_412), 26.6, 76.0),
-    ("b", 2_016, None, Some(65_528_147), 1.68, 99.5),
-    ("b", 2_016, Some(6), Some(57_228_839), 11.1, 83.36),
-    // As printed: operations and times of this row are those of the first.
-    ("b", 2_016, Some(24), Some(65_528_147), 1.5, 98.7),
-    ("b", 2_016, Some(54), Some(55_243_963), 73.0, 81.0),
-    ("c", 2_016, None, None, 1.54, 295.0),
-    ("c", 2_016, Some(6), Some(132_055_610), 8.6, 273.0),
-    ("c", 2_016, Some(24), None, 32.5, 328.0),
-    ("c", 2_016, Some(54), Some(131_789_980), 71.4, 303.5),
+const PAPER: [Row; 25] = [
+    ("a", 126, Kind::Position, Some(65_936_949), 0.43, 105.55),
+    ("a", 126, Kind::Cones(6), Some(51_355_552), 2.8, 88.7),
+    ("a", 126, Kind::Cones(24), Some(53_645_586), 11.0, 85.7),
+    ("a", 126, Kind::Cones(54), Some(47_590_904), 24.75, 73.0),
+    ("a", 126, Kind::Diffuse, Some(42_893_462), 0.43, 59.6),
+    ("a", 2_016, Kind::Position, Some(70_101_700), 1.60, 119.7),
+    ("a", 2_016, Kind::Cones(6), Some(51_519_648), 8.15, 84.0),
+    ("a", 2_016, Kind::Cones(24), Some(55_694_960), 32.2, 95.5),
+    ("a", 2_016, Kind::Cones(54), Some(48_230_849), 72.2, 80.45),
+    ("a", 2_016, Kind::Diffuse, Some(42_915_180), 1.5, 65.45),
+    ("b", 126, Kind::Position, Some(60_767_215), 0.43, 84.3),
+    ("b", 126, Kind::Cones(6), Some(56_786_818), 2.8, 77.0),
+    ("b", 126, Kind::Cones(24), Some(58_069_784), 10.0, 81.16),
+    ("b", 126, Kind::Cones(54), Some(54_220_412), 26.6, 76.0),
+    ("b", 126, Kind::Diffuse, Some(52_208_794), 0.43, 66.9),
+    ("b", 2_016, Kind::Position, Some(65_528_147), 1.68, 99.5),
+    ("b", 2_016, Kind::Cones(6), Some(57_228_839), 11.1, 83.36),
+    // As printed: operations of this row are those of the first, and its times nearly so.
+    ("b", 2_016, Kind::Cones(24), Some(65_528_147), 1.5, 98.7),
+    ("b", 2_016, Kind::Cones(54), Some(55_243_963), 73.0, 81.0),
+    ("b", 2_016, Kind::Diffuse, Some(52_544_704), 1.52, 73.29),
+    ("c", 2_016, Kind::Position, None, 1.54, 295.0),
+    ("c", 2_016, Kind::Cones(6), Some(132_055_610), 8.6, 273.0),
+    ("c", 2_016, Kind::Cones(24), None, 32.5, 328.0),
+    ("c", 2_016, Kind::Cones(54), Some(131_789_980), 71.4, 303.5),
+    ("c", 2_016, Kind::Diffuse, None, 1.61, 260.0),
 ];
 
 /// What the paper measured: operations of both terms, assignment and shading, ms.
@@ -117,9 +243,10 @@ pub(super) struct Paper {
     pub(super) shade_ms: f64,
 }
 
-/// The paper's row of a place, its lights and a number of cones.
-pub(super) fn paper(place: &str, lights: u64, wanted: Option<u32>) -> Option<Paper> {
-    let row = PAPER.iter().find(|row| (row.0, row.1, row.2) == (place, lights, wanted))?;
+/// The paper's row of a place, its lights and a setting.
+pub(super) fn paper(place: &str, lights: u64, setting: &Setting<'_>) -> Option<Paper> {
+    let kind = Kind::of(setting)?;
+    let row = PAPER.iter().find(|row| (row.0, row.1, row.2) == (place, lights, kind))?;
     Some(Paper { listed: row.3, assign_ms: row.4, shade_ms: row.5 })
 }
 
@@ -130,13 +257,19 @@ mod tests {
     #[test]
     fn settings_are_read_from_ids() {
         let id = "SC-E/48x48x40/bvh/n54/s0.001";
-        assert_eq!((cones(id), cut(id)), (Some(54), Some("0.001")));
+        let read = Setting::of(id);
+        assert_eq!((read.cones, read.cut), (Some(54), Cut::Below("0.001")));
         assert_eq!(setting(id), "54 cones, cut 0.001");
         let plain = "SC-E/48x48x40/bvh";
-        assert_eq!((cones(plain), cut(plain)), (None, None));
+        let expected = Setting { grid: "48x48x40", cones: None, cut: Cut::None, exits: true };
+        assert_eq!(Setting::of(plain), expected);
         assert_eq!((setting(plain).as_str(), setting("None").as_str()), ("position", "no culling"));
-        assert_eq!(setting("SC-E/48x48x40/bvh/n1"), "1 cone");
-        assert_eq!(cones("None"), None);
+        assert_eq!(setting("SC-E/48x48x40/n1"), "1 cone");
+        let published = "SC-E/80x80x24/n6/cone45/bvh/no-exit";
+        assert_eq!(setting(published), "6 cones, 45\u{b0} test, 80x80x24, no early exit");
+        assert_eq!(setting("SC-E/48x48x40/dif/bvh"), "diffuse reach");
+        assert!(Setting::of(published).is_of_the_paper() && Setting::of(plain).is_of_the_paper());
+        assert!(!Setting::of("SC-E/48x48x40/n1").is_of_the_paper(), "the paper has no one cone");
     }
 
     #[test]
@@ -146,10 +279,10 @@ mod tests {
             assert_eq!(PAPER.iter().position(|other| same(&other)), Some(ix));
         }
         // 54 cones leave out four fifths of what 23,043,487 outer operations are by position.
-        let [position, cones] = [None, Some(54)].map(|n| paper("a", 126, n).unwrap());
-        let inner = 42_893_462;
-        let share =
-            (cones.listed.unwrap() - inner) as f64 / (position.listed.unwrap() - inner) as f64;
+        let listed = |id| paper("a", 126, &Setting::of(id)).and_then(|row| row.listed).unwrap();
+        let [position, cones, inner] =
+            ["SC-E/48x48x40", "SC-E/48x48x40/n54/cone45", "SC-E/48x48x40/dif"].map(listed);
+        let share = (cones - inner) as f64 / (position - inner) as f64;
         assert!((share - 0.204).abs() < 1e-3, "{share}");
     }
 }

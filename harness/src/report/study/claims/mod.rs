@@ -10,6 +10,9 @@ mod area_ltc;
 mod comparison;
 mod culling;
 mod endless;
+mod endless_operations;
+mod endless_rows;
+mod endless_times;
 mod table;
 mod verdict;
 

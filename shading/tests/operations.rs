@@ -1,0 +1,250 @@
+//! Light operations of a few lights over a floor, against f64: listed, evaluated and perceptible terms.
+
+#![allow(dead_code, reason = "the common module serves several tests")]
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+mod common;
+
+use assign::{
+    Assignment, Bounds, CullSettings, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Emitter,
+    EncoderPasses, Everything, Gpu, Light, LightBuffer, LightShape, View,
+};
+use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
+use glam::{DVec3, Vec3};
+use scenes::{Instance, Scene};
+use shading::{
+    HdrImage, Lighting, LightingOptions, Mode, Operations, Renderer, Samples, Terms,
+    count_operations, ltc, probe, record_before_lighting,
+    reference::{Surface, ltc_contribution},
+};
+
+const SIZE: [u32; 2] = [48, 32];
+/// From radiance to the display's scale: 0.005 there is a radiance of 8.7e-4, amid those of the lights.
+const EXPOSURE: f32 = 1e-2;
+const ROUGHNESS: f32 = 0.5;
+/// Nearer than this to an edge or a threshold, f32 may decide otherwise.
+const DOUBT: f64 = 1e-3;
+
+/// A floor of one material.
+fn floor() -> Scene {
+    let mut scene = common::showcase();
+    scene.instances = vec![Instance { mesh: 0, model: 0 }];
+    scene.materials[0].roughness = ROUGHNESS;
+    scene
+}
+
+/// A lamp that faces the floor and whose diffuse light ends early, a triangle that the floor cuts, one that
+/// faces away, a point and a spot.
+fn lights() -> Vec<Light> {
+    let down = Emitter::rectangle(0.6 * Vec3::X, 0.3 * Vec3::Z).with_diffuse_share(0.6);
+    let corners =
+        [Vec3::new(1.0, -0.5, -1.0), Vec3::new(2.0, -0.4, -1.2), Vec3::new(1.5, 0.9, -1.1)];
+    let (triangle, middle) = Emitter::polygon(&corners).unwrap();
+    let up = Emitter::rectangle(0.5 * Vec3::Z, 0.5 * Vec3::X);
+    let spot = LightShape::Spot {
+        direction: Vec3::new(0.2, -1.0, 0.1).normalize(),
+        inner_angle: 0.2,
+        outer_angle: 0.6,
+    };
+    let point = Light::point(Vec3::new(1.0, 0.5, 1.0), 1.5, Vec3::new(0.02, 0.05, 0.01));
+    vec![
+        Light::area(down, Vec3::new(-1.0, 1.0, 0.0), 2.5, Vec3::new(0.3, 0.2, 0.1)),
+        Light::area(triangle.two_sided().with_diffuse_share(0.5), middle, 2.0, Vec3::splat(0.4)),
+        Light::area(up, Vec3::new(0.0, 0.6, -2.0), 3.0, Vec3::ONE),
+        point,
+        Light { position: Vec3::new(-2.0, 1.5, -1.0), range_m: 2.5, shape: spot, ..point },
+    ]
+}
+
+/// What one strategy lists of the floor's lights, and what of it is counted on the GPU.
+struct Counted {
+    operations: Operations,
+    /// Entries of each sample's list.
+    lists: Vec<Vec<u32>>,
+    samples: Samples,
+    image: HdrImage,
+}
+
+fn count(gpu: &Gpu, all: &[Light], strategy: &mut dyn Assignment, exit_weight: f32) -> Counted {
+    let view = common::view(SIZE);
+    let lights = LightBuffer::new(gpu, all).unwrap();
+    assert!(lights.rejected().is_empty());
+    let mut renderer = Renderer::new(gpu, &floor(), &view).unwrap();
+    renderer.prepare(&view, &lights).unwrap();
+    let options = LightingOptions { kinds: lights.kinds(), exit_weight, ..Default::default() };
+    let frame = renderer.frame(&view, &lights);
+    strategy.prepare(gpu, &frame).unwrap();
+    let lighting = Lighting::new(&renderer, strategy, Mode::Deferred, options).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut passes = EncoderPasses { encoder: &mut encoder };
+    record_before_lighting(&renderer, Mode::Deferred, strategy, &frame, &mut passes);
+    lighting.record(&renderer, &view, strategy, &mut passes).unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    let image = HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap();
+    let operations = count_operations(&renderer, strategy, &frame, options, EXPOSURE).unwrap();
+    let samples = probe(&renderer, strategy, &frame).unwrap();
+    let snapshot = strategy.lists().snapshot(gpu).unwrap();
+    let every = |ix: usize| ix as u32 | ENTRY_DIFFUSE | ENTRY_SPECULAR;
+    let list_of = |&group: &u32| match snapshot.entries_of(group) {
+        Some(entries) if group != assign::ALL_LIGHTS => entries.to_vec(),
+        _ => (0..all.len()).map(every).collect(),
+    };
+    let lists = samples.groups.iter().map(list_of).collect();
+    Counted { operations, lists, samples, image }
+}
+
+/// The luminance of a colourless radiance on a display of gamma 2.2.
+fn shown(radiance: f64) -> f64 {
+    (radiance * f64::from(EXPOSURE)).max(0.0).powf(1.0 / 2.2)
+}
+
+/// The two terms of a colourless light on a white dielectric.
+fn white_terms(
+    table: &ltc::Table,
+    light: &Light,
+    position: DVec3,
+    normal: DVec3,
+    eye: DVec3,
+) -> [f64; 2] {
+    let white = Light { intensity: Vec3::splat(light.intensity.max_element()), ..*light };
+    let radiance = |base_color: f64, metallic: f64| {
+        let roughness = f64::from(ROUGHNESS);
+        let base_color = DVec3::splat(base_color);
+        let surface = Surface { base_color, metallic, normal, roughness };
+        ltc_contribution(table, &white, position, &surface, (eye - position).normalize()).x
+    };
+    // A metal that reflects as much as a dielectric has the specular term alone.
+    let specular = radiance(0.04, 1.0);
+    [radiance(1.0, 0.0) - specular, specular]
+}
+
+/// What appendix I of the paper makes of two terms, of which only the named ones are there.
+fn perceptible([diffuse, specular]: [f64; 2]) -> u64 {
+    match (shown(diffuse) > 0.005, shown(specular) > 0.005) {
+        (true, true) if shown(diffuse + specular) > 0.01 => 2,
+        (true, true) | (false, false) => 0,
+        _ => 1,
+    }
+}
+
+/// The same counts in f64, and how many terms are too close to call.
+fn expected(lights: &[Light], counted: &Counted, view: &View, exits: bool) -> (Operations, u64) {
+    let table = ltc::Table::ggx().unwrap();
+    let (mut sum, mut doubtful) = (Operations::default(), 0);
+    let add = |terms: &mut Terms, [diffuse, specular]: [bool; 2], is_outer: bool| {
+        terms.diffuse += u64::from(diffuse);
+        terms.specular += u64::from(specular);
+        terms.outer_specular += u64::from(specular && is_outer);
+    };
+    for (ix, list) in counted.lists.iter().enumerate() {
+        let position = Vec3::from(counted.samples.positions[ix]).as_dvec3();
+        let normal = Vec3::from(counted.samples.normals[ix]).as_dvec3().normalize();
+        for entry in list {
+            let light = &lights[(entry & ENTRY_LIGHT) as usize];
+            let named = [entry & ENTRY_DIFFUSE != 0, entry & ENTRY_SPECULAR != 0];
+            let reach = light.reach(position);
+            let rise = light.above_horizon(position, normal);
+            let diffuse_reach = light.diffuse_reach(position);
+            let is_outer = match &light.shape {
+                LightShape::Area(emitter) => {
+                    let offset = position - light.position.as_dvec3();
+                    offset.distance(emitter.closest(offset)) >= f64::from(light.diffuse_range_m())
+                }
+                _ => false,
+            };
+            let is_lit = reach > 0.0 && rise > 0.0;
+            let drawn = [is_lit && diffuse_reach > 0.0, is_lit];
+            let evaluated = [0, 1].map(|term| named[term] && (!exits || drawn[term]));
+            add(&mut sum.listed, named, is_outer);
+            add(&mut sum.evaluated, evaluated, is_outer);
+            let white = white_terms(&table, light, position, normal, view.eye().as_dvec3());
+            let only = |named: [bool; 2]| [0, 1].map(|ix| if named[ix] { white[ix] } else { 0.0 });
+            sum.perceptible += perceptible(only(named));
+            sum.perceptible_of_lights += perceptible(white);
+            let [diffuse, specular] = white;
+            let near =
+                |radiance: f64, threshold: f64| (shown(radiance) / threshold - 1.0).abs() < 0.02;
+            let is_doubtful = [reach, rise, diffuse_reach].iter().any(|d| d.abs() < DOUBT)
+                || near(diffuse, 0.005)
+                || near(specular, 0.005)
+                || near(diffuse + specular, 0.01);
+            doubtful += 2 * u64::from(is_doubtful);
+        }
+    }
+    (sum, doubtful)
+}
+
+/// All figures of some operations, by name.
+fn figures(all: &Operations) -> [(&'static str, u64); 8] {
+    [
+        ("listed diffuse", all.listed.diffuse),
+        ("listed specular", all.listed.specular),
+        ("listed outer specular", all.listed.outer_specular),
+        ("evaluated diffuse", all.evaluated.diffuse),
+        ("evaluated specular", all.evaluated.specular),
+        ("evaluated outer specular", all.evaluated.outer_specular),
+        ("perceptible", all.perceptible),
+        ("perceptible of lights", all.perceptible_of_lights),
+    ]
+}
+
+/// Asserts that the GPU counted what f64 says, within what is too close to call.
+fn check(name: &str, counted: &Counted, exits: bool) -> Operations {
+    let (truth, doubtful) = expected(&lights(), counted, &common::view(SIZE), exits);
+    println!("{name}: {:?}, f64 {truth:?}, {doubtful} doubtful", counted.operations);
+    assert!(doubtful * 20 < truth.listed.specular, "{name}: {doubtful} of {truth:?} are doubtful");
+    for ((figure, ours), (_, theirs)) in figures(&counted.operations).iter().zip(figures(&truth)) {
+        assert!(ours.abs_diff(theirs) <= doubtful, "{name}, {figure}: {ours}, f64 {theirs}");
+    }
+    truth
+}
+
+fn clusters(gpu: &Gpu, cut: SpecularCut) -> Clustered {
+    let (size, settings) = ("16x16x8".parse().unwrap(), CullSettings::default());
+    let (bounds, occupancy) = (Bounds::Explicit, Occupancy::Sparse);
+    Clustered::with_normals(gpu, size, bounds, occupancy, Normals::Bins(6), cut, settings).unwrap()
+}
+
+#[test]
+fn operations_are_those_of_f64() {
+    let gpu = common::gpu();
+    let all = lights();
+    let mut none = Everything::new(&gpu).unwrap();
+    let counted = count(&gpu, &all, &mut none, LightingOptions::EVALUATE_ALL);
+    let truth = check("no culling", &counted, false);
+    assert_eq!(counted.operations.listed, counted.operations.evaluated, "all are evaluated");
+    assert!(truth.perceptible > 0 && truth.listed.outer_specular > 0, "{truth:?}");
+
+    let counted = count(&gpu, &all, &mut none, 0.0);
+    let truth = check("no culling, early exit", &counted, true);
+    // Far fewer: a count of listed terms fails here.
+    assert!(2 * truth.evaluated.specular < truth.listed.specular, "{truth:?}");
+
+    let mut lossless = clusters(&gpu, SpecularCut::None);
+    check("clusters", &count(&gpu, &all, &mut lossless, 0.0), true);
+
+    let mut cut = clusters(&gpu, SpecularCut::Below(0.5));
+    let counted = count(&gpu, &all, &mut cut, 0.0);
+    let truth = check("clusters, cut", &counted, true);
+    // The cut takes terms that would be seen: a count that ignores the list's flags fails here.
+    let lost = truth.perceptible_of_lights - truth.perceptible;
+    assert!(lost > 20, "{lost} are lost: {truth:?}");
+}
+
+/// What is counted as evaluated is what shading draws: one light, and the pixels that it lights. Its diffuse
+/// light goes as far as the specular, whose lobe may be exactly 0.
+#[test]
+fn a_pixel_is_lit_exactly_where_a_term_is_evaluated() {
+    let gpu = common::gpu();
+    for mut light in lights() {
+        if let LightShape::Area(emitter) = &mut light.shape {
+            *emitter = emitter.with_diffuse_share(1.0);
+        }
+        let mut none = Everything::new(&gpu).unwrap();
+        let counted = count(&gpu, &[light], &mut none, 0.0);
+        let lit =
+            counted.image.pixels.iter().filter(|pixel| pixel.iter().any(|c| *c > 0.0)).count();
+        assert_eq!(counted.operations.evaluated.specular, lit as u64, "{light:?}");
+        let seen = counted.samples.positions.len() as u64;
+        assert_eq!(counted.operations.listed.specular, seen, "{light:?}");
+    }
+}
