@@ -6,6 +6,10 @@
 
 mod comparison;
 mod endless;
+mod indirect;
+mod indirect_builds;
+mod indirect_casts;
+mod indirect_light;
 mod table;
 mod verdict;
 
@@ -46,6 +50,7 @@ pub(super) fn paper(study: &str) -> Option<&'static Paper> {
     match study {
         "comparison" => Some(&comparison::PAPER),
         "endless" => Some(&endless::PAPER),
+        "cdi" => Some(&indirect::PAPER),
         _ => None,
     }
 }
