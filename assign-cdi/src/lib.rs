@@ -102,5 +102,5 @@ pub use sort::{ListSort, RoundUniform, SortInput, SortUniform, SortWork};
 pub use stages::{DispatchSizes, PlanUniform, StageUniform};
 pub use vpl::{
     KeepUniform, Large, MAX_RSM_SIDE, Rsm, RsmUniform, VplBuffer, VplCounts, VplSettings,
-    choose_shader, keep_shader,
+    choose_shader, keep_shader, lambertian_albedo,
 };

@@ -17,9 +17,12 @@ pub struct RandomUniform {
     pub low_m: f32,
     /// Largest range.
     pub high_m: f32,
+    /// 1: a range that is [`f32::MAX`] stays as it is.
+    pub keeps_unknown: u32,
 }
 
-/// Draws ranges at random, uniform between two bounds; the same for the same seed.
+/// Draws ranges at random, uniform between two bounds; the same for the same seed. Equal bounds give
+/// every light the same range.
 #[derive(Debug)]
 pub struct RandomRanges {
     pipeline: wgpu::ComputePipeline,
@@ -27,6 +30,7 @@ pub struct RandomRanges {
     uniform: wgpu::Buffer,
     group: Option<wgpu::BindGroup>,
     count: u32,
+    keeps_unknown: bool,
 }
 
 impl RandomRanges {
@@ -41,7 +45,14 @@ impl RandomRanges {
             uniform: gpu.uniform("random ranges", size_of::<RandomUniform>() as u64),
             group: None,
             count: 0,
+            keeps_unknown: false,
         })
+    }
+
+    /// The same, but ranges that are [`f32::MAX`] before the pass stay so: after ray casting these are
+    /// the lights whose rays met nothing. It tells what ranges by rays know from what they leave out.
+    pub fn keeping_unknown(gpu: &Gpu) -> Result<Self, AssignError> {
+        Ok(Self { keeps_unknown: true, ..Self::new(gpu)? })
     }
 
     /// The kernel's module: the root is `package::random_ranges`.
@@ -72,7 +83,13 @@ impl RandomRanges {
                 accepted: format!("at least {} for {count} points", u64::from(count) * 4),
             });
         }
-        let uniform = RandomUniform { point_count: count, seed, low_m, high_m };
+        let uniform = RandomUniform {
+            point_count: count,
+            seed,
+            low_m,
+            high_m,
+            keeps_unknown: u32::from(self.keeps_unknown),
+        };
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
         self.group = Some(kernel::group(gpu, &self.layout, &[&self.uniform, ranges_m]));
         self.count = count;

@@ -101,7 +101,7 @@ fn structs() {
         rejected_count, is_overflowed, longest);
     assert_same!(ranges, "Ranges", RangesUniform: point_count, ray_count, is_maximum, light_world, rays);
     let random = validated(&RandomRanges::shader(), "package::random_ranges");
-    assert_same!(random, "Random", RandomUniform: point_count, seed, low_m, high_m);
+    assert_same!(random, "Random", RandomUniform: point_count, seed, low_m, high_m, keeps_unknown);
     let scan = validated(&PrefixSum::shader(), "package::prefix_sum");
     assert_same!(scan, "Scan", ScanUniform: in_count, out_count, has_bases);
     let long = validated(&ListSort::shader(), "package::sort_long");

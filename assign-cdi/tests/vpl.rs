@@ -7,7 +7,7 @@ mod vpl_map;
 use std::f32::consts::PI;
 
 use assign::{Light, LightShape, Projection};
-use assign_cdi::{VplBuffer, VplSettings};
+use assign_cdi::{VplBuffer, VplSettings, lambertian_albedo};
 use bytemuck::pod_collect_to_vec;
 use glam::{DVec3, Vec2, Vec3};
 use vpl_map::{HALF_WALL_M, Hit, Map, WHITE, room, spot};
@@ -16,25 +16,52 @@ fn total(lights: &[Light]) -> DVec3 {
     lights.iter().map(|light| light.intensity.as_dvec3()).sum()
 }
 
-/// The room's surfaces: which coordinate has which value, and the diffuse albedo.
-const SURFACES: [(usize, f32, Vec3); 5] = [
-    (1, 0.0, Vec3::new(0.8, 0.7, 0.6)),
-    (0, -HALF_WALL_M, Vec3::new(0.9, 0.1, 0.1)),
-    (0, HALF_WALL_M, Vec3::new(0.05, 0.45, 0.05)),
-    (2, -HALF_WALL_M, Vec3::new(0.5, 0.5, 0.9)),
-    (2, HALF_WALL_M, Vec3::ZERO),
+/// The room's surfaces: which coordinate has which value, the base colour, and how metallic it is.
+const SURFACES: [(usize, f32, Vec3, f32); 5] = [
+    (1, 0.0, Vec3::new(0.8, 0.7, 0.6), 0.0),
+    (0, -HALF_WALL_M, Vec3::new(0.9, 0.1, 0.1), 0.0),
+    (0, HALF_WALL_M, Vec3::new(0.1, 0.9, 0.1), 0.5),
+    (2, -HALF_WALL_M, Vec3::new(0.5, 0.5, 0.9), 0.0),
+    (2, HALF_WALL_M, Vec3::ZERO, 0.0),
 ];
 
 /// Off the room's surfaces, metres.
 fn off_surface(p: Vec3) -> f32 {
-    let off = |(axis, at, _): (usize, f32, Vec3)| (p[axis] - at).abs();
+    let off = |(axis, at, ..): (usize, f32, Vec3, f32)| (p[axis] - at).abs();
     SURFACES.map(off).into_iter().fold(f32::INFINITY, f32::min)
 }
 
-/// Of the surface nearest to a point.
-fn albedo(p: Vec3) -> Vec3 {
-    let off = |(axis, at, _): &(usize, f32, Vec3)| (p[*axis] - at).abs();
-    SURFACES.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap().2
+/// Integral over the hemisphere of a surface's diffuse term times the cosine, by the midpoint rule in
+/// f64: `base_color (1 - metallic) (1 - F) / pi` with Schlick's F at the half vector. It shares no code
+/// with the polynomial that the shader has.
+fn diffuse_sent_out(base_color: Vec3, metallic: f32, cos_incidence: f64) -> Vec3 {
+    let to_light = DVec3::new((1.0 - cos_incidence * cos_incidence).sqrt(), 0.0, cos_incidence);
+    let (rings, sectors) = (48, 48);
+    let mut schlick = 0.0;
+    for ring in 0..rings {
+        // Rings of equal share of a cosine-weighted hemisphere.
+        let cos = ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
+        let sin = (1.0 - cos * cos).sqrt();
+        for sector in 0..sectors {
+            let (s, c) = (2.0 * std::f64::consts::PI * (f64::from(sector) + 0.5)
+                / f64::from(sectors))
+            .sin_cos();
+            let out = DVec3::new(sin * c, sin * s, cos);
+            let half_way = (out + to_light).normalize();
+            schlick += (1.0 - out.dot(half_way)).powi(5) / f64::from(rings * sectors);
+        }
+    }
+    let f0 = Vec3::splat(0.04).lerp(base_color, metallic);
+    base_color * (1.0 - metallic) * (Vec3::ONE - f0) * (1.0 - schlick as f32)
+}
+
+/// Diffuse albedo, for light from `light`, of the surface nearest to a point.
+fn albedo(p: Vec3, light: Vec3) -> Vec3 {
+    let off = |(axis, at, ..): &(usize, f32, Vec3, f32)| (p[*axis] - at).abs();
+    let &(axis, _, color, metallic) =
+        SURFACES.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+    let to_light = (light - p).normalize();
+    diffuse_sent_out(color, metallic, f64::from(to_light[axis].abs()))
 }
 
 /// Area of a texel on the plane of view depth 1, square metres.
@@ -50,7 +77,23 @@ fn reflected(map: &Map, size: [u32; 2], position: Vec3) -> Vec3 {
     let cos = -to.y / to.length();
     let ramp = (cos - outer_angle.cos()) / (1.0 - outer_angle.cos());
     let solid_angle = texel_area(map, size) * cos.powi(3);
-    map.light.intensity * albedo(position) * (ramp * ramp * solid_angle / PI)
+    map.light.intensity * albedo(position, map.light.position) * (ramp * ramp * solid_angle / PI)
+}
+
+#[test]
+fn a_vpl_sends_out_what_the_brdf_reflects_diffusely() {
+    for cos in [0.05_f32, 0.3, 0.6, 1.0] {
+        for (color, metallic) in
+            [(Vec3::ONE, 0.0), (Vec3::new(0.8, 0.4, 0.1), 0.0), (Vec3::new(0.9, 0.5, 0.2), 0.4)]
+        {
+            let expected = diffuse_sent_out(color, metallic, f64::from(cos));
+            let found = lambertian_albedo(color, metallic, cos);
+            let off = (found - expected).abs().max_element();
+            assert!(off < 1e-4, "{cos}, {color}, {metallic}: {found}, not {expected}");
+            // Without Fresnel's term it would be at least 4 % more.
+            assert!(found.x < 0.9601 * color.x * (1.0 - metallic), "{cos}: {found}");
+        }
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::{
     report,
     results::{Record, Results},
     stored::{Store, is_plain},
-    study::{Done, Manifest, compare_with_truth},
+    study::{Done, Manifest, compare_builds, compare_with_truth},
 };
 
 /// Makes the report of a comparison or of a study; returns what to print.
@@ -29,6 +29,7 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
             }
         }
         compare_with_truth(&mut done)?;
+        compare_builds(&mut done)?;
         if args.out.is_none() {
             done.write()?;
         }

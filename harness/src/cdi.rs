@@ -1,8 +1,6 @@
 //! `lightbench cdi`: deep images of a scene, built, timed, and compared with exact rays.
 
-use std::time::Instant;
-
-use assign::{Gpu, Light};
+use assign::{EncoderPasses, Gpu, Light};
 use assign_cdi::{DeepImages, RandomRanges, RangeCaster, RangeRule, Triangles};
 use scenes::{Scene, primary_light};
 use shading::{EDGE, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
@@ -11,13 +9,14 @@ use crate::{
     checks::{check_writable, remove_stale},
     cli::CdiArgs,
     clock::{PassClock, PassTime},
-    compare::{Bench, DEFAULT_FRAMES, is_warm},
-    deep::{build, figures, settings_of, settle},
+    compare::{Bench, DEFAULT_FRAMES},
+    deep::{figures, settings_of, settle},
+    drift::{WarmUp, unsteady},
     error::HarnessError,
     machine::machine,
     pass_samples::PassSamples,
     range_errors::{range_errors, seen_points},
-    results::{CastTimes, DeepImageRun, Results, Truth, TruthLevel, median},
+    results::{CastTimes, DeepImageRun, Passes, Results, Truth, TruthLevel, median},
     vpls::{all_texels, points_of},
 };
 
@@ -70,7 +69,7 @@ pub fn measure(
         scene_hash: scene.hash(),
         triangles: scene.triangle_count(),
         deep: figures(&images, &args.deep),
-        passes: passes.finish(),
+        passes,
         casts,
         range_errors: plain,
         corrected_errors: corrected,
@@ -78,6 +77,7 @@ pub fn measure(
     let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes: Vec::new() };
     let mut results = Results::new(machine(&gpu), command, level);
     results.warnings.extend(scene.warnings.iter().cloned());
+    results.warnings.extend(refused_times(&run));
     results.deep_images = Some(run);
     Ok(results)
 }
@@ -91,27 +91,71 @@ pub fn triangles_of(triangles: &WorldTriangles) -> Triangles<'_> {
     }
 }
 
-/// Times of `frames` builds.
+/// Builds in a row, without a pause, that keep a GPU busy before each timed frame of a warm-up.
+const BUSY: u32 = 8;
+
+/// How often times are taken again where they drifted.
+const ATTEMPTS: u32 = 3;
+
+/// Times of `frames` builds on a warm device. Times that drift are taken again; the last are kept
+/// whatever they do, and [`refused_times`] says so.
 fn time(
     gpu: &Gpu,
     images: &mut DeepImages,
     triangles: &Triangles<'_>,
     frames: u32,
-) -> Result<PassSamples, HarnessError> {
-    let mut samples = PassSamples::default();
+) -> Result<Passes, HarnessError> {
     let mut clock = PassClock::new(gpu);
-    let (began, mut built) = (Instant::now(), 0);
-    while !is_warm(gpu, built, began) {
-        images.prepare(gpu, triangles)?;
-        build(gpu, images)?;
-        built += 1;
+    let mut last = Passes::default();
+    for _ in 0..ATTEMPTS {
+        let mut warm_up = WarmUp::new(gpu.is_software());
+        let mut samples = PassSamples::default();
+        for warm in [true, false] {
+            let mut drawn = 0;
+            while if warm { !warm_up.is_warm() } else { drawn < frames } {
+                images.prepare(gpu, triangles)?;
+                if warm && !gpu.is_software() {
+                    keep_busy(gpu, |passes| images.record(passes));
+                }
+                images.record(&mut clock);
+                let times = clock.finish()?;
+                drawn += 1;
+                match warm {
+                    true => warm_up.feed(sum(&times)),
+                    false => samples.collect(times),
+                }
+            }
+        }
+        last = samples.finish();
+        if unsteady(&last.per_frame_ms(None)).is_none() {
+            break;
+        }
     }
-    for _ in 0..frames {
-        images.prepare(gpu, triangles)?;
-        images.record(&mut clock);
-        samples.collect(clock.finish()?);
+    Ok(last)
+}
+
+/// All passes of a frame together, ms.
+fn sum(times: &[PassTime]) -> f64 {
+    times.iter().map(|(_, ms)| ms).sum()
+}
+
+/// Submits the same work several times, and does not wait.
+fn keep_busy(gpu: &Gpu, mut record: impl FnMut(&mut EncoderPasses<'_>)) {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for _ in 0..BUSY {
+        record(&mut EncoderPasses { encoder: &mut encoder });
     }
-    Ok(samples)
+    gpu.queue.submit([encoder.finish()]);
+}
+
+/// What a reader has to know of times that drifted: a report leaves them out of its verdicts.
+fn refused_times(run: &DeepImageRun) -> Vec<String> {
+    let build = run.unsteady().map(|why| format!("times of the build are refused: {why}"));
+    let casts = run.casts.iter().filter_map(|cast| {
+        let why = cast.unsteady()?;
+        Some(format!("times of rays from {0} x {0} pixels are refused: {why}", cast.rsm_px))
+    });
+    build.into_iter().chain(casts).collect()
 }
 
 /// Times of giving a range to a light a pixel of shadow maps, by rays and at random.
@@ -139,34 +183,52 @@ fn casts(
         corrected.prepare(gpu, &points_of(&vpls, None))?;
         let mut random = RandomRanges::new(gpu)?;
         random.prepare(gpu, vpls.ranges_m(), vpls.capacity(), (0.0, 1.0), args.seed as u32)?;
-        let [mut cast_ms, mut corrected_ms, mut random_ms] = [const { Vec::new() }; 3];
-        let mut clock = PassClock::new(gpu);
-        let (began, mut warm) = (Instant::now(), 0);
-        while (cast_ms.len() as u32) < frames {
-            random.record(&mut clock);
-            let random = clock.finish()?;
-            caster.record(images, &mut clock)?;
-            let cast = clock.finish()?;
-            corrected.record(images, &mut clock)?;
-            let corrected = clock.finish()?;
-            warm += 1;
-            if is_warm(gpu, warm - 1, began) {
-                let ms = |times: Vec<PassTime>| times.into_iter().map(|(_, ms)| ms);
-                random_ms.extend(ms(random));
-                cast_ms.extend(ms(cast));
-                corrected_ms.extend(ms(corrected));
+        let lights = u64::from(vpls.read_counts(gpu)?.chosen);
+        let mut times =
+            CastTimes { rsm_px, is_middle, lights, rays: args.rays, ..CastTimes::default() };
+        for _ in 0..ATTEMPTS {
+            let casters = (&random, &caster, &corrected);
+            [times.random_ms, times.cast_ms, times.corrected_ms] =
+                time_casts(gpu, images, casters, frames)?;
+            if times.unsteady().is_none() {
+                break;
             }
         }
-        let lights = u64::from(vpls.read_counts(gpu)?.chosen);
-        all.push(CastTimes {
-            rsm_px,
-            is_middle,
-            lights,
-            rays: args.rays,
-            cast_ms,
-            corrected_ms,
-            random_ms,
-        });
+        all.push(times);
+    }
+    Ok(all)
+}
+
+/// Times of `frames` casts on a warm device: random ranges, rays, and corrected rays.
+fn time_casts(
+    gpu: &Gpu,
+    images: &DeepImages,
+    (random, caster, corrected): (&RandomRanges, &RangeCaster, &RangeCaster),
+    frames: u32,
+) -> Result<[Vec<f64>; 3], HarnessError> {
+    let mut clock = PassClock::new(gpu);
+    let mut warm_up = WarmUp::new(gpu.is_software());
+    let mut all = [const { Vec::new() }; 3];
+    while (all[0].len() as u32) < frames {
+        let is_warm = gpu.is_software() || warm_up.is_warm();
+        if !is_warm {
+            let mut outcome = Ok(());
+            keep_busy(gpu, |passes| outcome = corrected.record(images, passes));
+            outcome?;
+        }
+        random.record(&mut clock);
+        let random_ms = sum(&clock.finish()?);
+        caster.record(images, &mut clock)?;
+        let cast_ms = sum(&clock.finish()?);
+        corrected.record(images, &mut clock)?;
+        let corrected_ms = sum(&clock.finish()?);
+        if is_warm {
+            for (list, ms) in all.iter_mut().zip([random_ms, cast_ms, corrected_ms]) {
+                list.push(ms);
+            }
+        } else {
+            warm_up.feed(random_ms + cast_ms + corrected_ms);
+        }
     }
     Ok(all)
 }
@@ -188,8 +250,10 @@ fn summary(run: &DeepImageRun) -> String {
     for (pass, times) in run.passes.iter() {
         text += &format!("         {pass:<14} {:.4} ms\n", times.median_ms);
     }
-    let together = median(&run.passes.per_frame_ms(None));
-    text += &format!("         {:<14} {together:.4} ms\n", "together");
+    text += &format!("         {:<14} {:.4} ms\n", "together", run.build_ms());
+    for refused in refused_times(run) {
+        text += &format!("refused  {refused}\n");
+    }
     for cast in &run.casts {
         text += &format!(
             "casts    {} rays of {} lights{}: {:.4} ms, corrected {:.4} ms\n",

@@ -1,10 +1,6 @@
 //! `lightbench compare`: the main job.
 
-use std::{
-    path::Path,
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{path::Path, sync::Arc, time::Duration};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -36,12 +32,6 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 
 /// How long a GPU warms up at least; a software adapter has no clocks to raise.
 const GPU_WARM_UP: Duration = Duration::from_millis(250);
-
-/// Whether a device is awake after some frames since a time: a GPU's clocks fall while it waits.
-pub(crate) fn is_warm(gpu: &Gpu, frames: u32, began: Instant) -> bool {
-    let kind = usize::from(gpu.is_software());
-    gpu.is_software() || (frames >= DEFAULT_WARMUP[kind] && began.elapsed() >= GPU_WARM_UP)
-}
 
 /// A device with the scene that was drawn last.
 pub struct Bench {

@@ -16,7 +16,8 @@ const MAX_SETTLING: u32 = 8;
 
 /// The settings that options ask for.
 pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
-    let visits = [BuildChoice::PerDirection, BuildChoice::Conservative];
+    let visits =
+        [BuildChoice::PerDirection, BuildChoice::PerDirectionBatched, BuildChoice::Conservative];
     if args.oversampling > 1 && visits.contains(&args.build) {
         return Err(AssignError::Parameter {
             field: "--oversampling".into(),
@@ -38,6 +39,7 @@ pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
             BuildChoice::Compute | BuildChoice::LinkedLists => single(Raster::Compute),
             BuildChoice::Fragment => single(Raster::Fragment),
             BuildChoice::PerDirection => each(Coverage::Centres, 1),
+            BuildChoice::PerDirectionBatched => each(Coverage::Centres, directions.count()),
             BuildChoice::Conservative => each(Coverage::Conservative, directions.count()),
         },
         storage: match args.build {

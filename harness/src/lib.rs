@@ -11,6 +11,7 @@ pub mod clock;
 pub mod compare;
 pub mod deep;
 mod digits;
+pub mod drift;
 pub mod error;
 pub mod errors;
 pub mod fit_ltc;

@@ -5,6 +5,7 @@
 //! a job whose `results.json` is there is done. `study.json` beside `jobs` lists all jobs, those of
 //! other shards too.
 
+mod against_builds;
 mod against_truth;
 mod area;
 pub mod cdi;
@@ -30,6 +31,7 @@ use crate::{
     truth::render,
 };
 
+pub use against_builds::compare_builds;
 pub use against_truth::{compare_with_truth, truth_of};
 pub use manifest::{Done, Job, Manifest};
 pub use scene::StudyScene;
@@ -79,6 +81,7 @@ pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
     run(&mut bench, args, &manifest)?;
     let mut done = Done::read(std::slice::from_ref(out))?;
     compare_with_truth(&mut done)?;
+    compare_builds(&mut done)?;
     done.write()?;
     report::write_study(&done, out)
 }
@@ -89,10 +92,15 @@ fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), H
     let mine: Vec<&Job> = manifest
         .jobs
         .iter()
+        .filter(|job| args.wants(&job.name))
         .enumerate()
         .filter(|(ix, _)| args.shard.holds(*ix))
         .map(|(_, job)| job)
         .collect();
+    if mine.is_empty() && !args.only.is_empty() {
+        let accepted = "words that names of jobs hold; study.json lists them";
+        return Err(CliError::out_of_range("--only", &args.only.join(","), accepted).into());
+    }
     for (ix, job) in mine.iter().enumerate() {
         let folder = job.folder(&args.folder());
         if is_done(bench, job, &folder)? {

@@ -1,7 +1,5 @@
 //! The virtual point lights of a stage: from the primary light's view to lights with ranges.
 
-use std::time::Instant;
-
 use assign::{EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M, MIN_RANGE_M, Passes, View};
 use assign_cdi::{
     Combine, DeepImages, Large, Primary, RandomRanges, RangeCaster, RangePoints, RangeRule, Rsm,
@@ -15,11 +13,11 @@ use crate::{
     cdi::triangles_of,
     cli::{CliError, PrimaryRay, RangeChoice, Span, StageArgs, VplArgs},
     clock::PassClock,
-    compare::is_warm,
     deep::{figures, settings_of, settle},
+    drift::WarmUp,
     error::HarnessError,
     pass_samples::PassSamples,
-    results::Vpls,
+    results::{self, Vpls},
 };
 
 /// Frames in which the steps are timed: on a GPU, and on a software adapter.
@@ -30,6 +28,9 @@ const CLAMP_SHARE: f32 = 0.01;
 
 /// The longest random range as a share of it.
 const RANDOM_SHARE: f32 = 0.25;
+
+/// The constant range as a share of it: the mean of random ones.
+const CONSTANT_SHARE: f32 = 0.125;
 
 /// Half the width of the middle of a scene, as a share of its core's.
 const MIDDLE_SHARE: f32 = 0.25;
@@ -80,18 +81,20 @@ impl VplMaker {
         let kind = usize::from(gpu.is_software());
         let mut samples = PassSamples::default();
         let mut clock = PassClock::new(gpu);
-        let began = Instant::now();
-        let (mut warm, mut timed) = (0, 0);
+        let mut warm_up = WarmUp::new(gpu.is_software());
+        let mut timed = 0;
         while timed < FRAMES[kind] {
             vpls.prepare(gpu, &rsm_of(&map, &view, &primary))?;
             ranges.prepare(gpu, &vpls)?;
             record(&map, &view, &mut vpls, &mut ranges, &mut clock)?;
             let times = clock.finish()?;
-            if is_warm(gpu, warm, began) {
+            // On a software adapter the first frame counts: it has no clock to raise.
+            if gpu.is_software() || warm_up.is_warm() {
                 samples.collect(times);
                 timed += 1;
+            } else {
+                warm_up.feed(times.iter().map(|(_, ms)| ms).sum());
             }
-            warm += 1;
         }
         let counts = vpls.read_counts(gpu)?;
         let lights = vpls.read(gpu)?;
@@ -105,10 +108,9 @@ impl VplMaker {
             is_reflected: casts && args.bounce.primary_ray == PrimaryRay::Reflected,
             is_corrected: casts && args.bounce.correct_rays,
             range_scale: f64::from(set.range_scale),
-            random_m: (args.bounce.ranges == RangeChoice::Random).then(|| {
-                let span = random_span(scene, &args.bounce);
-                [span.low_m, span.high_m]
-            }),
+            random_m: drawn_span(scene, &args.bounce).map(|span| [span.low_m, span.high_m]),
+            has_fresnel: true,
+            build_errors: results::Errors::new(),
             spacing_m: f64::from(set.spacing_m),
             clamp_m: f64::from(set.min_distance_m),
             candidates: u64::from(counts.chosen),
@@ -178,10 +180,13 @@ fn check(args: &VplArgs) -> Result<(), CliError> {
     if args.keep_ranges.is_some() && args.ranges == RangeChoice::Infinite {
         return refused("--keep-ranges", "given with ranges that end");
     }
-    if args.random_ranges.is_some() && args.ranges != RangeChoice::Random {
-        return refused("--random-ranges", "given with --ranges random");
+    if args.random_ranges.is_some() && !args.ranges.draws() {
+        return refused("--random-ranges", "given with --ranges random or random-discard");
     }
-    if args.correct_rays && !args.ranges.casts() {
+    if args.constant_range.is_some() && args.ranges != RangeChoice::ConstantDiscard {
+        return refused("--constant-range", "given with --ranges constant-discard");
+    }
+    if args.correct_rays && !args.ranges.measures() {
         return refused("--correct-rays", "given with --ranges average or maximum");
     }
     Ok(())
@@ -202,7 +207,7 @@ fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
         spacing_m: args.vpl_spacing as f32,
         limit: None,
         // Random ranges are ranges, not distances.
-        range_scale: if args.ranges.casts() { args.range_scale as f32 } else { 1.0 },
+        range_scale: if args.ranges.measures() { args.range_scale as f32 } else { 1.0 },
         min_range_m: low_m.clamp(MIN_RANGE_M, high_m),
         max_range_m: high_m,
         large: if is_infinite { Large::Clamp } else { Large::Discard },
@@ -210,12 +215,19 @@ fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
     }
 }
 
-/// The bounds of random ranges.
-fn random_span(scene: &Scene, args: &VplArgs) -> Span {
-    args.random_ranges.unwrap_or(Span {
-        low_m: 0.0,
-        high_m: f64::from((RANDOM_SHARE * scene.core_bounds.diagonal()).clamp(1e-3, 1e6)),
-    })
+/// The bounds of ranges that do not come from the lengths of rays: equal where there is one range.
+fn drawn_span(scene: &Scene, args: &VplArgs) -> Option<Span> {
+    let share = |share: f32| f64::from((share * scene.core_bounds.diagonal()).clamp(1e-3, 1e6));
+    match args.ranges {
+        RangeChoice::Random | RangeChoice::RandomDiscard => {
+            Some(args.random_ranges.unwrap_or(Span { low_m: 0.0, high_m: share(RANDOM_SHARE) }))
+        }
+        RangeChoice::ConstantDiscard => {
+            let range_m = args.constant_range.unwrap_or_else(|| share(CONSTANT_SHARE));
+            Some(Span { low_m: range_m, high_m: range_m })
+        }
+        RangeChoice::Average | RangeChoice::Maximum | RangeChoice::Infinite => None,
+    }
 }
 
 /// Where ranges come from.
@@ -225,6 +237,8 @@ enum Ranges<'a> {
         triangles: Triangles<'a>,
         caster: RangeCaster,
         light_world: Vec3,
+        /// Takes the place of the lengths that were found; lights that found none stay out.
+        drawn: Option<RandomRanges>,
     },
     Random(RandomRanges),
     Infinite,
@@ -239,18 +253,22 @@ impl<'a> Ranges<'a> {
         (triangles, light_world): (Option<Triangles<'a>>, Vec3),
     ) -> Result<Self, HarnessError> {
         let args = (&args.bounce, args.seed);
+        let drawn = |mut random: RandomRanges| {
+            let Some(Span { low_m, high_m }) = drawn_span(scene, args.0) else { return Ok(None) };
+            let bounds = (low_m as f32, high_m as f32);
+            let (ranges, count) = (vpls.ranges_m(), vpls.capacity());
+            random.prepare(gpu, ranges, count, bounds, args.1 as u32)?;
+            Ok::<_, HarnessError>(Some(random))
+        };
         if let (true, Some(triangles)) = (args.0.ranges.casts(), triangles) {
             let mut images = DeepImages::new(gpu, settings_of(&args.0.deep)?)?;
             settle(gpu, &mut images, &triangles)?;
             let caster = RangeCaster::new(gpu, &images, rule_of(args.0))?;
-            return Ok(Self::Cast { images: Box::new(images), triangles, caster, light_world });
+            let images = Box::new(images);
+            let drawn = drawn(RandomRanges::keeping_unknown(gpu)?)?;
+            return Ok(Self::Cast { images, triangles, caster, light_world, drawn });
         }
-        if args.0.ranges == RangeChoice::Random {
-            let mut random = RandomRanges::new(gpu)?;
-            let Span { low_m, high_m } = random_span(scene, args.0);
-            let bounds = (low_m as f32, high_m as f32);
-            let (ranges, count) = (vpls.ranges_m(), vpls.capacity());
-            random.prepare(gpu, ranges, count, bounds, args.1 as u32)?;
+        if let Some(random) = drawn(RandomRanges::new(gpu)?)? {
             return Ok(Self::Random(random));
         }
         let all = vec![f32::MAX; vpls.capacity() as usize];
@@ -259,7 +277,7 @@ impl<'a> Ranges<'a> {
     }
 
     fn prepare(&mut self, gpu: &Gpu, vpls: &VplBuffer) -> Result<(), HarnessError> {
-        if let Self::Cast { images, triangles, caster, light_world } = self {
+        if let Self::Cast { images, triangles, caster, light_world, .. } = self {
             images.prepare(gpu, triangles)?;
             caster.prepare(gpu, &points_of(vpls, Some(*light_world)))?;
         }
@@ -268,9 +286,12 @@ impl<'a> Ranges<'a> {
 
     fn record(&mut self, passes: &mut dyn Passes) -> Result<(), HarnessError> {
         match self {
-            Self::Cast { images, caster, .. } => {
+            Self::Cast { images, caster, drawn, .. } => {
                 images.record(passes);
                 caster.record(images, passes)?;
+                if let Some(drawn) = drawn {
+                    drawn.record(passes);
+                }
             }
             Self::Random(random) => random.record(passes),
             Self::Infinite => {}

@@ -13,19 +13,21 @@
 //! # Light
 //!
 //! A texel of solid angle `w` seen from a spot of intensity `I` reflects the flux `I w a`, with `a` the
-//! diffuse albedo; Lambert's law gives the intensity `I w a / pi` along the normal, whose integral over
+//! diffuse albedo after Fresnel's term ([`lambertian_albedo`]); Lambert's law gives the intensity `I w a / pi` along the normal, whose integral over
 //! the half space is that flux. A texel whose shading normal faces away from the light reflects nothing,
 //! though its facet faces it. A block has its texels' sum and the place and normal of one of them, so
 //! the spacing changes where light comes from and not how much there is.
 
 mod buffer;
 mod choose;
+mod emission;
 mod keep;
 mod rsm;
 mod settings;
 
 pub use buffer::{VplBuffer, VplCounts};
 pub use choose::choose_shader;
+pub use emission::lambertian_albedo;
 pub use keep::{KeepUniform, keep_shader};
 pub use rsm::{MAX_RSM_SIDE, Rsm, RsmUniform};
 pub use settings::{Large, VplSettings};

@@ -93,6 +93,11 @@ pub struct StudyArgs {
     #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
     pub seed: u64,
 
+    /// Run only jobs whose name holds one of these words, such as models-random,truth; the report says
+    /// which are missing [default: all jobs]
+    #[arg(long, value_name = "WORD,WORD", value_delimiter = ',', value_parser = values::text)]
+    pub only: Vec<String>,
+
     /// Run every N-th job alone, from the K-th; `lightbench report` puts the parts together
     #[arg(long, value_name = "K/N", default_value = "1/1", allow_hyphen_values = true)]
     pub shard: Shard,
@@ -116,7 +121,13 @@ impl StudyArgs {
         })
     }
 
-    /// What decides the jobs: the command without its folder, its shard and its adapter.
+    /// Whether a job of that name is to run.
+    pub fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|word| name.contains(word.as_str()))
+    }
+
+    /// What decides the jobs: the command without its folder, its choice of jobs, its shard and its
+    /// adapter.
     pub fn identity(&self) -> Vec<String> {
         let mut words =
             vec!["lightbench".to_owned(), "study".to_owned(), self.study.name().to_owned()];

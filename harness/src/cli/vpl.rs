@@ -18,13 +18,19 @@ pub struct VplArgs {
     pub vpls: u32,
 
     /// How far a virtual point light reaches: as far as rays through the deep images say on average or
-    /// at most, as random numbers say, or everywhere
+    /// at most, as random numbers or one number say, or everywhere. Average and maximum leave out lights
+    /// whose rays meet nothing; random and infinite leave out none
     #[arg(long, value_name = "RULE", default_value = "average", requires = "vpls")]
     pub ranges: RangeChoice,
 
     /// Bounds of random ranges, metres [default: 0 to a quarter of the diagonal of the scene's core]
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, requires = "vpls")]
     pub random_ranges: Option<Span>,
+
+    /// The range of all lights where --ranges is constant-discard, metres
+    /// [default: an eighth of the diagonal of the scene's core]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::metres, requires = "vpls")]
+    pub constant_range: Option<f64>,
 
     /// Rays that look for the range of a virtual point light, 1 to 16: the first along the primary ray,
     /// the others around it
@@ -122,6 +128,10 @@ pub enum RangeChoice {
     Maximum,
     /// A random number
     Random,
+    /// A random number for lights whose rays meet a surface; the others are left out, as by average
+    RandomDiscard,
+    /// One number for all lights whose rays meet a surface; the others are left out, as by average
+    ConstantDiscard,
     /// Beyond all surfaces
     Infinite,
 }
@@ -133,13 +143,26 @@ impl RangeChoice {
             Self::Average => "average",
             Self::Maximum => "maximum",
             Self::Random => "random",
+            Self::RandomDiscard => "random-discard",
+            Self::ConstantDiscard => "constant-discard",
             Self::Infinite => "infinite",
         }
     }
 
     /// Whether rays are cast through deep images.
     pub fn casts(self) -> bool {
+        !matches!(self, Self::Random | Self::Infinite)
+    }
+
+    /// Whether ranges are the lengths of rays. Where rays are cast and this is not so, they only
+    /// decide which lights are left out.
+    pub fn measures(self) -> bool {
         matches!(self, Self::Average | Self::Maximum)
+    }
+
+    /// Whether ranges are drawn between two bounds.
+    pub fn draws(self) -> bool {
+        matches!(self, Self::Random | Self::RandomDiscard)
     }
 }
 
@@ -159,8 +182,10 @@ pub enum BuildChoice {
     Compute,
     /// One pass over the triangles, by the rasteriser
     Fragment,
-    /// One pass over the triangles for each direction
+    /// One dispatch over the triangles for each direction, one after another
     PerDirection,
+    /// Each direction visits all triangles, all of them in one dispatch
+    PerDirectionBatched,
     /// One pass, into lists linked from fragment to fragment, unsorted
     LinkedLists,
     /// Every pixel that a triangle touches, by compute
@@ -174,6 +199,7 @@ impl BuildChoice {
             Self::Compute => "compute",
             Self::Fragment => "fragment",
             Self::PerDirection => "per-direction",
+            Self::PerDirectionBatched => "per-direction-batched",
             Self::LinkedLists => "linked-lists",
             Self::Conservative => "conservative",
         }

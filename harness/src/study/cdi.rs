@@ -43,9 +43,13 @@ struct Extent {
     deep_sizes: &'static [&'static str],
     /// Rays of a light, the usual first.
     rays: &'static [&'static str],
-    /// Factors on ranges that were found.
+    /// Factors on the average of ranges that were found.
     scales: &'static [&'static str],
-    /// Longest random ranges, as shares of the diagonal of the scene's core.
+    /// Factors on the longest of them.
+    longest_scales: &'static [&'static str],
+    /// Longest random ranges, as shares of the diagonal of the scene's core: as many as both kinds of
+    /// factors together, and beyond the diagonal, so that the least error lies inside. Constant ranges
+    /// are half of these, the mean of random ones.
     random: &'static [f32],
     /// Sides of shadow maps to cast from.
     casts: &'static str,
@@ -67,9 +71,9 @@ const FULL: Extent = Extent {
     directions: &["2x4", "4x4", "4x8", "8x8", "8x16", "13x13"],
     deep_sizes: &["64", "32", "128", "256"],
     rays: &["6", "1", "3", "12"],
-    scales: &["1", "1.5", "2", "3", "4"],
-    // As many as settings of rays.
-    random: &[0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0],
+    scales: &["2", "3", "4", "6"],
+    longest_scales: &["1", "1.5", "2", "3"],
+    random: &[0.15, 0.2, 0.3, 0.5, 0.8, 1.2, 1.6, 2.4],
     casts: "256,512,1024,2048",
     compared: "200000",
     strategies: "None,T-E,DC-E,SC-E,G,M/2,HG",
@@ -88,6 +92,7 @@ const QUICK: Extent = Extent {
     deep_sizes: &["32", "16"],
     rays: &["6", "1"],
     scales: &["1", "2"],
+    longest_scales: &["1", "2"],
     random: &[0.1, 0.4],
     casts: "16,32",
     compared: "2000",
@@ -109,12 +114,13 @@ impl Extent {
     }
 }
 
-/// Whether rays are cast as in most jobs: how many, through which deep images.
+/// Whether rays are cast as in most jobs: how many, through which deep images, built how.
 pub fn is_usual(vpls: &Vpls) -> bool {
     let is_of = |extent: &Extent, deep: &DeepImages| {
         let directions = format!("{}x{}", deep.stacks, deep.slices);
         let size = deep.size_px.to_string();
-        extent.directions.last() == Some(&directions.as_str())
+        deep.build == "compute"
+            && extent.directions.last() == Some(&directions.as_str())
             && extent.deep_sizes.first() == Some(&size.as_str())
             && extent.rays.first() == Some(&vpls.rays.to_string().as_str())
     };
@@ -155,8 +161,8 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
         jobs.push(Job::new(scene, MODELS, variant, &words));
     };
     // How ranges are found.
-    for scale in extent.scales {
-        for rule in ["average", "maximum"] {
+    for (rule, scales) in [("average", extent.scales), ("maximum", extent.longest_scales)] {
+        for scale in scales {
             let words = [&extent.deep(None, None)[..], &["--ranges", rule, "--range-scale", scale]];
             add(&format!("{rule}-x{scale}"), extent.rsm, &words.concat());
         }
@@ -166,18 +172,28 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     let random_words = |span| ["--ranges", "random", "--random-ranges", span];
     for (share, span) in extent.random.iter().zip(&random) {
         add(&format!("random-{share}"), extent.rsm, &random_words(span));
+        // What rays leave out, without what they say of the others.
+        let deep = extent.deep(None, None);
+        let words = ["--ranges", "random-discard", "--random-ranges", span];
+        add(&format!("random-discard-{share}"), extent.rsm, &[&deep[..], &words].concat());
+        let range_m = format!("{:.4}", 0.5 * share * diagonal_m);
+        let words = ["--ranges", "constant-discard", "--constant-range", &range_m];
+        add(&format!("constant-discard-{share}"), extent.rsm, &[&deep[..], &words].concat());
     }
     add("infinite", extent.rsm, &["--ranges", "infinite"]);
+    // The paper sees no difference between the two builds in the image.
+    let each = [&extent.deep(None, None)[..], &["--build", "per-direction-batched"]].concat();
+    add("per-direction", extent.rsm, &each);
     let corrected = [&extent.deep(None, None)[..], &["--correct-rays"]].concat();
     add("corrected", extent.rsm, &corrected);
     let reflected = [&extent.deep(None, None)[..], &["--primary-ray", "reflected"]].concat();
     add("reflected", extent.rsm, &reflected);
     // More and fewer lights.
     for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
-        add(&format!("average-rsm{rsm}"), rsm, &extent.deep(None, None));
+        add(&format!("rsm{rsm}-average"), rsm, &extent.deep(None, None));
         // Every other span.
         for (share, span) in extent.random.iter().zip(&random).skip(1).step_by(2) {
-            add(&format!("random-{share}-rsm{rsm}"), rsm, &random_words(span));
+            add(&format!("rsm{rsm}-random-{share}"), rsm, &random_words(span));
         }
     }
     // What the deep images are like, and how many rays go through them.
@@ -226,8 +242,11 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
     for directions in extent.directions {
         let deep = extent.deep(Some(directions), None);
         add(&format!("compute-{directions}"), &[&deep[..], &compared].concat());
-        for build in ["fragment", "per-direction"] {
-            let words = [&deep[..], &["--build", build], &only_built].concat();
+        for build in ["fragment", "per-direction", "per-direction-batched"] {
+            // Rays through both builds of most directions are compared: the paper sees no difference.
+            let is_usual = extent.directions.last() == Some(directions);
+            let rays = if is_usual && build == "per-direction" { compared } else { only_built };
+            let words = [&deep[..], &["--build", build], &rays].concat();
             add(&format!("{build}-{directions}"), &words);
         }
     }

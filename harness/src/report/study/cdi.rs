@@ -1,9 +1,11 @@
 //! Compound deep images: the paper's three tables with ours, memory, and ranges against exact rays.
 
 use super::super::format::{ABSENT, escape, number, significant};
-use super::cdi_builds::{builds, runs};
-use super::cdi_light::{indirect, quietest};
+use super::cdi_builds::builds;
+use super::cdi_light::indirect;
 use super::cdi_ranges::ranges;
+use super::cdi_times::{self, runs, shown, timed_casts};
+use super::cdi_verdicts::quietest;
 use super::data::entries;
 use super::figure::{Charts, name, part, table};
 use super::shots::Shots;
@@ -110,8 +112,11 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let of = |build: fn(&DeepImageRun) -> bool| all.iter().copied().find(|run| build(run));
     let Some(run) = of(|run| run.deep.build != "linked-lists") else { return String::new() };
     let linked = of(|run| run.deep.build == "linked-lists");
+    let counted = timed_casts(done, scene, run);
+    let of_lists = linked.map(|run| timed_casts(done, scene, run)).unwrap_or_default();
     let mut rows = Vec::new();
     for cast in &run.casts {
+        let counts = counted.iter().any(|known| std::ptr::eq(*known, cast));
         let (ms, random) = (median(&cast.cast_ms), median(&cast.random_ms));
         let list = linked.and_then(|run| {
             run.casts
@@ -125,14 +130,17 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         rows.push(vec![
             format!("{0} x {0}{1}", cast.rsm_px, if cast.is_middle { ", the middle" } else { "" }),
             number(rays),
-            significant(ms),
-            significant(rays / ms / 1e6),
+            shown(ms, counts),
+            shown(rays / ms / 1e6, counts),
             match cast.corrected_ms.is_empty() {
                 true => ABSENT.to_owned(),
-                false => significant(median(&cast.corrected_ms)),
+                false => shown(median(&cast.corrected_ms), counts),
             },
-            list.map_or(ABSENT.to_owned(), |list| significant(median(&list.cast_ms))),
-            significant(random),
+            list.map_or(ABSENT.to_owned(), |list| {
+                let counts = of_lists.iter().any(|known| std::ptr::eq(*known, list));
+                shown(median(&list.cast_ms), counts)
+            }),
+            shown(random, counts),
             theirs(0),
             theirs(1),
             theirs(2),
@@ -155,7 +163,8 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         unit("paper, random", "ms"),
     ];
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let chart = charts.xy(&format!("{scene}-casts"), &super::cdi_builds::cast_chart(run, linked));
+    let drawn = super::cdi_builds::cast_chart(&counted, &of_lists);
+    let chart = charts.xy(&format!("{scene}-casts"), &drawn);
     part(
         scene,
         "casts",
@@ -163,7 +172,8 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         &format!(
             "Every pixel that shows a surface is a virtual point light, none is discarded; about every one does in a \
              map of the scene\u{2019}s middle, whose rays lie closer together; {} rays each through {} directions of \
-             {} x {} pixels. The paper\u{2019}s figures: {PAPER}.",
+             {} x {} pixels. Times struck out were taken while the clock was still rising. The paper\u{2019}s \
+             figures: {PAPER}.",
             run.casts.first().map_or(0, |cast| cast.rays),
             run.deep.directions(),
             run.deep.size_px,
@@ -215,8 +225,9 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let mut found = quietest(done, scene);
     found.extend(super::cdi_builds::findings(done, scene));
     let casts = runs(done, scene, cdi::CASTS);
-    let arrays = casts.iter().filter(|run| run.deep.build != "linked-lists");
-    let cast = arrays.flat_map(|run| &run.casts).max_by_key(|cast| cast.lights);
+    let arrays = casts.iter().copied().filter(|run| run.deep.build != "linked-lists");
+    let counted = arrays.flat_map(|run| timed_casts(done, scene, run));
+    let cast = counted.max_by_key(|cast| cast.lights);
     found.extend(cast.map(|cast| {
         let (ms, rays) = (median(&cast.cast_ms), cast.lights as f64 * f64::from(cast.rays));
         format!("In {scene} {} million rays take {} ms.", significant(rays / 1e6), significant(ms))
@@ -225,10 +236,15 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     found
 }
 
+/// What a reader has to know before trusting a time or an error.
+pub(super) fn notices(done: &Done) -> Vec<String> {
+    cdi_times::notices(done)
+}
+
 /// What stands above all.
 pub(super) fn headline(done: &Done) -> Option<String> {
     let first = |scene| findings(done, scene).into_iter().next();
-    super::cdi_light::in_common(done)
-        .or_else(|| super::cdi_light::headline(done))
+    super::cdi_verdicts::in_common(done)
+        .or_else(|| super::cdi_verdicts::headline(done))
         .or_else(|| done.scenes().into_iter().find_map(first))
 }

@@ -1,6 +1,7 @@
 //! Building deep images: times by directions and by build, and memory.
 
 use super::super::format::{ABSENT, escape, mebibytes, number, significant};
+use super::cdi_times::{refused_build, runs, shown, timed_runs};
 use super::figure::{Charts, part, table};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::{CastTimes, DeepImageRun, median};
@@ -19,16 +20,6 @@ const PAPER_BUILDS: [(u32, [f64; 2]); 6] = [
 /// The paper's factors of one pass over one a direction, at 169 directions: atrium and town.
 const PAPER_FACTORS: [f64; 2] = [20.0, 100.0];
 
-/// The runs of `lightbench cdi` of a section.
-pub(super) fn runs<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> Vec<&'a DeepImageRun> {
-    done.of(scene, section).filter_map(|(_, results)| results.deep_images.as_ref()).collect()
-}
-
-/// Time of a whole build, ms: the median over frames of its passes' sum.
-pub(super) fn build_ms(run: &DeepImageRun) -> f64 {
-    median(&run.passes.per_frame_ms(None))
-}
-
 /// Whether an image is of the size and sampling that directions and builds are compared at.
 fn is_plain(run: &DeepImageRun, first: &DeepImageRun) -> bool {
     run.deep.size_px == first.deep.size_px
@@ -37,10 +28,11 @@ fn is_plain(run: &DeepImageRun, first: &DeepImageRun) -> bool {
 }
 
 /// Builds that are charted against the number of directions: id, name, class.
-const BUILDS: [(&str, &str, &str); 3] = [
+const BUILDS: [(&str, &str, &str); 4] = [
     ("compute", "one pass, compute", "strategy-0"),
     ("fragment", "one pass, rasterised", "strategy-1"),
-    ("per-direction", "a pass a direction", "strategy-2"),
+    ("per-direction", "a dispatch per direction", "strategy-2"),
+    ("per-direction-batched", "per direction, one dispatch", "strategy-5"),
 ];
 
 /// Times, factors and memory.
@@ -60,42 +52,54 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
         plain.iter().filter(is_compared).map(|run| run.deep.directions()).collect();
     counts.sort_unstable();
     counts.dedup();
+    let counts_as_time = |run: &DeepImageRun| refused_build(done, scene, run).is_none();
     let ms = |run: Option<&DeepImageRun>| {
-        run.map_or(ABSENT.to_owned(), |run| significant(build_ms(run)))
+        run.map_or(ABSENT.to_owned(), |run| shown(run.build_ms(), counts_as_time(run)))
     };
     let rows: Vec<Vec<String>> = counts
         .iter()
         .map(|&count| {
-            let [compute, fragment, each] = BUILDS.map(|(id, ..)| of(id, count));
-            let factor = compute.zip(each).map(|(one, all)| build_ms(all) / build_ms(one));
+            let [compute, fragment, each, batched] = BUILDS.map(|(id, ..)| of(id, count));
+            let timed = |run: Option<&DeepImageRun>| {
+                run.filter(|run| counts_as_time(run)).map(DeepImageRun::build_ms)
+            };
+            let factor = |all: Option<&DeepImageRun>| {
+                let factor = timed(compute).zip(timed(all)).map(|(one, all)| all / one);
+                factor.map_or(ABSENT.to_owned(), significant)
+            };
             let paper = PAPER_BUILDS.iter().find(|(known, _)| *known == count);
             let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
-            let mut row = vec![number(f64::from(count)), ms(compute), ms(fragment), ms(each)];
-            row.push(factor.map_or(ABSENT.to_owned(), significant));
+            let mut row = vec![number(f64::from(count)), ms(compute), ms(fragment)];
+            row.extend([ms(each), factor(each), ms(batched), factor(batched)]);
             row.extend([theirs(0), theirs(1)]);
             row
         })
         .collect();
+    let steady: Vec<&DeepImageRun> =
+        plain.iter().copied().filter(|run| counts_as_time(run)).collect();
     let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
     let heads = [
         "directions".to_owned(),
         unit("one pass, compute"),
         unit("one pass, rasterised"),
-        unit("a pass a direction"),
+        unit("a dispatch per direction"),
+        "factor".to_owned(),
+        unit("per direction, one dispatch"),
         "factor".to_owned(),
         unit("paper, Atrium"),
         unit("paper, Rungholt"),
     ];
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let chart = charts.xy(&format!("{scene}-builds"), &build_chart(&plain));
+    let chart = charts.xy(&format!("{scene}-builds"), &build_chart(&steady));
     let body = chart
         + &table("Build time against directions", &heads, &rows)
         + &passes(of("compute", counts.last().copied().unwrap_or(0)))
-        + &memory(&all);
+        + &memory(&all, &counts_as_time);
     let text = format!(
         "{} triangles, {1} x {1} pixels a direction. All of a build is on the clock: sampling or drawing, \
-         counting, prefix sum, filling and sorting. A pass a direction shares the prefix sum and the sort among \
-         all. Clearing counters is on no clock. A data-centre GPU draws fragments on a few of its processors: what \
+         counting, prefix sum, filling and sorting. Brute force visits all triangles for each direction, in one \
+         dispatch after another or in one for all directions; it shares the prefix sum and the sort. Clearing \
+         counters is on no clock. Times struck out were taken at a clock that was low or rising. A data-centre GPU draws fragments on a few of its processors: what \
          is rasterised is slow there as on no other chip. The paper\u{2019}s figures: {2}.",
         number(first.triangles as f64),
         first.deep.size_px,
@@ -111,7 +115,7 @@ fn build_chart(plain: &[&DeepImageRun]) -> XyChart {
             let own = plain.iter().filter(|run| run.deep.build == *id);
             let mut points: Vec<Point> = own
                 .map(|run| {
-                    let (x, y) = (f64::from(run.deep.directions()), build_ms(run));
+                    let (x, y) = (f64::from(run.deep.directions()), run.build_ms());
                     let tip = format!("{name}\n{} directions\n{} ms", number(x), significant(y));
                     Point { x, y, tip, ..Point::default() }
                 })
@@ -132,30 +136,29 @@ fn build_chart(plain: &[&DeepImageRun]) -> XyChart {
 }
 
 /// Times of casting rays and of random ranges against the number of lights.
-pub(super) fn cast_chart(run: &DeepImageRun, linked: Option<&DeepImageRun>) -> XyChart {
-    let line = |run: &DeepImageRun, name: &str, class: &str, of: fn(&CastTimes) -> &[f64]| Series {
-        name: name.to_owned(),
-        class: class.to_owned(),
-        marks: Marks::LineAndPoints,
-        points: run
-            .casts
-            .iter()
-            .filter(|cast| !cast.is_middle)
-            .map(|cast| {
-                let (x, y) = (cast.lights as f64, median(of(cast)));
-                let tip = format!("{name}\n{} lights\n{} ms", number(x), significant(y));
-                Point { x, y, tip, ..Point::default() }
-            })
-            .collect(),
-        ..Series::default()
-    };
-    let mut series = vec![
-        line(run, "rays through arrays", "strategy-0", |cast| &cast.cast_ms),
-        line(run, "random ranges", "strategy-3", |cast| &cast.random_ms),
+pub(super) fn cast_chart(arrays: &[&CastTimes], linked: &[&CastTimes]) -> XyChart {
+    let line =
+        |casts: &[&CastTimes], name: &str, class: &str, of: fn(&CastTimes) -> &[f64]| Series {
+            name: name.to_owned(),
+            class: class.to_owned(),
+            marks: Marks::LineAndPoints,
+            points: casts
+                .iter()
+                .filter(|cast| !cast.is_middle)
+                .map(|cast| {
+                    let (x, y) = (cast.lights as f64, median(of(cast)));
+                    let tip = format!("{name}\n{} lights\n{} ms", number(x), significant(y));
+                    Point { x, y, tip, ..Point::default() }
+                })
+                .collect(),
+            ..Series::default()
+        };
+    let series = vec![
+        line(arrays, "rays through arrays", "strategy-0", |cast| &cast.cast_ms),
+        line(arrays, "random ranges", "strategy-3", |cast| &cast.random_ms),
+        line(linked, "rays through linked lists", "strategy-2", |cast| &cast.cast_ms),
     ];
-    series.extend(linked.map(|linked| {
-        line(linked, "rays through linked lists", "strategy-2", |cast| &cast.cast_ms)
-    }));
+    let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
     XyChart {
         title: "Time to find the ranges of all lights".to_owned(),
         x: Axis {
@@ -193,7 +196,7 @@ fn passes(run: Option<&DeepImageRun>) -> String {
 }
 
 /// What every setting takes.
-fn memory(all: &[&DeepImageRun]) -> String {
+fn memory(all: &[&DeepImageRun], counts_as_time: impl Fn(&DeepImageRun) -> bool) -> String {
     let rows: Vec<Vec<String>> = all
         .iter()
         .map(|run| {
@@ -212,7 +215,7 @@ fn memory(all: &[&DeepImageRun]) -> String {
                 number(deep.fragments as f64),
                 number(deep.longest_list as f64),
                 mebibytes(deep.bytes as f64),
-                significant(build_ms(run)),
+                shown(run.build_ms(), counts_as_time(run)),
             ]
         })
         .collect();
@@ -228,25 +231,60 @@ fn memory(all: &[&DeepImageRun]) -> String {
     "<h4>Memory</h4>\n".to_owned() + &table("Memory of deep images", &heads, &rows)
 }
 
+/// Times of the builds of most directions that count: the faster of the two single passes, brute force
+/// in a dispatch per direction, and brute force in one dispatch. Each is ms.
+pub(super) struct MostDirections {
+    pub(super) directions: u32,
+    pub(super) single_ms: f64,
+    pub(super) each_ms: Option<f64>,
+    pub(super) batched_ms: Option<f64>,
+}
+
+/// The builds of most directions, where a single pass was timed at a steady, risen clock.
+pub(super) fn most_directions(done: &Done, scene: &str) -> Option<MostDirections> {
+    let first = runs(done, scene, cdi::BUILDS).first().copied()?;
+    let all = timed_runs(done, scene, cdi::BUILDS);
+    let directions = all.iter().map(|run| run.deep.directions()).max()?;
+    let best = |builds: &[&str]| {
+        let own = all.iter().filter(|run| {
+            is_plain(run, first)
+                && run.deep.directions() == directions
+                && builds.contains(&run.deep.build.as_str())
+        });
+        own.map(|run| run.build_ms()).filter(|ms| ms.is_finite()).min_by(f64::total_cmp)
+    };
+    Some(MostDirections {
+        directions,
+        single_ms: best(&["compute", "fragment"])?,
+        each_ms: best(&["per-direction"]),
+        batched_ms: best(&["per-direction-batched"]),
+    })
+}
+
 /// How much one pass over the triangles saves at the most directions.
 pub(super) fn findings(done: &Done, scene: &str) -> Option<String> {
-    let all = runs(done, scene, cdi::BUILDS);
-    let first = all.first().copied()?;
-    let most = all.iter().map(|run| run.deep.directions()).max()?;
-    let best = |is_one: fn(&str) -> bool| {
-        let own = all.iter().filter(|run| {
-            is_plain(run, first) && run.deep.directions() == most && is_one(&run.deep.build)
-        });
-        own.map(|run| build_ms(run)).filter(|ms| ms.is_finite()).min_by(f64::total_cmp)
+    let most = most_directions(done, scene)?;
+    let times = |ms: Option<f64>, what: &str| {
+        ms.map(|ms| {
+            format!(
+                "{} times as fast as {what}, {} ms",
+                significant(ms / most.single_ms),
+                significant(ms)
+            )
+        })
     };
-    let one = best(|build| build == "compute" || build == "fragment")?;
-    let each = best(|build| build == "per-direction")?;
+    let each = times(most.each_ms, "brute force in a dispatch per direction");
+    let batched = times(most.batched_ms, "brute force in one dispatch");
+    let both: Vec<String> = each.into_iter().chain(batched).collect();
+    if both.is_empty() {
+        return None;
+    }
     Some(format!(
-        "In {scene} one pass over the triangles builds {most} directions in {} ms, {} times as fast as a pass a \
-         direction, {} ms; the paper says {} times in its atrium and {} in its town.",
-        significant(one),
-        significant(each / one),
-        significant(each),
+        "In {scene} one pass over the triangles builds {} directions in {} ms: {}. The paper says {} times in \
+         its atrium and {} in its town.",
+        most.directions,
+        significant(most.single_ms),
+        both.join("; "),
         PAPER_FACTORS[0],
         PAPER_FACTORS[1]
     ))

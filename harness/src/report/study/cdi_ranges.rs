@@ -1,7 +1,7 @@
 //! Rays through deep images against exact ones: how far off distances are, by directions and by size.
 
 use super::super::format::{number, percent, significant};
-use super::cdi_builds::runs;
+use super::cdi_times::runs;
 use super::figure::{Charts, part, table};
 use crate::chart::{Axis, Histogram, Marks, Point, Scale, Series, XyChart};
 use crate::results::{DeepImageRun, RangeErrors};

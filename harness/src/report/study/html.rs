@@ -247,6 +247,9 @@ fn notices(done: &Done, pictures_left_out: usize) -> Vec<String> {
     for scene in done.scenes() {
         notices.extend(overview::ties(done, scene));
     }
+    if done.manifest.study == "cdi" {
+        notices.extend(cdi::notices(done));
+    }
     if pictures_left_out > 0 {
         notices.push(format!(
             "{pictures_left_out} pictures are not on this page, which would be too large: they lie in the \

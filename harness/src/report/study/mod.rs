@@ -7,7 +7,8 @@
 //! strategies](overview); for the culling survey, [times against lights](culling); for models of area
 //! lights, their [errors](area) against a truth image, [pictures](area_pictures) and [cost](area_cost);
 //! for many polygon lights, [light operations and times](endless) by normal cones; for deep images, the
-//! [paper's tables](cdi), [builds](cdi_builds), [ranges](cdi_ranges) and [indirect light](cdi_light).
+//! [paper's tables](cdi), [builds](cdi_builds), [ranges](cdi_ranges) and [indirect light](cdi_light) with
+//! [what it says](cdi_verdicts).
 
 mod accuracy;
 mod area;
@@ -17,6 +18,8 @@ mod cdi;
 mod cdi_builds;
 mod cdi_light;
 mod cdi_ranges;
+mod cdi_times;
+mod cdi_verdicts;
 mod claims;
 mod culling;
 mod data;

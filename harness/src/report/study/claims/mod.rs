@@ -13,6 +13,10 @@ mod endless;
 mod endless_operations;
 mod endless_rows;
 mod endless_times;
+mod indirect;
+mod indirect_builds;
+mod indirect_casts;
+mod indirect_light;
 mod table;
 mod verdict;
 
@@ -55,6 +59,7 @@ pub(super) fn paper(study: &str) -> Option<&'static Paper> {
         "culling" => Some(&culling::PAPER),
         "area" => Some(&area::PAPER),
         "endless" => Some(&endless::PAPER),
+        "cdi" => Some(&indirect::PAPER),
         _ => None,
     }
 }
