@@ -10,6 +10,7 @@ mod cases;
 mod facing;
 mod groups;
 mod oracle;
+mod premises;
 mod rates;
 mod spots;
 mod wesl;

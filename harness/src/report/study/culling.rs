@@ -2,7 +2,7 @@
 
 use super::super::finding::lights;
 use super::super::format::{number, significant};
-use super::super::rank::listed;
+use super::super::rank::{ALIKE, listed};
 use super::data::{Entry, counts, entries, lines};
 use super::figure::{Charts, name, part, table};
 use super::scaling::{fit, points};
@@ -116,17 +116,27 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     MODES.iter().filter_map(sentence).collect()
 }
 
-/// The fastest in each mode, in the first scene that has figures.
+/// The fastest in each mode, in the first scene that has figures. One lap along a path tells no
+/// ties: means that are alike count as one.
 pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let fastest = |mode: &&str| {
             let records = by_time(done, scene, mode);
             let first = records.first()?;
-            Some((format!("{} {mode}", first.strategy), first.lights))
+            let alike = |record: &&&Record| record.frame_ms <= first.frame_ms * (1.0 + ALIKE);
+            let names: Vec<&str> =
+                records.iter().take_while(alike).map(|record| record.strategy.as_str()).collect();
+            let verb = if names.len() > 1 { "tie" } else { "leads" };
+            let time = significant(first.frame_ms);
+            Some((format!("{mode} {} {verb} ({time} ms)", listed(&names)), first.lights))
         };
         let all: Vec<(String, u64)> = MODES.iter().filter_map(fastest).collect();
         let most = all.first()?.1;
-        let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
-        Some(format!("Fastest in {scene} at {}: {}.", lights(most), listed(&names)))
+        let parts: Vec<&str> = all.iter().map(|(part, _)| part.as_str()).collect();
+        Some(format!(
+            "By the mean frame time in {scene} at {}, {}.",
+            lights(most),
+            listed(&parts)
+        ))
     })
 }

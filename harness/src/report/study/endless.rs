@@ -3,7 +3,8 @@
 
 use super::super::finding::lights;
 use super::super::format::{ABSENT, difference, escape, number, percent, significant};
-use super::super::rank::Ratio;
+use super::super::lead::Lead;
+use super::super::rank::{Ratio, listed as listed_words, ranks};
 use super::data::Entry;
 use super::endless_charts::charts_of;
 use super::endless_data::{Case, PLACES, cases, cones, listed, paper, setting};
@@ -125,23 +126,27 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     cases(done, scene).iter().filter_map(|case| sentence(scene, case)).collect()
 }
 
-/// The fastest exact setting by position or cones.
-fn best<'a>(case: &Case<'a>) -> Option<&'a Record> {
-    let all = case.entries.iter().map(|entry| entry.record);
-    all.filter(|record| record.culls() && record.is_exact())
-        .filter(|record| record.assign_and_shade_ms().is_finite())
-        .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))
+/// The fastest exact setting by position or cones, and all that cannot be told apart from it.
+fn lead<'a>(case: &Case<'a>) -> Option<Lead<'a>> {
+    Lead::of(&ranks(case.entries.iter().map(|entry| entry.record)))
+}
+
+/// The settings of a lead: `1 cone`, `1 cone and 6 cones`.
+fn settings(lead: &Lead<'_>) -> String {
+    let names: Vec<String> = lead.records.iter().map(|record| setting(&record.strategy)).collect();
+    listed_words(&names)
 }
 
 fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
-    let (best, position) = (best(case)?, case.position()?);
+    let (lead, position) = (lead(case)?, case.position()?);
+    let best = lead.leader();
     let time = |record: &Record| significant(record.assign_and_shade_ms());
     let place = format!(
         "In {scene} at location {} under {}",
         case.place.to_uppercase(),
         lights(case.lights)
     );
-    if std::ptr::eq(best, position) {
+    if std::ptr::eq(best, position) && !lead.is_tie() {
         return Some(format!(
             "{place}, position alone is fastest without a loss: {} ms.",
             time(best)
@@ -153,9 +158,10 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
             time(position)
         ));
     }
+    let verb = if lead.is_tie() { "tie for least time" } else { "takes least time" };
     let mut text = format!(
-        "{place}, {} takes least time without a loss: {} ms, position alone {} ms",
-        setting(&best.strategy),
+        "{place}, {} {verb} without a loss: {} ms, position alone {} ms",
+        settings(&lead),
         time(best),
         time(position),
     );
@@ -171,8 +177,9 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     let scene = done.scenes().into_iter().find(|scene| !cases(done, scene).is_empty())?;
     let cases = cases(done, scene);
     let mut wins: Vec<(String, usize)> = Vec::new();
-    for best in cases.iter().filter_map(best) {
-        let name = setting(&best.strategy);
+    for lead in cases.iter().filter_map(lead) {
+        let tie = if lead.is_tie() { "a tie of " } else { "" };
+        let name = format!("{tie}{}", settings(&lead));
         match wins.iter_mut().find(|(known, _)| *known == name) {
             Some((_, count)) => *count += 1,
             None => wins.push((name, 1)),
@@ -183,6 +190,6 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     let parts: Vec<String> =
         wins.iter().map(|(name, count)| format!("{name} in {count} of {all} cases")).collect();
     (!parts.is_empty()).then(|| {
-        format!("Least time without a loss in {scene}: {}.", super::super::rank::listed(&parts))
+        format!("Least time without a loss in {scene}: {}.", listed_words(&parts))
     })
 }

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use super::super::comparison::{Comparison, comparisons};
 use super::super::format::{number, short_adapter, significant};
+use super::super::lead::{Lead, span};
 use super::super::page;
-use super::super::rank::{Ratio, first, listed, ranks, tie};
+use super::super::rank::{Ratio, listed, ranks, tie};
 use super::data::class;
 use super::figure::{Charts, panels, part};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
@@ -113,28 +114,23 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
         .collect()
 }
 
-/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0), ahead of B ...`.
+/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0); next is B ...`, or
+/// `A and B tie for fastest with 6.9 to 7.0 ms`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-    let best = first(&ranked);
-    let leader = *best.first()?;
+    let lead = Lead::of(&ranked)?;
+    let leader = lead.leader();
     let lights = super::super::finding::lights(comparison.first().lights);
-    let mut text = format!("In {scene} at {lights}, ");
-    if best.len() == 1 {
-        text += &format!("{} is fastest with {}", leader.strategy, timed(leader));
-    } else {
-        let others: Vec<String> = best
-            .iter()
-            .skip(1)
-            .map(|record| format!("{} ({} ms)", record.strategy, ms(record)))
-            .collect();
-        text += &format!(
-            "{} is fastest with {}, but cannot be told from {}",
-            leader.strategy,
-            timed(leader),
-            listed(&others)
-        );
-    }
+    let time = match lead.is_tie() {
+        true => {
+            let times = span(&lead.records, |record| Some(record.assign_and_shade_ms()));
+            format!("{} ms", times.unwrap_or_default())
+        }
+        false => timed(leader),
+    };
+    let still = lead.still_lights();
+    let mut text = format!("In {scene} at {lights}, {}{still} with {time}", lead.is_fastest());
+    text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
             format!(", {} to {} times as long", significant(ratio.low), significant(ratio.high))
@@ -163,27 +159,24 @@ fn timed(record: &Record) -> String {
 pub(super) fn headline(done: &Done) -> Option<String> {
     let first_of = |scene: &&str| {
         let (_, comparison) = by_lights(done, scene, "main").pop()?;
-        let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-        let leader = first(&ranked).first().map(|record| record.strategy.clone())?;
-        Some(((*scene).to_owned(), leader, comparison.first().lights))
+        let lead = Lead::of(&ranks(comparison.records.iter().map(|(_, record)| *record)))?;
+        Some(((*scene).to_owned(), lead.headline(), comparison.first().lights))
     };
     let scenes = done.scenes();
     let all: Vec<(String, String, u64)> = scenes.iter().filter_map(first_of).collect();
     let most = all.iter().map(|(_, _, lights)| *lights).max()?;
     let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
-    let mut winners: Vec<(String, Vec<String>)> = Vec::new();
-    for (scene, leader, _) in &all {
-        match winners.iter_mut().find(|(known, _)| known == leader) {
+    let mut leads: Vec<(String, Vec<String>)> = Vec::new();
+    for (scene, lead, _) in &all {
+        match leads.iter_mut().find(|(known, _)| known == lead) {
             Some((_, scenes)) => scenes.push(scene.clone()),
-            None => winners.push((leader.clone(), vec![scene.clone()])),
+            None => leads.push((lead.clone(), vec![scene.clone()])),
         }
     }
-    let parts: Vec<String> = winners
-        .iter()
-        .map(|(leader, scenes)| format!("{leader} is fastest in {}", listed(scenes)))
-        .collect();
+    let parts: Vec<String> =
+        leads.iter().map(|(lead, scenes)| format!("{lead} in {}", listed(scenes))).collect();
     let lights = number(most as f64);
-    Some(format!("On {adapter} at {lights} lights, {}.", listed(&parts)))
+    Some(format!("On {adapter} at {lights} lights, {}.", parts.join("; ")))
 }
 
 /// Who shares the first rank, per count of lights.
