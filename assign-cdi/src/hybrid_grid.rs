@@ -143,4 +143,8 @@ impl Assignment for HybridGrid {
     fn lists_mut(&mut self) -> &mut LightLists {
         &mut self.lists
     }
+
+    fn memory_bytes(&self) -> u64 {
+        self.cells.size() + self.lists.memory_bytes() + self.passes.bytes()
+    }
 }

@@ -258,6 +258,12 @@ impl HybridPasses {
         });
     }
 
+    /// Bytes of its buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        let Buffers { masks, cursors, unsorted, live } = &self.buffers;
+        masks.size() + cursors.size() + unsorted.size() + live.bytes() + self.frame.bytes()
+    }
+
     /// The pass that counts, and that places once places are reserved.
     fn add_lights(&self, name: &str, passes: &mut dyn Passes) {
         let Some((_, scatter)) = &self.scatter else {

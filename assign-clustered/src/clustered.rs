@@ -275,4 +275,9 @@ impl Assignment for Clustered {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.culler.lists_mut()
     }
+
+    fn memory_bytes(&self) -> u64 {
+        let gather = self.gather.as_ref().map_or(0, Gather::bytes);
+        self.clusters.size() + gather + self.culler.memory_bytes()
+    }
 }

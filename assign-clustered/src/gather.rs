@@ -165,6 +165,11 @@ impl Gather {
         });
     }
 
+    /// Bytes of its buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.marks.size() + self.live.bytes() + self.frame.bytes()
+    }
+
     /// The groups that hold samples.
     pub(crate) fn live(&self) -> &LiveGroups {
         &self.live

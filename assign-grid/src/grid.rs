@@ -149,4 +149,8 @@ impl Assignment for Grid {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.culler.lists_mut()
     }
+
+    fn memory_bytes(&self) -> u64 {
+        self.cells.size() + self.culler.memory_bytes()
+    }
 }

@@ -141,4 +141,8 @@ impl Assignment for PerModel {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.culler.lists_mut()
     }
+
+    fn memory_bytes(&self) -> u64 {
+        self.models.size() + self.model_of_group.size() + self.culler.memory_bytes()
+    }
 }

@@ -108,6 +108,11 @@ impl TileBounds {
         });
     }
 
+    /// Bytes of its buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.depths.size() + self.frame.bytes()
+    }
+
     /// Nearest and farthest view depth of each tile's samples, metres: `array<vec2f>`.
     pub(crate) fn depths(&self) -> &wgpu::Buffer {
         &self.depths

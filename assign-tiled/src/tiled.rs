@@ -127,4 +127,9 @@ impl Assignment for Tiled {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.culler.lists_mut()
     }
+
+    fn memory_bytes(&self) -> u64 {
+        let bounds = self.tile_bounds.as_ref().map_or(0, TileBounds::bytes);
+        self.tiles.size() + bounds + self.culler.memory_bytes()
+    }
 }

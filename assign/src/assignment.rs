@@ -32,6 +32,11 @@ pub trait Assignment {
 
     /// The lists, to limit their pool.
     fn lists_mut(&mut self) -> &mut LightLists;
+
+    /// GPU memory of everything that it allocated and that it binds for itself alone, bytes: lists,
+    /// the hierarchy of lights where it uses one, marks, bounds, pools and uniforms. The renderer's
+    /// images and the lights are not in it. Right after a [`prepare`](Self::prepare).
+    fn memory_bytes(&self) -> u64;
 }
 
 /// A strategy's WESL, and its author's word that every loop in it ends.

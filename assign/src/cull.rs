@@ -100,6 +100,8 @@ pub struct Culler {
     source: Option<wgpu::BindGroup>,
     lists: LightLists,
     dispatch: Dispatch,
+    /// Bytes of the hierarchy over the lights, where it is used.
+    hierarchy_bytes: u64,
 }
 
 /// What the kernel is compiled for, beside the kinds of lights.
@@ -155,6 +157,7 @@ impl Culler {
             source: None,
             lists: LightLists::new(gpu)?,
             dispatch: Dispatch::Workgroups(0),
+            hierarchy_bytes: 0,
         })
     }
 
@@ -189,6 +192,7 @@ impl Culler {
         };
         if self.variant.settings.source == LightSource::Hierarchy {
             entries.push(entry(1, frame.lights.nodes()));
+            self.hierarchy_bytes = frame.lights.nodes().size();
         }
         self.source = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("cull source"),
@@ -290,6 +294,13 @@ impl Culler {
     /// The lists, to limit their pool.
     pub fn lists_mut(&mut self) -> &mut LightLists {
         &mut self.lists
+    }
+
+    /// Bytes of its buffers, and of the hierarchy over the lights where it uses that; the strategy's
+    /// own resources are not among them. See
+    /// [`Assignment::memory_bytes`](crate::Assignment::memory_bytes).
+    pub fn memory_bytes(&self) -> u64 {
+        self.frame.bytes() + self.lists.memory_bytes() + self.hierarchy_bytes
     }
 }
 

@@ -59,4 +59,8 @@ impl Assignment for Everything {
     fn lists_mut(&mut self) -> &mut LightLists {
         &mut self.lists
     }
+
+    fn memory_bytes(&self) -> u64 {
+        self.lists.memory_bytes()
+    }
 }

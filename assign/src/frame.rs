@@ -166,6 +166,11 @@ impl FrameBindings {
         Ok(())
     }
 
+    /// Bytes of its own buffer, without the lights.
+    pub fn bytes(&self) -> u64 {
+        self.uniform.size()
+    }
+
     /// The layout.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout

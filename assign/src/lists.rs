@@ -288,9 +288,14 @@ impl LightLists {
         self.counts.1
     }
 
-    /// Bytes of all its buffers on the GPU.
+    /// Bytes of groups, entries and counters on the GPU.
     pub fn bytes(&self) -> u64 {
         self.lists.size() + self.entries.size() + self.counters.size() + self.uniform.size()
+    }
+
+    /// The same with what the counters are read back through.
+    pub fn memory_bytes(&self) -> u64 {
+        self.bytes() + self.readback.bytes()
     }
 
     /// The records: `array<LightList>`.

@@ -34,6 +34,11 @@ impl LiveGroups {
         Ok(true)
     }
 
+    /// Bytes of its buffer.
+    pub fn bytes(&self) -> u64 {
+        self.buffer.size()
+    }
+
     /// The buffer: `struct LiveGroups`.
     pub fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer

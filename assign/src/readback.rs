@@ -92,6 +92,11 @@ impl<T: Pod> Readback<T> {
         }
     }
 
+    /// Bytes of its buffers.
+    pub fn bytes(&self) -> u64 {
+        self.slots.iter().map(|(buffer, _)| buffer.size()).sum()
+    }
+
     /// The newest value that has arrived.
     pub fn latest(&self) -> Option<T> {
         self.latest.map(|(_, value)| value)

@@ -91,4 +91,8 @@ impl Assignment for Reuse {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.inner.lists_mut()
     }
+
+    fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes()
+    }
 }

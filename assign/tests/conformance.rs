@@ -87,6 +87,9 @@ impl Assignment for Picky {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.inner.lists_mut()
     }
+    fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes()
+    }
 }
 
 fn picky(opaque_only: bool) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {

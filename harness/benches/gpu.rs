@@ -16,8 +16,7 @@ use harness::{
     clock::PassClock,
     error::HarnessError,
     painter::Painter,
-    pass_samples::pass_kind,
-    results::PassKind,
+    results::{PassKind, pass_kind},
     stage::Stage,
 };
 use shading::{Cut, Mode};
@@ -63,7 +62,7 @@ fn time_of(
         let passes = clock.finish()?;
         ms += passes
             .iter()
-            .filter(|(name, _)| pass_kind(name) == kind)
+            .filter(|(name, _)| pass_kind(name, Mode::Deferred) == kind)
             .map(|(_, ms)| ms)
             .sum::<f64>();
     }

@@ -3,34 +3,69 @@
 use std::path::Path;
 
 use assign::{AssignError, Gpu};
-use shading::Cut;
+use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{CliError, CompareArgs, ModeChoice},
+    cli::{CliError, CompareArgs},
     error::HarnessError,
     painter::raster_spheres,
     registry::Method,
-    results::{ResultsError, write_atomically},
+    results::{CONTROL, ResultsError, write_atomically},
     stage::Stage,
 };
 
 /// The method that has no forward mode.
 pub(crate) const RASTER_SPHERE: &str = "RasterSphere";
 
-/// An error where no choice can be measured in any of the modes.
+/// The most frames of a method on the clock, laps and poses together.
+const MAX_SAMPLES: u32 = 100_000;
+
+/// Poses of a lap where the command line names none, at most.
+const MOST_POSES: u32 = 1_200;
+
+/// An error where laps are asked for without a path or too often, or where no choice can be measured
+/// in any of the modes.
 pub(crate) fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
-    let is_forward = args.mode == ModeChoice::Forward;
+    if let Some(checks) = args.checks.filter(|_| !args.path) {
+        let accepted = "given with --path: a camera that stands still has one pose";
+        return Err(CliError::out_of_range("--checks", &checks.to_string(), accepted));
+    }
+    if let Some(laps) = args.laps {
+        let refuse =
+            |accepted: &str| Err(CliError::out_of_range("--laps", &laps.to_string(), accepted));
+        if !args.path {
+            return refuse("given with --path: a camera that stands still takes no laps");
+        }
+        let most = MAX_SAMPLES / args.frames.unwrap_or(MOST_POSES);
+        if laps > most.max(1) {
+            return refuse(&format!("at most {} with as many --frames", most.max(1)));
+        }
+    }
     if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
         let accepted =
             "given with --path: from a still camera lists are right however old they are";
         return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
     }
-    if is_forward && choices.iter().all(|choice| choice.family() == RASTER_SPHERE) {
-        let accepted = format!("deferred for {RASTER_SPHERE}, which has no forward mode");
-        return Err(CliError::out_of_range("--mode", "forward", &accepted));
+    let modes = args.mode.modes();
+    let is_served = |choice: &Choice| modes.iter().any(|&mode| has_mode(choice, mode));
+    if let Some(choice) = choices.first().filter(|_| !choices.iter().any(is_served)) {
+        let family = choice.family();
+        let accepted = format!("deferred for {family}, which has no such mode");
+        let names: Vec<&str> = modes.iter().map(|mode| mode.name()).collect();
+        return Err(CliError::out_of_range("--mode", &names.join(" and "), &accepted));
     }
     Ok(())
+}
+
+/// Whether a method can light pixels in a mode: light volumes read a G-buffer, and the control draws
+/// its surfaces behind a depth pre-pass.
+pub(crate) fn has_mode(choice: &Choice, mode: Mode) -> bool {
+    match choice.family() {
+        RASTER_SPHERE => !mode.is_forward(),
+        CONTROL => mode != Mode::ForwardNoPrepass,
+        _ => true,
+    }
 }
 
 /// The choices with their parameters checked and written alike, none twice.

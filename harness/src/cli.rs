@@ -29,6 +29,7 @@ pub use names::{did_you_mean, nearest};
 pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
+pub(crate) use values::MAX_CHECKS;
 pub use values::{Camera, CameraPose, DirectionCounts, Size, Sizes, Span, Strategies};
 pub use vpl::{BuildChoice, DeepArgs, PrimaryRay, RangeChoice, SpreadChoice, VplArgs};
 
@@ -59,9 +60,11 @@ Examples:
 
 How to read the result:
   both ms        assigning and shading together: compare strategies by it
+  span ms        the same with the gaps between passes; not known on a software adapter
   listed         lights in the list that a pixel reads, mean; contributing is what a perfect list holds
   missed         (light, pixel) pairs that the lists lack: 0, or the image is wrong
   max diff       largest difference to the image of no culling: 0 means the same in every bit
+  memory         everything that assignment needs on the GPU, MiB
   overflow       groups whose list did not fit and that fell back to all lights: slow, still correct
 
 Times on a software adapter are wall-clock times of a CPU, not a GPU's.
@@ -173,7 +176,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
     pub area_model: AreaModel,
 
-    /// Frames to time, 1 to 100,000, every sample kept [default: 64, or 3 on a software adapter]
+    /// Frames to time, 1 to 100,000, every sample kept; with --path, poses of a lap
+    /// [default: 64, or 3 on a software adapter; with --path 1,200 or 60]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
     pub frames: Option<u32>,
 
@@ -184,6 +188,15 @@ pub struct CompareArgs {
     /// Time each frame from another pose: the camera goes once along the scene's path
     #[arg(long, conflicts_with = "camera")]
     pub path: bool,
+
+    /// With --path, go along the path N times, 1 to 1,000, from --frames poses each time; 6 laps or
+    /// more tell methods apart [default: 1]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::laps)]
+    pub laps: Option<u32>,
+
+    /// With --path, poses at which images are compared with that of no culling, 1 to 8 [default: 8]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::checks)]
+    pub checks: Option<u32>,
 
     /// How fall-off ends at a light's range
     #[arg(long, value_name = "HOW", default_value = "windowed")]
@@ -269,8 +282,17 @@ pub enum ModeChoice {
     Deferred,
     /// In the fragment shader that draws the surfaces
     Forward,
-    /// One after the other
+    /// deferred and forward, one after the other
     Both,
+    /// From a G-buffer that also holds the model of each pixel, which M reads
+    DeferredIds,
+    /// In the fragment shader, without a depth pre-pass but for strategies that read depth, which pay
+    /// for it
+    ForwardNoPrepass,
+    /// The three frames of a renderer: forward-no-prepass, forward and deferred-ids
+    Frames,
+    /// All four
+    All,
 }
 
 impl ModeChoice {
@@ -280,6 +302,10 @@ impl ModeChoice {
             Self::Deferred => &[Mode::Deferred],
             Self::Forward => &[Mode::Forward],
             Self::Both => &[Mode::Deferred, Mode::Forward],
+            Self::DeferredIds => &[Mode::DeferredIds],
+            Self::ForwardNoPrepass => &[Mode::ForwardNoPrepass],
+            Self::Frames => &[Mode::ForwardNoPrepass, Mode::Forward, Mode::DeferredIds],
+            Self::All => &Mode::ALL,
         }
     }
 }

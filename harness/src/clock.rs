@@ -16,6 +16,64 @@ const MAX_PASSES: u32 = 64;
 /// A pass and its time, ms.
 pub type PassTime = (String, f64);
 
+/// The times of one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameTimes {
+    /// Passes and their times, in the order in which they ran. Passes of one name are one pass in
+    /// several parts.
+    pub passes: Vec<PassTime>,
+    /// When each pass began and ended, ms after the first one began, part by part. `None` where each
+    /// pass was submitted alone: what lies between two passes is then the host's doing.
+    pub intervals: Option<Vec<(String, [f64; 2])>>,
+}
+
+impl FrameTimes {
+    fn new(names: Vec<String>, times: Times) -> Self {
+        let mut passes: Vec<PassTime> = Vec::new();
+        let mut add = |name: String, time: f64| match passes.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, sum)) => *sum += time,
+            None => passes.push((name, time)),
+        };
+        let intervals = match times {
+            Times::Alone(times) => {
+                names.into_iter().zip(times).for_each(|(name, time)| add(name, time));
+                None
+            }
+            Times::Together(intervals) => {
+                let named: Vec<(String, [f64; 2])> = names.into_iter().zip(intervals).collect();
+                named.iter().for_each(|(name, [begin, end])| add(name.clone(), end - begin));
+                Some(named)
+            }
+        };
+        Self { passes, intervals }
+    }
+
+    /// The time from the beginning of the first of some passes to the end of the last, ms, gaps
+    /// between two of them included. Where another pass lies between, that pass and the gaps beside
+    /// it are left out. `None` where only sums are known.
+    pub fn span_ms(&self, is_counted: impl Fn(&str) -> bool) -> Option<f64> {
+        let intervals = self.intervals.as_ref()?;
+        let runs = intervals.chunk_by(|(a, _), (b, _)| is_counted(a) == is_counted(b));
+        let counted = runs.filter(|run| run.first().is_some_and(|(name, _)| is_counted(name)));
+        Some(counted.map(run_ms).sum())
+    }
+}
+
+/// From the first beginning to the last end: passes may overlap.
+fn run_ms(run: &[(String, [f64; 2])]) -> f64 {
+    let begin = run.iter().map(|(_, [begin, _])| *begin).fold(f64::INFINITY, f64::min);
+    let end = run.iter().map(|(_, [_, end])| *end).fold(f64::NEG_INFINITY, f64::max);
+    (end - begin).max(0.0)
+}
+
+/// What a clock read of passes, in the order in which they ran.
+enum Times {
+    /// How long each took, ms: each was submitted alone.
+    Alone(Vec<f64>),
+    /// When each began and ended, ms after the first one began.
+    Together(Vec<[f64; 2]>),
+}
+
 /// A query set, and the index of a pass's first query in it.
 type Query<'a> = (&'a wgpu::QuerySet, u32);
 
@@ -49,27 +107,24 @@ impl PassClock {
 
     /// Ends the frame: submits what is left, waits, and returns each pass's time, ms.
     pub fn finish(&mut self) -> Result<Vec<PassTime>, AssignError> {
+        Ok(self.finish_frame()?.passes)
+    }
+
+    /// Ends the frame as [`finish`](Self::finish) does, and says when its passes began and ended too.
+    pub fn finish_frame(&mut self) -> Result<FrameTimes, AssignError> {
         self.flush();
         self.gpu.wait()?;
         let names = std::mem::take(&mut self.names);
         let times = match &mut self.kind {
             Kind::WallClock { times_ms, failed } => {
                 let times = std::mem::take(times_ms);
-                failed.take().map_or(Ok(times), Err)?
+                failed.take().map_or(Ok(Times::Alone(times)), Err)?
             }
             Kind::Timestamps { queries, resolved, staging } => {
-                read_timestamps(&self.gpu, queries, resolved, staging, &names)?
+                Times::Together(read_timestamps(&self.gpu, queries, resolved, staging, &names)?)
             }
         };
-        // Passes of one name are one pass in several parts.
-        let mut passes: Vec<PassTime> = Vec::new();
-        for (name, time) in names.into_iter().zip(times) {
-            match passes.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, sum)) => *sum += time,
-                None => passes.push((name, time)),
-            }
-        }
-        Ok(passes)
+        Ok(FrameTimes::new(names, times))
     }
 
     /// Submits what has been recorded.
@@ -188,7 +243,7 @@ impl Kind {
     }
 }
 
-/// Reads the two timestamps of each pass, ms between them.
+/// Reads the two timestamps of each pass, ms after the first of all.
 ///
 /// Queries are resolved and copied in submissions of their own: resolved and copied by one
 /// encoder they can read 0 (wgpu issue 6406).
@@ -198,7 +253,7 @@ fn read_timestamps(
     resolved: &wgpu::Buffer,
     staging: &wgpu::Buffer,
     names: &[String],
-) -> Result<Vec<f64>, AssignError> {
+) -> Result<Vec<[f64; 2]>, AssignError> {
     if names.len() as u32 > MAX_PASSES {
         return Err(AssignError::Device(format!(
             "{} passes in a frame: at most {MAX_PASSES} can be timed",
@@ -222,18 +277,65 @@ fn read_timestamps(
     let bytes = gpu.map(staging)?;
     staging.unmap();
     let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
-    names
-        .iter()
-        .zip(bytes.chunks_exact(16))
-        .map(|(name, pair)| {
-            let [start, end] =
-                [0, 8].map(|at| u64::from_le_bytes(std::array::from_fn(|i| pair[at + i])));
-            if start == 0 || end < start {
-                return Err(AssignError::Device(format!(
-                    "pass {name}: timestamps {start} and {end} are no span of time"
-                )));
-            }
-            Ok((end - start) as f64 * ms_per_tick)
-        })
-        .collect()
+    let mut ticks = Vec::new();
+    for (name, pair) in names.iter().zip(bytes.chunks_exact(16)) {
+        let [start, end] =
+            [0, 8].map(|at| u64::from_le_bytes(std::array::from_fn(|i| pair[at + i])));
+        if start == 0 || end < start {
+            return Err(AssignError::Device(format!(
+                "pass {name}: timestamps {start} and {end} are no span of time"
+            )));
+        }
+        ticks.push([start, end]);
+    }
+    let first = ticks.iter().map(|[start, _]| *start).min().unwrap_or(0);
+    Ok(ticks.into_iter().map(|pair| pair.map(|tick| (tick - first) as f64 * ms_per_tick)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn together(passes: &[(&str, f64, f64)]) -> FrameTimes {
+        let names = passes.iter().map(|(name, ..)| (*name).to_owned()).collect();
+        let times = passes.iter().map(|(_, begin, end)| [*begin, *end]).collect();
+        FrameTimes::new(names, Times::Together(times))
+    }
+
+    #[test]
+    fn a_span_counts_gaps_between_its_passes_and_no_other() {
+        let frame = together(&[
+            ("depth", 0.0, 1.0),
+            ("bounds", 1.5, 2.0),
+            ("cull", 2.25, 3.0),
+            ("shade", 3.5, 5.0),
+        ]);
+        let is_billed = |name: &str| name != "depth";
+        // 2.75 ms of passes, and gaps of 0.25 and 0.5.
+        assert_eq!(frame.span_ms(is_billed), Some(3.5));
+        assert_eq!(frame.span_ms(|_| true), Some(5.0));
+        assert_eq!(frame.span_ms(|name| name == "clay"), Some(0.0));
+        let sums: Vec<f64> = frame.passes.iter().map(|(_, ms)| *ms).collect();
+        assert_eq!(sums, [1.0, 0.5, 0.75, 1.5]);
+    }
+
+    #[test]
+    fn a_pass_between_is_not_in_the_span_and_overlap_counts_once() {
+        let frame = together(&[
+            ("cull", 0.0, 1.0),
+            ("gbuffer", 1.5, 4.0),
+            ("cull", 5.0, 6.0),
+            ("shade", 5.5, 8.0),
+        ]);
+        assert_eq!(frame.span_ms(|name| name != "gbuffer"), Some(1.0 + 3.0));
+        assert_eq!(frame.passes[0], ("cull".to_owned(), 2.0));
+    }
+
+    #[test]
+    fn passes_that_were_submitted_alone_have_no_span() {
+        let names = ["cull", "shade"].map(str::to_owned).to_vec();
+        let frame = FrameTimes::new(names, Times::Alone(vec![1.0, 2.0]));
+        assert_eq!(frame.span_ms(|_| true), None);
+        assert_eq!(frame.passes.len(), 2);
+    }
 }

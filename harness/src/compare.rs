@@ -13,13 +13,13 @@ use scenes::Scene;
 use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
-    checks::{RASTER_SPHERE, check_modes, check_writable, checked, remove_stale, served},
+    checks::{check_modes, check_writable, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, StageArgs, TruthChoice},
+    cli::{CliError, CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
-    measure::{Contest, Plan, unbounded_image},
+    measure::{Contest, Plan, Timetable, unbounded_image},
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
@@ -177,7 +177,8 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
         warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(defaults[kind]),
-        along_path: args.path,
+        laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
+        checks: args.checks.unwrap_or(MAX_CHECKS),
         seed: args.stage.seed,
         cut: args.cut.into(),
         operations: args.operations,
@@ -218,16 +219,18 @@ impl Run<'_> {
         let lights = self.stage.lights.lights().to_vec();
         let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
         let modes = self.args.mode.modes();
-        let per_method = u64::from(self.plan.timed) + 1;
+        let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
         for &mode in modes {
             let mut served = choices.to_vec();
-            if mode == Mode::Forward {
-                served.retain(|choice| choice.family() != RASTER_SPHERE);
-                if served.len() < choices.len() {
-                    self.results.warnings.push(format!("{RASTER_SPHERE} has no forward mode"));
-                    bar.inc(per_method);
-                }
+            served.retain(|choice| has_mode(choice, mode));
+            for choice in choices.iter().filter(|choice| !has_mode(choice, mode)) {
+                let words = format!("{} has no mode {}", choice.family(), mode.name());
+                self.results.warnings.push(words);
+                bar.inc(per_method);
+            }
+            if served.is_empty() {
+                continue;
             }
             self.measure_mode(served, mode, bvh.as_ref(), &bar)?;
         }
@@ -286,7 +289,10 @@ impl Run<'_> {
             })
         };
         let tick = &mut || bar.inc(1);
-        contest.time(self.stage, &timed, reference_ix, tick, &mut compared)?;
+        let remember: Vec<usize> =
+            timed.iter().copied().filter(|&ix| choices[ix].is_reused()).collect();
+        let timetable = Timetable { timed: &timed, remember: &remember, reference: reference_ix };
+        contest.time(self.stage, timetable, tick, &mut compared)?;
         for ((&ix, seen), times) in timed.iter().zip(all_seen).zip(contest.finish()) {
             let record = record(
                 self.args,

@@ -1,6 +1,8 @@
 //! All methods of a comparison in one mode: their lists and images, then their times, frame by
 //! frame in turns.
 
+mod laps;
+
 use std::time::{Duration, Instant};
 
 use assign::{
@@ -18,7 +20,7 @@ use crate::{
     painter::Painter,
     pass_samples::PassSamples,
     registry::Method,
-    results::Passes,
+    results::{Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
 };
@@ -32,6 +34,9 @@ pub struct ListsFigures {
     pub counters: Counters,
     /// Bytes of the lists on the GPU.
     pub bytes: u64,
+    /// Bytes of everything that the strategy needs on the GPU, images that are drawn only for it
+    /// included.
+    pub memory_bytes: u64,
     /// The truth on the CPU, where asked for.
     pub truth: Option<ListsTruth>,
     /// How long the lists are that samples read; empty where the truth was not asked for.
@@ -52,8 +57,22 @@ pub struct Checked {
 pub struct Timed {
     /// Times per pass.
     pub passes: Passes,
+    /// From first to last pass, frame by frame, where the clock can tell.
+    pub spans: Option<Spans>,
     /// Frames on the clock that followed one in which a group overflowed.
     pub overflowed_frames: u32,
+}
+
+/// Which methods of a [`Contest`] are timed, by index.
+#[derive(Clone, Copy, Debug)]
+pub struct Timetable<'a> {
+    /// Those on the clock.
+    pub timed: &'a [usize],
+    /// Of those, the ones whose lists depend on the frames before: along a path they must see every
+    /// pose before the one that is compared.
+    pub remember: &'a [usize],
+    /// The one whose image is that of no culling.
+    pub reference: usize,
 }
 
 /// Is handed the images of a frame, method by method, and that of no culling.
@@ -66,10 +85,12 @@ pub struct Plan {
     pub warmup: u32,
     /// For how long to warm up at least: clocks fall while a device waits for the CPU.
     pub warm_up: Duration,
-    /// Frames of each method on the clock.
+    /// Frames of each method on the clock; along a path, poses of one lap.
     pub timed: u32,
-    /// Whether the camera goes along its path, one pose a frame.
-    pub along_path: bool,
+    /// How often the camera goes along its path, one pose per frame; 0: it stands still.
+    pub laps: u32,
+    /// Poses along the path at which images are compared, 8 at most.
+    pub checks: u32,
     /// Decides the order of methods in each round.
     pub seed: u64,
     /// How fall-off ends.
@@ -80,13 +101,6 @@ pub struct Plan {
 
 /// Frames in which the pool of a method may grow to what its lists ask for.
 const MAX_SETTLING: u32 = 8;
-
-/// Frames along the path of which the images are compared.
-const PATH_CHECKS: u32 = 8;
-
-/// Poses along the path at which pools grow before the clock starts: on a GPU, and on a software
-/// adapter.
-const SETTLING_POSES: [u32; 2] = [24, 6];
 
 /// One method on its way.
 struct Contender<'a> {
@@ -120,7 +134,7 @@ impl<'a> Contest<'a> {
         for method in methods {
             contenders.push(Contender {
                 painter: Painter::new(stage, method, mode, plan.cut)?,
-                samples: PassSamples::default(),
+                samples: PassSamples::new(mode),
                 overflowed_frames: 0,
             });
         }
@@ -162,19 +176,20 @@ impl<'a> Contest<'a> {
     }
 
     /// Takes the times of some methods: round after round, each in turn. `tick` is called after each
-    /// frame. Along the path, `seen` gets the images of some frames: those of the timed methods, in
-    /// their order, and that of `reference`.
+    /// frame. Along the path, `seen` gets the images at some poses: those of the timed methods, in
+    /// their order, and that of the reference.
     pub fn time(
         &mut self,
         stage: &mut Stage,
-        timed: &[usize],
-        reference: usize,
+        timetable: Timetable<'_>,
         tick: &mut dyn FnMut(),
         seen: &mut Compare<'_>,
     ) -> Result<(), HarnessError> {
+        let Timetable { timed, .. } = timetable;
         let mut orders = Orders::new(timed.len(), self.plan.seed);
-        if self.plan.along_path {
-            return self.time_along_path(stage, timed, reference, &mut orders, tick, seen);
+        if self.plan.laps > 0 {
+            self.compare_along_path(stage, timetable, seen)?;
+            return self.time_along_path(stage, timed, &mut orders, tick);
         }
         self.warm_up(stage, timed)?;
         let count = self.plan.timed;
@@ -190,52 +205,6 @@ impl<'a> Contest<'a> {
                     self.frame(stage, method)?;
                     tick();
                 }
-            }
-        }
-        Ok(())
-    }
-
-    fn time_along_path(
-        &mut self,
-        stage: &mut Stage,
-        timed: &[usize],
-        reference: usize,
-        orders: &mut Orders,
-        tick: &mut dyn FnMut(),
-        seen: &mut Compare<'_>,
-    ) -> Result<(), HarnessError> {
-        let count = self.plan.timed;
-        let poses = SETTLING_POSES[usize::from(self.gpu.is_software())].min(count);
-        for pose in 0..poses {
-            stage.go_to(pose * count / poses, count)?;
-            for &method in timed {
-                for _ in 0..2 {
-                    self.draw(stage, method)?;
-                }
-            }
-        }
-        stage.go_to(0, count)?;
-        self.warm_up(stage, timed)?;
-        // Lists that are used for several frames begin with the path, on every run alike.
-        for contender in &mut self.contenders {
-            contender.painter.expire();
-        }
-        let step = check_step(count);
-        for frame in 0..count {
-            stage.go_to(frame, count)?;
-            let is_checked = frame % step == 0 && frame / step < PATH_CHECKS;
-            let mut images: Vec<Option<HdrImage>> = vec![None; timed.len()];
-            for place in orders.next_round() {
-                self.frame(stage, timed[place])?;
-                if is_checked {
-                    images[place] = Some(read(&self.gpu, stage)?);
-                }
-                tick();
-            }
-            if is_checked {
-                self.draw(stage, reference)?;
-                let images: Vec<HdrImage> = images.into_iter().flatten().collect();
-                seen(&images, &read(&self.gpu, stage)?)?;
             }
         }
         Ok(())
@@ -263,8 +232,8 @@ impl<'a> Contest<'a> {
     fn frame(&mut self, stage: &Stage, method: usize) -> Result<(), HarnessError> {
         let contender = &mut self.contenders[method];
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
-        let times = self.clock.finish()?;
-        contender.samples.collect(times);
+        let times = self.clock.finish_frame()?;
+        contender.samples.collect_frame(times);
         contender.overflowed_frames += u32::from(!settled);
         Ok(())
     }
@@ -273,18 +242,12 @@ impl<'a> Contest<'a> {
     pub fn finish(self) -> Vec<Timed> {
         self.contenders
             .into_iter()
-            .map(|contender| Timed {
-                overflowed_frames: contender.overflowed_frames,
-                passes: contender.samples.finish(),
+            .map(|Contender { samples, overflowed_frames, .. }| {
+                (samples.finish_frames(), overflowed_frames)
             })
+            .map(|((passes, spans), overflowed_frames)| Timed { overflowed_frames, passes, spans })
             .collect()
     }
-}
-
-/// Frames between two of which the images are compared: odd, so that lists used for 2, 4 or 8
-/// frames are seen at every age.
-fn check_step(frames: u32) -> u32 {
-    (frames / PATH_CHECKS).saturating_sub(1).max(1) | 1
 }
 
 /// The radiance that a frame left in the targets.
@@ -334,7 +297,7 @@ fn count(
     let snapshot = strategy.lists().snapshot(gpu)?;
     let mut lengths = ListLengths::default();
     let Stage { renderer, view, lights, .. } = stage;
-    if mode == Mode::Forward && (truth.is_some() || seen.is_some()) {
+    if mode.is_forward() && (truth.is_some() || seen.is_some()) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut passes = EncoderPasses { encoder: &mut encoder };
         record_for_probe(renderer, view, strategy, &mut passes);
@@ -360,25 +323,10 @@ fn count(
         groups: u64::from(strategy.lists().group_count()),
         counters: snapshot.counters,
         bytes: strategy.lists().bytes(),
+        memory_bytes: strategy.memory_bytes()
+            + renderer.targets().bytes_for(mode, strategy.needs()),
         truth,
         lengths,
         operations,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reused_lists_are_seen_at_every_age() {
-        for frames in [60, 120, 240, 1_200] {
-            let step = check_step(frames);
-            assert!(step % 2 == 1 && step * (PATH_CHECKS - 1) < frames, "{frames}: {step}");
-            let ages: std::collections::BTreeSet<u32> =
-                (0..PATH_CHECKS).map(|check| check * step % 8).collect();
-            assert_eq!(ages.len(), 8, "{frames}");
-        }
-        assert_eq!(check_step(1), 1);
-    }
 }

@@ -85,7 +85,10 @@ impl<'a> Painter<'a> {
             }
             Self::RasterSphere(spheres) => {
                 renderer.record_depth(view, passes);
-                renderer.record_gbuffer(view, passes);
+                match mode {
+                    Mode::DeferredIds => renderer.record_gbuffer_with_ids(view, passes),
+                    _ => renderer.record_gbuffer(view, passes),
+                }
                 spheres.record(renderer, view, lights, passes)?;
                 Ok(true)
             }

@@ -113,10 +113,11 @@ pub fn record(
         own_lights: stage.own_lights as u64,
         width: stage.view.viewport.width,
         height: stage.view.viewport.height,
-        frames: plan.timed,
+        frames: plan.timed * plan.laps.max(1),
         warmup_frames: plan.warmup,
-        rounds: if args.path { plan.timed } else { rounds(plan.timed) },
-        along_path: args.path,
+        rounds: if plan.laps > 0 { plan.laps } else { rounds(plan.timed) },
+        along_path: plan.laps > 0,
+        poses: (plan.laps > 0).then_some(plan.timed),
         radii: Some(scenes::Radii::from(args.stage.radii).name().to_owned()),
         light_places: Some(places(args.stage.light_box).to_owned()),
         threshold: args.stage.threshold,
@@ -133,6 +134,9 @@ pub fn record(
         assign_ms: 0.0,
         shade_ms: 0.0,
         frame_ms: 0.0,
+        spans: timed.spans,
+        span_ms: None,
+        frame_span_ms: None,
         groups: lists.groups,
         occupied_groups: u64::from(lists.counters.occupied_groups),
         list_entries: match lists.groups {
@@ -149,13 +153,14 @@ pub fn record(
         max_rel_diff: known(seen.max_rel),
         differing_channels: seen.compared.then_some(seen.differing_channels),
         lists_bytes: lists.bytes,
+        memory_bytes: has_lists.then_some(lists.memory_bytes),
         histogram: lists.lengths.histogram,
         light_order: Some(stage.lights.order().to_string()),
         light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
         tolerance: choice.tolerance(),
         overflowed_groups: u64::from(lists.counters.overflowed_groups),
         images,
-        note: note(gpu, mode, timed.overflowed_frames),
+        note: note(timed.overflowed_frames),
     };
     record.set_times();
     record
@@ -170,16 +175,10 @@ fn places(light_box: LightBox) -> &'static str {
 }
 
 /// What a reader of the record has to know.
-fn note(gpu: &Gpu, mode: Mode, overflowed_frames: u32) -> Option<String> {
-    let mut notes = Vec::new();
-    let mut words = gpu.info.name.split_whitespace();
-    if mode == Mode::Forward && words.any(|word| ["H100", "H200"].contains(&word)) {
-        notes.push("this data-centre GPU runs fragment shaders on a few of its processors: compare forward figures with no other chip's".to_owned());
-    }
-    if overflowed_frames > 0 {
-        notes.push(format!(
+fn note(overflowed_frames: u32) -> Option<String> {
+    (overflowed_frames > 0).then(|| {
+        format!(
             "lists overflowed in {overflowed_frames} of the timed frames, which shaded all lights where they did"
-        ));
-    }
-    (!notes.is_empty()).then(|| notes.join("; "))
+        )
+    })
 }

@@ -101,6 +101,9 @@ pub struct StrategyEntry {
     pub axes: &'static [Axis],
     /// What it is, one line.
     pub summary: &'static str,
+    /// Whether it reads the depth of surfaces before it assigns lights, so that a renderer without a
+    /// depth pre-pass must draw one for it.
+    pub reads_depth: bool,
     /// Makes it.
     pub(crate) make: fn(&Gpu, &Spec) -> Result<Method, AssignError>,
 }
@@ -128,6 +131,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "",
         axes: &[],
         summary: "no culling: every light for every sample; the reference of all images",
+        reads_depth: false,
         make: |gpu, _| {
             Ok(Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false })
         },
@@ -138,6 +142,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "",
         axes: &[],
         summary: "control: surfaces without lights or textures, what drawing alone costs",
+        reads_depth: false,
         make: |_, _| Ok(Method::Clay),
     },
     StrategyEntry {
@@ -146,6 +151,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "",
         axes: &[],
         summary: "no culling with an early exit: every light for every sample, left out where it adds nothing",
+        reads_depth: false,
         make: |gpu, _| Ok(Method::lists(Everything::new(gpu)?)),
     },
     StrategyEntry {
@@ -154,6 +160,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "",
         axes: &[],
         summary: "no lists: light volumes rasterised and added up; deferred only",
+        reads_depth: false,
         make: |_, _| Ok(Method::RasterSphere),
     },
     StrategyEntry {
@@ -162,6 +169,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "28x28",
         axes: FRUSTA,
         summary: "tiles, implicit bounds: every tile has a list from near to far",
+        reads_depth: false,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
             Ok(Method::lists(Tiled::new(gpu, size, Implicit, spec.settings)?))
@@ -173,6 +181,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "28x28",
         axes: FRUSTA,
         summary: "tiles, explicit bounds: the depth range of each tile's samples",
+        reads_depth: true,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
             Ok(Method::lists(Tiled::new(gpu, size, Explicit, spec.settings)?))
@@ -184,6 +193,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "128x128x64",
         axes: FRUSTA,
         summary: "dense clusters, implicit bounds: every tile and depth slice has a list",
+        reads_depth: false,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
             Ok(Method::lists(Clustered::new(gpu, size, Implicit, Dense, spec.settings)?))
@@ -195,6 +205,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "64x64x40",
         axes: BOXES,
         summary: "dense clusters, explicit bounds: the box around each cluster's samples",
+        reads_depth: true,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
             Ok(Method::lists(Clustered::new(gpu, size, Explicit, Dense, spec.settings)?))
@@ -206,6 +217,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "48x48x40",
         axes: FRUSTA,
         summary: "sparse clusters, implicit bounds: only clusters that hold samples have a list",
+        reads_depth: true,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
             Ok(Method::lists(Clustered::new(gpu, size, Implicit, Sparse, spec.settings)?))
@@ -217,6 +229,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "48x48x40",
         axes: &[Axis::Normals, Axis::Specular, Axis::Source, Axis::Cap, Axis::Reuse],
         summary: "sparse clusters, explicit bounds: both at once",
+        reads_depth: true,
         make: |gpu, spec| {
             let size = spec.parameters.parse()?;
             let Spec { normals, specular_threshold, settings, .. } = *spec;
@@ -237,6 +250,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "20x20x20",
         axes: &[Axis::Box, Axis::Source, Axis::Cap, Axis::Reuse],
         summary: "a grid of cells in world space, over the lights' box or the surfaces'",
+        reads_depth: false,
         make: |gpu, spec| {
             let counts = spec.parameters.parse()?;
             Ok(Method::lists(Grid::new(gpu, counts, spec.grid_box, spec.settings)?))
@@ -248,6 +262,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "",
         axes: BOXES,
         summary: "a list for each model, or, with a size, for each part of it",
+        reads_depth: false,
         make: |gpu, spec| {
             Ok(Method::lists(PerModel::new(gpu, part_size(&spec.parameters)?, spec.settings)?))
         },
@@ -258,9 +273,15 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         default: "48x48x40",
         axes: &[Axis::Cap, Axis::Reuse],
         summary: "the grid of hybrid lighting: lights add themselves to the cells that hold samples",
+        reads_depth: true,
         make: |gpu, spec| Ok(Method::lists(HybridGrid::new(gpu, spec.parameters.parse()?)?)),
     },
 ];
+
+/// Whether the methods of a family read the depth of surfaces; `false` of an unknown one.
+pub fn family_reads_depth(family: &str) -> bool {
+    STRATEGIES.iter().any(|entry| entry.family == family && entry.reads_depth)
+}
 
 fn part_size(text: &str) -> Result<Option<f32>, AssignError> {
     if text.is_empty() {
@@ -271,4 +292,24 @@ fn part_size(text: &str) -> Result<Option<f32>, AssignError> {
         value: text.into(),
         accepted: "a number of metres, such as 2".into(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::choice::Choice;
+
+    #[test]
+    fn rows_say_what_their_strategies_read() {
+        let gpu = Gpu::noop().expect("a device");
+        for entry in STRATEGIES {
+            let choice = Choice::parse(&entry.default_id()).expect("a choice");
+            let reads_depth = match choice.make(&gpu).expect("a method") {
+                Method::Lists { strategy, .. } => strategy.needs().depth,
+                Method::RasterSphere | Method::Clay => false,
+            };
+            assert_eq!(entry.reads_depth, reads_depth, "{}", entry.family);
+        }
+        assert!(STRATEGIES.iter().any(|entry| entry.reads_depth));
+    }
 }

@@ -13,10 +13,12 @@
 #![doc = include_str!("results/example.json")]
 //! ```
 
+mod bill;
 mod file;
 mod indirect;
 mod machine;
 mod passes;
+mod record;
 mod stats;
 mod truth_image;
 
@@ -25,14 +27,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 pub use shading::Mode;
 
+pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
 pub use file::{ResultsError, write_atomically};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use machine::{DeviceType, Machine};
-pub use passes::{PassKind, PassTimes, Passes};
+pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
 
-use crate::schedule::frames_of_round;
 use passes::nan_from_null;
 
 /// The version of `results.json` that this program writes and reads.
@@ -215,6 +217,17 @@ pub struct Record {
     /// Median over frames of all passes, summed per frame, ms.
     #[serde(deserialize_with = "nan_from_null")]
     pub frame_ms: f64,
+    /// What passes took together, from the first to the last, frame by frame: the second total.
+    /// `null` in older results, and where each pass was submitted alone.
+    #[serde(default)]
+    pub spans: Option<Spans>,
+    /// Median over frames (mean along a path) of the time from the first pass that assigns lights to
+    /// the end of the last that lights pixels, gaps between them included, ms.
+    #[serde(default)]
+    pub span_ms: Option<f64>,
+    /// The same from the first pass of the frame to its last, ms.
+    #[serde(default)]
+    pub frame_span_ms: Option<f64>,
     /// Groups that the strategy divides the view into.
     pub groups: u64,
     /// Groups with at least one light in their list.
@@ -250,17 +263,26 @@ pub struct Record {
     pub differing_channels: Option<u64>,
     /// GPU memory of groups and lists, bytes.
     pub lists_bytes: u64,
+    /// GPU memory of everything that assignment needs, bytes: lists, marks, bounds, pools, the
+    /// hierarchy over the lights, and images that the renderer draws only for this method. `null` in
+    /// older results, and for methods without lists.
+    #[serde(default)]
+    pub memory_bytes: Option<u64>,
     /// Groups that some sample reads, by the length of their list: none, 1, 2 to 3, 4 to 7 and so
     /// on. Empty where lists were not checked.
     #[serde(default)]
     pub histogram: Vec<u64>,
-    /// Rounds in which the frames were drawn, each with all methods in turn; see
-    /// [`round_medians`](Self::round_medians). 0 where unknown.
+    /// Rounds in which the frames were drawn, each with all methods in turn; along a path its laps.
+    /// See [`round_times_ms`](Self::round_times_ms). 0 where unknown.
     #[serde(default)]
     pub rounds: u32,
     /// Whether each frame was drawn from another pose along the scene's path; times are then means.
     #[serde(default)]
     pub along_path: bool,
+    /// Poses of one lap along the path. Samples are stored lap after lap, so there are
+    /// `frames / poses` laps. `null` from a still camera, and in older results, which have one lap.
+    #[serde(default)]
+    pub poses: Option<u32>,
     /// Distribution of the radii of scattered lights: `gamma`, `equal` or `log-normal`.
     #[serde(default)]
     pub radii: Option<String>,
@@ -357,83 +379,5 @@ impl Results {
             rejected_lights: Vec::new(),
             warnings: Vec::new(),
         }
-    }
-}
-
-impl Record {
-    /// Assigning and lighting together, ms: what strategies are compared by.
-    pub fn assign_and_shade_ms(&self) -> f64 {
-        self.assign_ms + self.shade_ms
-    }
-
-    /// Sets the three times from the passes: medians, and means along a path.
-    pub fn set_times(&mut self) {
-        let along_path = self.along_path;
-        let passes = &self.passes;
-        let of = |kind: Option<PassKind>| match along_path {
-            true if passes.has(kind) => mean(&passes.per_frame_ms(kind)),
-            true => 0.0,
-            false => passes.median_ms(kind),
-        };
-        [self.assign_ms, self.shade_ms, self.frame_ms] =
-            [of(Some(PassKind::Assign)), of(Some(PassKind::Shade)), of(None)];
-    }
-
-    /// Assigning and lighting together, frame by frame, ms.
-    pub fn frames_ms(&self) -> Vec<f64> {
-        let [assign, shade] =
-            [PassKind::Assign, PassKind::Shade].map(|kind| self.passes.per_frame_ms(Some(kind)));
-        let at = |list: &[f64], frame: usize| list.get(frame).copied().unwrap_or(0.0);
-        (0..assign.len().max(shade.len())).map(|f| at(&assign, f) + at(&shade, f)).collect()
-    }
-
-    /// The median of each round's frames, assigning and lighting together, ms: what intervals and
-    /// comparisons of methods are computed from, for frames of one round are not independent.
-    pub fn round_medians(&self) -> Vec<f64> {
-        let frames = self.frames_ms();
-        let rounds = self.rounds.clamp(1, u32::try_from(frames.len()).unwrap_or(1).max(1));
-        (0..rounds)
-            .map(|round| {
-                let range = frames_of_round(round, rounds, frames.len() as u32);
-                median(frames.get(range.start as usize..range.end as usize).unwrap_or(&[]))
-            })
-            .collect()
-    }
-
-    /// Where the median of [`assign_and_shade_ms`](Self::assign_and_shade_ms) lies, from its rounds.
-    pub fn interval_ms(&self) -> Option<Interval> {
-        if self.along_path { None } else { median_interval(&self.round_medians()) }
-    }
-
-    /// Whether this is the strategy without culling.
-    pub fn is_baseline(&self) -> bool {
-        self.strategy == BASELINE
-    }
-
-    /// Whether this is the control without lights.
-    pub fn is_control(&self) -> bool {
-        self.strategy == CONTROL
-    }
-
-    /// Whether it leaves out lights before a sample is lit: neither no culling, with or without an
-    /// early exit, nor the control.
-    pub fn culls(&self) -> bool {
-        !self.is_baseline() && !self.is_control() && self.strategy != EARLY_EXIT
-    }
-
-    /// Whether it may be called exact: no knob loses light, and nothing is known to be lost.
-    pub fn is_exact(&self) -> bool {
-        !self.is_lossy && self.is_lossless()
-    }
-
-    /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs by
-    /// more than the method states of itself.
-    pub fn is_lossless(&self) -> bool {
-        let same =
-            self.differing_channels.unwrap_or(0) == 0 && self.max_abs_diff.unwrap_or(0.0) == 0.0;
-        let tolerated = self
-            .tolerance
-            .is_some_and(|most| self.max_rel_diff.is_some_and(|difference| difference <= most));
-        self.missed_pairs.unwrap_or(0) == 0 && (same || tolerated)
     }
 }

@@ -11,6 +11,7 @@ pub mod cdi;
 mod comparison;
 mod culling;
 mod endless;
+mod frames;
 mod manifest;
 mod scene;
 mod views;

@@ -13,8 +13,9 @@ fn lightbench(arguments: &[&str]) -> Output {
 
 /// Runs `compare` at a small size into `out`; returns what it wrote.
 fn compare(out: &Path, arguments: &[&str]) -> Results {
-    let small = ["compare", "--size", "160x90", "--frames", "1", "--warmup", "0", "--out"];
-    let all = [&small[..], &[out.to_str().expect("UTF-8")], arguments].concat();
+    let one: &[&str] = if arguments.contains(&"--frames") { &[] } else { &["--frames", "1"] };
+    let small = ["compare", "--size", "160x90", "--warmup", "0", "--out"];
+    let all = [&small[..], &[out.to_str().expect("UTF-8")], one, arguments].concat();
     let output = lightbench(&all);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     Results::read(&out.join("results.json")).expect("results.json")
@@ -88,6 +89,26 @@ fn all_methods_are_lossless_or_within_what_they_state() {
         assert_eq!(record.tolerance.is_some(), is_raster, "{what}");
         assert_eq!(record.missed_pairs, (!is_raster).then_some(0), "{what}");
     }
+}
+
+/// Samples are stored lap after lap, every lap takes the same poses, and lists that are kept over
+/// frames are made anew where a lap begins.
+#[test]
+fn laps_repeat_the_path() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["--strategies", "None,G/4x4x4/reuse4", "--lights", "20", "--truth", "none"];
+    let path = ["--path", "--frames", "3", "--laps", "2", "--pictures", "none"];
+    let results = compare(folder.path(), &[&arguments[..], &path].concat());
+    for record in &results.records {
+        assert_eq!((record.frames, record.poses, record.laps()), (6, Some(3), 2));
+        assert!(record.along_path && record.rounds == 2);
+        assert_eq!(record.passes.get("shade").expect("shade").samples.len(), 6);
+        assert_eq!((record.round_times_ms().len(), record.pose_times_ms().len()), (2, 3));
+        assert_eq!(record.differing_channels, Some(0), "{}", record.strategy);
+    }
+    let cull = &results.records[1].passes.get("cull").expect("cull").samples;
+    let made: Vec<bool> = cull.iter().map(|ms| *ms > 0.0).collect();
+    assert_eq!(made, [true, false, false, true, false, false]);
 }
 
 #[test]
@@ -174,6 +195,12 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["--lights", "99999999", "--out", &out], vec!["--lights", "16,777,216"]),
         (vec!["--size", "0x10", "--out", &out], vec!["--size", "0x10"]),
         (vec!["--frames", "0", "--out", &out], vec!["--frames", "0"]),
+        (vec!["--checks", "3", "--out", &out], vec!["--checks is 3", "--path"]),
+        (vec!["--laps", "3", "--out", &out], vec!["--laps is 3", "--path"]),
+        (
+            vec!["--path", "--laps", "101", "--frames", "1000", "--out", &out],
+            vec!["--laps is 101", "at most 100"],
+        ),
         (
             vec!["--mode", "forward", "--strategies", "RasterSphere", "--out", &out],
             vec!["--mode", "forward", "RasterSphere"],

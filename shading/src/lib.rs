@@ -4,15 +4,15 @@
 //!
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
-//! | `depth` | both | triangles | depth |
-//! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive |
+//! | `depth` | all but forward without a pre-pass, and there where a strategy reads surfaces | triangles | depth |
+//! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
-//! | the strategy's own | both | depth, lights | lists |
+//! | the strategy's own | all | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
 //! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |
 //!
-//! Both modes call the one lighting function in `lighting.wesl`; a sample is found from pixel and
-//! depth by `sample_at` in both, so a strategy's groups are the same. Only what a scene contains
+//! All modes call the one lighting function in `lighting.wesl`; a sample is found from pixel and
+//! depth by `sample_at` in all of them, so a strategy's groups are the same. Only what a scene contains
 //! is compiled and bound: each texture, alpha masks, emission, spots, area lights.
 //!
 //! [`truth`](LightBvh) checks a strategy's lists on the CPU in f64; [`HdrImage`] compares images

@@ -77,11 +77,20 @@ impl LightingOptions {
 #[derive(Debug)]
 enum Kind {
     Deferred(Deferred),
-    Forward(RasterPipelines, wgpu::BindGroup),
+    Forward(Forward),
+}
+
+#[derive(Debug)]
+struct Forward {
+    pipelines: RasterPipelines,
+    scene: wgpu::BindGroup,
+    /// Whether depth is drawn before.
+    has_depth: bool,
 }
 
 impl Lighting {
-    /// Splices the strategy's look-up into the pipeline's shader.
+    /// Splices the strategy's look-up into the pipeline's shader. It is made for the renderer's mapping
+    /// of depth, and must be made anew where that changes.
     pub fn new(
         renderer: &Renderer,
         strategy: &dyn Assignment,
@@ -105,21 +114,25 @@ impl Lighting {
             .into());
         }
         let lists = Lists { lookup: strategy.lookup(), options };
-        let model_ids = strategy.needs().models;
+        let needs = strategy.needs();
         let gpu = &renderer.gpu;
         let inputs = LightingInputs::new(gpu, options)?;
         let kind = match mode {
-            Mode::Deferred => Kind::Deferred(Deferred::new(renderer, lists, model_ids, inputs)?),
-            Mode::Forward => Kind::Forward(
-                RasterPipelines::new(
+            Mode::Deferred | Mode::DeferredIds => {
+                Kind::Deferred(Deferred::new(renderer, lists, needs.models, inputs)?)
+            }
+            Mode::Forward | Mode::ForwardNoPrepass => {
+                let has_depth = mode.has_prepass(needs);
+                let pipelines = RasterPipelines::new(
                     gpu,
                     &renderer.frame,
                     &renderer.scene,
                     renderer.depth_mapping,
-                    RasterPass::Forward(lists),
-                )?,
-                renderer.scene.bind_group(gpu, &inputs),
-            ),
+                    RasterPass::Forward { lists, has_depth },
+                )?;
+                let scene = renderer.scene.bind_group(gpu, &inputs);
+                Kind::Forward(Forward { pipelines, scene, has_depth })
+            }
         };
         Ok(Self { kind, options })
     }
@@ -146,9 +159,9 @@ impl Lighting {
         lights.check(&renderer.gpu, self.options)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
-            Kind::Forward(pipelines, scene) => {
+            Kind::Forward(Forward { pipelines, scene, has_depth }) => {
                 let groups = (strategy.bind_group(), scene);
-                renderer.record_radiance("shade", view, pipelines, groups, passes);
+                renderer.record_radiance(("shade", *has_depth), view, pipelines, groups, passes);
             }
         }
         Ok(())

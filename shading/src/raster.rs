@@ -22,13 +22,29 @@ pub(crate) enum RasterPass<'a> {
     /// Depth only.
     Depth,
     /// The G-buffer, where the depth equals.
-    GBuffer,
+    GBuffer {
+        /// Whether it holds the index of the model.
+        ids: bool,
+    },
     /// Index of the model, where the depth equals.
     ModelIds,
-    /// Lit radiance, where the depth equals.
-    Forward(Lists<'a>),
+    /// Lit radiance.
+    Forward {
+        /// What lights it.
+        lists: Lists<'a>,
+        /// Whether depth was drawn before, so that only fragments of equal depth are lit; else the
+        /// pass tests and writes it.
+        has_depth: bool,
+    },
     /// The control, where the depth equals.
     Clay,
+}
+
+impl RasterPass<'_> {
+    /// Whether it tests depth for the nearest and writes it; else it draws where the depth equals.
+    fn writes_depth(self) -> bool {
+        matches!(self, Self::Depth | Self::Forward { has_depth: false, .. })
+    }
 }
 
 /// The strategy's part of a lighting shader.
@@ -72,8 +88,8 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
     let material = key.material;
     let is = |wanted: &str| match pass {
         RasterPass::Depth => wanted == "depth",
-        RasterPass::GBuffer => wanted == "gbuffer",
-        RasterPass::Forward(_) => wanted == "forward",
+        RasterPass::GBuffer { .. } => wanted == "gbuffer",
+        RasterPass::Forward { .. } => wanted == "forward",
         RasterPass::Clay => wanted == "clay",
         RasterPass::ModelIds => wanted == "write_model_ids",
     };
@@ -84,12 +100,14 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
         .flag("clay", is("clay"))
         .flag("write_model_ids", is("write_model_ids"))
         .flag("mask", is("depth") && material.mask)
+        .flag("forward_mask", pass.writes_depth() && is("forward") && material.mask)
+        .flag("gbuffer_ids", matches!(pass, RasterPass::GBuffer { ids: true }))
         .flag("emissive", emissive && shades)
         .flag("uv_transforms", material.uv_transforms);
     for (slot, flag) in TEXTURE_FLAGS.into_iter().enumerate() {
         shader = shader.flag(flag, material.textures[slot]);
     }
-    if let RasterPass::Forward(lists) = pass {
+    if let RasterPass::Forward { lists, .. } = pass {
         shader = lists
             .options
             .set_flags(shader)
@@ -113,7 +131,9 @@ fn pipeline(
     let module = unsafe { shader.create_uncounted(&gpu.device, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, scene.has_emissive());
     let (lists, reads_table) = match pass {
-        RasterPass::Forward(lists) => (Some(lists.lookup.layout), lists.options.reads_table()),
+        RasterPass::Forward { lists, .. } => {
+            (Some(lists.lookup.layout), lists.options.reads_table())
+        }
         _ => (None, false),
     };
     let scene_layout = scene.layout(reads_table);
@@ -123,13 +143,13 @@ fn pipeline(
         bind_group_layouts: &[Some(frame.layout()), lists, Some(scene_layout), textures],
         immediate_size: 0,
     });
-    let is_depth = matches!(pass, RasterPass::Depth);
+    let is_depth = pass.writes_depth();
     let nearer = match depth {
         DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
         DepthMapping::Reversed => wgpu::CompareFunction::GreaterEqual,
     };
     let targets: Vec<Option<wgpu::ColorTargetState>> =
-        formats.into_iter().map(|format| Some(format.into())).collect();
+        formats.into_iter().map(|format| format.map(Into::into)).collect();
     Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
@@ -168,20 +188,23 @@ fn entry_points(
     pass: RasterPass<'_>,
     key: DrawKey,
     emissive: bool,
-) -> (&'static str, Option<&'static str>, Vec<wgpu::TextureFormat>) {
+) -> (&'static str, Option<&'static str>, Vec<Option<wgpu::TextureFormat>>) {
     match pass {
         RasterPass::Depth if key.material.mask => ("vertex_surface", Some("fragment_mask"), vec![]),
         RasterPass::Depth => ("vertex_depth", None, vec![]),
-        RasterPass::GBuffer => {
-            let mut formats = vec![BASE_COLOR_FORMAT, NORMAL_FORMAT];
-            formats.extend(emissive.then_some(EMISSIVE_FORMAT));
+        RasterPass::GBuffer { ids } => {
+            let emissive = emissive.then_some(EMISSIVE_FORMAT);
+            let ids = ids.then_some(MODEL_FORMAT);
+            let formats = vec![Some(BASE_COLOR_FORMAT), Some(NORMAL_FORMAT), emissive, ids];
             ("vertex_surface", Some("fragment_gbuffer"), formats)
         }
-        RasterPass::Forward(_) => {
-            ("vertex_surface", Some("fragment_forward"), vec![RADIANCE_FORMAT])
+        RasterPass::Forward { .. } => {
+            ("vertex_surface", Some("fragment_forward"), vec![Some(RADIANCE_FORMAT)])
         }
-        RasterPass::ModelIds => ("vertex_surface", Some("fragment_model_ids"), vec![MODEL_FORMAT]),
-        RasterPass::Clay => ("vertex_surface", Some("fragment_clay"), vec![RADIANCE_FORMAT]),
+        RasterPass::ModelIds => {
+            ("vertex_surface", Some("fragment_model_ids"), vec![Some(MODEL_FORMAT)])
+        }
+        RasterPass::Clay => ("vertex_surface", Some("fragment_clay"), vec![Some(RADIANCE_FORMAT)]),
     }
 }
 

@@ -1,7 +1,7 @@
 //! One scene drawn into one set of targets: the passes that all strategies share.
 
 use assign::{
-    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
+    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Needs, Passes, View,
 };
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
@@ -20,19 +20,52 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
-    /// A G-buffer, then one compute thread a pixel.
+    /// A depth pre-pass and a G-buffer, then one compute thread per pixel. The models of pixels take a
+    /// pass of their own, which only strategies that need them draw.
     Deferred,
+    /// The same with the model of each pixel in the G-buffer, drawn for every strategy.
+    DeferredIds,
     /// A depth pre-pass, then lit fragments.
     Forward,
+    /// Lit fragments that test and write depth themselves, so that hidden surfaces are lit as well
+    /// where they are drawn first. Only strategies that read the surfaces draw a depth pre-pass.
+    ForwardNoPrepass,
 }
 
 impl Mode {
-    /// Its name in results: `deferred` or `forward`.
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::Deferred, Self::DeferredIds, Self::Forward, Self::ForwardNoPrepass];
+
+    /// Its name in results: `deferred`, `deferred-ids`, `forward` or `forward-no-prepass`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Deferred => "deferred",
+            Self::DeferredIds => "deferred-ids",
             Self::Forward => "forward",
+            Self::ForwardNoPrepass => "forward-no-prepass",
         }
+    }
+
+    /// Whether fragments are lit as they are drawn.
+    pub fn is_forward(self) -> bool {
+        matches!(self, Self::Forward | Self::ForwardNoPrepass)
+    }
+
+    /// Whether depth is drawn before lighting, for a strategy that reads this.
+    pub fn has_prepass(self, needs: Needs) -> bool {
+        self != Self::ForwardNoPrepass || needs.depth || needs.normals || needs.materials
+    }
+
+    /// Whether a G-buffer is drawn, for a strategy that reads this.
+    pub fn has_gbuffer(self, needs: Needs) -> bool {
+        !self.is_forward() || needs.normals || needs.materials
+    }
+
+    /// Whether the models of pixels are drawn in a pass of their own, for a strategy that reads this.
+    /// Fragments know their model.
+    pub fn has_model_pass(self, needs: Needs) -> bool {
+        self == Self::Deferred && needs.models
     }
 }
 
@@ -53,6 +86,7 @@ pub struct Renderer {
     depth: RasterPipelines,
     model_ids: RasterPipelines,
     gbuffer: RasterPipelines,
+    gbuffer_ids: RasterPipelines,
     clay: RasterPipelines,
 }
 
@@ -73,7 +107,8 @@ impl Renderer {
         let pipelines = |pass| RasterPipelines::new(gpu, &frame, &scene, view.depth, pass);
         Ok(Self {
             depth: pipelines(RasterPass::Depth)?,
-            gbuffer: pipelines(RasterPass::GBuffer)?,
+            gbuffer: pipelines(RasterPass::GBuffer { ids: false })?,
+            gbuffer_ids: pipelines(RasterPass::GBuffer { ids: true })?,
             model_ids: pipelines(RasterPass::ModelIds)?,
             models,
             surface_bounds,
@@ -112,6 +147,7 @@ impl Renderer {
             depth,
             model_ids: self.model_ids.clone(),
             gbuffer: self.gbuffer.clone(),
+            gbuffer_ids: self.gbuffer_ids.clone(),
             clay: self.clay.clone(),
         })
     }
@@ -174,16 +210,27 @@ impl Renderer {
 
     /// Records the pass `gbuffer`, after `depth`.
     pub fn record_gbuffer(&self, view: &View, passes: &mut dyn Passes) {
+        self.record_gbuffer_as(view, false, passes);
+    }
+
+    /// Records the pass `gbuffer`, after `depth`, with the model of each pixel in it.
+    pub fn record_gbuffer_with_ids(&self, view: &View, passes: &mut dyn Passes) {
+        self.record_gbuffer_as(view, true, passes);
+    }
+
+    fn record_gbuffer_as(&self, view: &View, ids: bool, passes: &mut dyn Passes) {
         let targets = &self.targets;
         let mut colors = vec![Some(cleared(&targets.base_color)), Some(cleared(&targets.normal))];
-        colors.extend(targets.emissive.as_ref().map(|view| Some(cleared(view))));
+        colors.push(targets.emissive.as_ref().map(cleared));
+        colors.push(ids.then(|| cleared(&targets.model_ids)));
+        let pipelines = if ids { &self.gbuffer_ids } else { &self.gbuffer };
         let descriptor = wgpu::RenderPassDescriptor {
             color_attachments: &colors,
             depth_stencil_attachment: Some(self.depth_attachment(None)),
             ..Default::default()
         };
         let scene = &self.scene_group;
-        self.record_raster("gbuffer", view, &descriptor, &self.gbuffer, (None, scene), passes);
+        self.record_raster("gbuffer", view, &descriptor, pipelines, (None, scene), passes);
     }
 
     /// Records the pass `model-ids`, after `depth`: the model of each pixel.
@@ -200,13 +247,14 @@ impl Renderer {
     /// Records the pass `clay`, after `depth`: the scene at the cost of no lights at all.
     pub fn record_clay(&self, view: &View, passes: &mut dyn Passes) {
         let groups = (None, &self.scene_group);
-        self.record_radiance("clay", view, &self.clay, groups, passes);
+        self.record_radiance(("clay", true), view, &self.clay, groups, passes);
     }
 
-    /// A pass over the triangles into the radiance image, with the bind groups of lists and scene.
+    /// A pass over the triangles into the radiance image, with the bind groups of lists and scene:
+    /// its name, and whether it finds depth drawn or draws it.
     pub(crate) fn record_radiance(
         &self,
-        name: &str,
+        (name, has_depth): (&str, bool),
         view: &View,
         pipelines: &RasterPipelines,
         groups: (Option<&wgpu::BindGroup>, &wgpu::BindGroup),
@@ -214,9 +262,10 @@ impl Renderer {
     ) {
         let mut color = cleared(&self.targets.radiance);
         color.ops.load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        let clear = (!has_depth).then(|| view.depth_clear());
         let descriptor = wgpu::RenderPassDescriptor {
             color_attachments: &[Some(color)],
-            depth_stencil_attachment: Some(self.depth_attachment(None)),
+            depth_stencil_attachment: Some(self.depth_attachment(clear)),
             ..Default::default()
         };
         self.record_raster(name, view, &descriptor, pipelines, groups, passes);
@@ -271,13 +320,14 @@ pub fn record_before_lighting(
     frame: &Frame<'_>,
     passes: &mut dyn Passes,
 ) {
-    renderer.record_depth(frame.view, passes);
     let needs = strategy.needs();
-    if mode == Mode::Deferred || needs.normals || needs.materials {
-        renderer.record_gbuffer(frame.view, passes);
+    if mode.has_prepass(needs) {
+        renderer.record_depth(frame.view, passes);
     }
-    // Fragments know their model; a pixel of the G-buffer does not.
-    if mode == Mode::Deferred && needs.models {
+    if mode.has_gbuffer(needs) {
+        renderer.record_gbuffer_as(frame.view, mode == Mode::DeferredIds, passes);
+    }
+    if mode.has_model_pass(needs) {
         renderer.record_model_ids(frame.view, passes);
     }
     strategy.record(frame, passes);

@@ -1,8 +1,8 @@
 //! The images of a frame: depth, G-buffer, radiance.
 
-use assign::{AssignError, Gpu, View};
+use assign::{AssignError, Gpu, Needs, View};
 
-use crate::ShadingError;
+use crate::{Mode, ShadingError};
 
 /// Depth format of all passes.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -58,6 +58,22 @@ impl Targets {
         }
         let what = format!("images of {width}x{height}");
         Ok(gpu.allocate(&what, pixels * 44, || Self::make(gpu, [width, height], emissive))?)
+    }
+
+    /// Bytes of the images that are drawn in a mode only for a strategy that needs this: the models of
+    /// pixels, and in forward shading the G-buffer.
+    pub fn bytes_for(&self, mode: Mode, needs: Needs) -> u64 {
+        let mut formats = Vec::new();
+        if mode.has_model_pass(needs) {
+            formats.push(MODEL_FORMAT);
+        }
+        if mode.is_forward() && mode.has_gbuffer(needs) {
+            formats.extend([BASE_COLOR_FORMAT, NORMAL_FORMAT]);
+            formats.extend(self.emissive.as_ref().map(|_| EMISSIVE_FORMAT));
+        }
+        let texel = |format: wgpu::TextureFormat| format.block_copy_size(None).unwrap_or(0);
+        let texels: u32 = formats.into_iter().map(texel).sum();
+        self.size.map(u64::from).iter().product::<u64>() * u64::from(texels)
     }
 
     fn make(gpu: &Gpu, size: [u32; 2], emissive: bool) -> Self {

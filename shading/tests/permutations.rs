@@ -133,7 +133,7 @@ fn shaded_slots(flags: &Flags) -> &'static [u32] {
 
 #[test]
 fn gbuffer() {
-    for flags in material_flags(Some("gbuffer"), &["emissive"]) {
+    for flags in material_flags(Some("gbuffer"), &["emissive", "gbuffer_ids"]) {
         check_geometry(&flags, None, Some("fragment_gbuffer"), shaded_slots(&flags));
     }
 }
@@ -148,7 +148,7 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        let sets = material_flags(Some("forward"), &["emissive", "spots"]);
+        let sets = material_flags(Some("forward"), &["emissive", "spots", "forward_mask"]);
         // Area lights read no texture: one material with all of them will do.
         let areas =
             with_areas(sets.iter().max_by_key(|set| set.len()).into_iter().cloned().collect());
@@ -240,7 +240,10 @@ fn flags_change_the_shader() {
     let forward = source(&["forward", "base_color_texture"]);
     let moved = source(&["forward", "base_color_texture", "uv_transforms"]);
     assert_ne!(moved.source, forward.source);
-    assert_ne!(source(&["forward", "emissive"]).source, source(&["forward"]).source);
+    for flag in ["emissive", "forward_mask"] {
+        assert_ne!(source(&["forward", flag]).source, source(&["forward"]).source, "{flag}");
+    }
+    assert_ne!(source(&["gbuffer", "gbuffer_ids"]).source, source(&["gbuffer"]).source);
     let shapes = (0, 3);
     let spots = source(&["forward", "base_color_texture", "spots"]);
     assert!(spots.bindings.contains(&shapes) && !forward.bindings.contains(&shapes));

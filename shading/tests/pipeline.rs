@@ -29,7 +29,7 @@ fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, 
     strategy.prepare(gpu, &frame).unwrap();
     record_before_lighting(&renderer, mode, &mut strategy, &frame, &mut passes);
     lighting.record(&renderer, view, &strategy, &mut passes).unwrap();
-    if mode == Mode::Forward {
+    if mode.is_forward() {
         record_for_probe(&renderer, view, &strategy, &mut passes);
     }
     gpu.queue.submit([encoder.finish()]);
@@ -62,6 +62,31 @@ fn deferred_and_forward_agree_up_to_the_g_buffers_precision() {
     let fewer = LightBuffer::new(&gpu, &common::lights(40)[2..]).unwrap();
     let (fewer, _) = draw(&gpu, &view, &fewer, Mode::Deferred);
     assert!(off(&fewer) > most, "{} off a mean of {}", off(&fewer), mean(&forward));
+}
+
+/// The showcase has holes cut by alpha masks, which forward lighting cuts itself without a pre-pass.
+#[test]
+fn a_pre_pass_and_ids_in_the_g_buffer_change_no_bit() {
+    let gpu = common::gpu();
+    let lights = LightBuffer::new(&gpu, &common::lights(40)).unwrap();
+    let mut standard = common::view([96, 64]);
+    standard.depth = assign::DepthMapping::Standard;
+    standard.far_m = Some(100.0);
+    let mask =
+        View::look_at(Vec3::new(-1.5, 1.0, 0.2), Vec3::new(-1.5, 1.0, -1.0), 1.0, 0.05, [64, 64]);
+    for (name, view) in
+        [("reversed", common::view([96, 64])), ("standard", standard), ("mask", mask)]
+    {
+        for pair in [[Mode::Forward, Mode::ForwardNoPrepass], [Mode::Deferred, Mode::DeferredIds]] {
+            let [(reference, samples), (image, _)] =
+                pair.map(|mode| draw(&gpu, &view, &lights, mode));
+            assert!(samples.positions.len() > 1_000, "{name}: {}", samples.positions.len());
+            let brightest = image.pixels.iter().flatten().fold(0.0_f32, |a, b| a.max(*b));
+            assert!(brightest > 0.01, "{name}, {pair:?}: the image is dark");
+            let difference = image.difference(&reference).unwrap();
+            assert_eq!(difference.differing_channels, 0, "{name}, {pair:?}: {difference:?}");
+        }
+    }
 }
 
 #[test]
@@ -173,7 +198,7 @@ fn every_pipeline_passes_validation_without_a_gpu() {
     let view = common::view([32, 32]);
     let renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
     let strategy = Everything::new(&gpu).unwrap();
-    for mode in [Mode::Deferred, Mode::Forward] {
+    for mode in Mode::ALL {
         for kinds in LightKinds::ALL {
             Lighting::new(&renderer, &strategy, mode, options(kinds)).unwrap();
         }

@@ -363,6 +363,10 @@ impl Assignment for Faulty {
     fn lists_mut(&mut self) -> &mut LightLists {
         self.inner.lists_mut()
     }
+
+    fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes()
+    }
 }
 
 fn plant_pipeline(gpu: &Gpu) -> Result<wgpu::ComputePipeline, AssignError> {

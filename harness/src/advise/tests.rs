@@ -12,7 +12,7 @@ fn record(strategy: &str, times_ms: &[f64], bytes: u64) -> Record {
     record.frames = times_ms.len() as u32;
     record.rounds = record.frames;
     record.along_path = false;
-    record.lists_bytes = bytes;
+    (record.lists_bytes, record.memory_bytes) = (bytes, Some(bytes));
     record.light_build_ms = Some(9.7);
     (record.missed_pairs, record.max_abs_diff, record.differing_channels) =
         (Some(0), Some(0.0), Some(0));

@@ -96,6 +96,8 @@ fn every_value_out_of_range_is_named_with_its_range() {
         ("--lights", &["-1", "16777217", "1.5", "99999999999999999999"], counts),
         ("--frames", &["0", "100001", "-3", "all"], counts),
         ("--warmup", &["-1", "100001", "x"], counts),
+        ("--checks", &["0", "9", "-1", "x"], "a whole number from 1 to 8"),
+        ("--laps", &["0", "1001", "-2", "x"], "a whole number from 1 to 1,000"),
         ("--seed", &["-1", "18446744073709551616", "x"], counts),
         (
             "--size",

@@ -11,6 +11,9 @@ use super::MAX_LIGHTS;
 
 const MAX_SIDE: u32 = 16_384;
 const MAX_FRAMES: u32 = 100_000;
+/// The most poses along a path at which images are compared.
+pub(crate) const MAX_CHECKS: u32 = 8;
+const MAX_LAPS: u32 = 1_000;
 const MAX_SAMPLES: u32 = 65_536;
 /// The largest side of a reflective shadow map, pixels.
 const MAX_RSM: u32 = 2048;
@@ -257,6 +260,14 @@ pub(super) fn lights(text: &str) -> Result<u32, String> {
 
 pub(super) fn frames(text: &str) -> Result<u32, String> {
     whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
+}
+
+pub(super) fn laps(text: &str) -> Result<u32, String> {
+    whole(text, 1, MAX_LAPS).ok_or_else(|| "a whole number from 1 to 1,000".to_owned())
+}
+
+pub(super) fn checks(text: &str) -> Result<u32, String> {
+    whole(text, 1, MAX_CHECKS).ok_or_else(|| "a whole number from 1 to 8".to_owned())
 }
 
 pub(super) fn bounces(text: &str) -> Result<u32, String> {

@@ -1,12 +1,15 @@
 //! Records that may be compared with one another.
 
 use super::rank::{Ranked, ranks};
-use crate::results::{EARLY_EXIT, Record, Results};
+use super::raster;
+use crate::results::{EARLY_EXIT, Machine, Record, Results};
 
 /// The records of one scene, camera size, set of lights and mode: only strategies differ.
 pub(super) struct Comparison<'a> {
     /// The records with their indices in [`Results::records`], in the order of the run.
     pub(super) records: Vec<(usize, &'a Record)>,
+    /// Where they were measured.
+    pub(super) machine: &'a Machine,
 }
 
 /// All comparisons of a run, in the order in which they first appear.
@@ -15,7 +18,7 @@ pub(super) fn comparisons(results: &Results) -> Vec<Comparison<'_>> {
     for entry in results.records.iter().enumerate() {
         match all.iter_mut().find(|known| comparable(known.first(), entry.1)) {
             Some(known) => known.records.push(entry),
-            None => all.push(Comparison { records: vec![entry] }),
+            None => all.push(Comparison { records: vec![entry], machine: &results.machine }),
         }
     }
     all
@@ -36,6 +39,11 @@ impl<'a> Comparison<'a> {
     pub(super) fn first(&self) -> &'a Record {
         // A comparison is made around a record and never loses one.
         self.records[0].1
+    }
+
+    /// A record's name, marked where its times are bound by rasterisation on a chip weak at it.
+    pub(super) fn name(&self, record: &Record) -> String {
+        format!("{}{}", record.strategy, raster::mark(self.machine, record))
     }
 
     /// The record of no culling.

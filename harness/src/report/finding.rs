@@ -5,6 +5,7 @@ use super::format::{factor, number, short_adapter, significant};
 use super::lead::{Lead, span};
 use super::loss::loss;
 use super::rank::tie;
+use super::raster;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
 /// Ratios nearer to 1 are called equal: no more is known from a handful of samples.
@@ -51,14 +52,15 @@ fn sentence(comparison: &Comparison<'_>) -> String {
     let Some(fastest) = comparison.fastest() else {
         return format!(
             "{} takes {} ms to shade {}",
-            if first.is_baseline() { "no culling" } else { &first.strategy },
+            if first.is_baseline() { "no culling".to_owned() } else { comparison.name(first) },
             significant(first.assign_and_shade_ms()),
             lights(first.lights),
         );
     };
-    let Some(lead) = Lead::of(&comparison.ranks()) else {
+    let Some(lead) = Lead::of_comparison(comparison) else {
         // All that cull lost something: the fastest says what.
-        return speed(comparison, &Subject::of(fastest)) + &image(fastest);
+        let subject = Subject::of(fastest, comparison.name(fastest));
+        return speed(comparison, &subject) + &image(fastest);
     };
     let subject = Subject::lead(&lead);
     let image = match lead.is_tie() {
@@ -81,8 +83,7 @@ struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    fn of(record: &'a Record) -> Self {
-        let words = record.strategy.clone();
+    fn of(record: &'a Record, words: String) -> Self {
         Self { records: vec![record], words, still_lights: String::new() }
     }
 
@@ -175,6 +176,7 @@ pub fn lights(count: u64) -> String {
 pub fn notices(results: &Results) -> Vec<String> {
     let mut notices = Vec::new();
     notices.extend(clock_notice(results));
+    notices.extend(raster::notice(&results.machine, &results.records));
     for comparison in comparisons(results) {
         if let Some(tie) = tie(&comparison.ranks()) {
             let first = comparison.first();
@@ -222,8 +224,8 @@ pub fn notices(results: &Results) -> Vec<String> {
     notices.extend(results.warnings.iter().cloned());
     notices.extend(results.truth.notes.iter().cloned());
     for record in &results.records {
-        if let Some(note) = record.note.as_ref().filter(|note| !notices.contains(note)) {
-            notices.push(note.clone());
+        if let Some(note) = raster::unmarked_note(record).filter(|note| !notices.contains(note)) {
+            notices.push(note);
         }
     }
     notices

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::comparison::comparisons;
 use super::format::{escape, number, short_adapter};
 use super::page;
-use super::{finding, notices};
+use super::{finding, frames, notices};
 use crate::results::{Results, ResultsError, write_atomically};
 
 pub(super) const PAGE: &str = include_str!("report.html");
@@ -56,7 +56,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
             ("headline", &headline),
             ("findings", &others),
             ("notices", &page::notices(&notices(results))),
-            ("comparisons", &page::comparisons_html(results)),
+            ("comparisons", &(page::comparisons_html(results) + &frames::sections(results))),
             ("columns", &page::columns()),
             ("reading", ""),
             ("file", "results.json"),

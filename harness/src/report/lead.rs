@@ -1,6 +1,7 @@
 //! Who leads a comparison, said with its limits: a tie is called a tie, and a lead that too few
 //! rounds show is called that.
 
+use super::comparison::Comparison;
 use super::format::significant;
 use super::rank::{Ranked, Ratio, SURE, first, listed};
 use crate::results::Record;
@@ -18,8 +19,8 @@ const NAMED: usize = 3;
 enum Doubt {
     /// Nothing: there are rounds enough, or there is one method.
     None,
-    /// So many rounds are too few.
-    FewRounds(u32),
+    /// So many rounds or laps are too few.
+    FewRounds(usize, &'static str),
     /// There are no rounds to pair: times alone rank.
     NoRounds,
 }
@@ -28,6 +29,8 @@ enum Doubt {
 pub(super) struct Lead<'a> {
     /// Those methods, fastest first.
     pub(super) records: Vec<&'a Record>,
+    /// Their names, with marks.
+    names: Vec<String>,
     /// How many methods were ranked.
     ranked: usize,
     doubt: Doubt,
@@ -42,13 +45,24 @@ impl<'a> Lead<'a> {
         let doubt = match other.map(|other| Ratio::of(other, leader)) {
             None => Doubt::None,
             Some(None) => Doubt::NoRounds,
-            Some(Some(ratio)) if ratio.coverage < SURE => Doubt::FewRounds(leader.rounds),
+            Some(Some(ratio)) if ratio.coverage < SURE => {
+                let word = if leader.along_path { "laps" } else { "rounds" };
+                Doubt::FewRounds(leader.round_times_ms().len(), word)
+            }
             Some(Some(_)) => Doubt::None,
         };
         if doubt != Doubt::None {
             records.truncate(1);
         }
-        Some(Self { records, ranked: ranked.len(), doubt })
+        let names = records.iter().map(|record| record.strategy.clone()).collect();
+        Some(Self { records, names, ranked: ranked.len(), doubt })
+    }
+
+    /// Of a comparison, whose names carry marks.
+    pub(super) fn of_comparison(comparison: &Comparison<'a>) -> Option<Self> {
+        let lead = Self::of(&comparison.ranks())?;
+        let names = lead.records.iter().map(|record| comparison.name(record)).collect();
+        Some(Self { names, ..lead })
     }
 
     /// The fastest of them.
@@ -64,7 +78,7 @@ impl<'a> Lead<'a> {
 
     /// `A`, `A and B`, `A, B, C and 5 others`.
     pub(super) fn names(&self) -> String {
-        let mut names: Vec<String> = self.records.iter().map(|r| r.strategy.clone()).collect();
+        let mut names = self.names.clone();
         if names.len() > ALL_NAMED {
             let others = names.len() - NAMED;
             names.truncate(NAMED);
@@ -95,8 +109,8 @@ impl<'a> Lead<'a> {
         let methods = self.ranked;
         match self.doubt {
             Doubt::None => String::new(),
-            Doubt::FewRounds(rounds) => {
-                format!(" ({rounds} rounds are too few to rank {methods} methods)")
+            Doubt::FewRounds(count, word) => {
+                format!(" ({count} {word} are too few to rank {methods} methods)")
             }
             Doubt::NoRounds => {
                 format!(" (by time alone: no rounds tell {methods} methods apart)")

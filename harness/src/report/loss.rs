@@ -20,6 +20,7 @@ pub(super) static ERROR_COLUMNS: [Metric; 3] = [
         better: Better::Zero,
         value: |_, r| error(r, "missing_energy"),
         show: percent,
+        is_optional: true,
     },
     Metric {
         id: "rel_mse",
@@ -30,6 +31,7 @@ pub(super) static ERROR_COLUMNS: [Metric; 3] = [
         better: Better::Zero,
         value: |_, r| error(r, "rel_mse"),
         show: difference,
+        is_optional: true,
     },
     Metric {
         id: "flip",
@@ -40,6 +42,7 @@ pub(super) static ERROR_COLUMNS: [Metric; 3] = [
         better: Better::Zero,
         value: |_, r| error(r, "flip"),
         show: difference,
+        is_optional: true,
     },
 ];
 
@@ -56,7 +59,12 @@ fn is_lossy(record: &Record) -> bool {
 
 /// The columns of a comparison: those of all, and errors where a method may lose light.
 pub(super) fn columns(comparison: &Comparison<'_>) -> impl Iterator<Item = &'static Metric> {
-    METRICS.iter().chain(error_columns(comparison))
+    METRICS
+        .iter()
+        .filter(|metric| metric.is_shown(comparison))
+        .chain(error_columns(comparison))
+        .collect::<Vec<_>>()
+        .into_iter()
 }
 
 /// The columns of errors, where a method of the comparison may lose light.

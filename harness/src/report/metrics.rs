@@ -31,6 +31,8 @@ pub(super) struct Metric {
     /// `None` where it was not measured.
     pub(super) value: fn(&Comparison<'_>, &Record) -> Option<f64>,
     pub(super) show: fn(f64) -> String,
+    /// Whether it is left out where no record has a value.
+    pub(super) is_optional: bool,
 }
 
 /// All columns, in order.
@@ -46,6 +48,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Neither,
         value: |c, r| c.rank(r),
         show: format::number,
+        is_optional: false,
     },
     Metric {
         id: "both_ms",
@@ -59,6 +62,20 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Less,
         value: |_, r| finite(r.assign_and_shade_ms()),
         show: format::significant,
+        is_optional: false,
+    },
+    Metric {
+        id: "span_ms",
+        head: "span",
+        unit: "ms",
+        terminal: "span",
+        about: "The second total: from the first pass that assigns lights to the end of the last that \
+                lights pixels, gaps between passes included, median. Assign + shade is the sum of the \
+                passes alone. Not known where each pass is submitted alone.",
+        better: Better::Less,
+        value: |_, r| r.span_ms.and_then(finite),
+        show: format::significant,
+        is_optional: true,
     },
     Metric {
         id: "speedup",
@@ -70,6 +87,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::More,
         value: |c, r| c.speedup(r),
         show: format::factor,
+        is_optional: false,
     },
     Metric {
         id: "speedup_sphere",
@@ -80,6 +98,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::More,
         value: |c, r| c.speedup_over_exit(r),
         show: format::factor,
+        is_optional: false,
     },
     Metric {
         id: "assign_ms",
@@ -90,6 +109,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Less,
         value: |_, r| finite(r.assign_ms),
         show: format::significant,
+        is_optional: false,
     },
     Metric {
         id: "shade_ms",
@@ -100,6 +120,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Less,
         value: |_, r| finite(r.shade_ms),
         show: format::significant,
+        is_optional: false,
     },
     Metric {
         id: "frame_ms",
@@ -110,6 +131,19 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Less,
         value: |_, r| finite(r.frame_ms),
         show: format::significant,
+        is_optional: false,
+    },
+    Metric {
+        id: "frame_span_ms",
+        head: "frame span",
+        unit: "ms",
+        terminal: "",
+        about: "From the first pass of the frame to the end of its last, gaps between passes included, \
+                median.",
+        better: Better::Less,
+        value: |_, r| r.frame_span_ms.and_then(finite),
+        show: format::significant,
+        is_optional: true,
     },
     Metric {
         id: "efficiency",
@@ -121,6 +155,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::More,
         value: |c, r| c.efficiency(r),
         show: format::percent,
+        is_optional: false,
     },
     Metric {
         id: "listed",
@@ -131,6 +166,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Less,
         value: |_, r| r.listed_per_sample,
         show: format::number,
+        is_optional: false,
     },
     Metric {
         id: "contributing",
@@ -141,6 +177,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Neither,
         value: |_, r| r.contributing_per_sample,
         show: format::number,
+        is_optional: false,
     },
     Metric {
         id: "missed",
@@ -151,6 +188,7 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Zero,
         value: |_, r| r.missed_pairs.map(|pairs| pairs as f64),
         show: format::number,
+        is_optional: false,
     },
     Metric {
         id: "max_diff",
@@ -164,6 +202,7 @@ pub(super) static METRICS: &[Metric] = &[
             (difference, _) => difference,
         },
         show: format::difference,
+        is_optional: false,
     },
     Metric {
         id: "differing",
@@ -174,16 +213,33 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Zero,
         value: |_, r| r.differing_channels.map(|channels| channels as f64),
         show: format::number,
+        is_optional: false,
+    },
+    Metric {
+        id: "memory_bytes",
+        head: "memory",
+        unit: "MiB",
+        terminal: "memory",
+        about: "GPU memory of everything that assignment needs: lists, marks, bounds, pools, the \
+                hierarchy over the lights, and images that the renderer draws only for this method.",
+        better: Better::Less,
+        value: |_, r| r.memory_bytes.map(|bytes| bytes as f64),
+        show: format::mebibytes,
+        is_optional: true,
     },
     Metric {
         id: "lists_bytes",
         head: "lists",
         unit: "MiB",
         terminal: "lists",
-        about: "GPU memory of groups and lists.",
+        about: "GPU memory of groups and lists only: these results were stored before all memory was \
+                counted, and a method\u{2019}s marks, bounds and second pools are missing.",
         better: Better::Less,
-        value: |_, r| Some(r.lists_bytes as f64),
+        value: |_, r| {
+            (r.memory_bytes.is_none() && r.lists_bytes > 0).then_some(r.lists_bytes as f64)
+        },
         show: format::mebibytes,
+        is_optional: true,
     },
     Metric {
         id: "overflow",
@@ -194,10 +250,17 @@ pub(super) static METRICS: &[Metric] = &[
         better: Better::Neither,
         value: |_, r| Some(r.overflowed_groups as f64),
         show: format::number,
+        is_optional: false,
     },
 ];
 
 impl Metric {
+    /// Whether a comparison has the column.
+    pub(super) fn is_shown(&self, comparison: &Comparison<'_>) -> bool {
+        let has_value = |(_, record): &(usize, &Record)| (self.value)(comparison, record).is_some();
+        !self.is_optional || comparison.records.iter().any(has_value)
+    }
+
     /// The value as text; a dash where there is none.
     pub(super) fn text(&self, comparison: &Comparison<'_>, record: &Record) -> String {
         (self.value)(comparison, record).map_or_else(|| format::ABSENT.to_owned(), self.show)

@@ -7,6 +7,7 @@ mod comparison;
 mod finding;
 mod fit;
 mod format;
+mod frames;
 mod html;
 mod lead;
 mod loss;
@@ -14,6 +15,7 @@ mod markdown;
 mod metrics;
 mod page;
 mod rank;
+mod raster;
 mod study;
 mod table;
 

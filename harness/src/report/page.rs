@@ -153,7 +153,7 @@ pub(super) fn table(
             rows,
             "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{cells}</tr>",
             classes.get(record.strategy.as_str()).map_or("", String::as_str),
-            with_names_whole(&record.strategy),
+            with_names_whole(&comparison.name(record)),
         );
     }
     format!(

@@ -1,9 +1,9 @@
 //! Which of the records of a comparison are faster than which, as far as their rounds tell.
 //!
 //! Every round draws frames of all methods in turn, so what drifts hits all alike: the ratio of the
-//! medians of two methods *of one round* is free of it. Two records are told apart where the
-//! interval of the median of these ratios leaves out 1, and its middle is not within half a per
-//! cent of it.
+//! times of two methods *of one round* is free of it. Along a path a round is a lap, and its time the
+//! mean over the poses. Two records are told apart where the interval of the median of these ratios
+//! leaves out 1, and its middle is not within half a per cent of it.
 
 use super::format::significant;
 use crate::results::{Record, median, median_interval};
@@ -28,13 +28,19 @@ pub(super) struct Ratio {
 }
 
 impl Ratio {
-    /// Of `record` over `other`. `None` where they have fewer than two rounds in common, and along
-    /// a path, whose frames are not repetitions.
+    /// Of `record` over `other`. `None` where they have fewer than two rounds in common. Along a path
+    /// a round is a lap, so both need two laps of as many poses.
     pub(super) fn of(record: &Record, other: &Record) -> Option<Self> {
-        if record.along_path || other.along_path || record.rounds != other.rounds {
+        let laps = |record: &Record| (record.along_path, record.laps(), record.frames);
+        let differ = if record.along_path || other.along_path {
+            laps(record) != laps(other)
+        } else {
+            record.rounds != other.rounds
+        };
+        if differ {
             return None;
         }
-        let (times, others) = (record.round_medians(), other.round_medians());
+        let (times, others) = (record.round_times_ms(), other.round_times_ms());
         let ratios = times.iter().zip(&others).map(|(time, other)| time / other);
         let ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
         let interval = median_interval(&ratios)?;
@@ -101,18 +107,28 @@ pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
     ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
 }
 
-/// Says that the first rank is shared: `A and B cannot be told apart: ...`. `None` where it is not.
+/// Says that the first rank is shared, `A and B cannot be told apart: ...`, or that one lap cannot
+/// tell. `None` where neither is so.
 pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
+    if leader.along_path && leader.laps() < 2 && ranked.len() > 1 {
+        return Some(
+            "one lap says nothing about noise, so ranks follow the means alone (--laps 6 or more tells \
+             methods apart)"
+                .to_owned(),
+        );
+    }
     let widest = others
         .iter()
         .filter_map(|record| Ratio::of(record, leader))
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
     if widest.coverage < SURE {
+        let (rounds, option) =
+            if leader.along_path { ("laps", "--laps") } else { ("rounds", "--frames") };
         return Some(format!(
-            "six rounds tell methods apart, and there are {}: {} share rank 1 (--frames 6 or more ranks them)",
-            leader.rounds,
+            "six {rounds} tell methods apart, and there are {}: {} share rank 1 ({option} 6 or more ranks them)",
+            leader.round_times_ms().len(),
             listed(&first.iter().map(|record| record.strategy.as_str()).collect::<Vec<_>>())
         ));
     }
@@ -239,6 +255,57 @@ mod tests {
         let few = records(5);
         assert_eq!(places(&few), [place("A", 1), place("B", 1)]);
         assert!(tie(&ranks(&few)).is_some_and(|said| said.contains("there are 5")));
+    }
+
+    /// A record of laps along a path: a time for each lap and pose.
+    fn along_path(strategy: &str, laps: u32, poses: u32, time: impl Fn(u32, u32) -> f64) -> Record {
+        let times: Vec<f64> = (0..laps)
+            .flat_map(|lap| (0..poses).map(move |pose| (lap, pose)))
+            .map(|(l, p)| time(l, p))
+            .collect();
+        let mut record = record(strategy, &times);
+        (record.along_path, record.poses, record.rounds) = (true, Some(poses), laps);
+        record.set_times();
+        record
+    }
+
+    #[test]
+    fn laps_along_a_path_tell_methods_apart_however_much_poses_differ() {
+        // Poses differ by a factor of ten, laps drift by a fifth, the methods by 2 %.
+        let (x, y) = (noise(1), noise(2));
+        let time =
+            |lap: u32, pose: u32| f64::from(1 + 9 * (pose % 2)) * (1.0 + f64::from(lap) / 40.0);
+        let a = along_path("A", 8, 4, |l, p| time(l, p) * (1.0 + 0.004 * x(4 * l + p)));
+        let b = along_path("B", 8, 4, |l, p| 1.02 * time(l, p) * (1.0 + 0.004 * y(4 * l + p)));
+        let c = along_path("C", 8, 4, |l, p| 1.001 * time(l, p) * (1.0 + 0.004 * y(4 * l + p)));
+        assert_eq!(places(&[b, a.clone(), c]), [place("A", 1), place("C", 1), place("B", 2)]);
+        assert_eq!(a.laps(), 8);
+        let interval = a.interval_ms().expect("laps");
+        // Laps run from 5.5 to 6.5 ms on average; single poses from 1 to 12.
+        assert!(interval.low > 5.4 && interval.high < 6.6, "{interval:?}");
+        let poses = a.pose_times_ms();
+        assert!(poses.len() == 4 && poses[0] < 1.2 && poses[1] > 9.0, "{poses:?}");
+    }
+
+    #[test]
+    fn one_lap_tells_nothing_apart_and_laps_of_other_poses_do_not_pair() {
+        let one = along_path("A", 1, 40, |_, pose| f64::from(pose));
+        let mut old = one.clone();
+        old.poses = None;
+        old.rounds = 40;
+        for record in [&one, &old] {
+            assert_eq!((record.laps(), record.interval_ms()), (1, None));
+            assert_eq!(Ratio::of(record, record), None);
+        }
+        let said = tie(&ranks(&[one.clone(), old])).expect("one lap");
+        assert!(said.starts_with("one lap") && said.contains("--laps 6"), "{said}");
+        let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
+        assert_eq!(Ratio::of(&a, &b), None);
+        let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];
+        assert!(
+            tie(&ranks(&few))
+                .is_some_and(|said| said.contains("there are 5: A and B share rank 1 (--laps"))
+        );
     }
 
     #[test]

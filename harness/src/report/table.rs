@@ -47,11 +47,11 @@ fn column(metric: &Metric, comparison: &Comparison<'_>) -> Vec<String> {
 fn push_table(text: &mut String, comparison: &Comparison<'_>) {
     let columns: Vec<Vec<String>> = METRICS
         .iter()
-        .filter(|metric| !metric.terminal.is_empty())
+        .filter(|metric| !metric.terminal.is_empty() && metric.is_shown(comparison))
         .map(|metric| column(metric, comparison))
         .collect();
     let widths: Vec<usize> = columns.iter().map(|cells| widest(cells)).collect();
-    let names = comparison.records.iter().map(|(_, record)| record.strategy.clone());
+    let names = comparison.records.iter().map(|(_, record)| comparison.name(record));
     let names: Vec<String> =
         ["strategy".to_owned(), String::new()].into_iter().chain(names).collect();
 

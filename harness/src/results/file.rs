@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::{Results, SCHEMA_VERSION};
+use super::{Record, Results, SCHEMA_VERSION};
 
 /// Why results cannot be written or read; one line each.
 #[derive(Debug, Error)]
@@ -77,7 +77,11 @@ impl Results {
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
                 Err(ResultsError::Version { path: path.to_owned(), found })
             }
-            _ => serde_json::from_str(&text).map_err(parse_error),
+            _ => {
+                let mut results: Self = serde_json::from_str(&text).map_err(parse_error)?;
+                results.records.iter_mut().for_each(Record::bill_again);
+                Ok(results)
+            }
         }
     }
 }

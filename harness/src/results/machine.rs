@@ -27,6 +27,14 @@ pub struct Machine {
 }
 
 impl Machine {
+    /// The GPU's short name where it runs fragment shaders on a few of its processors, as NVIDIA's
+    /// data-centre GPUs of the Hopper generation do: figures of raster passes are then not those of
+    /// another chip.
+    pub fn weak_raster(&self) -> Option<&str> {
+        const CHIPS: [&str; 5] = ["H100", "H200", "GH200", "H800", "H20"];
+        self.adapter.split_whitespace().find(|word| CHIPS.contains(word))
+    }
+
     /// What must be the same where times are put side by side: fields and their values.
     pub fn identity(&self) -> [(&'static str, &str); 4] {
         [

@@ -47,6 +47,17 @@ impl PassTimes {
     }
 }
 
+/// The times from the first of some passes to the last, gaps between them included, one per frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Spans {
+    /// Of the passes that assign lights and light pixels, ms.
+    #[serde(deserialize_with = "nans_from_nulls")]
+    pub assign_and_shade_ms: Vec<f64>,
+    /// Of all passes, ms.
+    #[serde(deserialize_with = "nans_from_nulls")]
+    pub frame_ms: Vec<f64>,
+}
+
 /// The passes of a frame by name, in the order in which they run. A map in JSON.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Passes(Vec<(String, PassTimes)>);
@@ -74,16 +85,28 @@ impl Passes {
     /// The time per frame of all passes of a kind (of all passes: `None`), ms. As long as the
     /// shortest of their samples.
     pub fn per_frame_ms(&self, kind: Option<PassKind>) -> Vec<f64> {
+        self.per_frame_where(|_, pass| kind.is_none_or(|kind| pass == kind))
+    }
+
+    /// The time per frame of the passes that are counted by name and kind, ms.
+    pub fn per_frame_where(&self, is_counted: impl Fn(&str, PassKind) -> bool) -> Vec<f64> {
         let of_kind = || {
             self.0
                 .iter()
+                .filter(|(name, times)| is_counted(name, times.kind))
                 .map(|(_, times)| times)
-                .filter(|times| kind.is_none_or(|kind| times.kind == kind))
         };
         let frames = of_kind().map(|times| times.samples.len()).min();
         (0..frames.unwrap_or(0))
             .map(|frame| of_kind().map(|times| times.samples[frame]).sum())
             .collect()
+    }
+
+    /// Bills passes again, by name.
+    pub(super) fn bill_again(&mut self, kind: impl Fn(&str, PassKind) -> PassKind) {
+        for (name, times) in &mut self.0 {
+            times.kind = kind(name, times.kind);
+        }
     }
 
     /// Whether there is a pass of a kind (any pass: `None`).

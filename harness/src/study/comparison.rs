@@ -126,6 +126,9 @@ pub(super) fn jobs(
     plan.scaling(args.quick);
     plan.beyond(args.quick);
     plan.accuracy();
+    let ends = [plan.extent.counts.first(), plan.extent.counts.last()].map(|end| end.copied());
+    let ends: Vec<u32> = ends.into_iter().flatten().collect();
+    plan.jobs.extend(super::frames::jobs(scene, plan.extent.size, args.seed, &ends, args.quick));
     Ok(plan.jobs)
 }
 

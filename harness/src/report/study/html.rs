@@ -9,6 +9,7 @@ use super::super::format::{escape, short_adapter};
 use super::super::html::{PAGE, STYLE, fill, in_script};
 use super::super::page;
 use super::super::rank::listed;
+use super::super::{frames, raster};
 use super::figure::Charts;
 use super::shots::Shots;
 use super::{
@@ -73,6 +74,7 @@ pub(super) fn page(done: &Done) -> Page {
                 accuracy::accuracy(done, scene, &mut charts, &mut shots),
                 scaling::scaling(done, scene, &mut charts),
                 path::path(done, scene, &mut charts),
+                frames::part_of_study(done, scene),
                 views::views(done, scene, &mut charts, &mut shots),
                 sizes::sizes(done, scene, &mut charts),
                 overview::overview(done, scene, &mut charts),
@@ -217,6 +219,8 @@ fn notices(done: &Done, pictures_left_out: usize) -> Vec<String> {
         ));
     }
     notices.extend(any(done).and_then(clock_notice));
+    let records = || done.results.values().flat_map(|results| &results.records);
+    notices.extend(any(done).and_then(|first| raster::notice(&first.machine, records())));
     let distinct = |of: fn(&Results) -> &str| {
         let mut values: Vec<&str> = done.results.values().map(of).collect();
         values.sort_unstable();

@@ -6,7 +6,7 @@ use super::super::comparison::{Comparison, comparisons};
 use super::super::format::{number, short_adapter, significant};
 use super::super::lead::{Lead, span};
 use super::super::page;
-use super::super::rank::{Ratio, listed, ranks, tie};
+use super::super::rank::{Ratio, listed, tie};
 use super::data::class;
 use super::figure::{Charts, panels, part};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
@@ -117,8 +117,8 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
 /// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0); next is B ...`, or
 /// `A and B tie for fastest with 6.9 to 7.0 ms`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
-    let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-    let lead = Lead::of(&ranked)?;
+    let ranked = comparison.ranks();
+    let lead = Lead::of_comparison(comparison)?;
     let leader = lead.leader();
     let lights = super::super::finding::lights(comparison.first().lights);
     let time = match lead.is_tie() {
@@ -159,7 +159,7 @@ fn timed(record: &Record) -> String {
 pub(super) fn headline(done: &Done) -> Option<String> {
     let first_of = |scene: &&str| {
         let (_, comparison) = by_lights(done, scene, "main").pop()?;
-        let lead = Lead::of(&ranks(comparison.records.iter().map(|(_, record)| *record)))?;
+        let lead = Lead::of_comparison(&comparison)?;
         Some(((*scene).to_owned(), lead.headline(), comparison.first().lights))
     };
     let scenes = done.scenes();

@@ -13,7 +13,7 @@ const LOG_ABOVE: f64 = 8.0;
 /// How a record's times vary along the path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread {
-    /// Mean over frames, ms.
+    /// Mean over poses, ms; the time at a pose is its mean over laps.
     pub(super) mean: f64,
     /// Standard deviation over frames, ms.
     pub(super) deviation: f64,
@@ -28,7 +28,7 @@ pub(super) struct Spread {
 impl Spread {
     /// `None` without frames, or where their times say nothing.
     pub(super) fn of(record: &Record) -> Option<Self> {
-        let times = record.frames_ms();
+        let times = record.pose_times_ms();
         let worst = times.iter().copied().fold(f64::NAN, f64::max);
         let (mean, deviation) = (mean(&times), standard_deviation(&times));
         let worst_over_median = worst / median(&times);
@@ -81,7 +81,7 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
                 name: short(id),
                 class: class(id),
                 marks: Marks::Line,
-                points: record.frames_ms().iter().enumerate().map(point).collect(),
+                points: record.pose_times_ms().iter().enumerate().map(point).collect(),
                 ..Series::default()
             }
         })

@@ -1,0 +1,122 @@
+//! Frames along the camera's path.
+//!
+//! 1. Pools grow, at some poses that are spread over the path.
+//! 2. Images are compared with that of no culling, in a lap of its own off the clock: comparing them
+//!    keeps the CPU busy for long, and the GPU's clock would fall among the timed frames.
+//! 3. All methods warm up.
+//! 4. Lap after lap, each pose is drawn with all methods on the clock, in an order of its own. A lap
+//!    takes the same poses each time, so laps are repetitions of each other, as rounds are from a
+//!    still camera. Lists that are used for several frames are made anew where a lap begins.
+
+use shading::HdrImage;
+
+use super::{Compare, Contest, Timetable, read};
+use crate::{cli::MAX_CHECKS, error::HarnessError, schedule::Orders, stage::Stage};
+
+/// Poses along the path at which pools grow before the clock starts: on a GPU, and on a software
+/// adapter.
+const SETTLING_POSES: [u32; 2] = [24, 6];
+
+impl Contest<'_> {
+    /// Grows the pools, then compares the images at some poses.
+    pub(super) fn compare_along_path(
+        &mut self,
+        stage: &mut Stage,
+        timetable: Timetable<'_>,
+        seen: &mut Compare<'_>,
+    ) -> Result<(), HarnessError> {
+        let Timetable { timed, remember, reference } = timetable;
+        let count = self.plan.timed;
+        let poses = SETTLING_POSES[usize::from(self.gpu.is_software())].min(count);
+        for pose in 0..poses {
+            stage.go_to(pose * count / poses, count)?;
+            for &method in timed {
+                for _ in 0..2 {
+                    self.draw(stage, method)?;
+                }
+            }
+        }
+        self.expire_lists();
+        let checks = checked_poses(count, self.plan.checks);
+        for pose in 0..=checks.last().copied().unwrap_or(0) {
+            let is_checked = checks.contains(&pose);
+            if !is_checked && remember.is_empty() {
+                continue;
+            }
+            stage.go_to(pose, count)?;
+            if !is_checked {
+                for &method in remember {
+                    self.draw(stage, method)?;
+                }
+                continue;
+            }
+            let mut images: Vec<HdrImage> = Vec::new();
+            for &method in timed {
+                self.draw(stage, method)?;
+                images.push(read(&self.gpu, stage)?);
+            }
+            self.draw(stage, reference)?;
+            seen(&images, &read(&self.gpu, stage)?)?;
+        }
+        Ok(())
+    }
+
+    /// Takes the times, lap after lap.
+    pub(super) fn time_along_path(
+        &mut self,
+        stage: &mut Stage,
+        timed: &[usize],
+        orders: &mut Orders,
+        tick: &mut dyn FnMut(),
+    ) -> Result<(), HarnessError> {
+        let count = self.plan.timed;
+        stage.go_to(0, count)?;
+        self.warm_up(stage, timed)?;
+        for _ in 0..self.plan.laps {
+            self.expire_lists();
+            for pose in 0..count {
+                stage.go_to(pose, count)?;
+                for place in orders.next_round() {
+                    self.frame(stage, timed[place])?;
+                    tick();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Has lists that are used for several frames made anew, so that they are of the same age at a
+    /// pose in every lap and on every run.
+    fn expire_lists(&mut self) {
+        for contender in &mut self.contenders {
+            contender.painter.expire();
+        }
+    }
+}
+
+/// The poses at which images are compared: an odd number of poses apart, so that lists used for 2, 4
+/// or 8 frames are seen at every age.
+fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
+    let step = (poses / MAX_CHECKS).saturating_sub(1).max(1) | 1;
+    (0..poses).step_by(step as usize).take(checks as usize).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reused_lists_are_seen_at_every_age() {
+        for poses in [60, 120, 240, 1_200] {
+            let checks = checked_poses(poses, MAX_CHECKS);
+            assert_eq!(checks.len(), MAX_CHECKS as usize, "{poses}");
+            assert!(checks.iter().all(|pose| *pose < poses), "{poses}: {checks:?}");
+            let ages: std::collections::BTreeSet<u32> =
+                checks.iter().map(|pose| pose % 8).collect();
+            assert_eq!(ages.len(), 8, "{poses}: {checks:?}");
+        }
+        assert_eq!(checked_poses(1, MAX_CHECKS), [0]);
+        assert_eq!(checked_poses(3, MAX_CHECKS), [0, 1, 2]);
+        assert_eq!(checked_poses(240, 1), [0]);
+    }
+}

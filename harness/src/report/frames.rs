@@ -1,0 +1,172 @@
+//! The same methods in each kind of frame that a renderer may draw: forward shading without a depth
+//! pre-pass and with one, and deferred shading without and with models in the G-buffer.
+
+use std::fmt::Write;
+
+use super::format::{escape, number, significant};
+use super::page::with_names_whole;
+use super::raster::{self, MARK};
+use crate::results::{Bill, FrameKind, Machine, Record, Results};
+use crate::study::Done;
+
+/// Heading of a kind of frame, and what it bills.
+fn words(kind: FrameKind) -> (&'static str, &'static str) {
+    match kind {
+        FrameKind::NoPrepass => (
+            "forward, no pre-pass",
+            "Methods that read depth pay for a depth pre-pass and then light visible surfaces only. The \
+             others draw once and also light surfaces that later ones hide; draws are not sorted by depth.",
+        ),
+        FrameKind::Prepass => (
+            "forward, pre-pass",
+            "Every method finds the depth pre-pass drawn, and nobody pays for it.",
+        ),
+        FrameKind::Deferred => (
+            "deferred",
+            "Every method finds depth and G-buffer drawn; M pays for a pass that draws the models of pixels.",
+        ),
+        FrameKind::DeferredIds => (
+            "deferred, ids",
+            "The G-buffer also holds the model of each pixel, so M pays for no pass of its own.",
+        ),
+    }
+}
+
+/// Methods under the same lights, each with its records in all modes, in the order of the records.
+fn methods<'a>(records: &[&'a Record]) -> Vec<(&'a str, Vec<&'a Record>)> {
+    let mut methods: Vec<(&str, Vec<&Record>)> = Vec::new();
+    for &record in records.iter().filter(|record| !record.is_control()) {
+        match methods.iter_mut().find(|(known, _)| *known == record.strategy) {
+            Some((_, own)) => own.push(record),
+            None => methods.push((&record.strategy, vec![record])),
+        }
+    }
+    methods
+}
+
+/// The kinds of frame of which anything is known.
+fn kinds(methods: &[(&str, Vec<&Record>)]) -> Vec<FrameKind> {
+    let is_known = |kind: &FrameKind| methods.iter().any(|(_, own)| Bill::of(*kind, own).is_some());
+    FrameKind::ALL.into_iter().filter(is_known).collect()
+}
+
+/// Modes that were measured.
+fn modes(records: &[&Record]) -> usize {
+    let modes: std::collections::BTreeSet<_> = records.iter().map(|record| record.mode).collect();
+    modes.len()
+}
+
+fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> String {
+    let Some(bill) = Bill::of(kind, own) else { return super::format::ABSENT.to_owned() };
+    let measured = own.iter().find(|record| record.mode == kind.mode());
+    let is_marked = match measured {
+        Some(record) => raster::is_marked(machine, record),
+        None => kind == FrameKind::NoPrepass && machine.weak_raster().is_some(),
+    };
+    let mark = if is_marked { format!(" {MARK}") } else { String::new() };
+    let span = bill.span_ms.map_or_else(String::new, |ms| format!("; span {}", significant(ms)));
+    let derived = if bill.is_derived { "; derived" } else { "" };
+    format!(
+        "{}{mark}<br><small>{} + {}; frame {}{span}{derived}</small>",
+        significant(bill.both_ms()),
+        significant(bill.assign_ms),
+        significant(bill.shade_ms),
+        significant(bill.frame_ms),
+    )
+}
+
+/// A table of methods and kinds of frame; empty where nothing is known of two kinds.
+fn table(caption: &str, records: &[&Record], machine: &Machine) -> String {
+    let methods = methods(records);
+    let kinds = kinds(&methods);
+    if kinds.len() < 2 {
+        return String::new();
+    }
+    let heads: String = kinds
+        .iter()
+        .map(|kind| {
+            let (head, about) = words(*kind);
+            format!(
+                "<th scope=\"col\" title=\"{}\">{head} <span class=\"unit\">ms</span></th>",
+                escape(about)
+            )
+        })
+        .collect();
+    let mut rows = String::new();
+    for (name, own) in &methods {
+        let cells: String =
+            kinds.iter().map(|kind| format!("<td>{}</td>", cell(*kind, own, machine))).collect();
+        let _ = writeln!(rows, "<tr><th scope=\"row\">{}</th>{cells}</tr>", with_names_whole(name));
+    }
+    let explained: String = kinds
+        .iter()
+        .map(|kind| {
+            let (head, about) = words(*kind);
+            format!("<dt>{head}</dt><dd>{about}</dd>\n")
+        })
+        .collect();
+    format!(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\">\n\
+         <table class=\"figures frames\"><caption>{0}</caption>\n<thead><tr><th scope=\"col\">strategy</th>\
+         {heads}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n<dl class=\"columns\">{explained}</dl>\n",
+        escape(caption)
+    )
+}
+
+/// What a cell holds.
+const READING: &str = "In each kind of frame: assign + shade; below it the two, all passes of the frame, and \
+    the span with gaps between passes where it is known. A figure is derived where another kind of frame was \
+    measured instead: the depth pre-pass is moved onto the bill of a method that reads depth, or the pass of \
+    M\u{2019}s ids is left out.";
+
+/// A section for each set of lights that was measured in several modes; empty where there is none.
+pub(super) fn sections(results: &Results) -> String {
+    let key = |record: &Record| {
+        let size = (record.width, record.height, record.lights, record.seed);
+        (record.scene.clone(), record.scene_hash.clone(), size)
+    };
+    let mut groups: Vec<Vec<&Record>> = Vec::new();
+    for record in &results.records {
+        match groups.iter_mut().find(|group| group.first().is_some_and(|r| key(r) == key(record))) {
+            Some(group) => group.push(record),
+            None => groups.push(vec![record]),
+        }
+    }
+    let section = |(ix, group): (usize, &Vec<&Record>)| {
+        let first = group.first().filter(|_| modes(group) > 1)?;
+        let caption = format!("{}, {} lights", first.scene, number(first.lights as f64));
+        let table = table(&format!("Kinds of frame: {caption}"), group, &results.machine);
+        (!table.is_empty()).then(|| {
+            format!(
+                "<section class=\"frames\" aria-labelledby=\"frames{ix}\"><h2 id=\"frames{ix}\">Kinds of frame: \
+                 {}</h2>\n<p class=\"meta\">{READING}</p>\n{table}</section>\n",
+                escape(&caption)
+            )
+        })
+    };
+    groups.iter().enumerate().filter_map(section).collect()
+}
+
+/// The part of a study's page: from jobs in several modes (`frames`), else what the main
+/// comparison lets derive.
+pub(super) fn part_of_study(done: &Done, scene: &str) -> String {
+    let of = |section| -> Vec<(&Machine, Vec<&Record>)> {
+        let jobs = done.of(scene, section);
+        jobs.map(|(_, results)| (&results.machine, results.records.iter().collect())).collect()
+    };
+    let jobs = Some(of("frames")).filter(|jobs| !jobs.is_empty()).unwrap_or_else(|| of("main"));
+    let mut tables = String::new();
+    for (machine, records) in jobs.iter().rev() {
+        let Some(first) = records.first() else { continue };
+        let caption = format!("{scene}, {} lights", number(first.lights as f64));
+        tables += &table(&format!("Kinds of frame: {caption}"), records, machine);
+    }
+    if tables.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<div class=\"part\" id=\"{0}-frames\" data-part=\"frames\"><h3>Kinds of frame</h3>\n\
+         <p class=\"note\">{READING}</p>\n{tables}</div>\n",
+        escape(scene)
+    )
+}

@@ -1,0 +1,118 @@
+//! Rows whose times are bound by rasterisation, on chips that are weak at it.
+//!
+//! Data-centre GPUs run fragment shaders on a few of their processors. A row is marked where a pass on
+//! its own bill draws triangles: lighting in forward shading, light volumes, and the models of pixels.
+//! The mark is computed when a report is made, so stored results carry it too.
+
+use super::rank::listed;
+use crate::results::{Machine, Record};
+
+/// What stands behind the name of a marked row.
+pub(super) const MARK: &str = "\u{2020}";
+
+/// More methods of one mode than this are counted instead of named.
+const NAMED: usize = 6;
+
+/// What older programs wrote into the note of each forward record.
+const OLD_NOTE: &str = "this data-centre GPU runs fragment shaders on a few of its processors: compare \
+                        forward figures with no other chip's";
+
+/// Whether a record's row is marked.
+pub(super) fn is_marked(machine: &Machine, record: &Record) -> bool {
+    machine.weak_raster().is_some() && !record.raster_passes().is_empty()
+}
+
+/// ` \u{2020}` behind the name of a marked row, else nothing.
+pub(super) fn mark(machine: &Machine, record: &Record) -> String {
+    if is_marked(machine, record) { format!(" {MARK}") } else { String::new() }
+}
+
+/// What the mark means, with the rows that carry it; `None` where none does.
+pub(super) fn notice<'a>(
+    machine: &Machine,
+    records: impl IntoIterator<Item = &'a Record>,
+) -> Option<String> {
+    let chip = machine.weak_raster()?;
+    // Methods by mode and passes, in the order of the records.
+    let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+    for record in records {
+        let passes = record.raster_passes();
+        if passes.is_empty() {
+            continue;
+        }
+        let key = format!("{} in {}", listed(&passes), record.mode.name());
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, names)) if !names.contains(&record.strategy.as_str()) => {
+                names.push(&record.strategy);
+            }
+            Some(_) => {}
+            None => groups.push((key, vec![&record.strategy])),
+        }
+    }
+    let parts: Vec<String> = groups
+        .iter()
+        .map(|(key, names)| match names.len() {
+            count if count > NAMED => format!("{key} of {count} methods"),
+            _ => format!("{key} of {}", listed(names)),
+        })
+        .collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "{MARK} {chip} runs fragment shaders on a few of its processors. Compare rows with this mark \
+             with no other chip\u{2019}s: {}.",
+            parts.join("; ")
+        )
+    })
+}
+
+/// A record's note without what the mark says.
+pub(super) fn unmarked_note(record: &Record) -> Option<String> {
+    let note = record.note.as_ref()?.replace(OLD_NOTE, "");
+    let note = note.trim_matches(|c: char| c == ';' || c.is_whitespace());
+    (!note.is_empty()).then(|| note.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{Mode, PassKind, PassTimes, Results};
+
+    #[test]
+    fn stored_rows_are_marked_by_their_passes() {
+        let example: Results =
+            serde_json::from_str(include_str!("../results/example.json")).expect("the example");
+        let machine = example.machine.clone();
+        let of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
+            let mut record = example.records[0].clone();
+            (record.strategy, record.mode) = (strategy.to_owned(), mode);
+            let times = |kind| PassTimes::new(kind, vec![1.0]);
+            record.passes = passes.iter().map(|(name, kind)| (*name, times(*kind))).collect();
+            record
+        };
+        let deferred =
+            [("gbuffer", PassKind::Scene), ("cull", PassKind::Assign), ("shade", PassKind::Shade)];
+        let ids = [("model-ids", PassKind::Assign), ("shade", PassKind::Shade)];
+        let tiles = of("T-E/28x28", Mode::Deferred, &deferred);
+        let volumes = of("RasterSphere", Mode::Deferred, &deferred);
+        let models = of("M/2", Mode::Deferred, &ids);
+        let mut forward = of("T-E/28x28", Mode::Forward, &deferred[1..]);
+        forward.note = Some(format!("{OLD_NOTE}; lists overflowed"));
+        assert_eq!(mark(&machine, &tiles), "");
+        for record in [&volumes, &models, &forward] {
+            assert_eq!(mark(&machine, record), " \u{2020}", "{}", record.strategy);
+        }
+        assert_eq!(unmarked_note(&forward).as_deref(), Some("lists overflowed"));
+        let all = notice(&machine, [&tiles, &volumes, &models, &forward]).expect("three rows");
+        for part in [
+            "H200 runs",
+            "shade in deferred of RasterSphere",
+            "model-ids in deferred of M/2",
+            "shade in forward of T-E/28x28",
+        ] {
+            assert!(all.contains(part), "{part}: {all}");
+        }
+        let mut desktop = machine;
+        desktop.adapter = "NVIDIA GeForce RTX 4090".to_owned();
+        assert!(notice(&desktop, [&volumes]).is_none() && !is_marked(&desktop, &volumes));
+    }
+}

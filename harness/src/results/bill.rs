@@ -1,0 +1,252 @@
+//! Who pays for a pass, what draws it, and what a method costs in each kind of frame.
+//!
+//! All of it follows from the name of a pass, the mode and the method, so that results that were
+//! stored before are billed alike.
+//!
+//! A renderer draws one of these frames:
+//!
+//! | frame | a method that reads depth | other methods |
+//! |---|---|---|
+//! | forward, no pre-pass | pays for a depth pre-pass | light hidden surfaces too, where those are drawn first |
+//! | forward | finds the depth pre-pass drawn | likewise |
+//! | deferred | finds depth and G-buffer drawn; M pays for `model-ids` | likewise |
+//! | deferred, ids in the G-buffer | finds everything drawn | likewise |
+
+use shading::Mode;
+
+use super::{PassKind, Record};
+use crate::registry::family_reads_depth;
+
+/// The method that draws light volumes.
+const RASTER_SPHERE: &str = "RasterSphere";
+
+/// Which bill a pass is on: what the pipeline does not know is a strategy's own. In forward shading
+/// the G-buffer is drawn only for a strategy that reads normals, and without a pre-pass so is depth.
+pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
+    match (name, mode) {
+        ("gbuffer", mode) if mode.is_forward() => PassKind::Assign,
+        ("depth", Mode::ForwardNoPrepass) => PassKind::Assign,
+        ("depth" | "gbuffer", _) => PassKind::Scene,
+        ("shade" | "clay", _) => PassKind::Shade,
+        _ => PassKind::Assign,
+    }
+}
+
+/// Whether a pass rasterises triangles and runs fragment shaders, of a method in a mode.
+pub fn is_raster_pass(name: &str, mode: Mode, strategy: &str) -> bool {
+    match name {
+        "depth" | "gbuffer" | "model-ids" | "clay" => true,
+        "shade" => mode.is_forward() || family(strategy) == RASTER_SPHERE,
+        _ => false,
+    }
+}
+
+fn family(strategy: &str) -> &str {
+    strategy.split('/').next().unwrap_or(strategy)
+}
+
+/// A kind of frame that a renderer may draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameKind {
+    /// Forward shading without a depth pre-pass.
+    NoPrepass,
+    /// Forward shading behind a depth pre-pass.
+    Prepass,
+    /// Deferred shading whose G-buffer has no models.
+    Deferred,
+    /// Deferred shading with the model of each pixel in the G-buffer.
+    DeferredIds,
+}
+
+impl FrameKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::NoPrepass, Self::Prepass, Self::Deferred, Self::DeferredIds];
+
+    /// The mode that measures it.
+    pub fn mode(self) -> Mode {
+        match self {
+            Self::NoPrepass => Mode::ForwardNoPrepass,
+            Self::Prepass => Mode::Forward,
+            Self::Deferred => Mode::Deferred,
+            Self::DeferredIds => Mode::DeferredIds,
+        }
+    }
+}
+
+/// What a method costs in a kind of frame, ms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bill {
+    /// Assigning lights, with whatever the frame does not draw anyway.
+    pub assign_ms: f64,
+    /// Lighting pixels.
+    pub shade_ms: f64,
+    /// All passes.
+    pub frame_ms: f64,
+    /// Assigning and lighting, gaps included; `None` where it is not known.
+    pub span_ms: Option<f64>,
+    /// Whether it was computed from another kind of frame.
+    pub is_derived: bool,
+}
+
+impl Bill {
+    /// Assigning and lighting, ms.
+    pub fn both_ms(&self) -> f64 {
+        self.assign_ms + self.shade_ms
+    }
+
+    /// What a method costs in a kind of frame, from its records in any mode under the same lights:
+    /// measured where it was, else derived.
+    ///
+    /// Without a pre-pass, a method that reads depth draws the same passes as behind one, and pays for
+    /// one more. With ids in the G-buffer, a method does without `model-ids`; what the ids cost the
+    /// G-buffer is then not known. Nothing else can be derived.
+    pub fn of(kind: FrameKind, records: &[&Record]) -> Option<Self> {
+        let in_mode = |mode: Mode| records.iter().find(|record| record.mode == mode);
+        if let Some(record) = in_mode(kind.mode()) {
+            return Some(Self {
+                assign_ms: record.assign_ms,
+                shade_ms: record.shade_ms,
+                frame_ms: record.frame_ms,
+                span_ms: record.span_ms,
+                is_derived: false,
+            });
+        }
+        let derived = |record: &Record, assign_ms: f64, frame_ms: f64| Self {
+            assign_ms,
+            shade_ms: record.shade_ms,
+            frame_ms,
+            span_ms: None,
+            is_derived: true,
+        };
+        match kind {
+            FrameKind::NoPrepass => in_mode(Mode::Forward)
+                .filter(|record| record.reads_depth())
+                .map(|record| derived(record, record.assign_with_depth_ms(), record.frame_ms)),
+            FrameKind::DeferredIds => in_mode(Mode::Deferred).map(|record| {
+                let without_ids = |name: &str| name != "model-ids";
+                let assign =
+                    record.time_of(|name, kind| kind == PassKind::Assign && without_ids(name));
+                derived(record, assign, record.time_of(|name, _| without_ids(name)))
+            }),
+            FrameKind::Prepass | FrameKind::Deferred => None,
+        }
+    }
+}
+
+impl Record {
+    /// The passes of its bill that rasterise triangles: `shade` in forward shading and of light
+    /// volumes, `model-ids`, and what is drawn for the method alone.
+    pub fn raster_passes(&self) -> Vec<&str> {
+        let is_billed = |kind| matches!(kind, PassKind::Assign | PassKind::Shade);
+        self.passes
+            .iter()
+            .filter(|(name, times)| {
+                is_billed(times.kind) && is_raster_pass(name, self.mode, &self.strategy)
+            })
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    /// Whether the method reads the depth of surfaces before it assigns lights.
+    pub fn reads_depth(&self) -> bool {
+        family_reads_depth(family(&self.strategy))
+    }
+
+    /// Assigning lights, with the depth pre-pass where the method reads depth, ms.
+    pub fn assign_with_depth_ms(&self) -> f64 {
+        let reads_depth = self.reads_depth();
+        self.time_of(|name, kind| kind == PassKind::Assign || (reads_depth && name == "depth"))
+    }
+
+    /// Assigning and lighting, with the depth pre-pass on the bill of methods that read depth, ms.
+    pub fn with_depth_ms(&self) -> f64 {
+        self.assign_with_depth_ms() + self.shade_ms
+    }
+
+    /// Bills passes as this program does: older programs billed nobody for the G-buffer that forward
+    /// shading draws for normals.
+    pub(super) fn bill_again(&mut self) {
+        let mode = self.mode;
+        let changed = |name: &str| name == "gbuffer" && mode.is_forward();
+        if self.passes.iter().any(|(name, pass)| changed(name) && pass.kind == PassKind::Scene) {
+            self.passes.bill_again(|name, kind| match changed(name) {
+                true => pass_kind(name, mode),
+                false => kind,
+            });
+            self.set_times();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{PassTimes, Results};
+
+    fn record(strategy: &str, mode: Mode, passes: &[(&str, f64)]) -> Record {
+        let example: Results =
+            serde_json::from_str(include_str!("example.json")).expect("the example");
+        let mut record = example.records[0].clone();
+        (record.strategy, record.mode) = (strategy.to_owned(), mode);
+        let times = |ms: f64| vec![ms; 3];
+        record.passes = passes
+            .iter()
+            .map(|(name, ms)| (*name, PassTimes::new(pass_kind(name, mode), times(*ms))))
+            .collect();
+        record.set_times();
+        record
+    }
+
+    #[test]
+    fn rows_know_their_raster_passes() {
+        let of = |strategy: &str, mode, passes: &[(&str, f64)]| {
+            record(strategy, mode, passes).raster_passes().join(",")
+        };
+        let deferred = [("depth", 1.0), ("gbuffer", 1.0), ("cull", 1.0), ("shade", 1.0)];
+        assert_eq!(of("T-E/28x28", Mode::Deferred, &deferred), "");
+        assert_eq!(of("RasterSphere", Mode::Deferred, &deferred), "shade");
+        let ids = [("depth", 1.0), ("model-ids", 1.0), ("cull", 1.0), ("shade", 1.0)];
+        assert_eq!(of("M/2/bvh", Mode::Deferred, &ids), "model-ids");
+        assert_eq!(of("T-E/28x28", Mode::Forward, &deferred), "gbuffer,shade");
+        assert_eq!(of("T-E/28x28", Mode::ForwardNoPrepass, &ids[..1]), "depth");
+    }
+
+    #[test]
+    fn each_frame_bills_what_it_does_not_draw_anyway() {
+        let explicit = [("depth", 0.5), ("bounds", 0.1), ("cull", 0.2), ("shade", 1.0)];
+        let forward = record("SC-E/48x48x40/bvh", Mode::Forward, &explicit);
+        assert!((forward.with_depth_ms() - 1.8).abs() < 1e-12);
+        let none = Bill::of(FrameKind::NoPrepass, &[&forward]).expect("derived");
+        assert!(none.is_derived && (none.assign_ms - 0.8).abs() < 1e-12, "{none:?}");
+        assert!((none.frame_ms - 1.8).abs() < 1e-12, "{none:?}");
+        let measured = record("SC-E/48x48x40/bvh", Mode::ForwardNoPrepass, &explicit);
+        let bill = Bill::of(FrameKind::NoPrepass, &[&forward, &measured]).expect("measured");
+        assert!(!bill.is_derived && (bill.assign_ms - 0.8).abs() < 1e-12, "{bill:?}");
+        // What it takes to light hidden surfaces cannot be derived.
+        let implicit = record("T-I/28x28", Mode::Forward, &explicit);
+        assert_eq!(Bill::of(FrameKind::NoPrepass, &[&implicit]), None);
+        assert!((implicit.with_depth_ms() - 1.3).abs() < 1e-12);
+        let ids =
+            [("depth", 0.5), ("gbuffer", 1.0), ("model-ids", 0.5), ("cull", 0.1), ("shade", 0.3)];
+        let models = record("M/2", Mode::Deferred, &ids);
+        let deferred = Bill::of(FrameKind::Deferred, &[&models]).expect("measured");
+        let with_ids = Bill::of(FrameKind::DeferredIds, &[&models]).expect("derived");
+        assert!((deferred.both_ms() - 0.9).abs() < 1e-12 && !deferred.is_derived);
+        assert!((with_ids.both_ms() - 0.4).abs() < 1e-12 && with_ids.is_derived);
+        assert!((with_ids.frame_ms - 1.9).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stored_forward_row_pays_for_its_g_buffer() {
+        let passes = [("depth", 1.0), ("gbuffer", 2.0), ("cull", 1.0), ("shade", 1.0)];
+        let mut stored = record("SC-E/48x48x40/n6", Mode::Forward, &passes);
+        stored.passes.bill_again(|name, kind| match name {
+            "gbuffer" => PassKind::Scene,
+            _ => kind,
+        });
+        stored.set_times();
+        assert_eq!(stored.assign_ms, 1.0);
+        stored.bill_again();
+        assert_eq!((stored.assign_ms, stored.frame_ms), (3.0, 5.0));
+    }
+}
