@@ -157,6 +157,21 @@ fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
     }
 }
 
+/// A strategy that lists every light for every sample conforms: lists must also be short.
+#[test]
+fn lists_are_short() {
+    let listed = |variant| {
+        let make = clustered(variant, "16x16x16", CullSettings::default());
+        let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
+        case.listed_per_sample().expect("passed")
+    };
+    let [dense, dense_boxes, sparse, sparse_boxes] = [DC_I, DC_E, SC_I, SC_E].map(listed);
+    println!("{dense:.1}, {dense_boxes:.1}, {sparse:.1} and {sparse_boxes:.1} of 600 lights");
+    // What a cluster holds does not depend on how clusters are stored.
+    assert!((dense_boxes / sparse_boxes - 1.0).abs() < 1e-9, "{dense_boxes}, {sparse_boxes}");
+    assert!(sparse < 250.0 && sparse_boxes < 0.95 * sparse, "{sparse}, {sparse_boxes}");
+}
+
 #[test]
 fn faults_are_rejected() {
     for variant in [DC_I, DC_E, SC_I, SC_E] {

@@ -90,6 +90,19 @@ fn boxes_of_surfaces_are_checked() {
     }
 }
 
+/// A strategy that lists every light for every sample conforms: lists must also be short.
+#[test]
+fn lists_are_short() {
+    let listed = |counts| {
+        let make = grid(counts, GridBox::Lights, CullSettings::default());
+        let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
+        case.listed_per_sample().expect("passed")
+    };
+    let (one, many) = (listed("1x1x1"), listed("16x16x16"));
+    println!("{one:.1} in one cell, {many:.1} in many, of 600 lights");
+    assert!(many < 300.0 && many < 0.6 * one, "{one}, {many}");
+}
+
 #[test]
 fn faults_are_rejected() {
     let make = grid("8x8x8", GridBox::Positions, CullSettings::default());

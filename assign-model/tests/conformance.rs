@@ -30,6 +30,7 @@ fn whole_models_conform() {
 #[test]
 fn models_in_parts_conform() {
     conforms(Some(20.0), CullSettings::default());
+    conforms(Some(1.5), CullSettings::default());
 }
 
 #[test]
@@ -55,6 +56,19 @@ fn what_it_cannot_serve_is_refused() {
         let error = PerModel::new(&gpu, Some(bad), CullSettings::default()).unwrap_err();
         assert!(error.to_string().contains("0.001 to 1000000 m"), "{error}");
     }
+}
+
+/// A strategy that lists every light for every sample conforms: lists must also be short.
+#[test]
+fn lists_are_short() {
+    let listed = |limit_m| {
+        let make = per_model(limit_m, CullSettings::default());
+        let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
+        case.listed_per_sample().expect("passed")
+    };
+    let (whole, parts) = (listed(None), listed(Some(1.0)));
+    println!("{whole:.1} by models, {parts:.1} by parts, of 600 lights");
+    assert!(whole < 595.0 && parts < 0.8 * whole, "{whole}, {parts}");
 }
 
 #[test]

@@ -66,6 +66,19 @@ fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
     assert!(error.contains("needs depth"), "{error}");
 }
 
+/// A strategy that lists every light for every sample conforms: lists must also be short.
+#[test]
+fn lists_are_short() {
+    let listed = |bounds| {
+        let make = tiled(bounds, "16x16", CullSettings::default());
+        let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
+        case.listed_per_sample().expect("passed")
+    };
+    let (implicit, explicit) = (listed(Bounds::Implicit), listed(Bounds::Explicit));
+    println!("{implicit:.1} and {explicit:.1} of 600 lights");
+    assert!(implicit < 300.0 && explicit < 0.9 * implicit, "{implicit}, {explicit}");
+}
+
 #[test]
 fn faults_are_rejected() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {

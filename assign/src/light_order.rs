@@ -200,7 +200,9 @@ mod tests {
         lights[5].position = Vec3::splat(-3e38);
         lights[7].range_m = 1e9;
         for order in [LightOrder::Morton, LightOrder::Bvh] {
-            assert_eq!(order.of(&lights).len(), 100);
+            let mut indices = order.of(&lights);
+            indices.sort_unstable();
+            assert_eq!(indices, (0..100).collect::<Vec<_>>(), "{order}");
         }
     }
 }

@@ -363,8 +363,20 @@ mod tests {
     fn a_far_plane_at_the_end_of_f32_overflows_nothing() {
         let mut view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 10.0, [64, 48]);
         view.far_m = Some(f32::MAX);
-        view.depth = DepthMapping::Standard;
-        assert_eq!(view.check(), Ok(()));
+        for depth in [DepthMapping::Standard, DepthMapping::Reversed] {
+            view.depth = depth;
+            assert_eq!(view.check(), Ok(()));
+            let clip = view.view_to_clip();
+            assert!(clip.is_finite(), "{depth:?}: {clip}");
+            let depth_of = |depth_m: f32| {
+                let point = clip * Vec4::new(0.0, 0.0, -depth_m, 1.0);
+                point.z / point.w
+            };
+            // The near plane and a point far off lie where they should.
+            let near = 1.0 - view.depth_clear();
+            assert!((depth_of(10.0) - near).abs() < 1e-6, "{depth:?}: {}", depth_of(10.0));
+            assert!((depth_of(1e9) - view.depth_clear()).abs() < 1e-6, "{depth:?}");
+        }
     }
 
     #[test]

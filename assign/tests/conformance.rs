@@ -17,6 +17,13 @@ fn no_culling_conforms() {
     assert_eq!(report.cases.len(), CASES.len());
 }
 
+/// What a strategy is measured against that must list fewer.
+#[test]
+fn no_culling_lists_every_light_for_every_sample() {
+    let case = conformance::run_case("mixed-kinds", &everything).expect("conforms");
+    assert_eq!(case.listed_per_sample(), Some(600.0));
+}
+
 #[test]
 fn faults_in_no_culling_are_rejected() {
     let planted = conformance::rejects_faults(&everything).expect("rejects");

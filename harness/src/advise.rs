@@ -2,26 +2,34 @@
 //!
 //! Three rounds, each a comparison of its own, so that every figure can be taken again:
 //!
-//! 1. `families`: every strategy at its default parameters, from both sources of lights.
+//! 1. `families`: every strategy at its default parameters, from both sources of lights, beside no
+//!    culling.
 //! 2. `parameters`: the three best families at other group sizes, from the better source.
 //! 3. `final`: the best of both rounds, in turns and with more frames; where the budget allows an
 //!    error, with capped lists too.
 //!
-//! The answer is the fastest of the last round whose error lies within the budget.
+//! All rounds judge several poses along the scene's path, each pose several times, so that ties are
+//! seen. A scene without a path, or a camera that the user placed, is judged from one view.
+//!
+//! The answer is a [`verdict`] on the last round.
 
-use std::fmt::Write;
+mod answer;
+mod verdict;
+
+pub use answer::answer;
+pub use verdict::{METRIC, Verdict, error_of, verdict};
 
 use crate::{
     checks::check_writable,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
     compare::Bench,
     error::HarnessError,
-    report,
-    results::{DeviceType, Record, Results},
+    report::{self, needs_built_hierarchy},
+    results::{BASELINE, EARLY_EXIT, Record, Results},
 };
 
 /// The strategies of the first round.
-const FAMILIES: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2";
+const FAMILIES: &str = "None,Sphere,T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2";
 
 /// Families that go on to the second round.
 const FINALISTS: usize = 3;
@@ -29,52 +37,53 @@ const FINALISTS: usize = 3;
 /// Strategies that go on to the last.
 const LAST: usize = 5;
 
-/// Frames of a strategy in the first two rounds, and in the last: on a GPU, and on a software
-/// adapter.
+/// Strategies without a hierarchy among them, at least.
+const LAST_LINEAR: usize = 2;
+
+/// No culling goes on to the last round where it takes no longer than this, over the fastest.
+const NEAR: f64 = 2.0;
+
+/// Frames of a strategy from one view: in the first two rounds, and in the last; on a GPU, and on a
+/// software adapter.
 const FRAMES: [[u32; 2]; 2] = [[16, 48], [2, 6]];
 
-/// The metric that the budget is a bound of.
-const METRIC: &str = "rel_mse";
+/// Poses along the path where the command line names no number: on a GPU, and on a software
+/// adapter.
+const POSES: [u32; 2] = [24, 3];
+
+/// Laps over the poses: in the first two rounds, and in the last, whose laps must tell ties.
+const LAPS: [u32; 2] = [2, 8];
+
+/// Lights that a list keeps, where the budget allows an error.
+const CAPS: [u32; 4] = [8, 16, 32, 64];
+
+/// Strategies to which the caps are applied.
+const CAPPED: usize = 2;
 
 /// Searches, writes what was measured, and says what to use.
+///
+/// # Errors
+///
+/// Whatever a comparison fails with, and a mode of more than one.
 pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, HarnessError> {
     if args.mode.modes().len() != 1 {
         return Err(CliError::out_of_range("--mode", "both", "deferred or forward").into());
     }
-    let is_file = [".gltf", ".glb"].iter().any(|end| args.lights.to_lowercase().ends_with(end));
-    if !is_file && args.lights.parse::<u32>().is_err() {
-        let accepted = "a whole number from 0 to 16,777,216, or a .gltf or .glb file";
-        return Err(CliError::out_of_range("--lights", &args.lights, accepted).into());
-    }
     check_writable(&args.out)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
-    let frames = FRAMES[usize::from(bench.gpu().is_software())];
-    let mut search = Search { args, bench: &mut bench };
+    let mut search = Search::new(args, &mut bench, &command)?;
 
-    let families = search.round("families", FAMILIES, &["--source", "both"], frames[0])?;
+    let families = search.round("families", FAMILIES, &["--source", "both"], 0)?;
     let best = fastest_by_family(&families);
     let finalists: Vec<String> =
         best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
     if finalists.is_empty() {
         return Err(CliError::new("advise: no strategy showed the image of no culling").into());
     }
-    let parameters = search.round("parameters", &finalists.join(","), &[], frames[0])?;
+    let parameters = search.round("parameters", &finalists.join(","), &[], 0)?;
 
-    let mut candidates: Vec<&Record> = families.records.iter().chain(&parameters.records).collect();
-    candidates.retain(|record| record.is_exact());
-    candidates.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-    let mut last: Vec<String> = Vec::new();
-    for record in candidates {
-        if last.len() < LAST && !last.contains(&record.strategy) {
-            last.push(record.strategy.clone());
-        }
-    }
-    if args.error_budget > 0.0 {
-        let lossy = last.iter().take(2).flat_map(|id| CAPS.map(|cap| format!("{id}/cap{cap}")));
-        last.extend(lossy.collect::<Vec<_>>());
-    }
-    let ids = format!("None,Sphere,{}", last.join(","));
-    let mut finals = search.round("final", &ids, &["--truth", "full"], frames[1])?;
+    let ids = last_ids(&families, &parameters, args.error_budget);
+    let mut finals = search.round("final", &ids.join(","), &["--truth", "full"], 1)?;
     finals.command = command;
     let text = answer(&finals, args.error_budget);
     let table = report::render_table(&finals);
@@ -83,63 +92,87 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     finals.write(&args.out.join("results.json"))?;
     let pictures = crate::again::pictures(&finals, &args.out.join("final"));
     let page = report::write_html(&finals, &pictures, &args.out)?;
-    Ok(format!("{table}\n{text}\nreport   {}\nrounds   {}\n", page.display(), args.out.display()))
+    Ok(format!("{text}\n{table}\nreport   {}\nrounds   {}\n", page.display(), args.out.display()))
 }
-
-/// Lights that a list keeps, where the budget allows an error.
-const CAPS: [u32; 4] = [8, 16, 32, 64];
 
 /// A search on its way.
 struct Search<'a> {
     args: &'a AdviseArgs,
     bench: &'a mut Bench,
+    /// The words of the command line that a round shares.
+    shared: Vec<String>,
+    /// Poses along the path; `None` from one view.
+    poses: Option<u32>,
 }
 
-impl Search<'_> {
-    /// One comparison, kept in a folder of its own.
+impl<'a> Search<'a> {
+    fn new(
+        args: &'a AdviseArgs,
+        bench: &'a mut Bench,
+        command: &[String],
+    ) -> Result<Self, HarnessError> {
+        let default = POSES[usize::from(bench.gpu().is_software())];
+        let moves = bench.stage(&args.stage)?.scene.path.moves();
+        if args.poses.is_some() && !moves {
+            let scene = &args.stage.scene;
+            return Err(CliError::new(format!("--poses: {scene} has no camera path")).into());
+        }
+        let poses = (moves && args.stage.camera.is_none())
+            .then(|| args.poses.unwrap_or(default))
+            .filter(|poses| *poses > 1);
+        Ok(Self { args, bench, shared: AdviseArgs::shared_words(command), poses })
+    }
+
+    /// One comparison, kept in a folder of its own. `last` is 1 for the last round, else 0.
     fn round(
         &mut self,
         name: &str,
         strategies: &str,
         more: &[&str],
-        frames: u32,
+        last: usize,
     ) -> Result<Results, HarnessError> {
-        let args = self.args;
         eprintln!("round    {name}: {} strategies", strategies.split(',').count());
-        let (size, frames) =
-            (format!("{}x{}", args.size.width, args.size.height), frames.max(1).to_string());
-        let (scale, seed) = (args.scene_scale.to_string(), args.seed.to_string());
-        let mode = args.mode.modes().first().map_or("deferred", |mode| mode.name());
-        let mut words = vec!["lightbench", "compare", "--scene", &args.scene, "--scene-scale"];
-        words.extend([scale.as_str(), "--size", &size, "--seed", &seed, "--frames", &frames]);
-        words.extend(["--mode", mode, "--strategies", strategies]);
-        match args.lights.parse::<u32>() {
-            Ok(_) => words.extend(["--lights", &args.lights]),
-            Err(_) => words.extend(["--lights", "0", "--lights-from", &args.lights]),
+        let out = self.args.out.join(name);
+        let frames = FRAMES[usize::from(self.bench.gpu().is_software())][last];
+        let frames = self.poses.unwrap_or(frames).to_string();
+        let laps = LAPS[last].to_string();
+        let mut words = vec!["lightbench".to_owned(), "compare".to_owned()];
+        words.extend(self.shared.iter().cloned());
+        let mut option = |all: &[&str]| words.extend(all.iter().map(|word| (*word).to_owned()));
+        option(&["--strategies", strategies, "--frames", &frames]);
+        if self.poses.is_some() {
+            option(&["--path", "--laps", &laps]);
         }
-        if !more.contains(&"full") {
-            words.extend(["--truth", "none", "--pictures", "none"]);
+        if last == 0 {
+            option(&["--truth", "none", "--pictures", "none"]);
         }
-        words.extend(more);
-        let command: Vec<String> = words.into_iter().map(str::to_owned).collect();
-        let Invocation::Compare(compare) = cli::parse(&command)? else {
+        option(more);
+        option(&["--out", &out.to_string_lossy()]);
+        let Invocation::Compare(compare) = cli::parse(&words)? else {
             return Err(CliError::new("advise: a round compares nothing").into());
         };
-        let out = args.out.join(name);
+        let stage = self.args.stage.clone();
         let (results, _) =
-            self.bench.compare(&CompareArgs { out: out.clone(), ..compare }, command)?;
+            self.bench.compare(&CompareArgs { out: out.clone(), stage, ..compare }, words)?;
         results.write(&out.join("results.json"))?;
         Ok(results)
     }
 }
 
-/// The fastest record of each family, fastest first; those that lost something are left out.
+/// Records, fastest first.
+fn by_time<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<&'a Record> {
+    let mut records: Vec<&Record> =
+        records.filter(|record| record.assign_and_shade_ms().is_finite()).collect();
+    records.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
+    records
+}
+
+/// The fastest record of each family that culls, fastest first; those that lost something are left
+/// out.
 fn fastest_by_family(results: &Results) -> Vec<&Record> {
     let mut best: Vec<&Record> = Vec::new();
-    let mut records: Vec<&Record> =
-        results.records.iter().filter(|record| record.is_lossless()).collect();
-    records.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-    for record in records {
+    let exact = results.records.iter().filter(|record| record.culls() && record.is_exact());
+    for record in by_time(exact) {
         if best.iter().all(|known| family(&known.strategy) != family(&record.strategy)) {
             best.push(record);
         }
@@ -165,110 +198,44 @@ fn variants(id: &str) -> Vec<String> {
     sizes.iter().map(|size| format!("{}/{size}{source}", family(id))).collect()
 }
 
-/// What to use, what it costs, what comes next, and why.
-pub fn answer(results: &Results, error_budget: f64) -> String {
-    let error = |record: &Record| match record.is_lossless() {
-        true => Some(0.0),
-        false => record.errors.get(METRIC).copied().flatten(),
+/// What the last round compares: the fastest exact methods, some of them without a hierarchy; no
+/// culling where it is near; and, where the budget allows an error, shorter lists.
+fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<String> {
+    let all = || families.records.iter().chain(&parameters.records);
+    let exact = by_time(all().filter(|record| record.culls() && record.is_exact()));
+    let mut last: Vec<&Record> = Vec::new();
+    let is_new = |last: &[&Record], record: &Record| {
+        last.iter().all(|known| known.strategy != record.strategy)
     };
-    let mut within: Vec<&Record> = results
-        .records
-        .iter()
-        .filter(|record| !record.is_control() && record.assign_and_shade_ms().is_finite())
-        .filter(|record| error(record).is_some_and(|error| error <= error_budget))
-        .collect();
-    within.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-    let (Some(best), next) = (within.first(), within.get(1)) else {
-        return "Nothing stayed within the error budget.\n".to_owned();
-    };
-    let ms = |value: f64| report::significant(value);
-    let mut text = format!(
-        "Use {}: {} ms to assign and shade {} lights ({} + {})",
-        best.strategy,
-        ms(best.assign_and_shade_ms()),
-        best.lights,
-        ms(best.assign_ms),
-        ms(best.shade_ms),
-    );
-    if let Some(interval) = best.interval_ms() {
-        let _ = write!(text, ", median within {} to {}", ms(interval.low), ms(interval.high));
-    }
-    let _ = match error(best) {
-        Some(0.0) if best.is_lossy => {
-            writeln!(
-                text,
-                ", the image of no culling in this view: elsewhere its lists may lose lights."
-            )
+    for &record in &exact {
+        if last.len() < LAST && is_new(&last, record) {
+            last.push(record);
         }
-        Some(0.0) => writeln!(text, ", the image of no culling bit for bit."),
-        error => writeln!(text, ", relMSE {:.1e} in this view.", error.unwrap_or(f64::NAN)),
+    }
+    let linear = |record: &&&Record| !needs_built_hierarchy(record);
+    for &record in exact.iter().filter(linear) {
+        if last.iter().filter(|known| linear(known)).count() < LAST_LINEAR
+            && is_new(&last, record)
+        {
+            last.push(record);
+        }
+    }
+    let mut ids: Vec<String> = Vec::new();
+    let limit = NEAR * last.first().map_or(f64::INFINITY, |record| record.assign_and_shade_ms());
+    let near = |id: &str| {
+        all().any(|record| record.strategy == id && record.assign_and_shade_ms() <= limit)
     };
-    if let Some(next) = next {
-        let ratio = next.assign_and_shade_ms() / best.assign_and_shade_ms();
-        let told = if report::indistinguishable(best, next) == Some(true) {
-            "which cannot be told apart from it".to_owned()
-        } else {
-            format!("{:.1} % slower", (ratio - 1.0) * 100.0)
-        };
-        let _ = writeln!(
-            text,
-            "Runner-up: {}, {} ms, {told}.",
-            next.strategy,
-            ms(next.assign_and_shade_ms())
-        );
+    ids.extend([BASELINE, EARLY_EXIT].iter().filter(|id| near(id)).map(|id| (*id).to_owned()));
+    ids.extend(last.iter().map(|record| record.strategy.clone()));
+    if error_budget > 0.0 {
+        for record in last.iter().take(CAPPED) {
+            // A longer list loses nothing and gains nothing.
+            let shorter = CAPS.iter().filter(|cap| u64::from(**cap) < record.longest_list);
+            ids.extend(shorter.map(|cap| format!("{}/cap{cap}", record.strategy)));
+        }
     }
-    let _ = writeln!(text, "Why: {}.", why(best, next.copied(), results));
-    if results.machine.device_type == DeviceType::Cpu {
-        let _ = writeln!(text, "These are figures of a software adapter, not a GPU's.");
-    }
-    text
-}
-
-/// What makes the difference.
-fn why(best: &Record, next: Option<&Record>, results: &Results) -> String {
-    if !best.culls() {
-        return format!("with {} lights no list pays for the passes that make it", best.lights);
-    }
-    let mut reasons = Vec::new();
-    if let (Some(listed), Some(reach)) = (best.listed_per_sample, best.contributing_per_sample) {
-        reasons.push(format!(
-            "its lists hold {} lights a sample where {} reach it",
-            report::significant(listed),
-            report::significant(reach)
-        ));
-    }
-    if let Some(next) = next.filter(|next| next.culls()) {
-        let part = |name: &str, ms: f64| {
-            let gain = if ms < 0.0 { "costs" } else { "saves" };
-            format!("{name} {gain} {} ms", report::significant(ms.abs()))
-        };
-        reasons.push(format!(
-            "against the runner-up {} and {}",
-            part("assigning", next.assign_ms - best.assign_ms),
-            part("shading", next.shade_ms - best.shade_ms)
-        ));
-    }
-    let none = results.records.iter().find(|record| record.is_baseline());
-    if let Some(none) = none {
-        let ratio = none.assign_and_shade_ms() / best.assign_and_shade_ms();
-        reasons.push(format!("no culling takes {} times as long", report::significant(ratio)));
-    }
-    reasons.join("; ")
+    ids
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn variants_keep_family_and_source() {
-        for id in ["T-E/28x28/bvh", "SC-E/48x48x40", "G/20x20x20/bvh", "M/2", "HG/48x48x40"] {
-            let all = variants(id);
-            assert!(all.len() >= 4);
-            for variant in all {
-                assert_eq!(family(&variant), family(id));
-                assert_eq!(variant.ends_with("/bvh"), id.ends_with("/bvh"), "{variant}");
-            }
-        }
-    }
-}
+mod tests;

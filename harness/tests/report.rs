@@ -2,8 +2,10 @@
 
 mod report_data;
 
-use harness::report::{TABLE_WIDTH, finding, notices, render_html, render_table, write_html};
-use harness::results::{Clock, DeviceType, Mode, Results, TruthLevel};
+use harness::report::{
+    TABLE_WIDTH, finding, notices, render_html, render_markdown, render_table, write_html,
+};
+use harness::results::{Clock, DeviceType, Mode, PassTimes, Results, TruthLevel};
 use report_data::{empty, pictures, record, spoil, typical};
 
 fn of(records: impl IntoIterator<Item = harness::results::Record>) -> Results {
@@ -63,6 +65,117 @@ fn a_lossless_strategy_wins_over_a_faster_lossy_one_and_over_the_control() {
     results.records.push(record("Broken", Mode::Deferred, 1.0, 1.0));
     spoil(&mut results.records[3]);
     assert!(finding(&results)[0].contains("DC-I/64x64x24 shades"));
+}
+
+/// A copy of a record under another name, `factor` times as slow in every frame.
+fn copy(record: &harness::results::Record, name: &str, factor: f64) -> harness::results::Record {
+    let mut copy = record.clone();
+    copy.strategy = name.to_owned();
+    let passes: Vec<_> = record.passes.iter().map(|(name, times)| (name.to_owned(), times.clone())).collect();
+    for (name, mut times) in passes {
+        times.samples.iter_mut().for_each(|ms| *ms *= factor);
+        copy.passes.insert(&name, PassTimes::new(times.kind, times.samples));
+    }
+    copy.set_times();
+    copy
+}
+
+#[test]
+fn a_tie_has_no_winner_in_headline_terminal_or_page() {
+    let mut results = pair();
+    results.records.push(copy(&results.records[1], "T-E/28x28", 1.001));
+    results.records.push(copy(&results.records[1], "SC-E/48x48x40", 1.5));
+    let headline = &finding(&results)[0];
+    let tie = "DC-I/64x64x24 and T-E/28x28 tie for fastest: they shade 1,000 lights";
+    assert!(headline.contains(tie), "{headline}");
+    assert!(headline.ends_with("and show the same image, bit for bit."), "{headline}");
+    assert!(!headline.contains("DC-I/64x64x24 shades"), "{headline}");
+    assert!(render_table(&results).contains("DC-I/64x64x24 and T-E/28x28 cannot be told apart"));
+    let page = render_html(&results, &[]);
+    let best = page.matches("data-metric=\"both_ms\"").count();
+    let marked = page.split("data-metric=\"both_ms\"").skip(1);
+    let marked = marked.filter(|cell| cell.split('>').next().unwrap_or("").contains("best"));
+    assert_eq!((best, marked.count()), (4, 2), "both of the tie stand out");
+
+    // One that is surely slower leaves a winner.
+    results.records[2] = copy(&results.records[1], "T-E/28x28", 1.1);
+    assert!(finding(&results)[0].contains("DC-I/64x64x24 shades 1,000 lights"));
+}
+
+#[test]
+fn a_lead_that_rounds_do_not_show_says_so() {
+    let mut results = pair();
+    results.records.push(copy(&results.records[1], "T-E/28x28", 3.0));
+    for record in &mut results.records {
+        record.rounds = 3;
+    }
+    let headline = &finding(&results)[0];
+    assert!(headline.contains("3 rounds are too few to rank 2 methods"), "{headline}");
+    for record in &mut results.records {
+        record.along_path = true;
+        record.rounds = 1;
+    }
+    let headline = &finding(&results)[0];
+    assert!(headline.contains("by time alone: no rounds tell 2 methods apart"), "{headline}");
+    results.records.pop();
+    assert!(!finding(&results)[0].contains("apart"), "one method needs no rank");
+}
+
+#[test]
+fn a_built_hierarchy_leads_for_still_lights_only() {
+    let mut results = pair();
+    results.records[1].strategy = "SC-E/48x48x40/bvh".to_owned();
+    results.records[1].light_build_ms = Some(9.7);
+    let headline = &finding(&results)[0];
+    let limit = "(still lights only: through a hierarchy, built beforehand in 9.70 ms)";
+    assert!(headline.contains(limit), "{headline}");
+    results.records.push(copy(&results.records[1], "SC-E/48x48x40", 1.0));
+    let headline = &finding(&results)[0];
+    assert!(headline.contains("(those in /bvh for still lights only"), "{headline}");
+    results.records.remove(1);
+    assert!(!finding(&results)[0].contains("still"));
+}
+
+#[test]
+fn a_lossy_method_states_its_errors_wherever_it_is_shown() {
+    let mut results = pair();
+    assert!(!render_html(&results, &[]).contains("data-metric=\"flip\""));
+    assert!(!render_table(&results).contains("FLIP"));
+    assert!(!render_markdown(&results).contains("FLIP"));
+
+    let mut lossy = copy(&results.records[1], "SC-E/48x48x40/cap64", 0.5);
+    spoil(&mut lossy);
+    lossy.is_lossy = true;
+    lossy.errors = [("missing_energy", 0.3012), ("rel_mse", 0.21), ("flip", 0.104)]
+        .map(|(id, error)| (id.to_owned(), Some(error)))
+        .into();
+    results.records.push(lossy);
+    let page = render_html(&results, &[]);
+    for (metric, value, text) in [
+        ("missing_energy", "0.3012", "30.1"),
+        ("rel_mse", "0.21", "0.210"),
+        ("flip", "0.104", "0.104"),
+    ] {
+        let cell =
+            format!("data-metric=\"{metric}\" data-value=\"{value}\" class=\"fault\">{text}<");
+        assert!(page.contains(&cell), "{cell}");
+    }
+    let words = "30.1 % missing energy, relMSE 0.210, FLIP 0.104";
+    assert!(notices(&results).iter().any(|notice| notice.contains(words)), "{results:?}");
+    let table = render_table(&results);
+    let row: Vec<&str> = table
+        .lines()
+        .filter(|line| line.starts_with("SC-E/48x48x40/cap64"))
+        .filter(|line| line.contains("0.104"))
+        .flat_map(str::split_whitespace)
+        .collect();
+    assert_eq!(row, ["SC-E/48x48x40/cap64", "30.1", "0.210", "0.104"], "{table}");
+    let markdown = render_markdown(&results);
+    assert!(markdown.contains("| FLIP  |") && markdown.contains("| 0.104 |"), "{markdown}");
+    // Nothing but a lossy method is left: its errors follow its speed in the headline.
+    results.records.remove(1);
+    results.records[1].is_lossy = false;
+    assert!(finding(&results)[0].contains(words), "{:?}", finding(&results));
 }
 
 #[test]

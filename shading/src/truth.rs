@@ -162,7 +162,7 @@ impl<'a> LightBvh<'a> {
 
 #[cfg(test)]
 mod tests {
-    use assign::{Counters, LightList};
+    use assign::{Counters, Emitter, LightList, LightShape};
     use glam::Vec3;
 
     use super::*;
@@ -244,10 +244,29 @@ mod tests {
         assert_eq!(truth.missed, 1);
     }
 
+    /// Lights of every kind along a line, among them emitters much larger than their range.
+    fn mixed(count: u32) -> Vec<Light> {
+        let mut lights = lights(count);
+        for (ix, light) in lights.iter_mut().enumerate() {
+            let shape = match ix % 4 {
+                0 => continue,
+                1 => LightShape::Spot { direction: Vec3::Y, inner_angle: 0.2, outer_angle: 1.2 },
+                2 => LightShape::Vpl { normal: Vec3::NEG_Z, min_distance_m: 0.0 },
+                _ => {
+                    let emitter = Emitter::rectangle(5.0 * Vec3::X, 0.5 * Vec3::Y);
+                    LightShape::Area(if ix % 8 == 3 { emitter.two_sided() } else { emitter })
+                }
+            };
+            (light.shape, light.range_m) = (shape, 0.4 + 0.2 * (ix % 5) as f32);
+        }
+        lights
+    }
+
     #[test]
     fn the_hierarchy_finds_what_a_loop_finds() {
-        let lights = lights(200);
+        let lights = mixed(200);
         let bvh = LightBvh::new(&lights);
+        let mut beyond_the_middles_range = 0;
         for step in 0..400 {
             let point = [step as f32 * 0.5 + 0.01, 0.3, -0.2];
             let mut found = Vec::new();
@@ -257,6 +276,12 @@ mod tests {
             let looped: Vec<u32> =
                 (0..200).filter(|&i| lights[i as usize].reach(exact) > 0.0).collect();
             assert_eq!(found, looped, "at {point:?}");
+            let is_beyond = |light: &Light| {
+                exact.distance(light.position.as_dvec3()) > f64::from(light.range_m)
+            };
+            let beyond = looped.iter().filter(|&&ix| is_beyond(&lights[ix as usize]));
+            beyond_the_middles_range += beyond.count();
         }
+        assert!(beyond_the_middles_range > 400, "{beyond_the_middles_range}");
     }
 }

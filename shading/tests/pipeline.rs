@@ -50,17 +50,18 @@ fn deferred_and_forward_agree_up_to_the_g_buffers_precision() {
         image.pixels.iter().flatten().map(|v| f64::from(*v)).sum::<f64>()
             / image.pixels.len() as f64
     };
-    let off = deferred
-        .pixels
-        .iter()
-        .flatten()
-        .zip(forward.pixels.iter().flatten())
-        .map(|(a, b)| f64::from((a - b).abs()))
-        .sum::<f64>()
-        / forward.pixels.len() as f64;
+    let off = |deferred: &HdrImage| {
+        let pairs = deferred.pixels.iter().flatten().zip(forward.pixels.iter().flatten());
+        pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / forward.pixels.len() as f64
+    };
     assert!(mean(&forward) > 0.01, "the image is dark: {}", mean(&forward));
     // Eight-bit colour and half-float normals: within 2 % of the mean.
-    assert!(off < 0.02 * mean(&forward), "{off} off a mean of {}", mean(&forward));
+    let most = 0.02 * mean(&forward);
+    assert!(off(&deferred) < most, "{} off a mean of {}", off(&deferred), mean(&forward));
+    // Two of the 40 lights left out must show.
+    let fewer = LightBuffer::new(&gpu, &common::lights(40)[2..]).unwrap();
+    let (fewer, _) = draw(&gpu, &view, &fewer, Mode::Deferred);
+    assert!(off(&fewer) > most, "{} off a mean of {}", off(&fewer), mean(&forward));
 }
 
 /// The showcase has holes cut by alpha masks, which forward lighting cuts itself without a pre-pass.

@@ -9,7 +9,8 @@ use super::{
     violation::{Breach, Findings, Place, SamplePlace},
 };
 use crate::{
-    ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, ListsSnapshot,
+    ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, LightShape,
+    ListsSnapshot,
 };
 
 /// A pair closer to the edge of the light's support than this share of it does not count.
@@ -221,6 +222,7 @@ fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Pl
     let mut pairs = Pairs::default();
     let mut missed = Vec::new();
     let mut listed = vec![0_u32; lights.len()];
+    let radii: Vec<f64> = lights.iter().map(outer_radius).collect();
     for of_group in probes.chunk_by(|a, b| a.group == b.group) {
         let group = of_group[0].group;
         let entries = seen.entries(group);
@@ -234,9 +236,8 @@ fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Pl
         for probe in of_group {
             let point = DVec3::from_array(probe.position_world.map(f64::from));
             let normal = DVec3::from_array(probe.normal_world.map(f64::from)).normalize_or_zero();
-            for (light_ix, light) in lights.iter().enumerate() {
-                let range = f64::from(light.range_m);
-                let far = point.distance_squared(light.position.as_dvec3()) >= range * range;
+            for (light_ix, (light, radius)) in lights.iter().zip(&radii).enumerate() {
+                let far = point.distance_squared(light.position.as_dvec3()) > radius * radius;
                 // A position that is no number must not pass for one out of reach.
                 if far && point.is_finite() {
                     continue;
@@ -265,6 +266,19 @@ fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Pl
         }
     }
     (pairs, missed)
+}
+
+/// The distance from a light's position beyond which it reaches nothing, in f64. The range counts
+/// from the closest point of the emitter, so an emitter adds its farthest vertex.
+fn outer_radius(light: &Light) -> f64 {
+    let extent = match &light.shape {
+        LightShape::Area(emitter) => {
+            let vertices = emitter.vertices().iter().map(|v| v.as_dvec3().length());
+            vertices.fold(0.0, f64::max)
+        }
+        LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => 0.0,
+    };
+    f64::from(light.range_m) + extent
 }
 
 fn describe(light: &Light, reach: f64, missing: u32, listed: usize) -> String {
@@ -310,4 +324,63 @@ pub(super) fn same(a: &Seen, b: &Seen, breach: Breach, findings: &mut Findings) 
 
 fn sample_place(probe: &Probe) -> SamplePlace {
     SamplePlace { pixel: probe.pixel, depth_m: probe.depth_view }
+}
+
+#[cfg(test)]
+mod tests {
+    use bytemuck::Zeroable;
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{Counters, Emitter};
+
+    /// One sample at `point` whose list is empty.
+    fn empty_list_at(point: Vec3) -> Seen {
+        let mut probe = Probe::zeroed();
+        probe.position_world = point.to_array();
+        Seen {
+            snapshot: ListsSnapshot {
+                lists: vec![LightList { first: 0, count: 1 }, LightList { first: 1, count: 0 }],
+                entries: vec![ENTRY_DIFFUSE | ENTRY_SPECULAR],
+                counters: Counters::default(),
+            },
+            probes: vec![probe],
+            group_count: 1,
+            light_count: 1,
+            knows_normals: false,
+        }
+    }
+
+    /// Pairs that had to be listed, and pairs that were missed.
+    fn asked(light: Light, point: Vec3) -> (u64, usize) {
+        let mut findings = Findings::new("made up");
+        let pairs = pairs(&empty_list_at(point), &[light], &mut findings);
+        (pairs.reaching, findings.violations.len())
+    }
+
+    #[test]
+    fn a_pair_counts_up_to_the_edge_of_every_kind_of_light() {
+        let point = Light::point(Vec3::ZERO, 0.5, Vec3::ONE);
+        let spot = LightShape::Spot { direction: Vec3::Z, inner_angle: 0.1, outer_angle: 0.5 };
+        let vpl = Light::vpl(Vec3::ZERO, Vec3::Z, 0.5, Vec3::ONE);
+        // Emitters of 4 m and a range of half a metre: most of their light is out of the middle's
+        // range.
+        let rectangle = Emitter::rectangle(2.0 * Vec3::X, 2.0 * Vec3::Y);
+        let rectangle = Light::area(rectangle, Vec3::ZERO, 0.5, Vec3::ONE);
+        let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (0.0, 2.5), (-2.0, 2.0)];
+        let (polygon, middle) =
+            Emitter::polygon(&corners.map(|(x, y)| Vec3::new(x, y, 0.0))).unwrap();
+        let polygon = Light::area(polygon, middle, 0.5, Vec3::ONE);
+        let (cone_in, cone_out) = (0.4 * Vec3::new(0.47, 0.0, 0.87), Vec3::new(0.21, 0.0, 0.34));
+        for (light, inside, outside) in [
+            (point, 0.49 * Vec3::X, 0.51 * Vec3::X),
+            (Light { shape: spot, ..point }, cone_in, cone_out),
+            (vpl, Vec3::new(0.48, 0.0, 0.01), Vec3::new(0.48, 0.0, -0.01)),
+            (rectangle, Vec3::new(2.3, 2.3, 0.2), Vec3::new(2.4, 2.4, 0.2)),
+            (polygon, Vec3::new(2.3, -2.3, 0.2), Vec3::new(2.4, -2.4, 0.2)),
+        ] {
+            assert_eq!(asked(light, inside), (1, 1), "{light:?}");
+            assert_eq!(asked(light, outside), (0, 0), "{light:?}");
+        }
+    }
 }

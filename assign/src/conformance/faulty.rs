@@ -4,8 +4,8 @@ use bytemuck::bytes_of;
 
 use super::violation::Breach;
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, Lookup, Needs, Passes,
-    Shader, StrategyModule, entry, storage_entry, uniform_entry,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup, Needs,
+    Passes, Shader, StrategyModule, entry, storage_entry, uniform_entry,
 };
 
 /// A fault planted in a strategy that otherwise works.
@@ -29,6 +29,12 @@ pub enum Fault {
     RunawayList,
     /// Lists are made from lights of 0.9 times their range.
     ShrunkenBound,
+    /// Lists are made from area lights that shine from their middle alone.
+    CentredEmitter,
+    /// Lists are made from spots of 0.9 times their half angle.
+    NarrowCone,
+    /// Lists are made from virtual point lights that shine into 0.9 of their half space.
+    NarrowHalfSpace,
     /// Lists are made no more once the lights have moved.
     StaleLists,
     /// Every other frame lacks entries.
@@ -51,7 +57,7 @@ pub enum Fault {
 
 impl Fault {
     /// All faults.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 21] = [
         Self::DroppedLight,
         Self::ShuffledList,
         Self::Repeated,
@@ -61,6 +67,9 @@ impl Fault {
         Self::HighHorizon,
         Self::RunawayList,
         Self::ShrunkenBound,
+        Self::CentredEmitter,
+        Self::NarrowCone,
+        Self::NarrowHalfSpace,
         Self::StaleLists,
         Self::Flicker,
         Self::LeakyQuarantine,
@@ -84,6 +93,9 @@ impl Fault {
             Self::HighHorizon => ("lights-at-horizon", Breach::MissedPair),
             Self::RunawayList => ("33-lights", Breach::OutsideBuffer),
             Self::ShrunkenBound => ("light-at-tile-corner", Breach::MissedPair),
+            Self::CentredEmitter => ("area-lights-grazing", Breach::MissedPair),
+            Self::NarrowCone => ("spots-45", Breach::MissedPair),
+            Self::NarrowHalfSpace => ("mixed-kinds", Breach::MissedPair),
             Self::StaleLists => ("lights-move", Breach::MissedPair),
             Self::Flicker => ("33-lights", Breach::Unstable),
             Self::LeakyQuarantine => ("quarantine", Breach::Quarantine),
@@ -109,6 +121,9 @@ impl Fault {
         matches!(
             self,
             Self::ShrunkenBound
+                | Self::CentredEmitter
+                | Self::NarrowCone
+                | Self::NarrowHalfSpace
                 | Self::StaleLists
                 | Self::Record0
                 | Self::SilentOverflow
@@ -128,6 +143,18 @@ impl Fault {
         self == Self::HighHorizon
     }
 
+    /// Whether the strategy is shown other lights than there are.
+    fn alters_lights(self) -> bool {
+        matches!(
+            self,
+            Self::ShrunkenBound
+                | Self::CentredEmitter
+                | Self::NarrowCone
+                | Self::NarrowHalfSpace
+                | Self::HighHorizon
+        )
+    }
+
     /// What `fault.wesl` is to do in a frame; 0 is nothing.
     fn kernel_kind(self, frame: u32, rejected: bool) -> u32 {
         match self {
@@ -143,6 +170,9 @@ impl Fault {
             Self::Flicker => frame % 2,
             Self::LeakyQuarantine => u32::from(rejected),
             Self::ShrunkenBound
+            | Self::CentredEmitter
+            | Self::NarrowCone
+            | Self::NarrowHalfSpace
             | Self::HighHorizon
             | Self::StaleLists
             | Self::StarvedPool
@@ -196,15 +226,29 @@ impl Faulty {
         })
     }
 
-    /// What the strategy is shown of a light: its range, or its height above every surface that
-    /// faces the eye, is too small.
+    /// What the strategy is shown of a light: a part of its support, or a place that stands lower
+    /// above every surface that faces the eye.
     fn alter(&self, light: &Light, frame: &Frame<'_>) -> Light {
+        let shape = match (self.fault, &light.shape) {
+            (Fault::CentredEmitter, LightShape::Area(_)) => LightShape::Point,
+            (Fault::NarrowCone, &LightShape::Spot { direction, inner_angle, outer_angle }) => {
+                let outer_angle = 0.9 * outer_angle;
+                let inner_angle = inner_angle.min(outer_angle);
+                LightShape::Spot { direction, inner_angle, outer_angle }
+            }
+            (Fault::NarrowHalfSpace, &LightShape::Vpl { normal: direction, .. }) => {
+                let outer_angle = 0.9 * std::f32::consts::FRAC_PI_2;
+                LightShape::Spot { direction, inner_angle: 0.0, outer_angle }
+            }
+            (_, shape) => *shape,
+        };
+        let away = (light.position - frame.view.eye()).normalize_or_zero();
         match self.fault {
             Fault::HighHorizon => {
-                let away = (light.position - frame.view.eye()).normalize_or_zero();
                 Light { position: light.position + 0.05 * light.range_m * away, ..*light }
             }
-            _ => Light { range_m: 0.9 * light.range_m, ..*light },
+            Fault::ShrunkenBound => Light { range_m: 0.9 * light.range_m, ..*light },
+            _ => Light { shape, ..*light },
         }
     }
 
@@ -252,7 +296,7 @@ impl Assignment for Faulty {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         match self.fault {
-            Fault::ShrunkenBound | Fault::HighHorizon => {
+            fault if fault.alters_lights() => {
                 let lights = frame.lights.lights().iter();
                 let lights: Vec<Light> = lights.map(|light| self.alter(light, frame)).collect();
                 self.altered.update(gpu, &lights)?;
@@ -279,7 +323,7 @@ impl Assignment for Faulty {
         match self.fault {
             Fault::StaleLists if *first_lights != lights => return,
             Fault::Unrecorded => return,
-            Fault::ShrunkenBound | Fault::HighHorizon => {
+            fault if fault.alters_lights() => {
                 let frame = Self::altered(&self.altered, frame);
                 self.inner.record(&frame, passes);
             }

@@ -171,6 +171,16 @@ pub struct Report {
     pub cases: Vec<CaseReport>,
 }
 
+impl CaseReport {
+    /// Mean entries of the list that a sample reads; `None` where the case did not pass.
+    pub fn listed_per_sample(&self) -> Option<f64> {
+        match &self.outcome {
+            Outcome::Passed(figures) => Some(figures.listed as f64 / figures.samples.max(1) as f64),
+            Outcome::Failed(_) | Outcome::Unserved(_) => None,
+        }
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for CaseReport { case, outcome } in &self.cases {

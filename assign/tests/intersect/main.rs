@@ -11,6 +11,7 @@ mod facing;
 mod groups;
 mod oracle;
 mod pairs;
+mod premises;
 mod rates;
 mod spots;
 mod wesl;

@@ -175,12 +175,19 @@ impl Tester {
     }
 }
 
+/// The share of pairs in which shader and mirror may differ by more than rounding of the slack: axes
+/// along edges shorter than their corners' rounding, and between nearest points that a search has not
+/// yet found.
+const BEYOND_ROUNDING: f64 = 0.02;
+
 /// What came of comparing one permutation.
 #[derive(Debug, Default)]
 struct Tally {
     pairs: usize,
     hits: usize,
     disagreements: usize,
+    /// Of those, the ones that rounding of the slack does not explain.
+    beyond_rounding: usize,
 }
 
 /// Both sides round, so they may differ where the gap lies within rounding of the slack: there
@@ -222,8 +229,10 @@ fn compare(
                 // any, which is no axis the less. So is that between nearest points which a search
                 // that is not done yet has found.
                 let is_area = matches!(light.shape, LightShape::Area(_));
+                let is_rounding = with_slack(0.5) != with_slack(1.5);
+                tally.beyond_rounding += usize::from(!is_rounding);
                 assert!(
-                    tests.sat_e || is_area || with_slack(0.5) != with_slack(1.5),
+                    tests.sat_e || is_area || is_rounding,
                     "beyond rounding, WESL says {wesl:?}: {group:?} {light:?}"
                 );
             }
@@ -269,6 +278,7 @@ fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, unions: &[
             let share = |count: usize| count as f64 / tally.pairs as f64;
             assert!((0.3..0.95).contains(&share(tally.hits)), "{tally:?}");
             assert!(share(tally.disagreements) < 0.25, "{tally:?}");
+            assert!(share(tally.beyond_rounding) < BEYOND_ROUNDING, "{tally:?}");
         }
     }
 }

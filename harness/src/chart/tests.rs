@@ -243,3 +243,36 @@ fn series_of_one_shape_and_class_share_a_row_of_zeros() {
     assert_eq!(height([None, None]), height([Some(0), Some(1)]));
     assert!(height([Some(0), Some(0)]) < height([Some(0), Some(1)]));
 }
+
+/// Where the points of a drawing are: middle of each mark that can be hit.
+fn places(svg: &str) -> Vec<[f64; 2]> {
+    let number = |tag: &str, name: &str| -> f64 {
+        let value = tag.split(&format!(" {name}=\"")).nth(1).and_then(|v| v.split('"').next());
+        value.and_then(|v| v.parse().ok()).expect("a number")
+    };
+    let marks = svg.split("<circle").skip(1).filter_map(|piece| piece.split('>').next());
+    let hit = marks.filter(|tag| tag.contains("class=\"hit\""));
+    hit.map(|tag| [number(tag, "cx"), number(tag, "cy")]).collect()
+}
+
+#[test]
+fn points_lie_where_the_axes_say() {
+    let steps = |values: [f64; 3]| values.map(|value| at(value, value)).to_vec();
+    for (scale, values) in [
+        (Scale::Linear, [10.0, 20.0, 30.0]),
+        (Scale::LinearFromZero, [10.0, 20.0, 30.0]),
+        (Scale::Log, [1.0, 10.0, 100.0]),
+    ] {
+        let places = places(&chart(scale, Marks::Points, steps(values)).to_svg());
+        let [a, b, c] = places[..] else { panic!("{scale:?}: {places:?}") };
+        // To the right and upwards, in equal steps.
+        assert!(a[0] + 20.0 < b[0] && a[1] - 20.0 > b[1], "{scale:?}: {places:?}");
+        for axis in [0, 1] {
+            let (first, second) = (b[axis] - a[axis], c[axis] - b[axis]);
+            assert!((first - second).abs() < 0.5, "{scale:?}: {places:?}");
+        }
+    }
+    // Of values in other steps places are in other steps.
+    let uneven = places(&chart(Scale::Linear, Marks::Points, steps([10.0, 11.0, 30.0])).to_svg());
+    assert!((uneven[1][0] - uneven[0][0]) * 10.0 < uneven[2][0] - uneven[1][0], "{uneven:?}");
+}

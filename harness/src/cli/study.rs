@@ -5,7 +5,10 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{self, Size};
+use super::{
+    stage::StageArgs,
+    values::{self, Size},
+};
 
 /// A study by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -164,33 +167,23 @@ pub struct ReportArgs {
 /// The options of `lightbench advise`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct AdviseArgs {
-    /// A scene's name or a .gltf or .glb file
-    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
-    pub scene: String,
-
-    /// Factor on the scene's size and its own lights, 1e-6 to 1e6
-    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
-    pub scene_scale: f64,
-
-    /// Lights to scatter in addition to the scene's own, or a .gltf or .glb file that holds them
-    #[arg(long, value_name = "N|FILE", default_value = "1000", allow_hyphen_values = true, value_parser = values::text)]
-    pub lights: String,
+    /// What is drawn.
+    #[command(flatten)]
+    pub stage: StageArgs,
 
     /// The greatest relMSE against no culling that is acceptable, 0 to 1; 0 asks for every bit
     #[arg(long, value_name = "X", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
     pub error_budget: f64,
 
-    /// Image size in pixels, each side 1 to 16,384
-    #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
-    pub size: Size,
+    /// Poses along the scene's path to judge, 1 to 100,000; 1 is the path's first view
+    /// [default: 24, or 3 on a software adapter; one view where --camera places it or the scene has
+    /// no path]
+    #[arg(long, value_name = "N", conflicts_with = "camera", allow_hyphen_values = true, value_parser = values::frames)]
+    pub poses: Option<u32>,
 
     /// How pixels are lit
     #[arg(long, value_name = "MODE", default_value = "deferred")]
     pub mode: super::ModeChoice,
-
-    /// Seed of the scattered lights
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
-    pub seed: u64,
 
     /// Part of the adapter's name, where there are several
     #[arg(long, value_name = "NAME", value_parser = values::text)]
@@ -199,6 +192,24 @@ pub struct AdviseArgs {
     /// Folder for what was measured and its report
     #[arg(long, value_name = "DIR", default_value = "out/advise")]
     pub out: PathBuf,
+}
+
+impl AdviseArgs {
+    /// The words of an `advise` command that its comparisons share: all options but those of the
+    /// search itself.
+    pub fn shared_words(command: &[String]) -> Vec<String> {
+        let mut words = command.iter().skip_while(|word| *word != "advise").skip(1);
+        let mut shared = Vec::new();
+        while let Some(word) = words.next() {
+            let option = word.split('=').next().unwrap_or_default();
+            if !["--error-budget", "--poses", "--out"].contains(&option) {
+                shared.push(word.clone());
+            } else if option == word {
+                words.next();
+            }
+        }
+        shared
+    }
 }
 
 #[cfg(test)]
@@ -214,5 +225,12 @@ mod tests {
         for bad in ["0/3", "4/3", "1", "a/b", "1/0", "-1/2"] {
             assert!(bad.parse::<Shard>().is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn rounds_of_advice_share_what_is_drawn() {
+        let line = "lightbench advise --scene a.glb --error-budget 0.1 --poses=3 --out=x --seed 4";
+        let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+        assert_eq!(AdviseArgs::shared_words(&words), ["--scene", "a.glb", "--seed", "4"]);
     }
 }

@@ -1,7 +1,9 @@
 //! Findings in words, computed from the records.
 
 use super::comparison::{Comparison, comparisons};
-use super::format::{difference, factor, number, short_adapter, significant};
+use super::format::{factor, number, short_adapter, significant};
+use super::lead::{Lead, span};
+use super::loss::loss;
 use super::rank::tie;
 use super::raster;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
@@ -55,86 +57,114 @@ fn sentence(comparison: &Comparison<'_>) -> String {
             lights(first.lights),
         );
     };
-    let name = &comparison.name(fastest);
-    let took = significant(fastest.assign_and_shade_ms());
-    let lights = lights(first.lights);
-    let Some(baseline) = comparison.baseline() else {
-        return format!("{name} assigns and shades {lights} in {took} ms{}", image(fastest));
+    let Some(lead) = Lead::of_comparison(comparison) else {
+        // All that cull lost something: the fastest says what.
+        let subject = Subject::of(fastest, comparison.name(fastest));
+        return speed(comparison, &subject) + &image(fastest);
     };
-    if first.lights == 0 {
-        let none = significant(baseline.assign_and_shade_ms());
-        return format!(
-            "there is no light to assign: {name} takes {took} ms, no culling {none} ms"
-        );
-    }
-    match comparison.speedup(fastest) {
-        Some(speedup) if (speedup - 1.0).abs() <= EQUAL => {
-            format!("{name} takes as long as no culling to shade {lights}{}", image(fastest))
+    let subject = Subject::lead(&lead);
+    let image = match lead.is_tie() {
+        true if lead.records.iter().all(|record| image(record) == SAME_IMAGE) => {
+            " and show the same image, bit for bit".to_owned()
         }
-        Some(speedup) if speedup > 1.0 => format!(
-            "{name} shades {lights} {}\u{d7} as fast as no culling{}{}",
-            factor(speedup),
-            over_exit(comparison, fastest),
-            image(fastest)
-        ),
-        Some(speedup) => format!(
-            "{name} takes {}\u{d7} as long as no culling to shade {lights}{}",
-            factor(1.0 / speedup),
-            image(fastest)
-        ),
-        None => format!("{name} assigns and shades {lights} in {took} ms{}", image(fastest)),
+        true => String::new(),
+        false => image(fastest),
+    };
+    speed(comparison, &subject) + &image + &lead.doubt()
+}
+
+/// Who a sentence speaks of: one method, or several that tie.
+struct Subject<'a> {
+    records: Vec<&'a Record>,
+    /// `A`, or `A and B tie for fastest: they`.
+    words: String,
+    /// Follows a speed: for which lights it holds.
+    still_lights: String,
+}
+
+impl<'a> Subject<'a> {
+    fn of(record: &'a Record, words: String) -> Self {
+        Self { records: vec![record], words, still_lights: String::new() }
+    }
+
+    fn lead(lead: &Lead<'a>) -> Self {
+        let words = match lead.is_tie() {
+            true => format!("{}: they", lead.is_fastest()),
+            false => lead.names(),
+        };
+        Self { records: lead.records.clone(), words, still_lights: lead.still_lights() }
+    }
+
+    /// A verb in the singular or the plural.
+    fn verb<'v>(&self, one: &'v str, several: &'v str) -> &'v str {
+        if self.records.len() > 1 { several } else { one }
+    }
+
+    /// The least and the greatest of a figure: `15.9 to 16.1`.
+    fn span(&self, figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
+        span(&self.records, figure)
     }
 }
 
-/// How it stands against no culling with the same early exit, where that was measured.
-fn over_exit(comparison: &Comparison<'_>, record: &Record) -> String {
-    comparison.speedup_over_exit(record).map_or_else(String::new, |speedup| {
-        format!(" ({}\u{d7} if that has the same early exit)", factor(speedup))
+/// How fast the best is, beside no culling where that was measured.
+fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
+    let leader = subject.records[0];
+    let words = &subject.words;
+    let lights = lights(leader.lights);
+    let still = &subject.still_lights;
+    let takes = subject.verb("takes", "take");
+    let time = |record: &Record| Some(record.assign_and_shade_ms());
+    let took = subject.span(time).unwrap_or_default();
+    let alone = || {
+        let verb = subject.verb("assigns and shades", "assign and shade");
+        format!("{words} {verb} {lights} in {took} ms{still}")
+    };
+    let Some(baseline) = comparison.baseline() else { return alone() };
+    if leader.lights == 0 {
+        let none = significant(baseline.assign_and_shade_ms());
+        return format!("there is no light to assign: {words} {takes} {took} ms, no culling {none} ms");
+    }
+    let faster = |record: &Record| comparison.speedup(record);
+    match (comparison.speedup(leader), subject.span(faster)) {
+        (Some(speedup), _) if (speedup - 1.0).abs() <= EQUAL => {
+            format!("{words} {takes} as long as no culling to shade {lights}{still}")
+        }
+        (Some(speedup), Some(factors)) if speedup > 1.0 => {
+            let verb = subject.verb("shades", "shade");
+            let exit = over_exit(comparison, subject);
+            format!("{words} {verb} {lights} {factors}\u{d7} as fast as no culling{exit}{still}")
+        }
+        (Some(speedup), _) => {
+            let factor = factor(1.0 / speedup);
+            format!("{words} {takes} {factor}\u{d7} as long as no culling to shade {lights}{still}")
+        }
+        (None, _) => alone(),
+    }
+}
+
+/// How they stand against no culling with the same early exit, where that was measured.
+fn over_exit(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
+    subject.span(|record| comparison.speedup_over_exit(record)).map_or_else(String::new, |factors| {
+        format!(" ({factors}\u{d7} if that has the same early exit)")
     })
 }
+
+/// What is said of an image that is that of no culling.
+const SAME_IMAGE: &str = " and shows the same image, bit for bit";
 
 /// What is known of a record's image, to follow the sentence on its speed.
 fn image(record: &Record) -> String {
     match loss(record) {
         Some(loss) => format!(", but {loss}"),
         None if record.differing_channels == Some(0) && record.checked_pairs != Some(0) => {
-            " and shows the same image, bit for bit".to_owned()
+            SAME_IMAGE.to_owned()
         }
         None => String::new(),
     }
 }
 
-/// What a record lost, in words; `None` where nothing is known to be lost.
-fn loss(record: &Record) -> Option<String> {
-    let missed = record.missed_pairs.filter(|missed| *missed > 0).map(|missed| {
-        format!("misses {} of {} (light, sample) pairs", number(missed as f64), checked(record))
-    });
-    let differs = match (record.differing_channels, record.max_abs_diff) {
-        (Some(channels @ 1..), Some(most)) => Some(format!(
-            "differs from no culling in {} channels, by at most {}",
-            number(channels as f64),
-            difference(most)
-        )),
-        (Some(channels @ 1..), None) => Some(format!(
-            "differs from no culling in {} channels, by more than a number can say",
-            number(channels as f64)
-        )),
-        (_, Some(most)) if most != 0.0 => {
-            Some(format!("differs from no culling by at most {}", difference(most)))
-        }
-        _ => None,
-    };
-    let parts: Vec<String> = [missed, differs].into_iter().flatten().collect();
-    (!parts.is_empty()).then(|| parts.join(" and "))
-}
-
-fn checked(record: &Record) -> String {
-    record
-        .checked_pairs
-        .map_or_else(|| "an unknown number of".to_owned(), |pairs| number(pairs as f64))
-}
-
-pub(super) fn lights(count: u64) -> String {
+/// `1 light`, `10,000 lights`.
+pub fn lights(count: u64) -> String {
     match count {
         1 => "1 light".to_owned(),
         _ => format!("{} lights", number(count as f64)),

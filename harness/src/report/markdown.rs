@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use super::comparison::{Comparison, comparisons};
 use super::format::significant;
+use super::loss::error_columns;
 use super::metrics::METRICS;
 use crate::results::{PassKind, Record, Results};
 
-/// The columns of a document's table, by id, in order.
+/// The columns of a document's table, by id, in order; errors follow where a method may lose light.
 const COLUMNS: [&str; 9] = [
     "both_ms",
     "speedup",
@@ -27,9 +28,10 @@ pub fn render_markdown(results: &Results) -> String {
 }
 
 fn table(comparison: &Comparison<'_>) -> String {
-    let metrics = || COLUMNS.iter().flat_map(|id| METRICS.iter().find(|metric| metric.id == *id));
+    let known = || COLUMNS.iter().flat_map(|id| METRICS.iter().find(|metric| metric.id == *id));
+    let metrics = || known().chain(error_columns(comparison));
     let heads: String = metrics().map(|m| format!(" {} {} |", m.head, m.unit)).collect();
-    let mut text = format!("| strategy |{heads}\n|---|{}\n", "---|".repeat(COLUMNS.len()));
+    let mut text = format!("| strategy |{heads}\n|---|{}\n", "---|".repeat(metrics().count()));
     // The control assigns and shades nothing.
     for (_, record) in comparison.records.iter().filter(|(_, record)| !record.is_control()) {
         let mut cells = String::new();

@@ -5,8 +5,9 @@ use std::fmt::Write;
 
 use super::comparison::{Comparison, comparisons};
 use super::format::{escape, number, significant};
+use super::loss::{ERROR_COLUMNS, columns as columns_of};
 use super::metrics::{Better, METRICS, Metric};
-use super::rank::competes;
+use super::rank::{ALIKE, Ranked, competes};
 use crate::results::{Clock, DeviceType, PassKind, Record, Results, TruthLevel};
 
 /// Colours that the style sheet has for strategies other than no culling.
@@ -135,8 +136,7 @@ pub(super) fn table(
     classes: &BTreeMap<&str, String>,
 ) -> String {
     let mut heads = String::new();
-    let metrics = || METRICS.iter().filter(|metric| metric.is_shown(comparison));
-    for metric in metrics() {
+    for metric in columns_of(comparison) {
         let _ = write!(
             heads,
             "<th scope=\"col\" title=\"{}\"><button type=\"button\">{} <span class=\"unit\">{}</span></button></th>",
@@ -147,7 +147,8 @@ pub(super) fn table(
     }
     let mut rows = String::new();
     for (_, record) in &comparison.records {
-        let cells: String = metrics().map(|metric| cell(metric, comparison, record)).collect();
+        let cells: String =
+            columns_of(comparison).map(|metric| cell(metric, comparison, record)).collect();
         let _ = writeln!(
             rows,
             "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{cells}</tr>",
@@ -170,7 +171,7 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String
         (Better::Zero, Some(value)) if value != 0.0 => " class=\"fault\"",
         (Better::Zero, Some(_)) => " class=\"good\"",
         (Better::Less | Better::More, Some(value))
-            if competes(record) && is_best(metric, comparison, value) =>
+            if competes(record) && is_best(metric, comparison, record, value) =>
         {
             " class=\"best\""
         }
@@ -197,9 +198,21 @@ pub(super) fn interval(record: &Record) -> String {
     })
 }
 
-/// Whether no competitor has a better value, and at least one a worse.
-fn is_best(metric: &Metric, comparison: &Comparison<'_>, value: f64) -> bool {
-    let better = |a: f64, b: f64| if metric.better == Better::More { a > b } else { a < b };
+/// Columns that follow from the time by which methods are ranked.
+const RANKED: [&str; 4] = ["both_ms", "speedup", "speedup_sphere", "efficiency"];
+
+/// Whether no competitor is better and at least one is worse. By what methods are ranked by, all
+/// that share the first rank are best; by other figures all that are as good as alike.
+fn is_best(metric: &Metric, comparison: &Comparison<'_>, record: &Record, value: f64) -> bool {
+    if RANKED.contains(&metric.id) {
+        let ranked = comparison.ranks();
+        let is_first = |r: &Ranked<'_>| r.rank == 1 && std::ptr::eq(r.record, record);
+        return ranked.iter().any(is_first) && ranked.iter().any(|ranked| ranked.rank > 1);
+    }
+    let better = |a: f64, b: f64| match metric.better {
+        Better::More => a > b * (1.0 + ALIKE),
+        _ => a < b / (1.0 + ALIKE),
+    };
     let competitors = || comparison.records.iter().filter(|(_, record)| competes(record));
     let others = || competitors().filter_map(|(_, record)| (metric.value)(comparison, record));
     others().all(|other| !better(other, value)) && others().any(|other| better(value, other))
@@ -209,6 +222,7 @@ fn is_best(metric: &Metric, comparison: &Comparison<'_>, value: f64) -> bool {
 pub(super) fn columns() -> String {
     METRICS
         .iter()
+        .chain(&ERROR_COLUMNS)
         .map(|metric| {
             let (head, unit, about) =
                 (escape(metric.head), escape(metric.unit), escape(metric.about));

@@ -9,10 +9,10 @@ use super::format::significant;
 use crate::results::{Record, median, median_interval};
 
 /// Nearer to 1, a ratio is of no interest, however sure it is.
-const ALIKE: f64 = 0.005;
+pub(super) const ALIKE: f64 = 0.005;
 
 /// The least coverage of an interval that tells two apart: of six rounds or more.
-const SURE: f64 = 0.95;
+pub(super) const SURE: f64 = 0.95;
 
 /// The times of one record over those of another, paired by round.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,7 +150,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
 }
 
 /// `a`, `a and b`, `a, b and c`.
-pub(super) fn listed<T: AsRef<str>>(words: &[T]) -> String {
+pub fn listed<T: AsRef<str>>(words: &[T]) -> String {
     match words {
         [] => String::new(),
         [one] => one.as_ref().to_owned(),

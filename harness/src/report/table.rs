@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::comparison::{Comparison, comparisons};
 use super::finding::notices;
 use super::format::{number, short_adapter};
+use super::loss::push_losses;
 use super::metrics::{METRICS, Metric};
 use crate::results::Results;
 
@@ -28,6 +29,7 @@ pub fn render_table(results: &Results) -> String {
             first.clock.name(),
         );
         push_table(&mut text, &comparison);
+        push_losses(&mut text, &comparison);
         text.push('\n');
     }
     for notice in notices(results) {

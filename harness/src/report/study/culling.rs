@@ -3,7 +3,8 @@
 
 use super::super::finding::lights;
 use super::super::format::{number, significant};
-use super::super::rank::{first, listed, ranks};
+use super::super::lead::Lead;
+use super::super::rank::{listed, ranks};
 use super::data::{Entry, counts, entries, lines};
 use super::figure::{Charts, name, part, table};
 use super::scaling::{fit, points};
@@ -149,18 +150,14 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
 pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let fastest = |mode: &&str| {
-            let ranked = ranks(by_time(done, scene, mode));
-            let first = first(&ranked);
-            let most = first.first()?.lights;
-            let names: Vec<&str> = first.iter().map(|record| record.strategy.as_str()).collect();
-            let tie = if names.len() > 1 { ", which cannot be told apart" } else { "" };
-            Some((format!("{mode} {}{tie}", listed(&names)), most))
+            let lead = Lead::of(&ranks(by_time(done, scene, mode)))?;
+            Some((format!("{mode} {}", lead.headline()), lead.leader().lights))
         };
         let all: Vec<(String, u64)> = MODES.iter().filter_map(fastest).collect();
         let most = all.first()?.1;
         let parts: Vec<&str> = all.iter().map(|(part, _)| part.as_str()).collect();
         Some(format!(
-            "Fastest in {scene} at {}, without a loss: {}.",
+            "In {scene} at {}, without a loss: {}.",
             lights(most),
             parts.join("; ")
         ))

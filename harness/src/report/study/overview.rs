@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::comparison::{Comparison, comparisons};
 use super::super::format::{number, short_adapter, significant};
+use super::super::lead::{Lead, span};
 use super::super::page;
 use super::super::rank::{Ratio, first, listed, ranks, tie};
 use super::data::{Entry, class, counts, entries, poses, stand};
@@ -162,14 +163,23 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     all.iter().rev().filter_map(|results| sentence(scene, &comparison(results)?)).collect()
 }
 
-/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0; 240 poses); next is B ...`, or `A and
-/// B tie for fastest (6.9 and 7.0 ms; 240 poses)`.
+/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0; 240 poses); next is B ...`, or
+/// `A and B tie for fastest with 6.9 to 7.0 ms (240 poses)`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
-    let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-    let best = first(&ranked);
-    let leader = *best.first()?;
+    let ranked = comparison.ranks();
+    let lead = Lead::of_comparison(comparison)?;
+    let leader = lead.leader();
     let lights = super::super::finding::lights(comparison.first().lights);
-    let mut text = format!("In {scene} at {lights}, {}", lead(comparison, &best)?);
+    let time = match lead.is_tie() {
+        true => {
+            let times = span(&lead.records, |record| Some(record.assign_and_shade_ms()));
+            format!("{} ms ({})", times.unwrap_or_default(), stand(leader))
+        }
+        false => timed(leader),
+    };
+    let still = lead.still_lights();
+    let mut text = format!("In {scene} at {lights}, {}{still} with {time}", lead.is_fastest());
+    text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
             format!(", {} to {} times as long", significant(ratio.low), significant(ratio.high))
@@ -184,20 +194,6 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
         text += &format!(". No culling takes {} times as long", significant(faster));
     }
     Some(text + ".")
-}
-
-/// Who is fastest: never a winner where there is a tie.
-fn lead(comparison: &Comparison<'_>, best: &[&Record]) -> Option<String> {
-    match best {
-        [] => None,
-        [leader] => Some(format!("{} is fastest with {}", comparison.name(leader), timed(leader))),
-        [leader, ..] => {
-            let names: Vec<String> = best.iter().map(|record| comparison.name(record)).collect();
-            let times: Vec<String> = best.iter().map(|record| ms(record)).collect();
-            let (names, times) = (listed(&names), listed(&times));
-            Some(format!("{names} tie for fastest ({times} ms; {})", stand(leader)))
-        }
-    }
 }
 
 fn ms(record: &Record) -> String {
@@ -215,29 +211,25 @@ fn timed(record: &Record) -> String {
 /// The headline: the fastest at the most lights, in each scene.
 pub(super) fn headline(done: &Done) -> Option<String> {
     let scenes = done.scenes();
-    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut leads: Vec<(String, Vec<&str>)> = Vec::new();
     let mut most = None;
     for scene in &scenes {
         let Some(results) = rankings(done, scene).pop() else { continue };
         let Some(comparison) = comparison(&results) else { continue };
-        let ranked = ranks(comparison.records.iter().map(|(_, record)| *record));
-        let names: Vec<String> = first(&ranked).iter().map(|r| comparison.name(r)).collect();
-        let says = match names.as_slice() {
-            [] => continue,
-            [one] => format!("{one} is fastest"),
-            several => format!("{} tie for fastest", listed(several)),
+        let Some(lead) = Lead::of_comparison(&comparison).map(|lead| lead.headline()) else {
+            continue;
         };
         most = most.max(Some(comparison.first().lights));
-        match found.iter_mut().find(|(known, _)| *known == says) {
+        match leads.iter_mut().find(|(known, _)| *known == lead) {
             Some((_, scenes)) => scenes.push(scene),
-            None => found.push((says, vec![scene])),
+            None => leads.push((lead, vec![scene])),
         }
     }
     let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
     let parts: Vec<String> =
-        found.iter().map(|(says, scenes)| format!("{says} in {}", listed(scenes))).collect();
+        leads.iter().map(|(lead, scenes)| format!("{lead} in {}", listed(scenes))).collect();
     let lights = number(most? as f64);
-    Some(format!("On {adapter} at {lights} lights, {}.", listed(&parts)))
+    Some(format!("On {adapter} at {lights} lights, {}.", parts.join("; ")))
 }
 
 /// Who shares the first rank, per count of lights.

@@ -1,0 +1,36 @@
+//! The properties say what must be reached *if* a light touches a group. This holds often, and often
+//! not, for every kind of light and every shape of group: else the properties would say nothing.
+
+use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+
+use crate::cases::{Kind, aabb, aim, frustum, oriented, witness};
+use crate::deterministic;
+use crate::groups::Group;
+
+/// Lights of a kind aimed at groups of a shape.
+const PAIRS: usize = 1_500;
+
+/// The share of lights that touch their group.
+fn share(kind: Kind, groups: &BoxedStrategy<Group>) -> f64 {
+    let mut runner = TestRunner::new(deterministic(1));
+    let touches = (0..PAIRS).filter(|_| {
+        let group = groups.new_tree(&mut runner).unwrap().current();
+        let aim = aim(kind).new_tree(&mut runner).unwrap().current();
+        witness(&group, &aim.light(&group)).is_some()
+    });
+    touches.count() as f64 / PAIRS as f64
+}
+
+#[test]
+fn lights_of_every_kind_touch_groups_of_every_shape_or_miss_them() {
+    for (name, groups) in
+        [("frustum", frustum().boxed()), ("box", aabb().boxed()), ("oriented", oriented().boxed())]
+    {
+        for kind in [Kind::Point, Kind::Spot, Kind::Area] {
+            let share = share(kind, &groups);
+            println!("{name}, {kind:?}: {share:.3} touch");
+            assert!((0.2..0.9).contains(&share), "{name}, {kind:?}: {share}");
+        }
+    }
+}

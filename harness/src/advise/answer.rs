@@ -1,0 +1,163 @@
+//! The verdict in words. The first line is the answer; it states every limit that it has.
+
+use std::fmt::Write;
+
+use super::verdict::{Verdict, error_of, verdict};
+use crate::{
+    registry::STRATEGIES,
+    report::{self, significant as ms},
+    results::{DeviceType, Record, Results},
+};
+
+/// What to use, what it costs, what comes next, and why.
+pub fn answer(results: &Results, error_budget: f64) -> String {
+    let Some(verdict) = verdict(results, error_budget) else {
+        return format!("Nothing stayed within the error budget: relMSE {error_budget}.\n");
+    };
+    let mut text = first_line(verdict.best) + "\n";
+    if let Some(moving) = verdict.moving {
+        let _ = writeln!(
+            text,
+            "For lights that move: {}, {}. It needs no hierarchy.",
+            moving.strategy,
+            time(moving)
+        );
+    }
+    if !verdict.tied.is_empty() {
+        let _ = writeln!(text, "{}", tie(&verdict));
+    }
+    if let Some(next) = verdict.next {
+        let ratio = next.assign_and_shade_ms() / verdict.best.assign_and_shade_ms();
+        let _ = writeln!(
+            text,
+            "Next: {}, {}, {} % slower{}.",
+            next.strategy,
+            time(next),
+            ms((ratio - 1.0) * 100.0),
+            loss(next).map_or_else(String::new, |loss| format!(", {loss}")),
+        );
+    }
+    if error_budget > 0.0 && verdict.best.is_exact() {
+        let _ = writeln!(text, "{}", no_gain(&verdict, error_budget));
+    }
+    let _ = writeln!(text, "Why: {}.", why(&verdict, results));
+    if results.machine.device_type == DeviceType::Cpu {
+        let _ = writeln!(text, "A software adapter took these times: a GPU may rank otherwise.");
+    }
+    text
+}
+
+/// `Use ID (what it is): its time and parts. What its image is. What its lights must be.`
+fn first_line(best: &Record) -> String {
+    let mut text = format!(
+        "Use {}{}: {} to assign and shade {} ({} + {})",
+        best.strategy,
+        about(best),
+        time(best),
+        report::lights(best.lights),
+        ms(best.assign_ms),
+        ms(best.shade_ms),
+    );
+    if let Some(interval) = best.interval_ms() {
+        let statistic = if best.along_path { "mean" } else { "median" };
+        let (low, high) = (ms(interval.low), ms(interval.high));
+        let _ = write!(text, ", {statistic} between {low} and {high}");
+    }
+    text += ". ";
+    let views = if best.along_path { "these views" } else { "this view" };
+    text += &match (loss(best), error_of(best)) {
+        (None, _) => "Its image is that of no culling, bit for bit.".to_owned(),
+        (Some(_), Some(0.0)) => {
+            format!("Its image is that of no culling in {views}; in others it may lose light.")
+        }
+        (Some(loss), _) => format!("In {views}, {loss}."),
+    };
+    if report::needs_built_hierarchy(best) {
+        text += " Still lights only: the CPU builds its hierarchy beforehand";
+        if let Some(build) = best.light_build_ms {
+            let _ = write!(text, ", in {} ms", ms(build));
+        }
+        text += ", which is not in the time.";
+    }
+    text
+}
+
+/// A record's time, and over what it was taken.
+fn time(record: &Record) -> String {
+    format!("{} ms", ms(record.assign_and_shade_ms()))
+}
+
+/// What a method is, in brackets.
+fn about(record: &Record) -> String {
+    let family = record.strategy.split('/').next().unwrap_or_default();
+    let entry = STRATEGIES.iter().find(|entry| entry.family == family);
+    let summary = entry.map(|entry| entry.summary.split(':').next().unwrap_or_default());
+    summary.map_or_else(String::new, |summary| format!(" ({summary})"))
+}
+
+/// What a record loses, with its error; `None` for an exact one.
+fn loss(record: &Record) -> Option<String> {
+    if record.is_exact() {
+        return None;
+    }
+    let errors = report::error_words(record);
+    Some(if errors.is_empty() { "it may lose light".to_owned() } else { format!("it errs by {errors}") })
+}
+
+/// What the best ties with, and why it was preferred.
+fn tie(verdict: &Verdict<'_>) -> String {
+    let tied: Vec<String> = verdict
+        .tied
+        .iter()
+        .map(|record| format!("{} ({})", record.strategy, time(record)))
+        .collect();
+    let reasons = match verdict.reasons.is_empty() {
+        true => "it is the fastest of them by a little".to_owned(),
+        false => report::listed(&verdict.reasons),
+    };
+    format!("It ties with {}; preferred because {reasons}.", report::listed(&tied))
+}
+
+/// Says that the budget buys nothing.
+fn no_gain(verdict: &Verdict<'_>, error_budget: f64) -> String {
+    let none = format!("No lossy setting within relMSE {error_budget} is surely faster");
+    match verdict.lossy {
+        Some(lossy) => format!("{none}: the fastest is {}, {}.", lossy.strategy, time(lossy)),
+        None => format!("{none}: none stays within it."),
+    }
+}
+
+/// What makes the difference.
+fn why(verdict: &Verdict<'_>, results: &Results) -> String {
+    let best = verdict.best;
+    if !best.culls() {
+        let lights = report::lights(best.lights);
+        return format!("with {lights} no list pays for the passes that make it");
+    }
+    let mut reasons = Vec::new();
+    if let (Some(listed), Some(reach)) = (best.listed_per_sample, best.contributing_per_sample) {
+        let (listed, reach) = (ms(listed), ms(reach));
+        reasons.push(format!("its lists hold {listed} lights per sample where {reach} reach it"));
+    }
+    if let Some(next) = verdict.next.filter(|next| next.culls()) {
+        let part = |name: &str, gain: f64| {
+            let word = if gain < 0.0 { "costs" } else { "saves" };
+            format!("{name} {word} {} ms", ms(gain.abs()))
+        };
+        reasons.push(format!(
+            "against {}, {} and {}",
+            next.strategy,
+            part("assigning", next.assign_ms - best.assign_ms),
+            part("shading", next.shade_ms - best.shade_ms)
+        ));
+    }
+    let none = results.records.iter().find(|record| record.is_baseline());
+    if let Some(none) = none {
+        let ratio = none.assign_and_shade_ms() / best.assign_and_shade_ms();
+        reasons.push(format!("no culling takes {} times as long", ms(ratio)));
+    }
+    if reasons.is_empty() {
+        reasons.push("it is the fastest".to_owned());
+    }
+    reasons.join("; ")
+}

@@ -1,0 +1,187 @@
+use super::*;
+use crate::results::{PassKind, PassTimes};
+
+/// A record whose rounds took these times.
+fn record(strategy: &str, times_ms: &[f64], bytes: u64) -> Record {
+    let example: Results =
+        serde_json::from_str(include_str!("../results/example.json")).expect("the example");
+    let mut record = example.records[0].clone();
+    record.strategy = strategy.to_owned();
+    record.passes = Default::default();
+    record.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
+    record.frames = times_ms.len() as u32;
+    record.rounds = record.frames;
+    record.along_path = false;
+    (record.lists_bytes, record.memory_bytes) = (bytes, Some(bytes));
+    record.light_build_ms = Some(9.7);
+    (record.missed_pairs, record.max_abs_diff, record.differing_channels) =
+        (Some(0), Some(0.0), Some(0));
+    record.set_times();
+    record
+}
+
+/// Ten rounds around a time, the same on every run: each method has noise of its own.
+fn around(strategy: &str, ms: f64, spread: f64, bytes: u64) -> Record {
+    let salt = strategy.bytes().fold(7_u32, |sum, byte| sum.wrapping_mul(31) + u32::from(byte));
+    let noise = |round: u32| {
+        let hash = (round * 97 + salt).wrapping_mul(2_654_435_761) >> 8;
+        f64::from(hash) / f64::from(1 << 24) - 0.5
+    };
+    let times: Vec<f64> = (0..10).map(|round| ms * (1.0 + spread * noise(round))).collect();
+    record(strategy, &times, bytes)
+}
+
+/// A capped list that errs.
+fn lossy(strategy: &str, ms: f64, spread: f64, rel_mse: f64) -> Record {
+    let mut record = around(strategy, ms, spread, 1 << 20);
+    record.is_lossy = true;
+    record.missed_pairs = Some(802_864);
+    record.differing_channels = Some(90);
+    record.max_abs_diff = Some(0.2);
+    record.errors = [("rel_mse", rel_mse), ("missing_energy", 0.3), ("flip", 0.01)]
+        .map(|(id, error)| (id.to_owned(), Some(error)))
+        .into();
+    record
+}
+
+fn of(records: Vec<Record>) -> Results {
+    let mut results: Results =
+        serde_json::from_str(include_str!("../results/example.json")).expect("the example");
+    results.records = records;
+    results
+}
+
+fn named(results: &Results, budget: f64) -> &str {
+    &verdict(results, budget).expect("a verdict").best.strategy
+}
+
+#[test]
+fn variants_keep_family_and_source() {
+    for id in ["T-E/28x28/bvh", "SC-E/48x48x40", "G/20x20x20/bvh", "M/2", "HG/48x48x40"] {
+        let all = variants(id);
+        assert!(all.len() >= 4);
+        for variant in all {
+            assert_eq!(family(&variant), family(id));
+            assert_eq!(variant.ends_with("/bvh"), id.ends_with("/bvh"), "{variant}");
+        }
+    }
+}
+
+#[test]
+fn a_lossy_setting_that_gains_nothing_is_never_named() {
+    // The least median is that of a capped list, by a per cent that its noise of ten hides.
+    let results = of(vec![
+        around("SC-E/48x48x40", 1.0, 0.1, 1 << 20),
+        lossy("SC-E/48x48x40/cap64", 0.99, 0.1, 0.0005),
+    ]);
+    let fastest = &results.records[1];
+    assert!(fastest.assign_and_shade_ms() < results.records[0].assign_and_shade_ms());
+    assert_eq!(named(&results, 0.001), "SC-E/48x48x40");
+    let text = answer(&results, 0.001);
+    assert!(text.contains("No lossy setting within relMSE 0.001 is surely faster"), "{text}");
+
+    // One that loses nothing in this view may lose light in another.
+    let mut harmless = around("SC-E/48x48x40/cap64", 0.99, 0.1, 1 << 10);
+    harmless.is_lossy = true;
+    let results = of(vec![around("SC-E/48x48x40", 1.0, 0.1, 1 << 20), harmless]);
+    assert_eq!(named(&results, 0.001), "SC-E/48x48x40");
+
+    // Sure, but by less than anyone wants.
+    let results = of(vec![
+        record("SC-E/48x48x40", &[1.0; 10], 1),
+        lossy("SC-E/48x48x40/cap64", 0.997, 0.0, 0.0005),
+    ]);
+    assert_eq!(named(&results, 0.001), "SC-E/48x48x40");
+
+    // Where no rounds tell, a gain is not shown.
+    let mut along = of(vec![record("SC-E/48x48x40", &[1.0], 1), {
+        let mut lossy = lossy("SC-E/48x48x40/cap64", 0.5, 0.0, 0.0005);
+        lossy.rounds = 7;
+        lossy
+    }]);
+    assert_eq!(named(&along, 0.001), "SC-E/48x48x40");
+    along.records.remove(0);
+    assert_eq!(named(&along, 0.001), "SC-E/48x48x40/cap64");
+}
+
+#[test]
+fn a_lossy_setting_that_gains_is_named_with_its_error_and_only_within_the_budget() {
+    let results = of(vec![
+        around("SC-E/48x48x40", 1.0, 0.02, 1 << 20),
+        lossy("SC-E/48x48x40/cap8", 0.5, 0.02, 0.0005),
+    ]);
+    assert_eq!(named(&results, 0.001), "SC-E/48x48x40/cap8");
+    let text = answer(&results, 0.001);
+    let first = text.lines().next().expect("a line");
+    assert!(first.contains("relMSE 5.0e-4") && first.contains("30.0 % missing energy"), "{first}");
+    assert!(!first.contains("bit for bit"), "{first}");
+    assert_eq!(named(&results, 0.0001), "SC-E/48x48x40");
+    assert!(verdict(&of(vec![lossy("DC-I/cap8", 1.0, 0.0, 0.5)]), 0.1).is_none());
+}
+
+#[test]
+fn among_ties_less_memory_comes_first_and_then_the_simpler() {
+    let results = of(vec![
+        around("SC-E/48x48x40", 1.0, 0.1, 3 << 20),
+        around("DC-E/64x64x40", 1.002, 0.1, 2 << 20),
+        around("T-E/28x28", 2.0, 0.1, 1 << 10),
+    ]);
+    assert_eq!(named(&results, 0.0), "DC-E/64x64x40");
+    let text = answer(&results, 0.0);
+    assert!(text.starts_with("Use DC-E/64x64x40 (dense clusters, explicit bounds): "), "{text}");
+    assert!(text.contains("It ties with SC-E/48x48x40"), "{text}");
+    assert!(text.contains("needs less memory"), "{text}");
+    assert!(text.contains("Next: T-E/28x28"), "{text}");
+
+    // As much memory: tiles are simpler than clusters, a list is simpler than a hierarchy.
+    let results = of(vec![
+        around("SC-E/48x48x40/bvh", 1.0, 0.1, 1 << 20),
+        around("SC-E/48x48x40", 1.002, 0.1, 1 << 20),
+        around("T-E/28x28", 1.001, 0.1, 1 << 20),
+    ]);
+    assert_eq!(named(&results, 0.0), "T-E/28x28");
+    assert!(answer(&results, 0.0).contains("it is simpler"));
+}
+
+#[test]
+fn a_built_hierarchy_wins_for_still_lights_only() {
+    let results = of(vec![
+        around("SC-E/48x48x40", 2.0, 0.02, 1 << 20),
+        around("SC-E/48x48x40/bvh", 1.0, 0.02, 1 << 20),
+    ]);
+    let text = answer(&results, 0.0);
+    let mut lines = text.lines();
+    let first = lines.next().expect("a line");
+    assert!(first.starts_with("Use SC-E/48x48x40/bvh"), "{text}");
+    assert!(first.contains("Still lights only") && first.contains("in 9.70 ms"), "{first}");
+    let second = lines.next().expect("a line");
+    assert!(second.starts_with("For lights that move: SC-E/48x48x40, 2.0"), "{second}");
+
+    let results = of(vec![around("SC-E/48x48x40", 2.0, 0.02, 1 << 20)]);
+    let text = answer(&results, 0.0);
+    assert!(!text.contains("till lights") && !text.contains("lights that move"), "{text}");
+}
+
+#[test]
+fn the_last_round_holds_what_the_answer_needs() {
+    let mut all: Vec<Record> = ["T-E/28x28", "DC-E/64x64x40", "SC-E/48x48x40"]
+        .iter()
+        .enumerate()
+        .flat_map(|(ix, id)| {
+            let ms = 1.0 + 0.1 * ix as f64;
+            [around(&format!("{id}/bvh"), ms, 0.0, 1), around(id, 3.0 * ms, 0.0, 1)]
+        })
+        .collect();
+    all.push(around("None", 90.0, 0.0, 1));
+    all.push(around("Sphere", 1.5, 0.0, 1));
+    all.iter_mut().for_each(|record| record.longest_list = 20);
+    let (families, parameters) = (of(all), of(vec![around("T-E/16x16/bvh", 1.05, 0.0, 1)]));
+    let exact = last_ids(&families, &parameters, 0.0);
+    assert!(exact.contains(&"Sphere".to_owned()) && !exact.contains(&"None".to_owned()));
+    let linear = exact.iter().filter(|id| !id.ends_with("/bvh") && *id != "Sphere").count();
+    assert_eq!(linear, 2, "{exact:?}");
+    assert!(exact.iter().all(|id| !id.contains("cap")));
+    let lossy = last_ids(&families, &parameters, 0.001);
+    assert!(lossy.contains(&"T-E/28x28/bvh/cap16".to_owned()), "{lossy:?}");
+    assert!(!lossy.iter().any(|id| id.ends_with("cap32")), "longer than any list: {lossy:?}");
+}

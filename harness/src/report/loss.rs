@@ -1,0 +1,168 @@
+//! What a method lost: in words, in the columns that a comparison with lossy methods gains, and in
+//! the terminal's table of losses.
+
+use std::fmt::Write;
+
+use super::comparison::Comparison;
+use super::format::{ABSENT, difference, number, percent};
+use super::metrics::{Better, METRICS, Metric};
+use crate::results::Record;
+
+/// The errors against no culling that tables and sentences state.
+pub(super) static ERROR_COLUMNS: [Metric; 3] = [
+    Metric {
+        id: "missing_energy",
+        head: "missing energy",
+        unit: "%",
+        terminal: "",
+        about: "Luminance that the image lacks where it is darker than that of no culling, over all \
+                luminance there should be.",
+        better: Better::Zero,
+        value: |_, r| error(r, "missing_energy"),
+        show: percent,
+        is_optional: true,
+    },
+    Metric {
+        id: "rel_mse",
+        head: "relMSE",
+        unit: "",
+        terminal: "",
+        about: "Mean over channels of the squared difference to no culling over the squared value.",
+        better: Better::Zero,
+        value: |_, r| error(r, "rel_mse"),
+        show: difference,
+        is_optional: true,
+    },
+    Metric {
+        id: "flip",
+        head: "FLIP",
+        unit: "",
+        terminal: "",
+        about: "Mean FLIP against no culling: what an eye sees when it flips between the two.",
+        better: Better::Zero,
+        value: |_, r| error(r, "flip"),
+        show: difference,
+        is_optional: true,
+    },
+];
+
+/// An error against no culling: 0 where no bit differs.
+fn error(record: &Record, id: &str) -> Option<f64> {
+    let same = record.differing_channels == Some(0) && record.missed_pairs.unwrap_or(0) == 0;
+    record.errors.get(id).copied().flatten().or(same.then_some(0.0))
+}
+
+/// Whether a method may lose light, or is known to have lost some.
+fn is_lossy(record: &Record) -> bool {
+    !record.is_control() && !record.is_exact()
+}
+
+/// The columns of a comparison: those of all, and errors where a method may lose light.
+pub(super) fn columns(comparison: &Comparison<'_>) -> impl Iterator<Item = &'static Metric> {
+    METRICS
+        .iter()
+        .filter(|metric| metric.is_shown(comparison))
+        .chain(error_columns(comparison))
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// The columns of errors, where a method of the comparison may lose light.
+pub(super) fn error_columns(comparison: &Comparison<'_>) -> &'static [Metric] {
+    let any = comparison.records.iter().any(|(_, record)| is_lossy(record));
+    if any { &ERROR_COLUMNS } else { &[] }
+}
+
+/// The errors of a record: `30.1 % missing energy, relMSE 0.210, FLIP 0.104`; empty where none is
+/// known.
+pub fn error_words(record: &Record) -> String {
+    let of = |id| error(record, id);
+    let words = [
+        of("missing_energy").map(|share| format!("{} % missing energy", percent(share))),
+        of("rel_mse").map(|error| format!("relMSE {}", difference(error))),
+        of("flip").map(|error| format!("FLIP {}", difference(error))),
+    ];
+    words.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// What a record lost, in words; `None` where nothing is known to be lost.
+pub(super) fn loss(record: &Record) -> Option<String> {
+    let missed = record.missed_pairs.filter(|missed| *missed > 0).map(|missed| {
+        format!("misses {} of {} (light, sample) pairs", number(missed as f64), checked(record))
+    });
+    let differs = match (record.differing_channels, record.max_abs_diff) {
+        (Some(channels @ 1..), Some(most)) => Some(format!(
+            "differs from no culling in {} channels, by at most {}",
+            number(channels as f64),
+            difference(most)
+        )),
+        (Some(channels @ 1..), None) => Some(format!(
+            "differs from no culling in {} channels, by more than a number can say",
+            number(channels as f64)
+        )),
+        (_, Some(most)) if most != 0.0 => {
+            Some(format!("differs from no culling by at most {}", difference(most)))
+        }
+        _ => None,
+    };
+    let parts: Vec<String> = [missed, differs].into_iter().flatten().collect();
+    if parts.is_empty() {
+        return None;
+    }
+    let errors = error_words(record);
+    let errors = if errors.is_empty() { errors } else { format!(" ({errors})") };
+    Some(parts.join(" and ") + &errors)
+}
+
+fn checked(record: &Record) -> String {
+    record
+        .checked_pairs
+        .map_or_else(|| "an unknown number of".to_owned(), |pairs| number(pairs as f64))
+}
+
+/// The terminal's table of what each lossy method lost; nothing where there is none.
+pub(super) fn push_losses(text: &mut String, comparison: &Comparison<'_>) {
+    let lossy: Vec<&Record> =
+        comparison.records.iter().map(|(_, record)| *record).filter(|r| is_lossy(r)).collect();
+    let Some(width) = lossy.iter().map(|record| record.strategy.chars().count()).max() else {
+        return;
+    };
+    let width = width.max("lossy".len());
+    let _ = write!(text, "\n{:width$}", "lossy");
+    for metric in &ERROR_COLUMNS {
+        let _ = write!(text, "  {:>16}", format!("{} {}", metric.head, metric.unit).trim_end());
+    }
+    text.push('\n');
+    for record in lossy {
+        let _ = write!(text, "{:width$}", record.strategy);
+        for metric in &ERROR_COLUMNS {
+            let value = error(record, metric.id);
+            let shown = value.map_or_else(|| ABSENT.to_owned(), metric.show);
+            let _ = write!(text, "  {shown:>16}");
+        }
+        text.push('\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::Results;
+
+    #[test]
+    fn errors_are_stated_where_they_are_known_and_none_is_made_up() {
+        let example: Results =
+            serde_json::from_str(include_str!("../results/example.json")).expect("the example");
+        let mut record = example.records[0].clone();
+        record.differing_channels = Some(7);
+        record.errors = [("missing_energy", 0.3012), ("rel_mse", 0.21), ("flip", 0.1)]
+            .map(|(id, error)| (id.to_owned(), Some(error)))
+            .into();
+        assert_eq!(error_words(&record), "30.1 % missing energy, relMSE 0.210, FLIP 0.100");
+        record.errors.clear();
+        assert_eq!(error_words(&record), "");
+        record.differing_channels = Some(0);
+        record.missed_pairs = Some(0);
+        assert_eq!(error_words(&record), "0 % missing energy, relMSE 0, FLIP 0");
+    }
+}
