@@ -94,7 +94,7 @@ fn boxes_of_surfaces_are_checked() {
 #[test]
 fn lists_are_short() {
     let listed = |counts| {
-        let make = grid(counts, GridBox::Lights, CullSettings::default());
+        let make = grid(counts, GridBox::Positions, CullSettings::default());
         let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
         case.listed_per_sample().expect("passed")
     };

@@ -264,14 +264,7 @@ pub const STRATEGIES: &[StrategyEntry] = &[
         family: "G",
         parameters: &["cells_x", "cells_y", "cells_z"],
         default: "20x20x20",
-        axes: &[
-            Axis::Box,
-            Axis::Source,
-            Axis::AreaBounds,
-            Axis::Cap,
-            Axis::Reuse,
-            Axis::Exit,
-        ],
+        axes: &[Axis::Box, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit],
         summary: "a grid of cells in world space, over the box of the lights' positions, of their supports, or of the surfaces",
         reads_depth: false,
         make: |gpu, spec| {

@@ -76,14 +76,15 @@ fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> 
     let mut left: Vec<&Record> =
         within.iter().copied().filter(|record| ties(record, fastest)).collect();
     let mut reasons = Vec::new();
-    let mut keep = |left: &mut Vec<&'a Record>, reason, key: &dyn Fn(&Record) -> f64, alike: f64| {
-        let least = left.iter().map(|record| key(record)).fold(f64::INFINITY, f64::min);
-        let before = left.len();
-        left.retain(|record| key(record) <= least * alike);
-        if left.len() < before {
-            reasons.push(reason);
-        }
-    };
+    let mut keep =
+        |left: &mut Vec<&'a Record>, reason, key: &dyn Fn(&Record) -> f64, alike: f64| {
+            let least = left.iter().map(|record| key(record)).fold(f64::INFINITY, f64::min);
+            let before = left.len();
+            left.retain(|record| key(record) <= least * alike);
+            if left.len() < before {
+                reasons.push(reason);
+            }
+        };
     keep(&mut left, "it loses nothing", &|record| f64::from(u8::from(!record.is_exact())), 1.0);
     keep(&mut left, "it errs less", &|record| error_of(record).unwrap_or(f64::INFINITY), 1.0);
     let memory = |record: &Record| record.memory_bytes.unwrap_or(record.lists_bytes) as f64;

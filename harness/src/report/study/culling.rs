@@ -156,10 +156,6 @@ pub(super) fn headline(done: &Done) -> Option<String> {
         let all: Vec<(String, u64)> = MODES.iter().filter_map(fastest).collect();
         let most = all.first()?.1;
         let parts: Vec<&str> = all.iter().map(|(part, _)| part.as_str()).collect();
-        Some(format!(
-            "In {scene} at {}, without a loss: {}.",
-            lights(most),
-            parts.join("; ")
-        ))
+        Some(format!("In {scene} at {}, without a loss: {}.", lights(most), parts.join("; ")))
     })
 }
