@@ -53,10 +53,9 @@ fn entries(gpu: &Gpu, bounds: Bounds, area_bounds: AreaBounds, lights: &[Light])
 fn balls_list_what_lies_behind_an_emitter_or_beside_a_long_one() {
     let gpu = Gpu::open(None).expect("an adapter: scripts/test installs the software one");
     let at = |emitter, z: f32, range| Light::area(emitter, Vec3::Z * z, range, Vec3::ONE);
-    // Emits away from the wall, and a bar along the view whose ends are far and whose range is short.
+    // One emits away from the wall; the other is a long bar that faces it from beyond its range.
     let behind = at(Emitter::rectangle(Vec3::X, Vec3::Y), 1.0, 5.0);
-    let along = at(Emitter::rectangle(Vec3::Z * 3.0, Vec3::Y * 0.01), 4.5, 0.5).shape;
-    let long = Light { shape: along, ..at(Emitter::rectangle(Vec3::X, Vec3::Y), 4.5, 0.5) };
+    let long = at(Emitter::rectangle(Vec3::X * 3.0, Vec3::NEG_Y * 0.01), 2.0, 0.5);
     for bounds in [Bounds::Explicit, Bounds::Implicit] {
         for light in [behind, long] {
             let of = |area_bounds| entries(&gpu, bounds, area_bounds, &[light]);

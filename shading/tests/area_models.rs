@@ -166,9 +166,14 @@ fn the_two_weights_of_the_most_representative_point_err_in_different_terms() {
     };
     let [derived, published, point, ltc] =
         [AreaModel::Mrp, AreaModel::MrpPublished, AreaModel::Point, AreaModel::LtcTable].map(of);
-    assert!(derived[0] > 0.0 && derived[0] < point[0], "{derived:?} {point:?}");
-    assert!(ltc[0].abs() < 0.01 && ltc[1].abs() < 0.1, "{ltc:?}");
-    assert!(published[1] > derived[1], "{published:?} {derived:?}");
+    // METHODOLOGY's table of biases by term.
+    let stated = [[0.15, 0.96], [0.47, 40.8], [1.05, 0.51], [-0.001, -0.085]];
+    for (found, stated) in [derived, published, point, ltc].iter().zip(stated) {
+        for (found, stated) in found.iter().zip(stated) {
+            let near = 0.01 + 0.02 * f64::abs(stated);
+            assert!((found - stated).abs() < near, "{found} where METHODOLOGY has {stated}");
+        }
+    }
 }
 
 /// Where the cone of equation 5.5 misses the emitter, the published model has no specular light, and
