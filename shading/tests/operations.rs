@@ -18,8 +18,8 @@ use shading::{
 };
 
 const SIZE: [u32; 2] = [48, 32];
-/// From radiance to the display's scale: 0.005 there is a radiance of 8.7e-4, amid those of the lights.
-const EXPOSURE: f32 = 1e-2;
+/// From radiance to the display's scale: 0.005 there is a radiance of 8.7e-5, amid those of the lights.
+const EXPOSURE: f32 = 0.1;
 const ROUGHNESS: f32 = 0.5;
 /// Nearer than this to an edge or a threshold, f32 may decide otherwise.
 const DOUBT: f64 = 1e-3;
@@ -222,7 +222,7 @@ fn operations_are_those_of_f64() {
     let mut lossless = clusters(&gpu, SpecularCut::None);
     check("clusters", &count(&gpu, &all, &mut lossless, 0.0), true);
 
-    let mut cut = clusters(&gpu, SpecularCut::Below(0.5));
+    let mut cut = clusters(&gpu, SpecularCut::Below(5.0));
     let counted = count(&gpu, &all, &mut cut, 0.0);
     let truth = check("clusters, cut", &counted, true);
     // The cut takes terms that would be seen: a count that ignores the list's flags fails here.

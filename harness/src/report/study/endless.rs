@@ -187,6 +187,14 @@ fn fastest<'a>(all: impl Iterator<Item = &'a Record>) -> Option<&'a Record> {
         .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))
 }
 
+/// The verb of a setting.
+fn takes(record: &Record) -> &'static str {
+    match Setting::of(&record.strategy).cones {
+        Some(cones) if cones > 1 => "take",
+        _ => "takes",
+    }
+}
+
 fn is_of_the_paper(record: &&Record) -> bool {
     Setting::of(&record.strategy).is_of_the_paper()
 }
@@ -205,7 +213,7 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         lights(case.lights)
     );
     text += &match leaders.len() {
-        1 => format!("{} takes least time: {} ms", names[0], times[0]),
+        1 => format!("{} {} least time: {} ms", names[0], takes(leader), times[0]),
         _ => format!("{} tie: {} ms", listed(&names), listed(&times)),
     };
     if !leaders.iter().any(|record| std::ptr::eq(*record, position)) {
@@ -233,10 +241,11 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         let flip = lossy.errors.get("flip").copied().flatten();
         let flip =
             flip.map_or_else(String::new, |flip| format!(" with a FLIP of {}", significant(flip)));
-        text += &format!("; {} takes {} ms{flip}", setting(&lossy.strategy), time(lossy));
+        let (name, takes) = (setting(&lossy.strategy), takes(lossy));
+        text += &format!("; {name} {takes} {} ms{flip}", time(lossy));
         if let (Some(lost), Some(all)) = (loss(case, lossy), &position.operations) {
             let all = number(seen(all) as f64);
-            text += &format!(" and loses {lost} of {all} terms that would be seen");
+            text += &format!("; of {all} terms that would be seen, {lost} are lost");
         }
     }
     Some(text + ".")
