@@ -63,7 +63,7 @@ struct Extent {
 const FULL: Extent = Extent {
     size: Size { width: 480, height: 270 },
     timed_size: Size { width: 1920, height: 1080 },
-    samples: "2048",
+    samples: "1024",
     frames: "32",
     warmup: "4",
     rsm: "256",
@@ -72,7 +72,7 @@ const FULL: Extent = Extent {
     deep_sizes: &["64", "32", "128", "256"],
     rays: &["6", "1", "3", "12"],
     scales: &["2", "3", "4", "6"],
-    longest_scales: &["1", "1.5", "2", "3"],
+    longest_scales: &["0.75", "1", "1.5", "2"],
     random: &[0.15, 0.2, 0.3, 0.5, 0.8, 1.2, 1.6, 2.4],
     casts: "256,512,1024,2048",
     compared: "200000",

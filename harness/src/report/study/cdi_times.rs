@@ -78,6 +78,10 @@ pub(super) fn notices(done: &Done) -> Vec<String> {
             [cdi::BUILDS, cdi::CASTS].into_iter().flat_map(|section| done.of(scene, section));
         for (job, results) in jobs {
             let Some(run) = results.deep_images.as_ref() else { continue };
+            // What a job says of itself stands among the notices already.
+            if results.warnings.iter().any(|warning| warning.contains("are refused")) {
+                continue;
+            }
             if let Some(why) = refused_build(done, scene, run) {
                 notices.push(format!("{}: times of its build are left out: {why}.", job.name));
             }
