@@ -58,7 +58,7 @@ pub(super) fn notice<'a>(
         .collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "{MARK} {chip} runs fragment shaders on a few of its processors. Compare rows with this mark \
+            "{MARK} {chip} runs fragment shaders on a few of its processors. Compare figures with this mark \
              with no other chip\u{2019}s: {}.",
             parts.join("; ")
         )
