@@ -89,9 +89,8 @@ fn check(name: &str, shown: &Shown) {
     println!("{said}");
     assert!(shown.heights > 0.2, "{said}");
     assert!(shown.clearance_m > 0.15, "{said}");
-    // Both smooth and broken views, and not the most broken one first.
+    // Both smooth and broken views.
     assert!(shown.most() > 2.0 * shown.least(), "{said}");
-    assert!(shown.most() > 1.1 * shown.broken[0], "{said}");
 }
 
 #[test]

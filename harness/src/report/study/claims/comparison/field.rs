@@ -114,6 +114,15 @@ impl Pairs {
         }
     }
 
+    /// Of one strategy that should be first: it is not where another is before it.
+    pub(super) fn leader_verdict(&self) -> Verdict {
+        match (self.other_way.is_empty(), self.ties.is_empty()) {
+            (false, _) => Verdict::Fails,
+            (true, false) => Verdict::Differs("a tie".to_owned()),
+            (true, true) => self.verdict(),
+        }
+    }
+
     /// The pairs that are not as the paper has them, as further parts of a figure.
     pub(super) fn exceptions(&self) -> String {
         let said = |what: &str, pairs: &[String]| match pairs.len() {
@@ -125,7 +134,8 @@ impl Pairs {
     }
 }
 
-/// Whether times come in the paper's order, all pairs across its groups.
+/// Whether times come in the paper's order, all pairs across its groups. Where the chain is one strategy
+/// before all others, whether it leads.
 pub(super) fn ordered(done: &Done, scene: &str, wanted: u64, chain: &[&[&str]]) -> Answer {
     let field = match Field::at(done, scene, wanted) {
         Ok(field) => field,
@@ -135,5 +145,7 @@ pub(super) fn ordered(done: &Done, scene: &str, wanted: u64, chain: &[&[&str]]) 
     let pairs = Pairs::of_chain(chain, order);
     let families: Vec<&str> = chain.concat();
     let figure = format!("{}: {}{}", field.basis(), field.times(&families), pairs.exceptions());
-    Answer { figure, verdict: pairs.verdict() }
+    let is_leader = matches!(chain, [[_], _]);
+    let verdict = if is_leader { pairs.leader_verdict() } else { pairs.verdict() };
+    Answer { figure, verdict }
 }
