@@ -8,13 +8,13 @@ use assign::{
 use assign_tiled::{TileSize, Tiled};
 use glam::Vec3;
 
-/// Small lights all over the view, to a depth of 30 metres.
+/// Lights around the near plane, wider than tiles are there. Beside a corner of a tile HS passes what
+/// SAT-N separates; along a tile's long sides the two pass the same.
 fn lights() -> Vec<Light> {
     let at = |ix: u32| {
         let share = |factor: f32| (ix as f32 * factor).fract() - 0.5;
-        let depth = 1.0 + 29.0 * (share(0.618_034) + 0.5);
-        let place = Vec3::new(share(0.754_878) * depth, share(0.569_84) * depth, -depth);
-        Light::point(place, 0.6, Vec3::ONE)
+        let depth = 0.45 + 0.5 * share(0.618_034);
+        Light::point(Vec3::new(share(0.754_878), share(0.569_84), -depth), 0.3, Vec3::ONE)
     };
     (0..400).map(at).collect()
 }
@@ -22,7 +22,7 @@ fn lights() -> Vec<Light> {
 /// Entries of all lists of T-I.
 fn entries(gpu: &Gpu, far_m: Option<f32>, tests: &str) -> u64 {
     let lights = LightBuffer::new(gpu, &lights()).unwrap();
-    let view = View { far_m, ..View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.1, [256, 192]) };
+    let view = View { far_m, ..View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [256, 192]) };
     let settings = CullSettings { tests: tests.parse().unwrap(), ..CullSettings::default() };
     let mut tiles = Tiled::new(gpu, TileSize([16, 16]), Bounds::Implicit, settings).unwrap();
     let frame = Frame::new(&view, &lights);
@@ -41,7 +41,8 @@ fn with_a_far_plane_hs_and_sat_n_list_fewer_lights_than_hs() {
     println!("HS+SAT-N {open} without a far plane, {far} with one; HS {open_hs} and {far_hs}");
     // Without far corners HS runs alone, whatever is asked for.
     assert_eq!(open, open_hs);
-    // All lights lie before the far plane: it changes nothing for HS.
-    assert_eq!(far_hs, open_hs);
-    assert!(far < far_hs);
+    // All lights lie before the far plane, so HS lists the same but for the slack of rounding, which
+    // grows with the far corners' distance.
+    assert!(far_hs.abs_diff(open_hs) < 10);
+    assert!(far < far_hs * 4 / 5);
 }
