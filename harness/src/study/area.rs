@@ -173,7 +173,7 @@ mod tests {
             for model in extent.models.iter().chain(costs) {
                 assert!(model.parse::<shading::AreaModel>().is_ok(), "{model}");
             }
-            let own = extent.models.iter().any(|model| *model == "ltc");
+            let own = extent.models.contains(&"ltc");
             assert!(own && extent.models.len() < 16, "a figure has 16 colours");
         }
     }
