@@ -389,5 +389,8 @@ fn stored_lights_without_fresnel_decide_nothing() {
     }
     // The best spans in two scenes are the last that were tried, and a difference of 1 % is a tie.
     assert!(words.contains("an end of the sweep"), "{words}");
-    assert!(words.contains("In atrium ranges by rays") && words.contains("a tie within"), "{words}");
+    assert!(
+        words.contains("In atrium ranges by rays") && words.contains("a tie within"),
+        "{words}"
+    );
 }
