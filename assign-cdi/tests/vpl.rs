@@ -241,7 +241,8 @@ fn spacing_is_even_where_texels_allow_it() {
 
 /// A spot of intensity I and half angle a over a white plane: the plane reflects I times the integral
 /// of the cone's ramp over solid angle. With the ramp ((cos t - cos a) / (1 - cos a))^2 that is
-/// 2 pi (1 - cos a) / 3.
+/// 2 pi (1 - cos a) / 3. Fresnel's term leaves 0.96 of it to diffuse reflection, and takes less than half
+/// a per cent more at these angles.
 #[test]
 fn reflected_flux_is_the_spots() {
     for outer_angle in [0.3, 1.0] {
@@ -255,7 +256,7 @@ fn reflected_flux_is_the_spots() {
             // A Lambertian emitter of intensity I along its normal emits pi I.
             let flux = f64::from(PI) * total(&map.lights(VplSettings::default()));
             let share = 2.0 * std::f64::consts::PI * (1.0 - f64::from(outer_angle).cos()) / 3.0;
-            let off = flux / (light.intensity.as_dvec3() * share) - DVec3::ONE;
+            let off = flux / (0.96 * light.intensity.as_dvec3() * share) - DVec3::ONE;
             assert!(off.abs().max_element() < 0.01, "{outer_angle}: {off}");
         }
     }

@@ -1,6 +1,7 @@
 //! Indirect light as a user asks for it: deep images, virtual point lights, and their study.
 
 use std::{
+    f64::consts::FRAC_1_SQRT_2,
     path::Path,
     process::{Command, Output},
 };
@@ -168,7 +169,7 @@ fn room(folder: &Path, floor: f64) -> String {
         "scenes": [{"nodes": [0, 1]}],
         "nodes": [
             {"mesh": 0},
-            {"translation": [0.0, 2.8, 0.0], "rotation": [-0.707_106_78, 0.0, 0.0, 0.707_106_78],
+            {"translation": [0.0, 2.8, 0.0], "rotation": [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2],
              "extensions": {"KHR_lights_punctual": {"light": 0}}}
         ],
         "materials": [
@@ -389,5 +390,8 @@ fn stored_lights_without_fresnel_decide_nothing() {
     }
     // The best spans in two scenes are the last that were tried, and a difference of 1 % is a tie.
     assert!(words.contains("an end of the sweep"), "{words}");
-    assert!(words.contains("In atrium ranges by rays") && words.contains("a tie within"), "{words}");
+    assert!(
+        words.contains("In atrium ranges by rays") && words.contains("a tie within"),
+        "{words}"
+    );
 }

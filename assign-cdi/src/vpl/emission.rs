@@ -8,7 +8,7 @@ const DIELECTRIC_F0: f32 = 0.04;
 /// C as a polynomial of the cosine of incidence, lowest power first: the integral of
 /// `cos (1 - v.h)^5 / pi` over the hemisphere of directions `v`, within 1.2e-5.
 const DIFFUSE_FRESNEL: [f32; 5] =
-    [0.028_163_14, -0.079_932_239, 0.086_807_128, -0.044_172_812, 0.009_218_425];
+    [0.028_163_14, -0.079_932_24, 0.086_807_13, -0.044_172_812, 0.009_218_425];
 
 /// Share of light, arriving at a cosine to the normal, that diffuse reflection sends out over the
 /// whole hemisphere. A VPL emits this share by Lambert's law.

@@ -94,7 +94,7 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
     let body = chart
         + &table("Build time against directions", &heads, &rows)
         + &passes(of("compute", counts.last().copied().unwrap_or(0)))
-        + &memory(&all, &counts_as_time);
+        + &memory(&all, counts_as_time);
     let text = format!(
         "{} triangles, {1} x {1} pixels a direction. All of a build is on the clock: sampling or drawing, \
          counting, prefix sum, filling and sorting. Brute force visits all triangles for each direction, in one \

@@ -96,8 +96,8 @@ pub(super) fn page(done: &Done) -> Page {
         }
     }
     if let Some(paper) = claims::paper(study).filter(|_| !done.results.is_empty()) {
-        let claims = claims::claims(done, &paper);
-        body += &claims::claims_html(&paper, &claims, is_software(done));
+        let claims = claims::claims(done, paper);
+        body += &claims::claims_html(paper, &claims, is_software(done));
         words.extend(claims.iter().map(claims::Claim::text));
     }
     body += &sections.concat();
