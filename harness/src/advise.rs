@@ -214,8 +214,7 @@ fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<
     }
     let linear = |record: &&&Record| !needs_built_hierarchy(record);
     for &record in exact.iter().filter(linear) {
-        if last.iter().filter(|known| linear(known)).count() < LAST_LINEAR
-            && is_new(&last, record)
+        if last.iter().filter(|known| linear(known)).count() < LAST_LINEAR && is_new(&last, record)
         {
             last.push(record);
         }

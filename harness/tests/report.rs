@@ -71,7 +71,8 @@ fn a_lossless_strategy_wins_over_a_faster_lossy_one_and_over_the_control() {
 fn copy(record: &harness::results::Record, name: &str, factor: f64) -> harness::results::Record {
     let mut copy = record.clone();
     copy.strategy = name.to_owned();
-    let passes: Vec<_> = record.passes.iter().map(|(name, times)| (name.to_owned(), times.clone())).collect();
+    let passes: Vec<_> =
+        record.passes.iter().map(|(name, times)| (name.to_owned(), times.clone())).collect();
     for (name, mut times) in passes {
         times.samples.iter_mut().for_each(|ms| *ms *= factor);
         copy.passes.insert(&name, PassTimes::new(times.kind, times.samples));

@@ -101,7 +101,11 @@ fn loss(record: &Record) -> Option<String> {
         return None;
     }
     let errors = report::error_words(record);
-    Some(if errors.is_empty() { "it may lose light".to_owned() } else { format!("it errs by {errors}") })
+    Some(if errors.is_empty() {
+        "it may lose light".to_owned()
+    } else {
+        format!("it errs by {errors}")
+    })
 }
 
 /// What the best ties with, and why it was preferred.

@@ -55,7 +55,7 @@ pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
     let (best, reasons) = choose(&within)?;
     let fastest = *within.first()?;
     let (mut tied, slower): (Vec<&Record>, Vec<&Record>) =
-        within.iter().partition(|record| ties(record, fastest));
+        within.iter().copied().partition(|record| ties(record, fastest));
     tied.retain(|record| !std::ptr::eq(*record, best));
     let still = needs_built_hierarchy(best);
     let without: Vec<&Record> =
@@ -76,14 +76,15 @@ fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> 
     let mut left: Vec<&Record> =
         within.iter().copied().filter(|record| ties(record, fastest)).collect();
     let mut reasons = Vec::new();
-    let mut keep = |left: &mut Vec<&'a Record>, reason, key: &dyn Fn(&Record) -> f64, alike: f64| {
-        let least = left.iter().map(|record| key(record)).fold(f64::INFINITY, f64::min);
-        let before = left.len();
-        left.retain(|record| key(record) <= least * alike);
-        if left.len() < before {
-            reasons.push(reason);
-        }
-    };
+    let mut keep =
+        |left: &mut Vec<&'a Record>, reason, key: &dyn Fn(&Record) -> f64, alike: f64| {
+            let least = left.iter().map(|record| key(record)).fold(f64::INFINITY, f64::min);
+            let before = left.len();
+            left.retain(|record| key(record) <= least * alike);
+            if left.len() < before {
+                reasons.push(reason);
+            }
+        };
     keep(&mut left, "it loses nothing", &|record| f64::from(u8::from(!record.is_exact())), 1.0);
     keep(&mut left, "it errs less", &|record| error_of(record).unwrap_or(f64::INFINITY), 1.0);
     let memory = |record: &Record| record.memory_bytes.unwrap_or(record.lists_bytes) as f64;

@@ -122,7 +122,9 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let Some(baseline) = comparison.baseline() else { return alone() };
     if leader.lights == 0 {
         let none = significant(baseline.assign_and_shade_ms());
-        return format!("there is no light to assign: {words} {takes} {took} ms, no culling {none} ms");
+        return format!(
+            "there is no light to assign: {words} {takes} {took} ms, no culling {none} ms"
+        );
     }
     let faster = |record: &Record| comparison.speedup(record);
     match (comparison.speedup(leader), subject.span(faster)) {
@@ -144,9 +146,11 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
 
 /// How they stand against no culling with the same early exit, where that was measured.
 fn over_exit(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
-    subject.span(|record| comparison.speedup_over_exit(record)).map_or_else(String::new, |factors| {
-        format!(" ({factors}\u{d7} if that has the same early exit)")
-    })
+    subject
+        .span(|record| comparison.speedup_over_exit(record))
+        .map_or_else(String::new, |factors| {
+            format!(" ({factors}\u{d7} if that has the same early exit)")
+        })
 }
 
 /// What is said of an image that is that of no culling.

@@ -133,10 +133,6 @@ pub(super) fn headline(done: &Done) -> Option<String> {
         let all: Vec<(String, u64)> = MODES.iter().filter_map(fastest).collect();
         let most = all.first()?.1;
         let parts: Vec<&str> = all.iter().map(|(part, _)| part.as_str()).collect();
-        Some(format!(
-            "By the mean frame time in {scene} at {}, {}.",
-            lights(most),
-            listed(&parts)
-        ))
+        Some(format!("By the mean frame time in {scene} at {}, {}.", lights(most), listed(&parts)))
     })
 }

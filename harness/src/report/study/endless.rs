@@ -189,7 +189,6 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     let all: usize = wins.iter().map(|(_, count)| count).sum();
     let parts: Vec<String> =
         wins.iter().map(|(name, count)| format!("{name} in {count} of {all} cases")).collect();
-    (!parts.is_empty()).then(|| {
-        format!("Least time without a loss in {scene}: {}.", listed_words(&parts))
-    })
+    (!parts.is_empty())
+        .then(|| format!("Least time without a loss in {scene}: {}.", listed_words(&parts)))
 }
