@@ -1,13 +1,12 @@
 //! Which record of a comparison to use.
 //!
-//! The fastest record within the error budget names the time to reach. Every record that cannot be
-//! told apart from it would do as well. Of those the verdict takes one that loses nothing, then one
-//! that needs less memory, then the simplest. So a lossy setting is named only where it is surely
-//! faster than every exact one.
+//! Candidates are the records within the error budget that no other is surely faster than: they tie.
+//! Of those the verdict takes one that loses nothing, then one that needs less memory, then the
+//! simplest. A lossy setting is a candidate only where it is surely faster than every exact one.
 
 use crate::{
     registry::STRATEGIES,
-    report::{indistinguishable, needs_built_hierarchy},
+    report::{is_surely_faster, needs_built_hierarchy},
     results::{Record, Results},
 };
 
@@ -22,7 +21,7 @@ const ALIKE_MEMORY: f64 = 1.1;
 pub struct Verdict<'a> {
     /// The record to use.
     pub best: &'a Record,
-    /// The others that cannot be told apart from the fastest, fastest first.
+    /// The others that nothing is surely faster than, fastest first.
     pub tied: Vec<&'a Record>,
     /// What the best has over those that it ties with, in order of weight.
     pub reasons: Vec<&'static str>,
@@ -52,29 +51,56 @@ pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
         .filter(|record| error_of(record).is_some_and(|error| error <= error_budget))
         .collect();
     within.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-    let (best, reasons) = choose(&within)?;
-    let fastest = *within.first()?;
+    let (best, mut reasons) = choose(&within)?;
     let (mut tied, slower): (Vec<&Record>, Vec<&Record>) =
-        within.iter().partition(|record| ties(record, fastest));
+        within.iter().copied().partition(|record| is_unbeaten(record, &within));
     tied.retain(|record| !std::ptr::eq(*record, best));
+    if best.is_exact() && reasons.is_empty() && tied.iter().any(|record| !record.is_exact()) {
+        reasons.push("it loses nothing");
+    }
     let still = needs_built_hierarchy(best);
-    let without: Vec<&Record> =
-        within.iter().copied().filter(|record| still && !needs_built_hierarchy(record)).collect();
+    let without: Vec<&Record> = within
+        .iter()
+        .copied()
+        .filter(|record| still && record.culls() && !needs_built_hierarchy(record))
+        .collect();
+    let time = Record::assign_and_shade_ms;
     Some(Verdict {
         best,
         tied,
         reasons,
-        next: slower.first().copied(),
+        next: slower.into_iter().find(|record| time(record) >= time(best)),
         moving: choose(&without).map(|(record, _)| record),
         lossy: within.iter().copied().find(|record| record.is_lossy),
     })
 }
 
+/// Whether nothing among some records is surely faster than one of them.
+fn is_unbeaten(record: &Record, among: &[&Record]) -> bool {
+    !among.iter().any(|other| beats(other, record))
+}
+
+/// Whether a record is surely faster than another. Where no rounds tell, times alone decide, and a
+/// lossy record has shown no gain over an exact one.
+fn beats(record: &Record, other: &Record) -> bool {
+    is_surely_faster(record, other).unwrap_or_else(|| {
+        let shows = !record.is_lossy || other.is_lossy;
+        shows && record.assign_and_shade_ms() < other.assign_and_shade_ms()
+    })
+}
+
 /// The record to take of some, fastest first, and what it has over those that it ties with.
 fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> {
-    let fastest = *within.first()?;
+    let exact: Vec<&Record> = within.iter().copied().filter(|record| record.is_exact()).collect();
+    // A lossy record competes only where it gains on every exact one.
+    let competes = |record: &Record| record.is_exact() || exact.iter().all(|e| beats(record, e));
+    let field: Vec<&Record> = within.iter().copied().filter(|record| competes(record)).collect();
     let mut left: Vec<&Record> =
-        within.iter().copied().filter(|record| ties(record, fastest)).collect();
+        field.iter().copied().filter(|record| is_unbeaten(record, &field)).collect();
+    if left.is_empty() {
+        // Each is beaten by another, in a circle: the least time decides.
+        left.extend(field.first());
+    }
     let mut reasons = Vec::new();
     let mut keep =
         |left: &mut Vec<&'a Record>, reason, key: &dyn Fn(&Record) -> f64, alike: f64| {
@@ -91,13 +117,6 @@ fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> 
     keep(&mut left, "it needs less memory", &memory, ALIKE_MEMORY);
     keep(&mut left, "it is simpler", &complexity, 1.0);
     left.first().map(|best| (*best, reasons))
-}
-
-/// Whether a record cannot be told apart from the fastest. Where no rounds tell, its time alone
-/// decides, and a lossy one has shown no gain.
-fn ties(record: &Record, fastest: &Record) -> bool {
-    std::ptr::eq(record, fastest)
-        || indistinguishable(record, fastest).unwrap_or(fastest.is_lossy && !record.is_lossy)
 }
 
 /// How much there is to a method: first its knobs, then its place in the registry, which goes from

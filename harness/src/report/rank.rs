@@ -66,6 +66,12 @@ pub fn indistinguishable(record: &Record, other: &Record) -> Option<bool> {
     Ratio::of(record, other).map(|ratio| ratio.is_tie())
 }
 
+/// Whether a record is faster than another, beyond chance. `None` where they were not timed in the same
+/// rounds.
+pub fn is_surely_faster(record: &Record, other: &Record) -> Option<bool> {
+    Ratio::of(record, other).map(|ratio| ratio.is_faster())
+}
+
 /// A record with its place among others.
 pub(super) struct Ranked<'a> {
     /// The record.
