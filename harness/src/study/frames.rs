@@ -22,7 +22,7 @@ pub(super) fn jobs(
     is_quick: bool,
 ) -> Vec<Job> {
     let (strategies, poses, laps) =
-        if is_quick { (QUICK, "2", "6") } else { (STRATEGIES, "24", "6") };
+        if is_quick { (QUICK, "2", "6") } else { (STRATEGIES, "12", "6") };
     let size = format!("{}x{}", size.width, size.height);
     let (seed, scale) = (seed.to_string(), scene.scale.to_string());
     let job = |&count: &u32| {

@@ -62,7 +62,7 @@ fn what_ranks_is_measured_along_the_path() {
         value(job, "--frames").and_then(|n| n.parse().ok()).expect("frames")
     };
     assert_eq!((poses("atrium-path-10000"), poses("atrium-sizes-SC-E")), (240, 24));
-    assert_eq!((poses("atrium-scaling-300"), poses("atrium-tests-T-E")), (24, 24));
+    assert_eq!((poses("atrium-scaling-1000"), poses("atrium-tests-T-E")), (24, 24));
 }
 
 /// Sizes for the paper's claims come from the list of all lights, those of bvh rows through it.
