@@ -5,7 +5,7 @@ use std::{
     process::{Command, Output},
 };
 
-use harness::results::Results;
+use harness::{advise::verdict, report::is_surely_faster, results::Results};
 
 fn lightbench(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_lightbench")).args(arguments).output().expect("starts")
@@ -145,6 +145,28 @@ fn real_scenes_with_their_own_lights_are_lossless() {
         let results = compare(out.path(), &["--scene", scene, "--lights", lights]);
         assert_lossless(&results, 4);
     }
+}
+
+#[test]
+fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    let small = ["advise", "--error-budget", "0.001", "--size", "64x36", "--lights", "60"];
+    let output = lightbench(&[&small[..], &["--out", out]].concat());
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let results = Results::read(&folder.path().join("results.json")).expect("results.json");
+    let best = verdict(&results, 0.001).expect("a verdict").best;
+    assert!(said.starts_with(&format!("Use {} (", best.strategy)), "the answer first: {said}");
+    // It judged several poses, several times each.
+    assert!(best.along_path && best.poses == Some(3) && best.frames == 24, "{best:?}");
+    let gains = |exact: &&harness::results::Record| is_surely_faster(best, exact) == Some(true);
+    let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
+    assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{said}");
+    // A view that the user placed is one view, and lights come from files as they do elsewhere.
+    let refused = lightbench(&["advise", "--poses", "3", "--camera", "0,1,0:1,1,0"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert_refused(&["advise", "--lights-from", "gone.glb", "--out", out], &["gone.glb"]);
 }
 
 /// Runs the program on bad input: one line on stderr, exit code 2, and the line holds `wanted`.

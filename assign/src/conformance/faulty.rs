@@ -31,9 +31,9 @@ pub enum Fault {
     ShrunkenBound,
     /// Lists are made from area lights that shine from their middle alone.
     CentredEmitter,
-    /// Lists are made from spots of 0.9 times their half angle.
+    /// Lists are made from spots of half their half angle.
     NarrowCone,
-    /// Lists are made from virtual point lights that shine into 0.9 of their half space.
+    /// Lists are made from virtual point lights that shine into a cone of 45 degrees.
     NarrowHalfSpace,
     /// Lists are made no more once the lights have moved.
     StaleLists,
@@ -232,12 +232,12 @@ impl Faulty {
         let shape = match (self.fault, &light.shape) {
             (Fault::CentredEmitter, LightShape::Area(_)) => LightShape::Point,
             (Fault::NarrowCone, &LightShape::Spot { direction, inner_angle, outer_angle }) => {
-                let outer_angle = 0.9 * outer_angle;
+                let outer_angle = 0.5 * outer_angle;
                 let inner_angle = inner_angle.min(outer_angle);
                 LightShape::Spot { direction, inner_angle, outer_angle }
             }
             (Fault::NarrowHalfSpace, &LightShape::Vpl { normal: direction, .. }) => {
-                let outer_angle = 0.9 * std::f32::consts::FRAC_PI_2;
+                let outer_angle = 0.5 * std::f32::consts::FRAC_PI_2;
                 LightShape::Spot { direction, inner_angle: 0.0, outer_angle }
             }
             (_, shape) => *shape,
