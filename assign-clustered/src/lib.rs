@@ -39,8 +39,8 @@
 //!
 //! Two more cuts are Swarbrick's own, as baselines, and lossy too ([`SpecularCut`]). `/n54/cone45` tests
 //! whether a bin's normals mirror the light's middle to the eye, give or take a lobe of 45 degrees
-//! (`reflected.wesl`), and looks only at lights whose diffuse term does not reach. `/dif` ends specular light
-//! where diffuse light ends.
+//! (`reflected.wesl`), and looks only at lights whose diffuse term does not reach. `/dif` lists a light only
+//! where its diffuse term reaches the group; of a listed light, specular light is drawn out to its full range.
 //!
 //! # Cost
 //!

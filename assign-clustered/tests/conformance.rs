@@ -184,6 +184,14 @@ fn faults_are_rejected() {
     }
 }
 
+/// Emitters that are a little too small show where groups are small.
+#[test]
+fn tight_emitters_are_rejected() {
+    let make = clustered(SC_E, "2x2x128", CullSettings::default());
+    conformance::run_case("area-lights-grazing", &make).expect("conforms");
+    conformance::rejects_fault(Fault::TightEmitter, &make).expect("rejects");
+}
+
 /// A frame's counters are its own, whatever the frames before held: none here, all there.
 #[test]
 fn counters_start_anew_even_where_nothing_is_in_view() {

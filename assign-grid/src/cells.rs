@@ -96,20 +96,25 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 const LEAST_CELL: f32 = 32.0 * f32::EPSILON;
 
 impl CellsUniform {
-    /// Cuts a box into cells; `lights` is the box around all lights, `None` without any.
+    /// Cuts a box into cells; `lights` is the box around all lights, `None` without any. An axis along
+    /// which the box has no extent gets one cell: of more, only the first and the last would hold
+    /// samples.
     pub fn new(counts: CellCounts, cut: (Vec3, Vec3), lights: Option<(Vec3, Vec3)>) -> Self {
         let finite = |v: Vec3| v.clamp(Vec3::splat(-1e30), Vec3::splat(1e30));
         let (min, max) = (finite(cut.0.min(cut.1)), finite(cut.1.max(cut.0)));
         let lights = lights.unwrap_or((min, max));
         let magnitude = min.abs().max(max.abs()).max_element().max(f32::MIN_POSITIVE / LEAST_CELL);
-        let parts = Vec3::from_array(counts.0.map(|n| n as f32));
-        let cell = ((max - min) / parts).max(Vec3::splat(magnitude * LEAST_CELL));
+        let least = magnitude * LEAST_CELL;
+        let size = max - min;
+        let counts = [0, 1, 2].map(|axis| if size[axis] < least { 1 } else { counts.0[axis] });
+        let parts = Vec3::from_array(counts.map(|n| n as f32));
+        let cell = (size / parts).max(Vec3::splat(least));
         Self {
             min_world: min.to_array(),
-            slack_m: (magnitude + (max - min).max_element()) * ROUNDING,
+            slack_m: (magnitude + size.max_element()) * ROUNDING,
             cell_m: cell.to_array(),
             padding: 0.0,
-            counts: counts.0,
+            counts,
             padding_2: 0,
             lights_min: finite(lights.0).to_array(),
             padding_3: 0.0,
@@ -156,5 +161,20 @@ mod tests {
         let cells = CellsUniform::new(counts, (Vec3::ZERO, Vec3::splat(8.0)), None);
         assert_eq!(cells.cell_m, [2.0, 4.0, 8.0]);
         assert_eq!(cells.group_count(), 8);
+    }
+
+    /// Lamps in one ceiling: their positions' box has no height.
+    #[test]
+    fn an_axis_without_extent_has_one_cell() {
+        let counts = CellCounts([20, 20, 20]);
+        let (min, max) = (Vec3::new(0.0, 2.0, 0.0), Vec3::new(8.0, 2.0, 4.0));
+        let reach = Vec3::splat(3.0);
+        let flat = CellsUniform::new(counts, (min, max), Some((min - reach, max + reach)));
+        assert_eq!((flat.counts, flat.group_count()), ([20, 1, 20], 400));
+        // Its one layer reaches from the floor to above the lamps, as far as they do.
+        assert_eq!((flat.lights_min[1], flat.lights_max[1]), (-1.0, 5.0));
+        let top = max + Vec3::Y * 0.01;
+        let thin = CellsUniform::new(counts, (min, top), Some((min - reach, top + reach)));
+        assert_eq!(thin.counts, [20; 3]);
     }
 }

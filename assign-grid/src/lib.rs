@@ -35,7 +35,10 @@
 //! Cells that nobody sees are culled as well. Cells are as large far away as they are near, so a
 //! large scene has either cells that hold hundreds of lights before the camera's nose, or millions
 //! of cells. One light far away makes all cells large, and so does one light of great range where the
-//! box is that of the supports: take the box of the surfaces. The best count of cells is another for
+//! box is that of the supports: take the box of the surfaces. Lights that all lie near one plane, such
+//! as the lamps of a ceiling, make a flat box of positions: nearly all samples lie outside it, in the
+//! first and the last layer, and the layers between hold almost none (`G/.../supports` cuts a box of some
+//! height). Where the box has no height at all, `G` makes one layer. The best count of cells is another for
 //! each scene.
 
 mod cells;

@@ -68,7 +68,8 @@ fn lists_are_short() {
     };
     let (whole, parts) = (listed(None), listed(Some(1.0)));
     println!("{whole:.1} by models, {parts:.1} by parts, of 600 lights");
-    assert!(whole < 595.0 && parts < 0.8 * whole, "{whole}, {parts}");
+    // The boxes of the plane and the wall, askew as they are, hold about two thirds of the lights.
+    assert!(whole < 480.0 && parts < 0.8 * whole, "{whole}, {parts}");
 }
 
 #[test]

@@ -6,6 +6,11 @@
 //! could build them on the GPU for lights that move. How small the boxes are is up to the
 //! [`LightOrder`](crate::LightOrder).
 //!
+//! Boxes hold the full range of every light, and the outlines of area lights. Two settings then test
+//! each light by another volume. `WhereDiffuse` tests the diffuse range only, so it tests some lights
+//! in vain. `AreaBounds::Ball` tests balls around the outlines, which are larger: through nodes it lists
+//! fewer lights than it does from the linear list.
+//!
 //! Worked example: 130 lights have three nodes: lights 0 to 63, 64 to 127, 128 and 129.
 
 use bytemuck::{Pod, Zeroable};

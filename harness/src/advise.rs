@@ -19,6 +19,8 @@ mod verdict;
 pub use answer::answer;
 pub use verdict::{METRIC, Verdict, error_of, verdict};
 
+use clap::ValueEnum;
+
 use crate::{
     checks::check_writable,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
@@ -51,6 +53,10 @@ const FRAMES: [[u32; 2]; 2] = [[16, 48], [2, 6]];
 /// adapter.
 const POSES: [u32; 2] = [24, 3];
 
+/// What is said where the command line asks for one pose.
+const ONE_POSE: &str = "--poses 1: the camera stood still in the path's first view, which says nothing \
+                        of the others; --poses 2 or more judge several";
+
 /// Laps over the poses: in the first two rounds, and in the last, whose laps must tell ties.
 const LAPS: [u32; 2] = [2, 8];
 
@@ -64,10 +70,13 @@ const CAPPED: usize = 2;
 ///
 /// # Errors
 ///
-/// Whatever a comparison fails with, and a mode of more than one.
+/// Whatever a comparison fails with, and a choice of several modes.
 pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, HarnessError> {
     if args.mode.modes().len() != 1 {
-        return Err(CliError::out_of_range("--mode", "both", "deferred or forward").into());
+        let value = args.mode.to_possible_value();
+        let value = value.as_ref().map_or("several", |value| value.get_name());
+        let accepted = "one mode: deferred, deferred-ids, forward or forward-no-prepass";
+        return Err(CliError::out_of_range("--mode", value, accepted).into());
     }
     check_writable(&args.out)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
@@ -89,6 +98,9 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let table = report::render_table(&finals);
     let first_line = text.lines().next().unwrap_or_default().to_owned();
     finals.warnings.insert(0, first_line);
+    if args.poses == Some(1) {
+        finals.warnings.push(ONE_POSE.to_owned());
+    }
     finals.write(&args.out.join("results.json"))?;
     let pictures = crate::again::pictures(&finals, &args.out.join("final"));
     let page = report::write_html(&finals, &pictures, &args.out)?;
@@ -116,6 +128,9 @@ impl<'a> Search<'a> {
         if args.poses.is_some() && !moves {
             let scene = &args.stage.scene;
             return Err(CliError::new(format!("--poses: {scene} has no camera path")).into());
+        }
+        if args.poses == Some(1) {
+            eprintln!("warning  {ONE_POSE}");
         }
         let poses = (moves && args.stage.camera.is_none())
             .then(|| args.poses.unwrap_or(default))

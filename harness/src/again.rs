@@ -1,6 +1,6 @@
 //! `lightbench report`: metrics and charts again, from what earlier runs stored.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use shading::HdrImage;
 
@@ -15,13 +15,16 @@ use crate::{
     study::{Done, Manifest, compare_builds, compare_with_truth},
 };
 
+/// The file of results in a folder.
+const FILE: &str = "results.json";
+
 /// Makes the report of a comparison or of a study; returns what to print.
 pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
     let Some(first) = args.folders.first() else {
         return Ok(String::new());
     };
     let out = args.out.as_ref().unwrap_or(first);
-    if Manifest::find(first)?.is_some() {
+    if first.is_dir() && Manifest::find(first)?.is_some() {
         let mut done = Done::read(&args.folders)?;
         for (job, results) in &mut done.results {
             if let Some(folder) = done.folders.get(job) {
@@ -41,15 +44,71 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
         return Err(CliError::out_of_range("--out", &value, accepted).into());
     }
     let mut text = String::new();
-    for folder in &args.folders {
-        let mut results = Results::read(&folder.join("results.json"))?;
-        refresh(&mut results, folder)?;
-        let out = if args.folders.len() == 1 { out } else { folder };
+    for given in &args.folders {
+        let Source { file, folder, report: own } = Source::of(given)?;
+        let mut results = Results::read(&file)?;
+        refresh(&mut results, &folder)?;
+        let out = args.out.as_ref().unwrap_or(&own);
         results.write(&out.join("results.json"))?;
-        let page = report::write_html(&results, &pictures(&results, folder), out)?;
+        let page = report::write_html(&results, &pictures(&results, &folder), out)?;
         text += &format!("{}\nreport   {}\n", report::render_table(&results), page.display());
     }
     Ok(text)
+}
+
+/// Where the results of a comparison are read from, and where their report goes.
+struct Source {
+    /// The file of results.
+    file: PathBuf,
+    /// The folder that it lies in, with its images.
+    folder: PathBuf,
+    /// The folder of its report where the command line names none.
+    report: PathBuf,
+}
+
+impl Source {
+    /// Of a folder that holds `results.json`, or of a file of results under any name.
+    fn of(given: &Path) -> Result<Self, HarnessError> {
+        if given.is_file() {
+            let parent = given.parent().filter(|parent| !parent.as_os_str().is_empty());
+            let folder = parent.unwrap_or(Path::new(".")).to_owned();
+            let is_usual = given.file_name().is_some_and(|name| name == FILE);
+            let report = if is_usual { folder.clone() } else { given.with_extension("") };
+            if report == given {
+                let value = given.display().to_string();
+                let accepted = "a folder or a file that ends in .json";
+                return Err(CliError::out_of_range("DIR", &value, accepted).into());
+            }
+            return Ok(Self { file: given.to_owned(), folder, report });
+        }
+        let file = given.join(FILE);
+        let others = match file.is_file() {
+            true => Vec::new(),
+            false => json_files(given),
+        };
+        if let Some(first) = others.first() {
+            let value = given.display().to_string();
+            let accepted = format!(
+                "a folder with {FILE} or a study, or a file of results; it holds {} .json files, \
+                 such as {first}: give one of those",
+                others.len()
+            );
+            return Err(CliError::out_of_range("DIR", &value, &accepted).into());
+        }
+        Ok(Self { file, folder: given.to_owned(), report: given.to_owned() })
+    }
+}
+
+/// The paths of the .json files in a folder, in order; none where it cannot be read.
+fn json_files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<String> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .map(|path| path.display().to_string())
+        .collect();
+    files.sort();
+    files
 }
 
 /// The pictures that records name, as far as they are there.
@@ -120,5 +179,17 @@ mod tests {
             matches!(error, HarnessError::Results(ResultsError::Read { .. }))
         };
         assert!(is_read(&again(&of(&folder.path().join("gone"))).unwrap_err()));
+    }
+
+    #[test]
+    fn a_file_of_results_is_read_and_a_folder_of_them_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("atrium.json");
+        std::fs::write(&file, include_str!("results/example.json")).unwrap();
+        let error = again(&of(folder.path())).unwrap_err().to_string();
+        assert!(error.contains("atrium.json") && error.contains("a file of results"), "{error}");
+        again(&of(&file)).unwrap();
+        assert!(folder.path().join("atrium/index.html").is_file());
+        assert!(!folder.path().join("index.html").exists());
     }
 }

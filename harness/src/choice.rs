@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use assign::{AreaBounds, AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
-use assign_clustered::{Normals, SpecularCut};
+use assign_clustered::SpecularCut;
 use serde_json::Value;
 use shading::RASTER_SPHERE_TOLERANCE;
 
@@ -13,9 +13,10 @@ use crate::{
     registry::{Axis, Method, STRATEGIES, Spec, StrategyEntry},
 };
 
+mod segments;
 mod specular;
 
-use specular::specular_of;
+use segments::CAP;
 
 /// Names every method, at its default parameters.
 pub const ALL: &str = "all";
@@ -59,6 +60,7 @@ pub fn choices(args: &CompareArgs) -> Result<Vec<Choice>, CliError> {
         };
         for source in sources {
             choice.spec.settings.source = *source;
+            choice.check_bounds()?;
             choices.push(choice.clone());
         }
     }
@@ -66,96 +68,6 @@ pub fn choices(args: &CompareArgs) -> Result<Vec<Choice>, CliError> {
 }
 
 impl Choice {
-    /// Looks an id such as `SC-E/48x48x40/bvh` up; a family alone takes its default parameters.
-    pub fn parse(id: &str) -> Result<Self, CliError> {
-        let mut segments = id.split('/');
-        let family = segments.next().unwrap_or_default();
-        let same = |entry: &&StrategyEntry| entry.family.eq_ignore_ascii_case(family);
-        let Some(entry) = STRATEGIES.iter().find(same) else {
-            let mut known: Vec<&str> = STRATEGIES.iter().map(|entry| entry.family).collect();
-            known.push(ALL);
-            return Err(CliError::unknown("strategy", id, &known));
-        };
-        let mut choice = Self {
-            entry,
-            spec: Spec { parameters: entry.default.to_owned(), ..Spec::default() },
-            says: (false, false),
-            is_named: true,
-            id: id.to_owned(),
-        };
-        let mut has_parameters = false;
-        for segment in segments {
-            let segment = segment.to_lowercase();
-            match axis_of(&segment) {
-                Some(axis) if !entry.axes.contains(&axis) => return Err(choice.refuse(&segment)),
-                Some(Axis::Tests) => {
-                    choice.spec.settings.tests =
-                        segment.parse().map_err(|_| choice.refuse(&segment))?;
-                    choice.says.0 = true;
-                }
-                Some(Axis::Source) => {
-                    choice.spec.settings.source = match segment.as_str() {
-                        "bvh" => LightSource::Hierarchy,
-                        _ => LightSource::Linear,
-                    };
-                    choice.says.1 = true;
-                }
-                Some(Axis::AreaBounds) => {
-                    choice.spec.settings.area_bounds = match segment.as_str() {
-                        "ball" => AreaBounds::Ball,
-                        _ => AreaBounds::Outline,
-                    };
-                }
-                Some(Axis::Box) => {
-                    choice.spec.grid_box = segment.parse().map_err(|_| choice.refuse(&segment))?;
-                }
-                Some(Axis::Normals) => {
-                    let bins = number_of(&segment, NORMALS).map(Normals::Bins);
-                    choice.spec.normals = bins
-                        .filter(|normals| normals.check().is_ok())
-                        .ok_or_else(|| choice.refuse(&segment))?;
-                }
-                Some(Axis::Specular) => {
-                    choice.spec.specular =
-                        specular_of(&segment).ok_or_else(|| choice.refuse(&segment))?;
-                }
-                Some(Axis::Cap) => {
-                    let cap = number_of(&segment, CAP).ok_or_else(|| choice.refuse(&segment))?;
-                    choice.spec.cap = Some(cap);
-                }
-                Some(Axis::Reuse) => {
-                    let frames =
-                        number_of(&segment, REUSE).ok_or_else(|| choice.refuse(&segment))?;
-                    choice.spec.reuse = Some(frames);
-                }
-                Some(Axis::Exit) => choice.spec.evaluates_all = true,
-                None if !entry.parameters.is_empty() && !has_parameters && !segment.is_empty() => {
-                    choice.spec.parameters = segment;
-                    has_parameters = true;
-                }
-                None => return Err(choice.refuse(&segment)),
-            }
-        }
-        Ok(choice)
-    }
-
-    fn refuse(&self, segment: &str) -> CliError {
-        let mut accepted: Vec<String> = Vec::new();
-        if !self.entry.parameters.is_empty() {
-            accepted.push(self.entry.parameters.join(" x "));
-        }
-        accepted.extend(self.entry.axes.iter().map(|axis| axis.accepted().to_owned()));
-        let accepted = if accepted.is_empty() {
-            "nothing behind a slash".to_owned()
-        } else {
-            format!("segments that are {}", accepted.join(", or "))
-        };
-        CliError::new(format!(
-            "strategy {}: {segment:?} is not understood: {} takes {accepted}",
-            self.id, self.entry.family
-        ))
-    }
-
     /// Makes the method on a device.
     pub fn make(&self, gpu: &Gpu) -> Result<Method, AssignError> {
         let mut method = (self.entry.make)(gpu, &self.spec)?;
@@ -297,33 +209,6 @@ impl Choice {
     }
 }
 
-/// How a segment begins that says the bins of normals.
-const NORMALS: &str = "n";
-/// How a segment begins that says the most lights of a list.
-const CAP: &str = "cap";
-/// How a segment begins that says for how many frames lists are used.
-const REUSE: &str = "reuse";
-
-/// The number behind a word, from 1.
-fn number_of(segment: &str, word: &str) -> Option<u32> {
-    segment.strip_prefix(word)?.parse().ok().filter(|number| *number > 0)
-}
-
-/// The axis that a segment speaks of; `None` where it can only be parameters.
-fn axis_of(segment: &str) -> Option<Axis> {
-    match segment {
-        "linear" | "bvh" => Some(Axis::Source),
-        "positions" | "supports" | "lights" | "surfaces" => Some(Axis::Box),
-        "ball" | "outline" => Some(Axis::AreaBounds),
-        _ if segment.starts_with(CAP) => Some(Axis::Cap),
-        _ if number_of(segment, NORMALS).is_some() => Some(Axis::Normals),
-        "no-exit" => Some(Axis::Exit),
-        _ if specular_of(segment).is_some() => Some(Axis::Specular),
-        _ if segment.starts_with(REUSE) => Some(Axis::Reuse),
-        _ => segment.parse::<FrustumTests>().ok().map(|_| Axis::Tests),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -355,8 +240,8 @@ mod tests {
         assert_eq!(boxes, ["G/20x20x20", "G/20x20x20/supports/bvh", "G/8x8x8/supports"]);
         let lossy = asked(&["--strategies", "sc-e/cap32/bvh,T-E/reuse4"]);
         assert_eq!(lossy, ["SC-E/48x48x40/bvh/cap32", "T-E/28x28/reuse4"]);
-        let balls = asked(&["--strategies", "sc-e/ball/bvh,T-I/outline,g/BALL/surfaces"]);
-        let told = ["SC-E/48x48x40/bvh/ball", "T-I/28x28", "G/20x20x20/surfaces/ball"];
+        let balls = asked(&["--strategies", "sc-e/ball,T-I/outline/bvh,g/BALL/surfaces"]);
+        let told = ["SC-E/48x48x40/ball", "T-I/28x28/bvh", "G/20x20x20/surfaces/ball"];
         assert_eq!(balls, told);
         assert_eq!(Choice::parse("SC-E/ball").unwrap().parameters()["area_bounds"], "ball");
         let normals = asked(&["--strategies", "sc-e/BVH/N6,SC-E/s0.001/n24"]);
@@ -401,7 +286,7 @@ mod tests {
     fn what_is_not_understood_names_what_is() {
         let error = |id| Choice::parse(id).err().unwrap().to_string();
         assert!(error("DCI").contains("DC-I"), "{}", error("DCI"));
-        assert!(error("None/3").contains("nothing behind"), "{}", error("None/3"));
+        assert!(error("None/3").contains("nothing after"), "{}", error("None/3"));
         assert!(error("DC-E/hs").contains("linear or bvh"), "{}", error("DC-E/hs"));
         assert!(error("T-I/28x28/16x16").contains("16x16"), "{}", error("T-I/28x28/16x16"));
         assert!(error("SC-E/n7").contains("n54"), "{}", error("SC-E/n7"));
@@ -410,5 +295,30 @@ mod tests {
         assert!(error("DC-E/n6").contains("linear or bvh"), "{}", error("DC-E/n6"));
         assert!(error("DC-E/cap0").contains("cap32"), "{}", error("DC-E/cap0"));
         assert!(error("T-I/surfaces").contains("hs"), "{}", error("T-I/surfaces"));
+    }
+
+    #[test]
+    fn segments_that_contradict_each_other_are_refused_by_name() {
+        for (id, first, second) in [
+            ("SC-E/linear/bvh", "linear", "bvh"),
+            ("SC-E/dif/s0.1", "dif", "s0.1"),
+            ("T-E/hs/no-exit/no-exit", "no-exit", "no-exit"),
+            ("T-I/hs/sat-p", "hs", "sat-p"),
+            ("SC-E/cap8/cap16", "cap8", "cap16"),
+            ("SC-E/dif/n6", "dif", "n6"),
+            ("SC-E/n6/dif", "dif", "n6"),
+            ("SC-E/ball/bvh", "ball", "bvh"),
+        ] {
+            let error = Choice::parse(id).err().expect(id).to_string();
+            let quoted = [first, second].map(|segment| format!("{segment:?}"));
+            assert!(quoted.iter().all(|segment| error.contains(segment)), "{id}: {error}");
+        }
+        // The option gives the hierarchy to a strategy that names no source.
+        let line = ["lightbench", "--strategies", "SC-E/ball", "--source", "bvh"];
+        let Ok(crate::cli::Invocation::Compare(args)) = crate::cli::parse(line) else {
+            panic!("not understood");
+        };
+        let error = choices(&args).err().expect("refused").to_string();
+        assert!(error.contains("\"ball\"") && error.contains("\"bvh\""), "{error}");
     }
 }

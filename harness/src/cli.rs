@@ -183,7 +183,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
     pub frames: Option<u32>,
 
-    /// Frames to draw before the clock starts, 0 to 100,000 [default: 16, or 1 on a software adapter]
+    /// Frames of each method to draw before the clock starts, 0 to 100,000; a GPU draws more, until its
+    /// times are steady [default: 16, or 1 on a software adapter]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::warmup)]
     pub warmup: Option<u32>,
 
@@ -191,8 +192,8 @@ pub struct CompareArgs {
     #[arg(long, conflicts_with = "camera")]
     pub path: bool,
 
-    /// With --path, go along the path N times, 1 to 1,000, from --frames poses each time; 6 laps or
-    /// more tell methods apart [default: 1]
+    /// With --path, go along the path N times, 1 to 1,000, from --frames poses each time; testing
+    /// ties needs 6 laps [default: 1]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::laps)]
     pub laps: Option<u32>,
 

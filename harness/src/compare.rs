@@ -1,6 +1,6 @@
 //! `lightbench compare`: the main job.
 
-use std::{path::Path, sync::Arc, time::Duration};
+use std::{path::Path, sync::Arc};
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,6 +12,7 @@ use crate::{
     checks::{check_modes, check_writable, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
     cli::{CliError, CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
+    drift::unsteady,
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
@@ -19,7 +20,7 @@ use crate::{
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{BASELINE, Machine, RejectedLight, Results, Truth},
+    results::{BASELINE, Clock, Machine, Record, RejectedLight, Results, Truth},
     stage::Stage,
 };
 
@@ -29,9 +30,6 @@ pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
 const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames before the clock, likewise.
 const DEFAULT_WARMUP: [u32; 2] = [16, 1];
-
-/// How long a GPU warms up at least; a software adapter has no clocks to raise.
-const GPU_WARM_UP: Duration = Duration::from_millis(250);
 
 /// A device with the scene that was drawn last.
 pub struct Bench {
@@ -165,7 +163,6 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
     let defaults = if args.path { DEFAULT_PATH_FRAMES } else { DEFAULT_FRAMES };
     Plan {
         warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
-        warm_up: if gpu.is_software() { Duration::ZERO } else { GPU_WARM_UP },
         timed: args.frames.unwrap_or(defaults[kind]),
         laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
         checks: args.checks.unwrap_or(MAX_CHECKS),
@@ -200,7 +197,7 @@ impl Run<'_> {
         if self.stage.view.far_m.is_none() && choices.iter().any(Choice::tests_corners) {
             self.results.warnings.push(
                 "the view has no far plane: lights are tested against the tiles of T-I, and against the \
-                 last slices of DC-I and SC-I, by HS alone, for these have no far corners"
+                 last slices of DC-I and SC-I, only by HS, because these have no far corners"
                     .to_owned(),
             );
         }
@@ -291,7 +288,7 @@ impl Run<'_> {
         let timetable = Timetable { timed: &timed, remember: &remember, reference: reference_ix };
         contest.time(self.stage, timetable, tick, &mut compared)?;
         for ((&ix, seen), times) in timed.iter().zip(all_seen).zip(contest.finish()) {
-            let record = record(
+            let mut record = record(
                 self.args,
                 self.stage,
                 &self.plan,
@@ -301,6 +298,7 @@ impl Run<'_> {
                 seen,
                 times,
             );
+            note_drift(&mut record);
             self.results.records.push(record);
         }
         if self.args.path {
@@ -308,6 +306,24 @@ impl Run<'_> {
         }
         Ok(())
     }
+}
+
+/// Notes on a record that its times drifted while it was measured. A GPU's clock only, and a still
+/// camera only: along a path poses differ in their work, and a software adapter has no clock to raise.
+fn note_drift(record: &mut Record) {
+    if record.along_path || record.clock != Clock::GpuTimestamps {
+        return;
+    }
+    let Some(why) = unsteady(&record.frames_ms()) else { return };
+    let drift = format!(
+        "{} in {}: its times are not steady, measure it again: {why}",
+        record.strategy,
+        record.mode.name()
+    );
+    record.note = Some(match record.note.take() {
+        Some(note) => format!("{note}; {drift}"),
+        None => drift,
+    });
 }
 
 /// Notes what was wrong with the scene and its lights.

@@ -42,12 +42,16 @@ const LEAST_SAMPLES: usize = 9;
 /// Why samples of work of one size are no measurement of it, in the order in which they were taken;
 /// `None` where nothing speaks against them, as of too few to tell.
 ///
-/// Two rules: the medians of the first and the last third differ by more than [`DRIFT`], or the least
-/// sample lies more than [`RISE`] below the median. Neither sees a clock that stayed low throughout:
-/// where the same work was timed twice, [`slower_than_again`] does.
+/// Three rules: a sample is not a finite number; the medians of the first and the last third differ by
+/// more than [`DRIFT`]; or the least sample lies more than [`RISE`] below the median. None of them sees
+/// a clock that stayed low throughout: where the same work was timed twice, [`slower_than_again`] does.
 pub fn unsteady(samples_ms: &[f64]) -> Option<String> {
     let count = samples_ms.len();
-    if count < LEAST_SAMPLES || samples_ms.iter().any(|ms| !ms.is_finite()) {
+    let unknown = samples_ms.iter().filter(|ms| !ms.is_finite()).count();
+    if unknown > 0 {
+        return Some(format!("{unknown} of its {count} samples are not a number"));
+    }
+    if count < LEAST_SAMPLES {
         return None;
     }
     let third = count / 3;
@@ -125,6 +129,9 @@ impl WarmUp {
 /// Whether the medians of the last windows agree.
 fn is_level(times_ms: &[f64]) -> bool {
     let Some(from) = times_ms.len().checked_sub(WINDOW * WINDOWS) else { return false };
+    if times_ms[from..].iter().any(|ms| !ms.is_finite()) {
+        return false;
+    }
     let medians = || times_ms[from..].chunks_exact(WINDOW).map(median);
     let least = medians().fold(f64::INFINITY, f64::min);
     let most = medians().fold(0.0, f64::max);
@@ -161,7 +168,15 @@ mod tests {
         assert_eq!(unsteady(&noisy(|ix| if ix < 16 { 0.0041 } else { 0.0045 }, 32)), None);
         assert_eq!(unsteady(&[3.0, 1.0, 1.0]), None);
         assert_eq!(unsteady(&[]), None);
-        assert_eq!(unsteady(&[f64::NAN; 32]), None);
+    }
+
+    #[test]
+    fn one_sample_that_is_no_number_refuses_the_series() {
+        let mut samples = noisy(|_| 0.316, 32);
+        samples[5] = f64::NAN;
+        assert!(unsteady(&samples).expect("refused").contains("1 of its 32 samples"));
+        assert!(unsteady(&[f64::INFINITY]).is_some());
+        assert!(!is_level(&samples[..24]), "a warm-up never ends on it");
     }
 
     #[test]

@@ -3,8 +3,6 @@
 
 mod laps;
 
-use std::time::{Duration, Instant};
-
 use assign::{
     Assignment, Counters, EncoderPasses, Everything, Gpu, Light, LightBuffer, MAX_RANGE_M,
 };
@@ -15,6 +13,7 @@ use shading::{
 
 use crate::{
     clock::PassClock,
+    drift::WarmUp,
     error::HarnessError,
     list_lengths::ListLengths,
     painter::Painter,
@@ -81,10 +80,9 @@ pub type Compare<'a> = dyn FnMut(&[HdrImage], &HdrImage) -> Result<(), HarnessEr
 /// Which frames to draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Frames of each method before the clock starts.
+    /// Frames of each method before the clock starts, at least: a GPU is warmed until its times are
+    /// steady ([`WarmUp`]). 0: no warm-up.
     pub warmup: u32,
-    /// For how long to warm up at least: clocks fall while a device waits for the CPU.
-    pub warm_up: Duration,
     /// Frames of each method on the clock; along a path, poses of one lap.
     pub timed: u32,
     /// How often the camera goes along its path, one pose per frame; 0: it stands still.
@@ -215,14 +213,20 @@ impl<'a> Contest<'a> {
         draw_unclocked(&self.gpu, stage, self.mode, &mut self.contenders[method].painter)
     }
 
-    /// Draws all methods in turn until each was drawn often enough and the device is awake.
+    /// Draws all methods in turn until each was drawn often enough and the device is warm: a GPU's clock
+    /// falls while the CPU compares images. The time of a round of all methods tells when it has risen,
+    /// and [`WarmUp`] gives up after four seconds.
     fn warm_up(&mut self, stage: &Stage, timed: &[usize]) -> Result<(), HarnessError> {
-        let began = Instant::now();
+        let mut warm_up = WarmUp::new(self.gpu.is_software());
         let mut drawn = 0;
-        while drawn < self.plan.warmup || (drawn > 0 && began.elapsed() < self.plan.warm_up) {
+        while drawn < self.plan.warmup || (drawn > 0 && !warm_up.is_warm()) {
+            let mut round_ms = 0.0;
             for &method in timed {
-                self.draw(stage, method)?;
+                let painter = &mut self.contenders[method].painter;
+                painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
+                round_ms += self.clock.finish()?.iter().map(|(_, ms)| ms).sum::<f64>();
             }
+            warm_up.feed(round_ms);
             drawn += 1;
         }
         Ok(())

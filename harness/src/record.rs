@@ -86,6 +86,7 @@ pub fn record(
     let mut record = Record {
         scene: stage.scene.name.clone(),
         scene_hash: stage.scene_hash.clone(),
+        path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
         scene_scale: args.stage.scene_scale,
         triangles: stage.scene.triangle_count(),
         strategy: choice.id().to_owned(),

@@ -143,6 +143,9 @@ pub struct Record {
     pub scene: String,
     /// Hash of everything in the scene that reaches the GPU, hexadecimal.
     pub scene_hash: String,
+    /// Hash of the camera's path, hexadecimal; absent from a still camera, and in older results.
+    #[serde(default)]
+    pub path_hash: Option<String>,
     /// Factor on the scene's size and its own lights; scattered lights keep theirs.
     pub scene_scale: f64,
     /// Triangles drawn, instances counted each.

@@ -211,6 +211,8 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["--scene", &broken, "--out", &out], vec!["broken.gltf"]),
         (vec!["--scene", &no_buffer, "--out", &out], vec!["gone.bin"]),
         (vec!["--strategies", "DC-J", "--out", &out], vec!["DC-J", "DC-I"]),
+        (vec!["--strategies", "SC-E/linear/bvh", "--out", &out], vec!["linear", "bvh"]),
+        (vec!["advise", "--mode", "all", "--out", &out], vec!["all", "forward-no-prepass"]),
         (vec!["--strategies", "DC-I/0x64x24", "--out", &out], vec!["0", "tile"]),
         (vec!["--strategies", "DC-I/1x1x1024", "--out", &out], vec!["clusters"]),
         (vec!["--lights", "-1", "--out", &out], vec!["--lights", "-1"]),

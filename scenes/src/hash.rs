@@ -1,4 +1,4 @@
-//! A scene's content hash, for provenance.
+//! A scene's content hash and its path's hash, for provenance.
 
 use assign::LightShape;
 use blake3::Hasher;
@@ -8,6 +8,9 @@ use crate::{Encoding, Lens, Pose, Scene, TextureRef};
 
 /// Changes whenever what goes into the hash, or its order, changes.
 const VERSION: u32 = 1;
+
+/// Poses of a path that enter its hash: more than a fitted loop has knots.
+const PATH_POSES: u32 = 1_024;
 
 /// Feeds values to the hash, each list led by its length so that no two scenes share a stream.
 struct Feed(Hasher);
@@ -58,8 +61,8 @@ impl Feed {
 
 impl Scene {
     /// BLAKE3 over geometry, transforms, materials, images, lights and cameras, as 64 hexadecimal
-    /// digits. Names, the fitted path and the warnings do not enter. Procedural scenes may differ
-    /// in the last bit between platforms whose `sin` and `cos` do.
+    /// digits. Names, the path ([`path_hash`](Self::path_hash)) and the warnings do not enter.
+    /// Procedural scenes may differ in the last bit between platforms whose `sin` and `cos` do.
     pub fn hash(&self) -> String {
         let mut feed = Feed(Hasher::new());
         feed.int(u64::from(VERSION));
@@ -67,6 +70,17 @@ impl Scene {
         self.hash_materials(&mut feed);
         self.hash_lights(&mut feed);
         self.hash_cameras(&mut feed);
+        feed.0.finalize().to_hex().to_string()
+    }
+
+    /// BLAKE3 over poses along the path, as 64 hexadecimal digits: two versions of a scene's path
+    /// differ in it even where their first pose is the same.
+    pub fn path_hash(&self) -> String {
+        let mut feed = Feed(Hasher::new());
+        feed.int(u64::from(VERSION));
+        for frame in 0..PATH_POSES {
+            feed.pose(&self.path.pose(frame, PATH_POSES));
+        }
         feed.0.finalize().to_hex().to_string()
     }
 
@@ -143,5 +157,23 @@ impl Scene {
             });
             feed.floats(&[camera.near_m, camera.far_m.unwrap_or(f32::INFINITY)]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{CameraPath, Pose, atrium};
+
+    /// The first pose, where every path of a scene starts, does not tell paths apart.
+    #[test]
+    fn paths_of_the_same_first_pose_have_different_hashes() {
+        let scene = atrium(1);
+        let mut other = scene.clone();
+        let first = scene.path.pose(0, 1);
+        other.path = CameraPath::still(Pose::new(first.eye, first.target));
+        assert_eq!(other.path.pose(0, 1).eye, first.eye);
+        assert_eq!(scene.hash(), other.hash());
+        assert_ne!(scene.path_hash(), other.path_hash());
+        assert_eq!(scene.path_hash(), atrium(1).path_hash());
     }
 }

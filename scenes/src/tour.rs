@@ -47,6 +47,9 @@ const SLOPE: f32 = 0.34;
 /// Knots go back at most this often: `BACK` to that power is far below `LEAST_SHARE`.
 const ROUNDS: usize = 24;
 
+/// A stretch between two knots that takes more points than this to look at counts as blocked.
+const MOST_POINTS: f32 = 1024.0;
+
 /// Where a camera may be.
 pub(crate) struct Room<'a> {
     /// The scene's triangles.
@@ -67,8 +70,12 @@ impl Room<'_> {
         self.core.contains(at) && self.bvh.clearance(at, margin_m) >= margin_m
     }
 
-    /// The eyes of the bent loop, one for each knot of the level one.
+    /// The eyes of the bent loop, one for each knot of the level one. A camera that has no room for a
+    /// loop stays where it is: its knots are all the same.
     pub(crate) fn bend(&self, level: &[Vec3]) -> Vec<Vec3> {
+        if level.windows(2).all(|pair| pair[0] == pair[1]) {
+            return level.to_vec();
+        }
         let count = level.len();
         let middle = level.iter().copied().sum::<Vec3>() / count.max(1) as f32;
         let wished: Vec<Vec3> = level
@@ -132,13 +139,17 @@ impl Room<'_> {
         (hit - 1.5 * self.margin_m).max(0.0)
     }
 
-    /// Whether the spline from knot `ix` to the next is clear. A tenth of the margin is left for the
-    /// difference between the level loop and the spline through its knots.
+    /// Whether the spline from knot `ix` to the next is known to be clear. A tenth of the margin is
+    /// left for the difference between the level loop and the spline through its knots.
     fn is_clear(&self, eyes: &[Vec3], ix: usize) -> bool {
         let count = eyes.len();
         let knot = |offset: usize| eyes[(ix + count + offset - 1) % count];
         let (p, q, r, s) = (knot(0), knot(1), knot(2), knot(3));
-        let points = (2.0 * q.distance(r) / self.margin_m.max(1e-12)).clamp(4.0, 64.0) as u32;
+        let points = (2.0 * q.distance(r) / self.margin_m.max(1e-12)).max(4.0);
+        if points > MOST_POINTS {
+            return false;
+        }
+        let points = points as u32;
         (0..points).all(|step| {
             let at = catmull_rom(p, q, r, s, step as f32 / points as f32);
             self.is_free_by(at, 0.9 * self.margin_m)

@@ -126,10 +126,21 @@ fn perceptible([diffuse, specular]: [f64; 2]) -> u64 {
     }
 }
 
+/// How many terms are too close to call.
+#[derive(Clone, Copy, Debug, Default)]
+struct Doubts {
+    /// By where light ends.
+    reach: u64,
+    /// By that, or by what is seen of a light.
+    seen: u64,
+    /// The same of entries that name one term only.
+    cut: u64,
+}
+
 /// The same counts in f64, and how many terms are too close to call.
-fn expected(lights: &[Light], counted: &Counted, view: &View, exits: bool) -> (Operations, u64) {
+fn expected(lights: &[Light], counted: &Counted, view: &View, exits: bool) -> (Operations, Doubts) {
     let table = ltc::Table::ggx().unwrap();
-    let (mut sum, mut doubtful) = (Operations::default(), 0);
+    let (mut sum, mut doubts) = (Operations::default(), Doubts::default());
     let add = |terms: &mut Terms, [diffuse, specular]: [bool; 2], is_outer: bool| {
         terms.diffuse += u64::from(diffuse);
         terms.specular += u64::from(specular);
@@ -163,39 +174,52 @@ fn expected(lights: &[Light], counted: &Counted, view: &View, exits: bool) -> (O
             let [diffuse, specular] = white;
             let near =
                 |radiance: f64, threshold: f64| (shown(radiance) / threshold - 1.0).abs() < 0.02;
-            let is_doubtful = [reach, rise, diffuse_reach].iter().any(|d| d.abs() < DOUBT)
+            let is_at_end = [reach, rise, diffuse_reach].iter().any(|d| d.abs() < DOUBT);
+            let is_doubtful = is_at_end
                 || near(diffuse, 0.005)
                 || near(specular, 0.005)
                 || near(diffuse + specular, 0.01);
-            doubtful += 2 * u64::from(is_doubtful);
+            doubts.reach += 2 * u64::from(is_at_end);
+            doubts.seen += 2 * u64::from(is_doubtful);
+            doubts.cut += 2 * u64::from(is_doubtful && named != [true, true]);
         }
     }
-    (sum, doubtful)
+    (sum, doubts)
 }
 
-/// All figures of some operations, by name.
-fn figures(all: &Operations) -> [(&'static str, u64); 8] {
+/// Perceptible terms that lists do not name.
+fn lost(all: &Operations) -> i64 {
+    all.perceptible_of_lights as i64 - all.perceptible as i64
+}
+
+/// All figures of some operations, by name, each with how many of it are too close to call.
+fn figures(all: &Operations, doubts: Doubts) -> [(&'static str, i64, u64); 9] {
+    let figure = |name, count: u64, doubt| (name, count as i64, doubt);
     [
-        ("listed diffuse", all.listed.diffuse),
-        ("listed specular", all.listed.specular),
-        ("listed outer specular", all.listed.outer_specular),
-        ("evaluated diffuse", all.evaluated.diffuse),
-        ("evaluated specular", all.evaluated.specular),
-        ("evaluated outer specular", all.evaluated.outer_specular),
-        ("perceptible", all.perceptible),
-        ("perceptible of lights", all.perceptible_of_lights),
+        // Lists are the same for both.
+        figure("listed diffuse", all.listed.diffuse, 0),
+        figure("listed specular", all.listed.specular, 0),
+        figure("listed outer specular", all.listed.outer_specular, doubts.reach),
+        figure("evaluated diffuse", all.evaluated.diffuse, doubts.reach),
+        figure("evaluated specular", all.evaluated.specular, doubts.reach),
+        figure("evaluated outer specular", all.evaluated.outer_specular, doubts.reach),
+        figure("perceptible", all.perceptible, doubts.seen),
+        figure("perceptible of lights", all.perceptible_of_lights, doubts.seen),
+        ("lost", lost(all), doubts.cut),
     ]
 }
 
 /// Asserts that the GPU counted what f64 says, within what is too close to call.
-fn check(name: &str, counted: &Counted, exits: bool) -> Operations {
-    let (truth, doubtful) = expected(&lights(), counted, &common::view(SIZE), exits);
-    println!("{name}: {:?}, f64 {truth:?}, {doubtful} doubtful", counted.operations);
-    assert!(doubtful * 20 < truth.listed.specular, "{name}: {doubtful} of {truth:?} are doubtful");
-    for ((figure, ours), (_, theirs)) in figures(&counted.operations).iter().zip(figures(&truth)) {
-        assert!(ours.abs_diff(theirs) <= doubtful, "{name}, {figure}: {ours}, f64 {theirs}");
+fn check(name: &str, counted: &Counted, exits: bool) -> (Operations, Doubts) {
+    let (truth, doubts) = expected(&lights(), counted, &common::view(SIZE), exits);
+    println!("{name}: {:?}, f64 {truth:?}, {doubts:?}", counted.operations);
+    assert!(doubts.seen * 20 < truth.listed.specular, "{name}: {doubts:?} of {truth:?}");
+    let pairs = figures(&counted.operations, doubts).into_iter().zip(figures(&truth, doubts));
+    for ((figure, ours, doubt), (_, theirs, _)) in pairs {
+        let off = ours.abs_diff(theirs);
+        assert!(off <= doubt, "{name}, {figure}: {ours}, f64 {theirs}, {doubt} doubtful");
     }
-    truth
+    (truth, doubts)
 }
 
 fn clusters(gpu: &Gpu, cut: SpecularCut) -> Clustered {
@@ -210,24 +234,27 @@ fn operations_are_those_of_f64() {
     let all = lights();
     let mut none = Everything::new(&gpu).unwrap();
     let counted = count(&gpu, &all, &mut none, LightingOptions::EVALUATE_ALL);
-    let truth = check("no culling", &counted, false);
+    let (truth, doubts) = check("no culling", &counted, false);
     assert_eq!(counted.operations.listed, counted.operations.evaluated, "all are evaluated");
-    assert!(truth.perceptible > 0 && truth.listed.outer_specular > 0, "{truth:?}");
+    // More than is doubtful: a count of none fails.
+    assert!(truth.perceptible > doubts.seen, "{truth:?}, {doubts:?}");
+    assert!(truth.listed.outer_specular > doubts.reach, "{truth:?}, {doubts:?}");
 
     let counted = count(&gpu, &all, &mut none, 0.0);
-    let truth = check("no culling, early exit", &counted, true);
+    let (truth, doubts) = check("no culling, early exit", &counted, true);
     // Far fewer: a count of listed terms fails here.
     assert!(2 * truth.evaluated.specular < truth.listed.specular, "{truth:?}");
+    assert!(truth.evaluated.outer_specular > doubts.reach, "{truth:?}, {doubts:?}");
 
     let mut lossless = clusters(&gpu, SpecularCut::None);
     check("clusters", &count(&gpu, &all, &mut lossless, 0.0), true);
 
     let mut cut = clusters(&gpu, SpecularCut::Below(5.0));
     let counted = count(&gpu, &all, &mut cut, 0.0);
-    let truth = check("clusters, cut", &counted, true);
+    let (truth, doubts) = check("clusters, cut", &counted, true);
     // The cut takes terms that would be seen: a count that ignores the list's flags fails here.
-    let lost = truth.perceptible_of_lights - truth.perceptible;
-    assert!(lost > 20, "{lost} are lost: {truth:?}");
+    let lost = lost(&truth);
+    assert!(lost > 20 && lost > doubts.cut as i64, "{lost} are lost: {truth:?}, {doubts:?}");
 }
 
 /// What is counted as evaluated is what shading draws: one light, and the pixels that it lights. Its diffuse

@@ -5,10 +5,15 @@
 mod common;
 
 use assign::{EncoderPasses, Gpu, Light, LightBuffer, Projection, View};
-use assign_cdi::{Rsm, VplBuffer, VplSettings};
+use assign_cdi::{Rsm, VplBuffer, VplSettings, lambertian_albedo};
 use glam::{DVec3, Vec3};
 use scenes::{Scene, TownSize, atrium, primary_light, town};
-use shading::{HdrImage, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
+use shading::{
+    HdrImage, Renderer, WorldTriangles, ltc,
+    reference::{Surface, reflect_light},
+    rsm_view,
+    traced::TracedScene,
+};
 
 /// The control: geometry and normals, without lights.
 fn clay(gpu: &Gpu, renderer: &mut Renderer, view: &View, lights: &LightBuffer) -> HdrImage {
@@ -130,4 +135,48 @@ fn reflected(scene: &TracedScene<'_>, light: &Light, view: &View) -> DVec3 {
     });
     // The cone's full intensity holds the scene, and the window dims nothing.
     sum.sum::<DVec3>() * light.intensity.as_dvec3() / std::f64::consts::PI
+}
+
+/// Share of the light from a direction at a cosine to the normal that the reference's diffuse term sends
+/// out over the hemisphere.
+fn diffuse_albedo(base_color: DVec3, metallic: f64, cos: f64) -> DVec3 {
+    let to_light = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let all = Surface { base_color, metallic, normal: DVec3::Z, roughness: 1.0 };
+    // A metal that reflects as much at normal incidence has the specular term only.
+    let f0 = DVec3::splat(0.04).lerp(base_color, metallic);
+    let specular = Surface { base_color: f0, metallic: 1.0, ..all };
+    let steps = 200;
+    let middle = |step: i32| (f64::from(step) + 0.5) / f64::from(steps);
+    let mut sum = DVec3::ZERO;
+    for ix in 0..steps * steps {
+        let z = middle(ix / steps);
+        let (sin, cos) = (std::f64::consts::TAU * middle(ix % steps)).sin_cos();
+        let flat = (1.0 - z * z).sqrt();
+        let out = DVec3::new(flat * cos, flat * sin, z);
+        // Reflection is the same both ways, and the cosine is that of the last direction.
+        sum += reflect_light(&all, to_light, out) - reflect_light(&specular, to_light, out);
+    }
+    sum * (std::f64::consts::TAU / f64::from(steps * steps))
+}
+
+/// What a virtual point light sends out is what the renderer's BRDF reflects diffusely, by the reference
+/// and by the polynomial that shading itself uses.
+#[test]
+fn a_vpls_albedo_is_that_of_the_renderers_brdf() {
+    for cos in [0.1_f64, 0.4, 0.7, 1.0] {
+        for (color, metallic) in
+            [(Vec3::ONE, 0.0), (Vec3::new(0.8, 0.4, 0.1), 0.0), (Vec3::new(0.9, 0.5, 0.2), 0.4)]
+        {
+            let expected = diffuse_albedo(color.as_dvec3(), metallic, cos);
+            let found = lambertian_albedo(color, metallic as f32, cos as f32).as_dvec3();
+            let off = (found - expected).abs().max_element();
+            assert!(off < 2e-4, "{cos}, {color}, {metallic}: {found}, not {expected}");
+            // The albedo without Fresnel's term fails.
+            let lambert = color.as_dvec3() * (1.0 - metallic);
+            assert!((lambert - expected).max_element() > 0.02, "{cos}: {lambert}, {expected}");
+        }
+        let white = f64::from(lambertian_albedo(Vec3::ONE, 0.0, cos as f32).x);
+        let expected = 0.96 * (1.0 - ltc::diffuse_fresnel(cos));
+        assert!((white - expected).abs() < 1e-6, "{cos}: {white}, not {expected}");
+    }
 }

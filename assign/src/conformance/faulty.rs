@@ -31,6 +31,8 @@ pub enum Fault {
     ShrunkenBound,
     /// Lists are made from area lights that shine from their middle alone.
     CentredEmitter,
+    /// Lists are made from emitters of 0.95 times their size. Coarse groups may hide it.
+    TightEmitter,
     /// Lists are made from spots of half their half angle.
     NarrowCone,
     /// Lists are made from virtual point lights that shine into a cone of 45 degrees.
@@ -56,7 +58,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All faults.
+    /// All faults that groups of any size must show: all but [`TightEmitter`](Self::TightEmitter).
     pub const ALL: [Self; 21] = [
         Self::DroppedLight,
         Self::ShuffledList,
@@ -93,7 +95,9 @@ impl Fault {
             Self::HighHorizon => ("lights-at-horizon", Breach::MissedPair),
             Self::RunawayList => ("33-lights", Breach::OutsideBuffer),
             Self::ShrunkenBound => ("light-at-tile-corner", Breach::MissedPair),
-            Self::CentredEmitter => ("area-lights-grazing", Breach::MissedPair),
+            Self::CentredEmitter | Self::TightEmitter => {
+                ("area-lights-grazing", Breach::MissedPair)
+            }
             Self::NarrowCone => ("spots-45", Breach::MissedPair),
             Self::NarrowHalfSpace => ("mixed-kinds", Breach::MissedPair),
             Self::StaleLists => ("lights-move", Breach::MissedPair),
@@ -122,6 +126,7 @@ impl Fault {
             self,
             Self::ShrunkenBound
                 | Self::CentredEmitter
+                | Self::TightEmitter
                 | Self::NarrowCone
                 | Self::NarrowHalfSpace
                 | Self::StaleLists
@@ -149,6 +154,7 @@ impl Fault {
             self,
             Self::ShrunkenBound
                 | Self::CentredEmitter
+                | Self::TightEmitter
                 | Self::NarrowCone
                 | Self::NarrowHalfSpace
                 | Self::HighHorizon
@@ -169,16 +175,7 @@ impl Fault {
             Self::LostDiffuse => 9,
             Self::Flicker => frame % 2,
             Self::LeakyQuarantine => u32::from(rejected),
-            Self::ShrunkenBound
-            | Self::CentredEmitter
-            | Self::NarrowCone
-            | Self::NarrowHalfSpace
-            | Self::HighHorizon
-            | Self::StaleLists
-            | Self::StarvedPool
-            | Self::Unrecorded
-            | Self::LostGroup
-            | Self::StaleBinding => 0,
+            _ => 0,
         }
     }
 }
@@ -231,6 +228,9 @@ impl Faulty {
     fn alter(&self, light: &Light, frame: &Frame<'_>) -> Light {
         let shape = match (self.fault, &light.shape) {
             (Fault::CentredEmitter, LightShape::Area(_)) => LightShape::Point,
+            (Fault::TightEmitter, LightShape::Area(emitter)) => {
+                LightShape::Area(emitter.scaled(0.95))
+            }
             (Fault::NarrowCone, &LightShape::Spot { direction, inner_angle, outer_angle }) => {
                 let outer_angle = 0.5 * outer_angle;
                 let inner_angle = inner_angle.min(outer_angle);

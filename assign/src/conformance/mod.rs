@@ -124,30 +124,37 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
         if !applies {
             continue;
         }
-        let (name, breach) = fault.shows_in();
-        let case = find(name)?;
-        let faulty = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
-            Ok(Box::new(Faulty::new(gpu, make(gpu)?, fault)?))
-        };
-        // A fault may change the look-up, which a rig compiles once.
-        let outcome = one(&Rig::new(gpu), case, &faulty)?.outcome;
-        let is_named = match &outcome {
-            Outcome::Failed(violations) => {
-                let is_early = |v: &Violation| v.stage < fault.shows_from_stage();
-                violations.iter().any(|v| v.breach == breach) && !violations.iter().any(is_early)
-            }
-            _ => false,
-        };
-        if !is_named {
-            return Err(ConformanceError::FaultPassed {
-                fault: format!("{fault:?}"),
-                case: case.name,
-                outcome: format!("{outcome:?}"),
-            });
-        }
+        rejects_fault(fault, make)?;
         planted.push(fault);
     }
     Ok(planted)
+}
+
+/// Plants one fault and demands that the suite rejects it as what it is.
+pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceError> {
+    let gpu = gpu()?;
+    let (name, breach) = fault.shows_in();
+    let case = find(name)?;
+    let faulty = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Faulty::new(gpu, make(gpu)?, fault)?))
+    };
+    // A fault may change the look-up, which a rig compiles once.
+    let outcome = one(&Rig::new(gpu), case, &faulty)?.outcome;
+    let is_named = match &outcome {
+        Outcome::Failed(violations) => {
+            let is_early = |v: &Violation| v.stage < fault.shows_from_stage();
+            violations.iter().any(|v| v.breach == breach) && !violations.iter().any(is_early)
+        }
+        _ => false,
+    };
+    if is_named {
+        return Ok(());
+    }
+    Err(ConformanceError::FaultPassed {
+        fault: format!("{fault:?}"),
+        case: case.name,
+        outcome: format!("{outcome:?}"),
+    })
 }
 
 /// One device for all tests of a process.

@@ -66,18 +66,22 @@ fn first_line(best: &Record) -> String {
     text += ". ";
     let views = if best.along_path { "these views" } else { "this view" };
     text += &match (loss(best), error_of(best)) {
-        (None, _) => "Its image is that of no culling, bit for bit.".to_owned(),
+        (None, _) => match best.differing_channels {
+            Some(0) => "Its image is that of no culling, bit for bit.".to_owned(),
+            Some(_) => "Its image is that of no culling within the tolerance it states.".to_owned(),
+            None => "Its image was not compared with that of no culling.".to_owned(),
+        },
         (Some(_), Some(0.0)) => {
             format!("Its image is that of no culling in {views}; in others it may lose light.")
         }
         (Some(loss), _) => format!("In {views}, {loss}."),
     };
     if report::needs_built_hierarchy(best) {
-        text += " Still lights only: the CPU builds its hierarchy beforehand";
+        text += " Still lights only: it uses a hierarchy that the CPU builds";
         if let Some(build) = best.light_build_ms {
-            let _ = write!(text, ", in {} ms", ms(build));
+            let _ = write!(text, " in {} ms", ms(build));
         }
-        text += ", which is not in the time.";
+        text += ", not counted in this time.";
     }
     text
 }
@@ -156,8 +160,8 @@ fn why(verdict: &Verdict<'_>, results: &Results) -> String {
         ));
     }
     let none = results.records.iter().find(|record| record.is_baseline());
-    if let Some(none) = none {
-        let ratio = none.assign_and_shade_ms() / best.assign_and_shade_ms();
+    let ratio = none.map(|none| none.assign_and_shade_ms() / best.assign_and_shade_ms());
+    if let Some(ratio) = ratio.filter(|ratio| ratio.is_finite()) {
         reasons.push(format!("no culling takes {} times as long", ms(ratio)));
     }
     if reasons.is_empty() {

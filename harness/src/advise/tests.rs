@@ -144,6 +144,33 @@ fn among_ties_less_memory_comes_first_and_then_the_simpler() {
 }
 
 #[test]
+fn what_ties_with_a_best_chosen_for_memory_does_not_come_next() {
+    // The third is surely slower than the first, and ties with the second, which needs less memory.
+    let results = of(vec![
+        record("SC-E/48x48x40", &[1.0; 10], 3 << 20),
+        record("DC-E/64x64x40", &[1.004; 10], 2 << 20),
+        record("DC-I/64x64x24", &[1.008; 10], 3 << 20),
+        record("T-E/28x28", &[2.0; 10], 3 << 20),
+    ]);
+    assert_eq!(named(&results, 0.0), "DC-E/64x64x40");
+    let text = answer(&results, 0.0);
+    assert!(text.contains("Next: T-E/28x28"), "{text}");
+}
+
+#[test]
+fn an_image_that_was_not_compared_is_not_called_the_same() {
+    let mut results = of(vec![around("SC-E/48x48x40", 1.0, 0.02, 1 << 20)]);
+    assert!(answer(&results, 0.0).contains("bit for bit"));
+    (results.records[0].differing_channels, results.records[0].max_abs_diff) = (None, None);
+    assert!(!answer(&results, 0.0).contains("bit for bit"));
+    // Nor one that differs as much as its method states of itself.
+    results.records[0].differing_channels = Some(9);
+    (results.records[0].max_abs_diff, results.records[0].max_rel_diff) = (Some(1e-6), Some(1e-6));
+    results.records[0].tolerance = Some(1e-3);
+    assert!(!answer(&results, 0.0).contains("bit for bit"));
+}
+
+#[test]
 fn a_built_hierarchy_wins_for_still_lights_only() {
     let results = of(vec![
         around("SC-E/48x48x40", 2.0, 0.02, 1 << 20),

@@ -25,7 +25,7 @@ pub struct Verdict<'a> {
     pub tied: Vec<&'a Record>,
     /// What the best has over those that it ties with, in order of weight.
     pub reasons: Vec<&'static str>,
-    /// The fastest of those that are slower.
+    /// The fastest of those that the best is surely faster than.
     pub next: Option<&'a Record>,
     /// Where the best needs a hierarchy that was built beforehand: what to use without one.
     pub moving: Option<&'a Record>,
@@ -64,12 +64,11 @@ pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
         .copied()
         .filter(|record| still && record.culls() && !needs_built_hierarchy(record))
         .collect();
-    let time = Record::assign_and_shade_ms;
     Some(Verdict {
         best,
         tied,
         reasons,
-        next: slower.into_iter().find(|record| time(record) >= time(best)),
+        next: slower.into_iter().find(|record| beats(best, record)),
         moving: choose(&without).map(|(record, _)| record),
         lossy: within.iter().copied().find(|record| record.is_lossy),
     })

@@ -89,7 +89,9 @@ impl CliError {
             }
             ErrorKind::MissingRequiredArgument => Self::new(match option {
                 "--vpls" => "options of virtual point lights need some: give --vpls",
-                "<DIR>..." => "report needs a folder: of a comparison or a study",
+                "<DIR|FILE.json>..." => {
+                    "report needs a folder of a comparison or a study, or a file of results"
+                }
                 "<STUDY>" => "study needs which one: comparison, culling, area, endless or cdi",
                 _ => "list needs what to list: strategies, scenes or adapters",
             }),

@@ -101,7 +101,7 @@ pub struct StudyArgs {
     #[arg(long, value_name = "WORD,WORD", value_delimiter = ',', value_parser = values::text)]
     pub only: Vec<String>,
 
-    /// Run every N-th job alone, from the K-th; `lightbench report` puts the parts together
+    /// Run only every N-th job, from the K-th; `lightbench report` puts the parts together
     #[arg(long, value_name = "K/N", default_value = "1/1", allow_hyphen_values = true)]
     pub shard: Shard,
 
@@ -155,11 +155,12 @@ impl StudyArgs {
 /// The options of `lightbench report`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct ReportArgs {
-    /// Folder of a comparison or a study; those of all its shards where it was split
-    #[arg(value_name = "DIR", required = true)]
+    /// Folder of a comparison or a study, or a file of results; the folders of all shards where a study
+    /// was split
+    #[arg(value_name = "DIR|FILE.json", required = true)]
     pub folders: Vec<PathBuf>,
 
-    /// Folder for the report [default: the first folder]
+    /// Folder for the report [default: the first folder; for FILE.json a folder FILE beside it]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

@@ -168,7 +168,10 @@ fn unknown_names_come_with_the_nearest() {
         refusal("study"),
         "study needs which one: comparison, culling, area, endless or cdi"
     );
-    assert_eq!(refusal("report"), "report needs a folder: of a comparison or a study");
+    assert_eq!(
+        refusal("report"),
+        "report needs a folder of a comparison or a study, or a file of results"
+    );
     assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
     assert!(refusal("study comparison --shard 3/2").contains("K from 1 to N"));
 }

@@ -4,7 +4,7 @@ use super::rank::{Ranked, ranks};
 use super::raster;
 use crate::results::{EARLY_EXIT, Machine, Record, Results};
 
-/// The records of one scene, camera size, set of lights and mode: only strategies differ.
+/// The records of one scene, camera path, camera size, set of lights and mode: only strategies differ.
 pub(super) struct Comparison<'a> {
     /// The records with their indices in [`Results::records`], in the order of the run.
     pub(super) records: Vec<(usize, &'a Record)>,
@@ -31,7 +31,8 @@ fn comparable(a: &Record, b: &Record) -> bool {
             (r.mode, r.width, r.height),
         )
     };
-    a.scene == b.scene && a.scene_hash == b.scene_hash && key(a) == key(b)
+    let is_same_scene = a.scene == b.scene && a.scene_hash == b.scene_hash;
+    is_same_scene && a.path_hash == b.path_hash && key(a) == key(b)
 }
 
 impl<'a> Comparison<'a> {

@@ -4,7 +4,7 @@ use super::comparison::{Comparison, comparisons};
 use super::format::{factor, number, short_adapter, significant};
 use super::lead::{Lead, span};
 use super::loss::loss;
-use super::rank::tie;
+use super::rank::{is_timed, tie};
 use super::raster;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
@@ -49,7 +49,13 @@ fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
 
 fn sentence(comparison: &Comparison<'_>) -> String {
     let first = comparison.first();
-    let Some(fastest) = comparison.fastest() else {
+    let Some(fastest) = comparison.fastest().filter(|record| is_timed(record)) else {
+        if !is_timed(first) {
+            return match first.is_baseline() {
+                true => "no time was recorded without culling".to_owned(),
+                false => format!("no time was recorded of {}", comparison.name(first)),
+            };
+        }
         return format!(
             "{} takes {} ms to shade {}",
             if first.is_baseline() { "no culling".to_owned() } else { comparison.name(first) },
@@ -119,7 +125,9 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
         let verb = subject.verb("assigns and shades", "assign and shade");
         format!("{words} {verb} {lights} in {took} ms{still}")
     };
-    let Some(baseline) = comparison.baseline() else { return alone() };
+    let Some(baseline) = comparison.baseline().filter(|record| is_timed(record)) else {
+        return alone();
+    };
     if leader.lights == 0 {
         let none = significant(baseline.assign_and_shade_ms());
         return format!(

@@ -21,7 +21,7 @@ enum Doubt {
     None,
     /// So many rounds or laps are too few.
     FewRounds(usize, &'static str),
-    /// There are no rounds to pair: times alone rank.
+    /// There are no rounds to pair: only times rank.
     NoRounds,
 }
 
@@ -99,36 +99,41 @@ impl<'a> Lead<'a> {
         let still = match built {
             0 => "",
             _ if built == self.records.len() => " (still lights only)",
-            _ => " (still lights only where through a hierarchy)",
+            _ => " (those with /bvh for still lights only)",
         };
         format!("{}{still}{}", self.is_fastest(), self.doubt())
     }
 
     /// Why the lead is not sure, to follow its sentence; empty where it is.
     pub(super) fn doubt(&self) -> String {
-        let methods = self.ranked;
         match self.doubt {
             Doubt::None => String::new(),
             Doubt::FewRounds(count, word) => {
-                format!(" ({count} {word} are too few to rank {methods} methods)")
+                format!(" ({count} {word} are too few to rank {} methods)", self.ranked)
             }
-            Doubt::NoRounds => {
-                format!(" (by time alone: no rounds tell {methods} methods apart)")
-            }
+            Doubt::NoRounds => " (ranked by time only; too few rounds to test ties)".to_owned(),
         }
     }
 
-    /// What holds for lights that stand still alone, to follow the names; empty where nothing does.
+    /// Which of them need lights that stand still, to follow the names; empty where none does.
     pub(super) fn still_lights(&self) -> String {
         let built: Vec<&Record> =
             self.records.iter().copied().filter(|r| needs_built_hierarchy(r)).collect();
         let Some(one) = built.first() else { return String::new() };
-        let time = one.light_build_ms.map_or_else(String::new, |build| {
-            format!(", built beforehand in {} ms", significant(build))
-        });
+        let time = one
+            .light_build_ms
+            .map_or_else(String::new, |build| format!(" built in {} ms", significant(build)));
         match built.len() == self.records.len() {
-            true => format!(" (still lights only: through a hierarchy{time})"),
-            false => format!(" (those in /{HIERARCHY} for still lights only: a hierarchy{time})"),
+            true if built.len() == 1 => {
+                format!(" (still lights only: uses a hierarchy{time}, not counted in this time)")
+            }
+            true => format!(
+                " (still lights only: they use a hierarchy{time}, not counted in these times)"
+            ),
+            false => format!(
+                " (those with /{HIERARCHY} for still lights only: they use a hierarchy{time}, not \
+                 counted in these times)"
+            ),
         }
     }
 }

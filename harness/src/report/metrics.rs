@@ -42,9 +42,9 @@ pub(super) static METRICS: &[Metric] = &[
         head: "rank",
         unit: "",
         terminal: "rank",
-        about: "Place by assign + shade among those that cull without a loss. Those that cannot be \
-                told apart share it: where the interval of the ratio of their times, round by \
-                round, holds 1, or its median is within 0.5 % of 1.",
+        about: "Place by assign + shade among those that cull without a loss. Two methods tie and \
+                share a place where the interval of the ratio of their times, round by round, \
+                holds 1, or its median is within 0.5 % of 1.",
         better: Better::Neither,
         value: |c, r| c.rank(r),
         show: format::number,
@@ -150,8 +150,8 @@ pub(super) static METRICS: &[Metric] = &[
         head: "efficiency",
         unit: "%",
         terminal: "",
-        about: "The floor over assign + shade. The floor is the time in which no culling, at its \
-                own rate, would evaluate only the lights that reach the samples.",
+        about: "Efficiency = ideal time / measured time. The ideal time is what no culling would \
+                need, at its own rate, if it evaluated only the lights that reach each sample.",
         better: Better::More,
         value: |c, r| c.efficiency(r),
         show: format::percent,

@@ -2,8 +2,8 @@
 //!
 //! Every round draws frames of all methods in turn, so what drifts hits all alike: the ratio of the
 //! times of two methods *of one round* is free of it. Along a path a round is a lap, and its time the
-//! mean over the poses. Two records are told apart where the interval of the median of these ratios
-//! leaves out 1, and its middle is not within half a per cent of it.
+//! mean over the poses. Two records tie unless the interval of the median of these ratios leaves out 1
+//! and its middle is not within half a per cent of it.
 
 use super::format::significant;
 use crate::results::{Record, median, median_interval};
@@ -11,7 +11,7 @@ use crate::results::{Record, median, median_interval};
 /// Nearer to 1, a ratio is of no interest, however sure it is.
 pub(super) const ALIKE: f64 = 0.005;
 
-/// The least coverage of an interval that tells two apart: of six rounds or more.
+/// The least coverage of an interval that shows a difference: that of six rounds.
 pub(super) const SURE: f64 = 0.95;
 
 /// The times of one record over those of another, paired by round.
@@ -53,7 +53,7 @@ impl Ratio {
         self.median < 1.0 && !self.is_tie()
     }
 
-    /// Whether the two cannot be told apart.
+    /// Whether the two tie.
     pub(super) fn is_tie(&self) -> bool {
         // Few rounds tell nothing: their range leaves out 1 by chance.
         let is_sure = self.coverage >= SURE;
@@ -61,7 +61,7 @@ impl Ratio {
     }
 }
 
-/// Whether two records cannot be told apart. `None` where they were not timed in the same rounds.
+/// Whether two records tie. `None` where they were not timed in the same rounds.
 pub fn indistinguishable(record: &Record, other: &Record) -> Option<bool> {
     Ratio::of(record, other).map(|ratio| ratio.is_tie())
 }
@@ -76,8 +76,14 @@ pub fn is_surely_faster(record: &Record, other: &Record) -> Option<bool> {
 pub(super) struct Ranked<'a> {
     /// The record.
     pub(super) record: &'a Record,
-    /// 1 for the fastest and for all that cannot be told from it.
+    /// 1 for the fastest and for all that tie with it.
     pub(super) rank: u32,
+}
+
+/// Whether a time was recorded: a record without a pass adds up to 0 ms, which no frame takes.
+pub(super) fn is_timed(record: &Record) -> bool {
+    let ms = record.assign_and_shade_ms();
+    ms.is_finite() && (ms > 0.0 || record.passes.iter().next().is_some())
 }
 
 /// Whether a record may be called the best: it culls, and nothing is known to be lost.
@@ -86,13 +92,11 @@ pub(super) fn competes(record: &Record) -> bool {
 }
 
 /// Ranks the records that cull without a loss, by assigning and shading together: the fastest leads
-/// the first rank, and all that cannot be told from it share that; the fastest of the others leads
-/// the next. Where there are no rounds to pair, the time alone decides.
+/// the first rank, and all that tie with it share that; the fastest of the others leads the next.
+/// Where there are no rounds to pair, only the time decides.
 pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
-    let mut left: Vec<&Record> = records
-        .into_iter()
-        .filter(|record| competes(record) && record.assign_and_shade_ms().is_finite())
-        .collect();
+    let mut left: Vec<&Record> =
+        records.into_iter().filter(|record| competes(record) && is_timed(record)).collect();
     left.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
     let mut ranked = Vec::new();
     for rank in 1.. {
@@ -113,15 +117,15 @@ pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
     ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
 }
 
-/// Says that the first rank is shared, `A and B cannot be told apart: ...`, or that one lap cannot
-/// tell. `None` where neither is so.
+/// Says that several share the first rank, `A and B tie: ...`, or that there are too few laps to test
+/// ties. `None` where neither is so.
 pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
     if leader.along_path && leader.laps() < 2 && ranked.len() > 1 {
         return Some(
-            "one lap says nothing about noise, so ranks follow the means alone (--laps 6 or more tells \
-             methods apart)"
+            "one lap says nothing about noise, so ranks use the means only; use --laps 6 to test \
+             ties"
                 .to_owned(),
         );
     }
@@ -133,7 +137,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
         let (rounds, option) =
             if leader.along_path { ("laps", "--laps") } else { ("rounds", "--frames") };
         return Some(format!(
-            "six {rounds} tell methods apart, and there are {}: {} share rank 1 ({option} 6 or more ranks them)",
+            "{} {rounds} are too few; use {option} 6: until then {} share rank 1",
             leader.round_times_ms().len(),
             listed(&first.iter().map(|record| record.strategy.as_str()).collect::<Vec<_>>())
         ));
@@ -146,7 +150,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
         _ => format!("their ratios to {}, round by round, lie at most", leader.strategy),
     };
     Some(format!(
-        "{} cannot be told apart: {} ms, and {ratio} from {} to {} (coverage {} %)",
+        "{} tie: {} ms, and {ratio} from {} to {} (coverage {} %)",
         listed(&names),
         listed(&times),
         significant(widest.low),
@@ -232,7 +236,7 @@ mod tests {
         let ranks: Vec<u32> = ranked.iter().map(|r| r.rank).collect();
         assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::of(&records[1], &records[0]));
         let text = tie(&ranked).expect("two share the first rank");
-        assert!(text.contains(" and ") && text.contains("cannot be told apart"), "{text}");
+        assert!(text.contains(" and ") && text.contains(" tie: "), "{text}");
         assert!(!text.contains('C'), "{text}");
     }
 
@@ -260,7 +264,7 @@ mod tests {
         assert_eq!(places(&records(6)), [place("A", 1), place("B", 2)]);
         let few = records(5);
         assert_eq!(places(&few), [place("A", 1), place("B", 1)]);
-        assert!(tie(&ranks(&few)).is_some_and(|said| said.contains("there are 5")));
+        assert!(tie(&ranks(&few)).is_some_and(|said| said.contains("5 rounds are too few")));
     }
 
     /// A record of laps along a path: a time for each lap and pose.
@@ -308,10 +312,8 @@ mod tests {
         let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
         assert_eq!(Ratio::of(&a, &b), None);
         let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];
-        assert!(
-            tie(&ranks(&few))
-                .is_some_and(|said| said.contains("there are 5: A and B share rank 1 (--laps"))
-        );
+        let said = tie(&ranks(&few)).expect("five laps");
+        assert!(said.starts_with("5 laps are too few; use --laps 6: until then A and B"), "{said}");
     }
 
     #[test]

@@ -58,8 +58,8 @@ pub(super) fn notice<'a>(
         .collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "{MARK} {chip} runs fragment shaders on a few of its processors. Compare figures with this mark \
-             with no other chip\u{2019}s: {}.",
+            "{MARK} {chip} runs fragment shaders on a few of its processors. Do not compare marked figures \
+             across chips: {}.",
             parts.join("; ")
         )
     })

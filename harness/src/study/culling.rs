@@ -8,7 +8,7 @@
 //! The paper does not state the lights' intensities; here all are alike. Its path has 1,000 frames; ours
 //! has fewer, and fewer still where pixels are lit in fragment shaders, which data-centre GPUs run on a
 //! few of their processors: there no culling takes most of a second per frame. Laps, the same poses
-//! again, tell methods apart.
+//! again, show which methods tie.
 
 use super::{Job, StudyScene};
 use crate::cli::{Size, StudyArgs};

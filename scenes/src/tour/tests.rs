@@ -3,7 +3,7 @@
 use std::{io::Write, path::PathBuf};
 
 use super::*;
-use crate::{Scene, atrium, load_gltf};
+use crate::{CameraPath, Scene, atrium, load_gltf};
 
 /// Poses of a path that are looked at.
 const POSES: u32 = 60;
@@ -87,15 +87,40 @@ fn check(name: &str, shown: &Shown) {
         shown.broken[0]
     );
     println!("{said}");
-    assert!(shown.heights > 0.2, "{said}");
-    assert!(shown.clearance_m > 0.15, "{said}");
-    // Both smooth and broken views.
-    assert!(shown.most() > 2.0 * shown.least(), "{said}");
+    assert!(lacks(shown).is_empty(), "{:?}: {said}", lacks(shown));
+}
+
+/// What a path lacks of a tour.
+fn lacks(shown: &Shown) -> Vec<&'static str> {
+    let demands = [
+        ("heights", shown.heights > 0.2),
+        ("clearance", shown.clearance_m > 0.15),
+        ("smooth and broken views", shown.most() > 2.0 * shown.least()),
+    ];
+    demands.into_iter().filter(|(_, is_met)| !is_met).map(|(name, _)| name).collect()
 }
 
 #[test]
 fn the_atriums_path_climbs_and_crosses_edges() {
     check("atrium", &Shown::of(&atrium(1)));
+}
+
+/// The same path at one height is no tour, and a camera that stands still shows one kind of view.
+#[test]
+fn level_and_still_paths_are_no_tours() {
+    let mut scene = atrium(1);
+    let first = scene.path.pose(0, 48);
+    let level = |ix| {
+        let pose = scene.path.pose(ix, 48);
+        (pose.eye.with_y(first.eye.y), pose.target)
+    };
+    let knots = (0..48).map(level).collect();
+    scene.path = CameraPath::closed_loop(knots, first);
+    assert!(lacks(&Shown::of(&scene)).contains(&"heights"));
+    scene.path = CameraPath::still(first);
+    let lacking = lacks(&Shown::of(&scene));
+    assert!(lacking.contains(&"heights"), "{lacking:?}");
+    assert!(lacking.contains(&"smooth and broken views"), "{lacking:?}");
 }
 
 /// Sponza's path is fitted. Its first pose is that of earlier versions, which pictures show.
@@ -113,18 +138,23 @@ fn a_fitted_path_climbs_and_crosses_edges() {
     check("Sponza", &Shown::of(&scene));
 }
 
+/// A level loop in the atrium's court.
+fn ring() -> Vec<Vec3> {
+    (0..48)
+        .map(|ix| {
+            let (sin, cos) = (TAU * ix as f32 / 48.0).sin_cos();
+            Vec3::new(8.0 * cos, 2.5, 3.5 * sin)
+        })
+        .collect()
+}
+
 /// In a hall with a row of posts the loop leaves its ellipse and touches nothing.
 #[test]
 fn a_bent_loop_keeps_its_first_knot_and_its_margin() {
     let scene = atrium(1);
     let bvh = TriangleBvh::new(&scene, scene.bounds);
     let room = Room { bvh: &bvh, core: scene.core_bounds, margin_m: 0.3 };
-    let level: Vec<Vec3> = (0..48)
-        .map(|ix| {
-            let (sin, cos) = (TAU * ix as f32 / 48.0).sin_cos();
-            Vec3::new(8.0 * cos, 2.5, 3.5 * sin)
-        })
-        .collect();
+    let level = ring();
     let eyes = room.bend(&level);
     assert_eq!(eyes[0], level[0]);
     let rise = eyes.iter().map(|eye| eye.y - 2.5).fold(0.0, f32::max);
@@ -135,4 +165,28 @@ fn a_bent_loop_keeps_its_first_knot_and_its_margin() {
     let pushed = pushed.fold(0.0, f32::max);
     assert!(rise > 2.0 && pushed > 1.5, "rise {rise}, push {pushed}");
     assert!((0..48).all(|ix| room.is_clear(&eyes, ix)));
+}
+
+/// A camera without room for a loop turns where it stands.
+#[test]
+fn a_loop_of_one_point_stays_there() {
+    let scene = atrium(1);
+    let bvh = TriangleBvh::new(&scene, scene.bounds);
+    let room = Room { bvh: &bvh, core: scene.core_bounds, margin_m: 0.3 };
+    // The mean of 48 equal numbers is not always the number.
+    for eye in [Vec3::new(0.1, 2.5, 0.3), Vec3::new(-3.3, 1.7, 2.9)] {
+        let level = vec![eye; 48];
+        assert_eq!(room.bend(&level), level);
+    }
+}
+
+/// No stretch of a bent loop is clear that cannot be looked at closely enough.
+#[test]
+fn a_loop_whose_margin_is_too_small_to_look_for_stays_level() {
+    let scene = atrium(1);
+    let bvh = TriangleBvh::new(&scene, scene.bounds);
+    let level = ring();
+    let bent = |margin_m| Room { bvh: &bvh, core: scene.core_bounds, margin_m }.bend(&level);
+    assert_eq!(bent(1e-5), level);
+    assert_ne!(bent(0.3), level);
 }

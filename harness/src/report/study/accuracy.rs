@@ -116,8 +116,7 @@ pub(super) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
         )
     } else {
         format!(
-            "No cap with a relMSE of at most {bound} is certainly faster than the fastest exact one, {} \
-             with {} ms.",
+            "No cap within relMSE {bound} beats the fastest exact method, {} with {} ms.",
             lossless.strategy,
             significant(exact)
         )

@@ -99,13 +99,29 @@ pub(super) fn parameters(id: &str) -> &str {
     if second.starts_with(|c: char| c.is_ascii_digit()) { second } else { "" }
 }
 
-/// The family, for models the size of their parts, and for grids a box that is not the paper's: what
-/// tells strategies apart that have their default parameters.
+/// The family, for models the size of their parts, and what differs from the paper's strategy: the box of
+/// a grid (`G/supports`), and tiles that are tested by half-spaces only (`T-I/hs`).
 pub(super) fn short(id: &str) -> String {
     match (family(id), parameters(id)) {
         ("M", size) if !size.is_empty() => format!("M/{size}"),
         ("G", _) => grid_box(id).map_or_else(|| "G".to_owned(), |name| format!("G/{name}")),
+        ("T-I", _) if is_by_half_spaces(id) => "T-I/hs".to_owned(),
         (family, _) => family.to_owned(),
+    }
+}
+
+/// Whether tiles are tested by half-spaces only, as earlier versions did under the paper's name.
+fn is_by_half_spaces(id: &str) -> bool {
+    id.split('/').any(|segment| segment == "hs")
+}
+
+/// What differs from the paper's strategy where a record stands in for it: `G over supports`, `T-I by HS
+/// only`. `None` where it is the paper's.
+pub(super) fn stand_in(id: &str) -> Option<&'static str> {
+    match family(id) {
+        "G" if grid_box(id) == Some("supports") => Some("G over supports"),
+        "T-I" if is_by_half_spaces(id) => Some("T-I by HS only"),
+        _ => None,
     }
 }
 
@@ -155,9 +171,8 @@ pub(super) fn class(id: &str) -> String {
 }
 
 /// Whether the comparison paper has a strategy: those that cut samples into groups, from the list of
-/// all lights, and models whole; not the grid of hybrid lighting, nor a grid over the surfaces. A grid
-/// over the lights' supports, as earlier versions measured it, stands in for the paper's under its own
-/// name: its cells are coarser.
+/// all lights, and models whole; not the grid of hybrid lighting, nor a grid over the surfaces. What
+/// earlier versions measured in place of a strategy counts too: see [`stand_in`].
 pub(super) fn is_of_the_paper(record: &Record) -> bool {
     let id = record.strategy.as_str();
     let is_parted = family(id) == "M" && !parameters(id).is_empty();
@@ -181,6 +196,10 @@ mod tests {
         );
         assert_eq!(short("G/20x20x20/bvh"), "G");
         assert_eq!(short("G/20x20x20/supports/bvh"), "G/supports");
+        assert_eq!((short("T-I/28x28/hs/bvh"), short("T-I/28x28")), ("T-I/hs".into(), "T-I".into()));
+        assert_eq!(stand_in("G/20x20x20/supports"), Some("G over supports"));
+        assert_eq!(stand_in("T-I/28x28/hs"), Some("T-I by HS only"));
+        assert_eq!((stand_in("G/20x20x20"), stand_in("SC-I/48x48x40/hs")), (None, None));
         assert_eq!(knob("T-E/28x28/bvh/cap16"), Some("cap16"));
         assert_eq!(knob("T-E/28x28/reuse2"), Some("reuse2"));
         assert_eq!(knob("SC-E/48x48x40/n24/s0.001/bvh"), Some("s0.001"));

@@ -138,7 +138,7 @@ pub(super) fn page(done: &Done) -> Page {
 
 const READING: &str = "<p>Frames are drawn in rounds, every method once a round in an order drawn at \
     random, so that what drifts hits all alike. Whiskers and small figures are intervals of the median \
-    over rounds. Two methods <b>cannot be told apart</b> where the interval of their ratio, round by round, \
+    over rounds. Two methods <b>tie</b> where the interval of their ratio, round by round, \
     holds 1. A <b>lossy</b> setting is shown at its error: culling error is against no culling with the same \
     shader, the error of the lights\u{2019} range against lights without one, that of a \
     model of area lights against a truth image. Every chart is a file in \

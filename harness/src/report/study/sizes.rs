@@ -61,7 +61,7 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "family",
         "best size",
         "assign + shade <span class=\"unit\">ms</span>",
-        "not to be told apart from it",
+        "ties with it",
         "sizes tried",
         "mean of",
     ];
@@ -85,7 +85,7 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
         "Unions of tests of a light\u{2019}s bounds against a group\u{2019}s frustum: half-spaces (HS), and \
          separating axes along its edges (SAT-E), towards its nearest corner (SAT-N), along its planes' normals \
          (SAT-P) and towards every corner (SAT-V). \
-         Assign + shade in ms; the fastest of each family, and whatever cannot be told from it, stands out.",
+         Assign + shade in ms; the fastest of each family, and all that tie with it, stand out.",
         &tests_table(done, scene),
     )
 }

@@ -207,7 +207,7 @@ const FRESNEL: Check = Check {
     place: "section 5.5.2",
     words: "MRP has nearly no Fresnel reflections.",
     paper: "pictures only: curtains and banners",
-    departure: "missing energy is that of both terms",
+    departure: "missing energy is that of both terms; mrp-published is our reading of equation 5.5",
     decide: |done, scene| {
         let of = |name| error_of(done, scene, name, "missing_energy");
         let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
@@ -216,7 +216,7 @@ const FRESNEL: Check = Check {
         let figure =
             format!("missing energy: mrp-published {} %, ltc {} %", percent(mrp), percent(ltc));
         let why = "the specular term alone; a test of shading shows that it is 0 outside the cone";
-        Answer { figure, verdict: Verdict::Unknown(why.to_owned()) }
+        Answer { figure, verdict: Verdict::unmeasured(why) }
     },
 };
 
@@ -225,7 +225,8 @@ const MRP_FLIP: Check = Check {
     place: "table 5.2",
     words: "MRP is farther from the truth than LTC.",
     paper: "FLIP 0.51880 against 0.39245",
-    departure: "",
+    departure: "mrp-published is our reading of equation 5.5: the text leaves the scale of specular light open, \
+                and by our reading it is far too bright. mrp has derived weights. Decided only where both agree",
     decide: |done, scene| {
         let of = |name| error_of(done, scene, name, "flip");
         let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
@@ -238,7 +239,16 @@ const MRP_FLIP: Check = Check {
                 figure += &format!(", {other} {}", difference(error));
             }
         }
-        Answer { figure, verdict: if mrp > ltc { Verdict::Holds } else { Verdict::Fails } }
+        let verdict = match (mrp > ltc, of("mrp").map(|derived| derived > ltc)) {
+            (true, Some(true)) => Verdict::Holds,
+            (false, Some(false)) => Verdict::Fails,
+            (published, _) => {
+                let which = if published { "farther" } else { "nearer" };
+                let reading = "only by our reading of equation 5.5";
+                Verdict::Differs(format!("{which} {reading}"))
+            }
+        };
+        Answer { figure, verdict }
     },
 };
 

@@ -1,8 +1,8 @@
 //! The rows that stand for those of the polygon-light paper, case by case, and how cases make a verdict.
 
 use super::super::super::format::significant;
-use super::super::super::rank::Ratio;
 use super::super::endless_data::{Case, Cut, Setting, USUAL, cases, setting};
+use super::super::order::Order;
 use super::{Answer, Verdict};
 use crate::results::Record;
 use crate::study::Done;
@@ -58,8 +58,10 @@ impl<'a> Rows<'a> {
 pub(super) enum Outcome {
     Good,
     Bad,
-    /// Two times that cannot be told apart.
+    /// Two times that tie.
     Tie,
+    /// Too few rounds for so small a difference.
+    Unsure,
 }
 
 impl Outcome {
@@ -69,10 +71,11 @@ impl Outcome {
 
     /// Whether one record is faster than another, in assign + shade, as far as their rounds tell.
     pub(super) fn faster(record: &Record, other: &Record) -> Self {
-        match Ratio::of(record, other) {
-            Some(ratio) if ratio.is_tie() => Self::Tie,
-            Some(ratio) => Self::good_if(ratio.is_faster()),
-            None => Self::good_if(record.assign_and_shade_ms() < other.assign_and_shade_ms()),
+        match Order::of_times(record, other) {
+            Order::Less => Self::Good,
+            Order::More => Self::Bad,
+            Order::Tie => Self::Tie,
+            Order::Unsure => Self::Unsure,
         }
     }
 }
@@ -97,20 +100,30 @@ pub(super) fn by_case(done: &Done, scene: &str, needs_test: bool, judge: Judge<'
     let figure = figures.join("; ");
     if needs_test && !is_published {
         let why = "the paper\u{2019}s cone test; the figures are of cones without a loss";
-        return Answer { figure, verdict: Verdict::Unknown(why.to_owned()) };
+        return Answer { figure, verdict: Verdict::unmeasured(why) };
     }
     Answer { figure, verdict: verdict(&outcomes) }
 }
 
-/// Holds where all cases say so, fails where all deny it; ties are neither.
+/// Holds where all cases say so, fails where all deny it; ties are neither, nor are times that too few
+/// rounds cannot order.
 pub(super) fn verdict(outcomes: &[Outcome]) -> Verdict {
     let count = |wanted| outcomes.iter().filter(|outcome| **outcome == wanted).count();
-    let (good, ties) = (count(Outcome::Good), count(Outcome::Tie));
-    if ties == 0 {
+    let (good, ties, unsure) =
+        (count(Outcome::Good), count(Outcome::Tie), count(Outcome::Unsure));
+    if ties + unsure == 0 {
         return Verdict::of_parts(good, outcomes.len(), "cases");
     }
-    let tied = if ties == 1 { "a tie in 1" } else { &format!("ties in {ties}") };
-    Verdict::Differs(format!("{good} of {} cases, {tied}", outcomes.len()))
+    let mut text = format!("{good} of {} cases", outcomes.len());
+    text += &match ties {
+        0 => String::new(),
+        1 => ", a tie in 1".to_owned(),
+        many => format!(", ties in {many}"),
+    };
+    if unsure > 0 {
+        text += &format!(", too few rounds in {unsure}");
+    }
+    Verdict::Differs(text)
 }
 
 /// A setting with its time, and its error where it loses something: `54 cones, cut 0.01 2.99 ms (FLIP
@@ -142,5 +155,7 @@ mod tests {
         assert_eq!(verdict(&[Good, Tie, Good, Bad]), tied);
         let all = Verdict::Differs("0 of 2 cases, ties in 2".to_owned());
         assert_eq!(verdict(&[Tie, Tie]), all);
+        let few = Verdict::Differs("1 of 2 cases, too few rounds in 1".to_owned());
+        assert_eq!(verdict(&[Good, Outcome::Unsure]), few);
     }
 }

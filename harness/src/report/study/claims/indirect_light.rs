@@ -79,7 +79,7 @@ impl<'a> Against<'a> {
 fn stale(records: &[&Record]) -> Option<Verdict> {
     let is_stale = |record: &&Record| record.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel);
     let any = records.iter().any(is_stale);
-    any.then(|| Verdict::Unknown("these lights were 4 to 7 % too bright: measure again".into()))
+    any.then(|| Verdict::undecided("these lights were 4 to 7 % too bright: measure again"))
 }
 
 /// The fewest random lights that come as near to the truth as those with ranges by rays.
@@ -152,7 +152,7 @@ pub(super) fn visual_quality(done: &Done, scene: &str) -> Answer {
         Some(Nearer::First) => Verdict::Holds,
         Some(Nearer::Tie) => Verdict::Differs("a tie within the noise of the truth".into()),
         Some(Nearer::Second) => Verdict::Fails,
-        None => Verdict::Unknown("errors".into()),
+        None => Verdict::unmeasured("errors"),
     };
     Answer { figure, verdict }
 }
@@ -175,6 +175,6 @@ pub(super) fn similar(done: &Done, scene: &str) -> Answer {
     }
     Answer {
         figure,
-        verdict: Verdict::Differs("the paper gives no measure to hold it against".into()),
+        verdict: Verdict::undecided("the paper gives no measure to hold it against"),
     }
 }

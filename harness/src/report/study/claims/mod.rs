@@ -2,7 +2,8 @@
 //!
 //! A claim is one row: where the paper makes it, its words, the paper's figures, how this study departs
 //! from the paper, and the function that decides it from the figures of one scene. It is judged by the
-//! paper's own statistic; others stand beside it.
+//! paper's own statistic where the paper states one; where it does not, `departure` states ours and its
+//! limits.
 
 mod area;
 mod area_cost;
@@ -70,6 +71,12 @@ pub(super) struct Claim<'a> {
     answers: Vec<(&'a str, Answer)>,
 }
 
+/// Whether a study ran on another GPU than a paper: then absolute times decide nothing.
+fn on_another_gpu(done: &Done, gpu: &str) -> Option<Verdict> {
+    let is_other = done.results.values().any(|results| !results.machine.adapter.contains(gpu));
+    is_other.then(|| Verdict::undecided(&format!("another GPU than the paper\u{2019}s {gpu}")))
+}
+
 /// All claims of a paper.
 pub(super) fn claims<'a>(done: &'a Done, paper: &Paper) -> Vec<Claim<'a>> {
     let scenes = done.scenes();
@@ -96,6 +103,7 @@ impl Claim<'_> {
             [(_, one)] => one.verdict.clone(),
             several => {
                 let all = |verdict: &Verdict| several.iter().all(|(_, a)| a.verdict == *verdict);
+                // Scenes that say nothing are counted in `verdict_text`.
                 if all(&Verdict::Holds) {
                     Verdict::Holds
                 } else if all(&Verdict::Fails) {
@@ -120,9 +128,20 @@ impl Claim<'_> {
         }
     }
 
+    /// The verdict, and how many scenes decide it where some do not: `holds (1 of 3 scenes)`.
+    pub(super) fn verdict_text(&self) -> String {
+        let is_known = |answer: &Answer| !matches!(answer.verdict, Verdict::Unknown(_));
+        let known = self.answers.iter().filter(|(_, answer)| is_known(answer)).count();
+        let text = self.verdict().text();
+        match self.answers.len() {
+            all if known == 0 || known == all => text,
+            all => format!("{text} ({known} of {all} scenes)"),
+        }
+    }
+
     /// For the terminal.
     pub(super) fn text(&self) -> String {
-        let mut text = format!("{} {}.", self.check.words, capitalised(&self.verdict().text()));
+        let mut text = format!("{} {}.", self.check.words, capitalised(&self.verdict_text()));
         for (scene, answer) in self.answers.iter().filter(|(_, a)| !a.figure.is_empty()) {
             let _ = write!(text, " {scene}: {}.", answer.figure);
         }
@@ -162,7 +181,10 @@ mod tests {
         assert_eq!(claim(&[Holds, Holds]).verdict(), Holds);
         assert_eq!(claim(&[Fails, Fails]).verdict(), Fails);
         assert_eq!(claim(&[Holds, unknown()]).verdict(), Holds);
+        assert_eq!(claim(&[Holds, unknown(), unknown()]).verdict_text(), "holds (1 of 3 scenes)");
+        assert_eq!(claim(&[Holds, Holds]).verdict_text(), "holds");
         assert_eq!(claim(&[unknown(), unknown()]).verdict(), unknown());
+        assert_eq!(claim(&[unknown(), unknown()]).verdict_text(), "no path");
         let Differs(why) = claim(&[Holds, Fails]).verdict() else { panic!("it differs") };
         assert_eq!(why, "holds in scene; not in scene");
         assert!(matches!(claim(&[]).verdict(), Unknown(_)));

@@ -51,7 +51,7 @@ pub(in crate::report::study) fn claims_html(
                 "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
                 verdict.id(),
                 check.id,
-                escape(&verdict.text())
+                escape(&claim.verdict_text())
             ));
             row
         })

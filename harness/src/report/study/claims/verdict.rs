@@ -9,18 +9,39 @@ pub(in crate::report::study) enum Verdict {
     Fails,
     /// They bear a part of it out: which.
     Differs(String),
-    /// They were not measured: what lacks.
+    /// They decide nothing: why, as a phrase.
     Unknown(String),
 }
 
 impl Verdict {
+    /// The figures are missing: which.
+    pub(in crate::report::study) fn unmeasured(what: &str) -> Self {
+        Self::Unknown(format!("not measured: {what}"))
+    }
+
+    /// There are figures, and they cannot decide the claim: why.
+    pub(in crate::report::study) fn undecided(why: &str) -> Self {
+        Self::Unknown(format!("not decided: {why}"))
+    }
+
     /// Holds where all of the parts do, fails where none does.
     pub(in crate::report::study) fn of_parts(good: usize, all: usize, what: &str) -> Self {
         match (good, all) {
-            (_, 0) => Self::Unknown(format!("no {what}")),
+            (_, 0) => Self::unmeasured(&format!("no {what}")),
             (good, all) if good == all => Self::Holds,
             (0, _) => Self::Fails,
             (good, all) => Self::Differs(format!("{good} of {all} {what}")),
+        }
+    }
+
+    /// The same with what bars it from holding outright: what was not measured, or what stands in for it.
+    pub(in crate::report::study) fn qualified(self, notes: &[String]) -> Self {
+        match self {
+            Self::Holds if !notes.is_empty() => Self::Differs(notes.join("; ")),
+            Self::Differs(why) if !notes.is_empty() => {
+                Self::Differs(format!("{why}; {}", notes.join("; ")))
+            }
+            other => other,
         }
     }
 
@@ -39,7 +60,7 @@ impl Verdict {
             Self::Holds => "holds".to_owned(),
             Self::Fails => "does not hold".to_owned(),
             Self::Differs(why) => format!("differs: {why}"),
-            Self::Unknown(why) => format!("not measured: {why}"),
+            Self::Unknown(why) => why.clone(),
         }
     }
 }
@@ -53,7 +74,13 @@ pub(in crate::report::study) struct Answer {
 }
 
 impl Answer {
-    pub(in crate::report::study) fn unknown(why: &str) -> Self {
-        Self { figure: String::new(), verdict: Verdict::Unknown(why.to_owned()) }
+    /// Without figures: what was not measured.
+    pub(in crate::report::study) fn unknown(what: &str) -> Self {
+        Self { figure: String::new(), verdict: Verdict::unmeasured(what) }
+    }
+
+    /// Without figures, and why they would decide nothing.
+    pub(in crate::report::study) fn undecided(why: &str) -> Self {
+        Self { figure: String::new(), verdict: Verdict::undecided(why) }
     }
 }

@@ -2,12 +2,15 @@
 
 use super::super::super::super::fit::Fit;
 use super::super::super::super::format::{number, percent, significant};
-use super::super::super::data::{Entry, entries, family, is_of_the_paper, lines, poses, stand};
+use super::super::super::super::rank::listed;
+use super::super::super::data::{
+    Entry, entries, family, is_of_the_paper, lines, poses, short, stand, stand_in,
+};
 use super::super::super::order::Order;
 use super::super::super::scaling::{Straight, Time, straight};
 use super::super::{Answer, Verdict};
 use super::ALIKE;
-use super::field::Pairs;
+use super::pairs::{Member, Pairs};
 use crate::results::Record;
 use crate::study::Done;
 
@@ -22,6 +25,8 @@ fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<(&'a str, Vec<&'a
         .collect();
     let mut lines = lines(&scaling);
     lines.retain(|(_, records)| records.len() > 2);
+    // The paper's own strategy comes before what stands in for it.
+    lines.sort_by_key(|(id, _)| stand_in(id).is_some());
     lines
 }
 
@@ -38,59 +43,47 @@ fn basis(lines: &[(&str, Vec<&Record>)]) -> String {
     format!("{} to {} lights, {stand}", number(low as f64), number(high as f64))
 }
 
-/// Straight where the best line misses no time by more than a tenth; where that stops is said.
+/// Straight where the best line misses no time of the paper's range by more than a tenth. Both fits are
+/// of that range; how far the line goes on beyond it is said beside them.
 pub(super) fn linear(done: &Done, scene: &str) -> Answer {
     let lines = grown(done, scene, u64::MAX);
     let paper = grown(done, scene, RANGE[1]);
     let (mut good, mut all, mut figures) = (0, 0, Vec::new());
-    for (id, records) in &lines {
-        let own = paper.iter().find(|(known, _)| known == id).map(|(_, records)| records);
-        let Some(within) = own.and_then(|own| straight(own, Record::assign_and_shade_ms)) else {
-            continue;
-        };
+    for (id, records) in &paper {
+        let Some(within) = straight(records, Record::assign_and_shade_ms) else { continue };
         all += 1;
         good += usize::from(within.holds());
-        let plain = fit(records, Record::assign_and_shade_ms);
-        figures.push(said(
-            id,
-            &within,
-            straight(records, Record::assign_and_shade_ms),
-            plain,
-            records,
-        ));
+        let beyond = lines.iter().find(|(known, _)| known == id);
+        let whole = beyond.and_then(|(_, all)| straight(all, Record::assign_and_shade_ms));
+        figures.push(said(id, &within, whole, records));
     }
     if all == 0 {
         return Answer::unknown("scaling over four counts of lights");
     }
-    let figure = format!("{}; {}", basis(&lines), figures.join("; "));
+    let figure = format!("{}; {}", basis(&paper), figures.join("; "));
     Answer { figure, verdict: Verdict::of_parts(good, all, "strategies") }
 }
 
-/// `T-I off by 9.0 % at 1,000, straight from 100 to 30,000, least squares off by 28 % at 100`.
-fn said(
-    id: &str,
-    within: &Straight,
-    whole: Option<Straight>,
-    plain: Option<Fit>,
-    records: &[&Record],
-) -> String {
+/// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
+/// 30,000`. Both distances are of `records`, those of the paper's range.
+fn said(id: &str, within: &Straight, whole: Option<Straight>, records: &[&Record]) -> String {
     let mut text = format!(
         "{} off its line by {} % at most, at {}",
-        family(id),
+        short(id),
         percent(within.worst),
         number(within.at as f64)
     );
+    if let Some(plain) = fit(records, Record::assign_and_shade_ms) {
+        let points: Vec<(f64, f64)> =
+            records.iter().map(|r| (r.lights as f64, r.assign_and_shade_ms())).collect();
+        let (off, at) = plain.worst(&points);
+        text += &format!(" (plain least squares {} % at {})", percent(off), number(at));
+    }
     match whole.or(Some(*within)).and_then(|whole| whole.range) {
         Some([low, high]) => {
             text += &format!(", straight from {} to {}", number(low as f64), number(high as f64));
         }
         None => text += ", nowhere straight over four counts",
-    }
-    if let Some(plain) = plain {
-        let points: Vec<(f64, f64)> =
-            records.iter().map(|r| (r.lights as f64, r.assign_and_shade_ms())).collect();
-        let (off, at) = plain.worst(&points);
-        text += &format!(" (plain least squares {} % at {})", percent(off), number(at));
     }
     text
 }
@@ -106,7 +99,7 @@ impl<'a> Slopes<'a> {
         let lines = grown(done, scene, RANGE[1]);
         let all: Vec<(&str, Fit)> = lines
             .iter()
-            .filter_map(|(id, records)| Some((family(id), fit(records, time)?)))
+            .filter_map(|(id, records)| Some((*id, fit(records, time)?)))
             .collect();
         match all.is_empty() {
             true => Err(Answer::unknown("scaling over three counts of lights")),
@@ -114,13 +107,22 @@ impl<'a> Slopes<'a> {
         }
     }
 
+    fn of_family(&self, name: &str) -> Option<&(&'a str, Fit)> {
+        self.all.iter().find(|(id, _)| family(id) == name)
+    }
+
     fn fit(&self, name: &str) -> Option<&Fit> {
-        self.all.iter().find(|(family, _)| *family == name).map(|(_, fit)| fit)
+        self.of_family(name).map(|(_, fit)| fit)
+    }
+
+    /// What stands in for one of some strategies.
+    fn stand_in(&self, names: &[&str]) -> Option<&'static str> {
+        names.iter().find_map(|name| stand_in(self.of_family(name)?.0))
     }
 
     fn ascending(&self, names: &[&str], of: fn(&Fit) -> f64) -> String {
-        let mut all: Vec<(&str, f64)> =
-            names.iter().filter_map(|name| Some((*name, of(self.fit(name)?)))).collect();
+        let own = names.iter().filter_map(|name| self.of_family(name));
+        let mut all: Vec<(String, f64)> = own.map(|(id, fit)| (short(id), of(fit))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let said = all.iter().map(|(name, figure)| format!("{name} {}", significant(*figure)));
         said.collect::<Vec<_>>().join(", ")
@@ -128,14 +130,9 @@ impl<'a> Slopes<'a> {
 
     /// Decides by the order of slopes or offsets.
     fn ordered(&self, chain: &[&[&str]], of: fn(&Fit) -> f64) -> Pairs {
-        Pairs::of_chain(chain, |less, more| {
-            let (less, more) = (of(self.fit(less)?), of(self.fit(more)?));
-            // An offset below zero is less than one above it, whatever their ratio.
-            match less > 0.0 && more > 0.0 {
-                true => Some(Order::of_figures(less, more)),
-                false if less < more => Some(Order::Less),
-                false => Some(Order::More),
-            }
+        let member = |name: &str| Member::of(self.of_family(name).map(|(id, _)| *id));
+        Pairs::of_chain(chain, member, |less, more| {
+            Some(Order::of_fits(of(self.fit(less)?), of(self.fit(more)?)))
         })
     }
 }
@@ -190,11 +187,15 @@ pub(super) fn shading_dominates(done: &Done, scene: &str) -> Answer {
         Ok(both) => both,
         Err(answer) => return answer,
     };
-    let (mut pairs, mut figures) = (Pairs::default(), Vec::new());
-    for (name, of_assign) in &assign.all {
-        let Some(of_shade) = shade.fit(name) else { continue };
-        let order = Order::of_figures(of_assign.slope, of_shade.slope);
-        pairs.add(&format!("{name}'s assignment"), "its shading", order);
+    let (mut pairs, mut figures, mut faster) = (Pairs::default(), Vec::new(), Vec::new());
+    for (id, of_assign) in &assign.all {
+        let Some((_, of_shade)) = shade.all.iter().find(|(known, _)| known == id) else { continue };
+        let name = short(id);
+        let order = Order::of_fits(of_assign.slope, of_shade.slope);
+        pairs.add("assignment", "shading", order);
+        if order == Order::More {
+            faster.push(format!("{name}\u{2019}s"));
+        }
         let both = [of_assign, of_shade].map(|fit| significant(slope(fit)));
         figures.push(format!("{name} {} and {}", both[0], both[1]));
     }
@@ -202,7 +203,10 @@ pub(super) fn shading_dominates(done: &Done, scene: &str) -> Answer {
         "{}, \u{b5}s per 1,000 lights, assign and shade: {}{}",
         assign.basis,
         figures.join(", "),
-        pairs.exceptions()
+        match faster.is_empty() {
+            true => String::new(),
+            false => format!("; {} assignment grows faster than its shading", listed(&faster)),
+        }
     );
     Answer { figure, verdict: pairs.verdict() }
 }
@@ -221,11 +225,11 @@ pub(super) fn model_slopes(done: &Done, scene: &str) -> Answer {
     let others = ["SC-E", "SC-I", "T-E", "T-I", "G", "DC-I"];
     let less = assign.ordered(&[&["M"], &others], slope);
     let more = shade.ordered(&[&others, &["M"]], slope);
-    let verdict = match (less.verdict(), more.verdict()) {
-        (Verdict::Holds, Verdict::Holds) => Verdict::Holds,
-        (Verdict::Holds, _) => Verdict::Differs("least in assignment only".to_owned()),
-        (_, Verdict::Holds) => Verdict::Differs("greatest in shading only".to_owned()),
-        _ => Verdict::Fails,
+    let verdict = match (less.leader_verdict(), more.leader_verdict()) {
+        (Verdict::Fails, Verdict::Fails) => Verdict::Fails,
+        (_, Verdict::Fails) => Verdict::Differs("not the greatest in shading".to_owned()),
+        (Verdict::Fails, _) => Verdict::Differs("not the least in assignment".to_owned()),
+        (Verdict::Holds, other) | (other, _) => other,
     };
     let names = [&["M"][..], &others].concat();
     let figure = format!(
@@ -251,8 +255,11 @@ pub(super) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
         let apart = apart(*of);
         apart > 0.0 && apart <= ALIKE
     });
-    let verdict = Verdict::of_parts(good.count(), 2, "measures");
     let names = ["DC-I", "G"];
+    let verdict = match slopes.stand_in(&names) {
+        Some(what) => Verdict::Differs(format!("with {what}")),
+        None => Verdict::of_parts(good.count(), 2, "measures"),
+    };
     let figure = format!(
         "{}: slope {} \u{b5}s per 1,000 lights, offset {} ms",
         slopes.basis,

@@ -3,11 +3,11 @@
 use super::super::super::super::format::{percent, significant};
 use super::super::super::super::rank::{first, ranks};
 use super::super::super::data::{
-    Entry, entries, family, is_bvh, parameters, stand, tests as tests_of,
+    Entry, entries, family, is_bvh, parameters, short, stand, stand_in, tests as tests_of,
 };
 use super::super::super::order::Order;
 use super::super::{Answer, Verdict};
-use super::field::Pairs;
+use super::pairs::Pairs;
 use crate::results::Record;
 use crate::study::Done;
 
@@ -59,11 +59,11 @@ fn is_cubic(record: &Record) -> bool {
     counts.all(|count| Some(count) == first)
 }
 
-/// The paper's size leads each family, or cannot be told from what leads.
+/// The paper's size leads each family, or ties with what leads.
 pub(super) fn sizes(done: &Done, scene: &str) -> Answer {
     let all = entries(done, scene, "sizes");
     let (mut good, mut decided, mut figures) = (0, 0, Vec::new());
-    let mut basis = String::new();
+    let (mut basis, mut notes) = (String::new(), Vec::new());
     for (name, selected) in SELECTED {
         let mut records = searched(&all, name);
         // The paper tried grids of equal counts only.
@@ -71,9 +71,14 @@ pub(super) fn sizes(done: &Done, scene: &str) -> Answer {
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
         let own = records.iter().find(|record| parameters(&record.strategy) == selected);
-        let (Some(own), Some(leader)) = (own, best.first()) else { continue };
+        let (Some(own), Some(leader)) = (own, best.first()) else {
+            notes.push(format!("{name} not measured"));
+            continue;
+        };
         basis = format!("{}{}", stand(own), source(&records));
         decided += 1;
+        notes.extend(stand_in(&own.strategy).map(|what| format!("with {what}")));
+        let name = short(&own.strategy);
         if best.iter().any(|record| record.strategy == own.strategy) {
             good += 1;
             figures.push(format!("{name} {selected} {} ms", significant(time(own))));
@@ -90,7 +95,8 @@ pub(super) fn sizes(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("the paper's sizes among others");
     }
     let figure = format!("{basis}; {}", figures.join("; "));
-    Answer { figure, verdict: Verdict::of_parts(good, decided, "families") }
+    let verdict = Verdict::of_parts(good, decided, "families").qualified(&notes);
+    Answer { figure, verdict }
 }
 
 /// Grids whose cells are about cubes against grids with the same number of cells along each side.
@@ -131,7 +137,7 @@ fn tested<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a str, Vec<&'a Record>)>
     families
 }
 
-/// HS+SAT-N leads in each family, or cannot be told from what leads.
+/// HS+SAT-N leads in each family, or ties with what leads.
 pub(super) fn tests(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut good, mut decided) = (Vec::new(), 0, 0);
     let mut basis = String::new();

@@ -3,8 +3,8 @@
 use super::super::super::super::format::{mebibytes, number, significant};
 use super::super::super::order::Order;
 use super::super::{Answer, Verdict};
-use super::field::{Field, Pairs, ordered};
-use crate::results::Record;
+use super::field::{Field, ordered};
+use super::pairs::Pairs;
 use crate::study::Done;
 
 /// Up to this ratio of times a strategy is a little slower; the paper's are 1.04 to 1.10.
@@ -36,17 +36,12 @@ pub(super) fn dense_before_sparse(done: &Done, scene: &str) -> Answer {
         Order::Less if ratio <= LITTLE => Verdict::Holds,
         Order::Less => Verdict::Differs("by more than a little".to_owned()),
         Order::Tie => Verdict::Differs("a tie".to_owned()),
+        Order::Unsure => {
+            Verdict::Differs("too few laps for so small a difference".to_owned())
+        }
         Order::More => Verdict::Fails,
     };
     Answer { figure, verdict }
-}
-
-/// Bytes that a strategy keeps on the GPU, and what they count.
-fn memory(record: &Record) -> (u64, &'static str) {
-    match record.memory_bytes {
-        Some(bytes) => (bytes, "all that assignment needs"),
-        None => (record.lists_bytes, "groups and lists only"),
-    }
 }
 
 /// SC-E keeps far less than DC-E: half at most.
@@ -58,13 +53,18 @@ pub(super) fn sparse_memory(done: &Done, scene: &str) -> Answer {
     let (Some(dense), Some(sparse)) = (field.of("DC-E"), field.of("SC-E")) else {
         return Answer::unknown("DC-E and SC-E");
     };
-    let [(dense, what), (sparse, _)] = [memory(dense), memory(sparse)];
-    let figure = format!(
-        "at {} lights, {what}: DC-E {} MiB, SC-E {} MiB",
-        number(field.lights as f64),
-        mebibytes(dense as f64),
-        mebibytes(sparse as f64)
-    );
+    let told = |what: &str, bytes: [u64; 2]| {
+        let [dense, sparse] = bytes.map(|bytes| mebibytes(bytes as f64));
+        let lights = number(field.lights as f64);
+        format!("at {lights} lights, {what}: DC-E {dense} MiB, SC-E {sparse} MiB")
+    };
+    let (Some(all_dense), Some(all_sparse)) = (dense.memory_bytes, sparse.memory_bytes) else {
+        // The lists are a part of the memory: alone they decide nothing.
+        let figure = told("groups and lists only", [dense.lists_bytes, sparse.lists_bytes]);
+        return Answer { figure, verdict: Verdict::unmeasured("all memory that assignment needs") };
+    };
+    let (dense, sparse) = (all_dense, all_sparse);
+    let figure = told("all that assignment needs", [dense, sparse]);
     let verdict = match (2 * sparse <= dense, sparse < dense) {
         (true, _) => Verdict::Holds,
         (false, true) => Verdict::Differs("less, but more than half".to_owned()),
@@ -81,8 +81,10 @@ pub(super) fn explicit_at_many(done: &Done, scene: &str) -> Answer {
     };
     let (mut pairs, mut figure) = (Pairs::default(), field.basis());
     for names in [["T-E", "T-I"], ["DC-E", "DC-I"], ["SC-E", "SC-I"]] {
-        if let [Some(explicit), Some(implicit)] = names.map(|name| field.of(name)) {
-            pairs.add(names[0], names[1], Order::of_times(explicit, implicit));
+        let order =
+            |less: &str, more: &str| Some(Order::of_times(field.of(less)?, field.of(more)?));
+        pairs.compare(names, |name| field.member(name), order);
+        if names.iter().any(|name| field.of(name).is_some()) {
             figure += &format!("; {}", field.times(&names));
         }
     }

@@ -2,13 +2,13 @@
 
 use super::super::super::super::format::{number, percent, significant};
 use super::super::super::data::{
-    Entry, counts, entries, family, is_near, is_of_the_paper, nearest_count, stand,
+    Entry, counts, entries, family, is_near, is_of_the_paper, nearest_count, short, stand, stand_in,
 };
 use super::super::super::order::Order;
 use super::super::super::path::Spread;
 use super::super::{Answer, Verdict};
 use super::ALIKE;
-use super::field::Pairs;
+use super::pairs::{Member, Pairs};
 use crate::study::Done;
 
 /// The strategies of table 4.4; the paper leaves DC-E out of it.
@@ -30,11 +30,14 @@ impl<'a> Spreads<'a> {
             return Err(Answer::unknown("times along the path"));
         };
         if !is_near(lights, 10_000) {
-            let why = format!("measured at {} lights only", number(lights as f64));
-            return Err(Answer::unknown(&why));
+            let why = format!("only {} lights were measured", number(lights as f64));
+            return Err(Answer::undecided(&why));
         }
         let own = || path.iter().map(|entry| entry.record).filter(|r| r.lights == lights);
-        let all = own().filter_map(|r| Some((family(&r.strategy), Spread::of(r)?))).collect();
+        let mut all: Vec<(&str, Spread)> =
+            own().filter_map(|r| Some((r.strategy.as_str(), Spread::of(r)?))).collect();
+        // The paper's own strategy comes before what stands in for it.
+        all.sort_by_key(|(id, _)| stand_in(id).is_some());
         let most = own().max_by_key(|record| record.frames);
         let basis = most.map_or_else(String::new, |record| {
             format!("at {} lights, {}", number(lights as f64), stand(record))
@@ -42,14 +45,22 @@ impl<'a> Spreads<'a> {
         Ok(Self { basis, all })
     }
 
+    fn of_family(&self, name: &str) -> Option<&(&'a str, Spread)> {
+        self.all.iter().find(|(id, _)| family(id) == name)
+    }
+
     fn of(&self, name: &str) -> Option<&Spread> {
-        self.all.iter().find(|(family, _)| *family == name).map(|(_, spread)| spread)
+        self.of_family(name).map(|(_, spread)| spread)
+    }
+
+    fn member(&self, name: &str) -> Member {
+        Member::of(self.of_family(name).map(|(id, _)| *id))
     }
 
     /// `SD G 0.007, SC-E 0.01 ms`: the strategies that are there by a figure, least first.
     fn ascending(&self, names: &[&str], of: fn(&Spread) -> f64, show: fn(f64) -> String) -> String {
-        let mut all: Vec<(&str, f64)> =
-            names.iter().filter_map(|name| Some((*name, of(self.of(name)?)))).collect();
+        let own = names.iter().filter_map(|name| self.of_family(name));
+        let mut all: Vec<(String, f64)> = own.map(|(id, spread)| (short(id), of(spread))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let said = all.iter().map(|(name, figure)| format!("{name} {}", show(*figure)));
         said.collect::<Vec<_>>().join(", ")
@@ -77,7 +88,8 @@ fn by_deviation(done: &Done, scene: &str, chain: &[&[&str]]) -> Answer {
         Ok(spreads) => spreads,
         Err(answer) => return answer,
     };
-    let pairs = Pairs::of_chain(chain, |less, more| spreads.order(less, more));
+    let order = |less: &str, more: &str| spreads.order(less, more);
+    let pairs = Pairs::of_chain(chain, |name| spreads.member(name), order);
     let names: Vec<&str> =
         COMPARED.into_iter().filter(|name| chain.iter().any(|g| g.contains(name))).collect();
     let is_leader = matches!(chain, [[_], _]);
@@ -103,12 +115,13 @@ pub(super) fn explicit_is_steadier(done: &Done, scene: &str) -> Answer {
     };
     let mut pairs = Pairs::default();
     for [explicit, implicit] in [["T-E", "T-I"], ["SC-E", "SC-I"]] {
-        let (Some(less), Some(more)) = (spreads.of(explicit), spreads.of(implicit)) else {
-            continue;
+        let member = |name: &str| spreads.member(name);
+        let relative = |less: &str, more: &str| {
+            let [less, more] = [spreads.of(less)?, spreads.of(more)?];
+            Some(Order::of_figures(less.relative, more.relative))
         };
-        pairs.add(&format!("{explicit} (SD)"), implicit, less.compare(more));
-        let relative = Order::of_figures(less.relative, more.relative);
-        pairs.add(&format!("{explicit} (SD / mean)"), implicit, relative);
+        pairs.compare([explicit, implicit], member, |less, more| spreads.order(less, more));
+        pairs.compare([explicit, implicit], member, relative);
     }
     let names = ["T-E", "T-I", "SC-E", "SC-I"];
     Answer { figure: spreads.figure(&names) + &pairs.exceptions(), verdict: pairs.verdict() }
@@ -124,7 +137,11 @@ pub(super) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("G and DC-I along the path");
     };
     let ratio = (grid.deviation / dense.deviation).max(dense.deviation / grid.deviation);
-    let verdict = if ratio <= ALIKE { Verdict::Holds } else { Verdict::Fails };
+    let verdict = match stand_in(spreads.of_family("G").map_or("", |(id, _)| *id)) {
+        Some(what) => Verdict::Differs(format!("with {what}")),
+        None if ratio <= ALIKE => Verdict::Holds,
+        None => Verdict::Fails,
+    };
     let figure =
         format!("{}; a factor of {} apart", spreads.figure(&["G", "DC-I"]), significant(ratio));
     Answer { figure, verdict }

@@ -1,17 +1,14 @@
 //! The records of the survey by renderer and method, and what several parts say together.
 
 use super::super::super::super::format::significant;
-use super::super::super::super::rank::Ratio;
 use super::super::super::data::{counts, entries, family, knob};
+use super::super::super::order::Order;
 use super::{Answer, Verdict};
 use crate::results::{BASELINE, EARLY_EXIT, Record};
 use crate::study::Done;
 
 /// The sections of the study: how pixels are lit.
 const MODES: [&str; 2] = ["deferred", "forward"];
-
-/// Frames that differ by less are alike, where no laps tell them apart.
-const ALIKE: f64 = 0.05;
 
 /// The records of one renderer.
 pub(super) struct Mode<'a> {
@@ -88,14 +85,6 @@ pub(super) fn of_the_survey(record: &Record) -> bool {
     bounding_sphere(record) || raster_sphere(record) || capped(record)
 }
 
-/// Whether a record is slower than another, beyond chance.
-pub(super) fn is_slower(record: &Record, other: &Record) -> bool {
-    match Ratio::of(other, record) {
-        Some(ratio) => ratio.is_faster(),
-        None => record.frame_ms > other.frame_ms * (1.0 + ALIKE),
-    }
-}
-
 pub(super) fn timed(record: &Record) -> String {
     format!("{} {} ms", record.strategy, significant(record.frame_ms))
 }
@@ -106,6 +95,9 @@ pub(super) struct Tally {
     pub(super) figures: Vec<String>,
     pub(super) good: usize,
     pub(super) all: usize,
+    /// Parts that few laps cannot order.
+    unsure: usize,
+    ties: usize,
 }
 
 impl Tally {
@@ -115,11 +107,39 @@ impl Tally {
         self.figures.push(figure);
     }
 
+    /// Adds a part that holds where one frame is shorter than another.
+    pub(super) fn add_order(&mut self, order: Order, figure: String) {
+        self.count(order);
+        self.figures.push(figure);
+    }
+
+    /// Counts a part without a figure.
+    pub(super) fn count(&mut self, order: Order) {
+        self.all += 1;
+        match order {
+            Order::Less => self.good += 1,
+            Order::Tie => self.ties += 1,
+            Order::Unsure => self.unsure += 1,
+            Order::More => {}
+        }
+    }
+
     pub(super) fn answer(self, parts: &str, missing: &str) -> Answer {
         if self.all == 0 {
             return Answer::unknown(missing);
         }
-        let verdict = Verdict::of_parts(self.good, self.all, parts);
+        let some = |count: usize, what: &str| (count > 0).then(|| format!("{what} for {count}"));
+        let notes: Vec<String> = [some(self.ties, "a tie"), some(self.unsure, "too few laps")]
+            .into_iter()
+            .flatten()
+            .collect();
+        let verdict = match notes.is_empty() {
+            true => Verdict::of_parts(self.good, self.all, parts),
+            false => {
+                let (good, all) = (self.good, self.all);
+                Verdict::Differs(format!("{good} of {all} {parts}; {}", notes.join("; ")))
+            }
+        };
         Answer { figure: self.figures.join("; "), verdict }
     }
 }
