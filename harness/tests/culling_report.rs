@@ -31,7 +31,8 @@ fn frame_ms(turned: &str, mode: Mode, strategy: &str, lights: u64) -> f64 {
         ("RasterSphere", "gain") => (2.0, 0.030),
         ("RasterSphere", _) => (2.0, 0.012),
         (CAPPED, "gain" | "clusters") => (2.0, 0.030),
-        (CAPPED, "rate") => (12.0, 0.0005),
+        (CAPPED, "rate") => (30.0, 0.0005),
+        (CAPPED, _) => (2.0, 0.0025),
         _ => (2.0, 0.0005),
     };
     let bend = if turned == "linear" && lights == 750 { 9.0 } else { 0.0 };
@@ -76,7 +77,10 @@ fn study(turned: &str) -> Done {
             let served =
                 all.into_iter().filter(|id| mode == Mode::Deferred || *id != "RasterSphere");
             let records = served.map(|id| made(turned, mode, id, lights)).collect();
-            results.insert(name, Results { records, ..empty() });
+            let mut made = Results { records, ..empty() };
+            // The survey's own: absolute times are judged on it only.
+            made.machine.adapter = "NVIDIA GeForce RTX 3080".into();
+            results.insert(name, made);
         }
     }
     Done { manifest, results, folders: BTreeMap::new() }
@@ -102,9 +106,27 @@ fn every_claim_of_the_survey_holds_where_the_figures_say_so_and_fails_turned_rou
         let (text, fails) = page(&study(claim));
         assert_eq!(verdict(&fails, claim), "fails", "{claim}, turned round: {text}");
     }
-    // Lists without a loss show no tiles.
-    assert_eq!(verdict(&holds, "tiles"), "fails");
+    // Where shading ends lights at their ranges, whole lists cannot show tiles.
+    assert_eq!(verdict(&holds, "tiles"), "unknown");
     assert_eq!(verdict(&page(&study("tiles")).1, "tiles"), "holds");
+}
+
+/// With fewer than six laps, 5 % is the least difference that orders two frames, and a great one counts.
+#[test]
+fn few_laps_are_told_from_ties() {
+    let two_laps = |turned: &str| {
+        let mut done = study(turned);
+        for record in done.results.values_mut().flat_map(|results| &mut results.records) {
+            (record.along_path, record.poses, record.frames) = (true, Some(4), 8);
+            record.set_times();
+        }
+        page(&done)
+    };
+    let (text, whole) = two_laps("");
+    for claim in ["slowest", "gain", "raster"] {
+        assert_eq!(verdict(&whole, claim), "holds", "{claim}: {text}");
+        assert_eq!(verdict(&two_laps(claim).1, claim), "fails", "{claim}, turned round");
+    }
 }
 
 #[test]
@@ -115,6 +137,7 @@ fn a_data_centre_gpu_does_not_judge_forward_against_deferred() {
     }
     let (text, page) = page(&done);
     assert_eq!(verdict(&page, "deferred"), "unknown", "{text}");
+    assert_eq!(verdict(&page, "rate"), "unknown", "another GPU: {text}");
     assert!(page.contains("RasterSphere and Clay shade there"), "the deferred times are cautioned");
     assert!(page.contains("not with deferred ones"), "the forward times are cautioned");
 }

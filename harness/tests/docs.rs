@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use harness::{
     advise::{answer, error_of, verdict},
     registry::STRATEGIES,
-    report::{is_surely_faster, render_markdown, write_study},
+    report::{claims_markdown, is_surely_faster, render_markdown, write_study},
     results::{Record, Results},
     study::Done,
 };
@@ -33,6 +33,22 @@ fn refreshed(document: &str, root: &Path) -> String {
         let (_, behind) = rest.split_once(END).expect("the table ends");
         let results = Results::read(&root.join(file)).expect("results");
         fresh += &format!("{TABLE}{file} -->\n{}{END}{behind}", render_markdown(&results));
+    }
+    fresh
+}
+
+/// Stands before a table of verdicts that is made from a folder of a study.
+const CLAIMS: &str = "<!-- claims of ";
+
+/// A document with its verdicts made anew from the studies that they name.
+fn judged_anew(document: &str, root: &Path) -> String {
+    let mut parts = document.split(CLAIMS);
+    let mut fresh = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (folder, rest) = part.split_once(" -->").expect("the comment ends");
+        let (_, behind) = rest.split_once(END).expect("the table ends");
+        let done = Done::read(&[root.join(folder)]).expect("a study");
+        fresh += &format!("{CLAIMS}{folder} -->\n{}{END}{behind}", claims_markdown(&done));
     }
     fresh
 }
@@ -67,6 +83,14 @@ fn the_tables_of_the_readme_are_those_of_the_results() {
     let readme = std::fs::read_to_string(&path).expect("README.md");
     assert!(readme.matches(TABLE).count() >= 2, "README.md has its tables");
     check_fresh(&path, &refreshed(&readme, &root()));
+}
+
+#[test]
+fn the_verdicts_of_the_results_are_those_of_the_reports() {
+    let path = root().join("results/README.md");
+    let document = std::fs::read_to_string(&path).expect("results/README.md");
+    assert!(document.matches(CLAIMS).count() >= 5, "every paper has its verdicts");
+    check_fresh(&path, &judged_anew(&document, &root()));
 }
 
 /// Charts of the H200 studies that documents show.

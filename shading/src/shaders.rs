@@ -28,6 +28,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "ltc_per_light",
         "ltc_unsplit",
         "mask",
+        "forward_mask",
         "emissive",
         "uv_transforms",
         "base_color_texture",

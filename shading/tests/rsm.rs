@@ -130,8 +130,11 @@ fn reflected(scene: &TracedScene<'_>, light: &Light, view: &View) -> DVec3 {
         let across = min.x as f64 + (f64::from(pixel[0]) + 0.5) * texel.x;
         let down = max.y as f64 - (f64::from(pixel[1]) + 0.5) * texel.y;
         let solid_angle = texel.element_product() / (1.0 + across * across + down * down).powf(1.5);
-        let albedo = surface.surface.base_color * (1.0 - surface.surface.metallic);
-        Some(albedo * solid_angle)
+        // The map is seen from the light.
+        let cos = surface.surface.normal.dot(surface.to_eye);
+        let Surface { base_color, metallic, .. } = surface.surface;
+        let albedo = lambertian_albedo(base_color.as_vec3(), metallic as f32, cos as f32);
+        Some(albedo.as_dvec3() * solid_angle)
     });
     // The cone's full intensity holds the scene, and the window dims nothing.
     sum.sum::<DVec3>() * light.intensity.as_dvec3() / std::f64::consts::PI

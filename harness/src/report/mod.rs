@@ -26,5 +26,5 @@ pub use lead::needs_built_hierarchy;
 pub use loss::error_words;
 pub use markdown::render_markdown;
 pub use rank::{indistinguishable, is_surely_faster, listed};
-pub use study::write_study;
+pub use study::{claims_markdown, write_study};
 pub use table::{TABLE_WIDTH, render_table};

@@ -30,7 +30,7 @@ pub(crate) fn line(strategy: &str) -> (f64, f64) {
         "DC-I" => (1.0, 3.0e-3),
         "DC-E" => (3.1, 0.45e-3),
         "SC-I" => (3.0, 0.7e-3),
-        "SC-E" => (3.3, 0.45e-3),
+        "SC-E" => (4.0, 0.45e-3),
         "G" => (1.15, 3.2e-3),
         _ if strategy == "M" => (0.5, 0.2),
         _ => (2.0, 2.5e-3),
@@ -90,11 +90,26 @@ impl Maker {
             "explicit" if of(&["T-E", "DC-E", "SC-E"]) => offset += 500.0,
             "few" if of(&["DC-I"]) => offset += 50.0,
             "few-order" if of(&["DC-I", "G", "T-I"]) => offset += 50.0,
+            "few-order" if of(&["T-E"]) => offset = 40.0,
+            "few-order" if of(&["SC-I", "SC-E"]) => offset = 30.0,
+            "few-order" if id == "M" => (offset, slope) = (0.1, 0.01),
             "medium" if of(&["T-E"]) => offset += 5_000.0,
             "medium-order" if of(&["T-I"]) => (offset, slope) = (0.1, 1e-5),
-            "many-order" if of(&["SC-E", "SC-I"]) => offset += 5_000.0,
+            "medium-order" if id == "M" => (offset, slope) = (0.01, 1e-6),
+            "many-order" if of(&["SC-E"]) => offset += 5_000.0,
+            "many-order" if of(&["SC-I"]) => offset += 4_000.0,
+            "many-order" if of(&["T-E"]) => offset += 3_000.0,
+            "many-order" if of(&["DC-I", "G"]) => offset += 2_000.0,
+            "many-order" | "slopes" if id == "M" => slope = 1e-3,
             "slopes" if of(&["SC-E", "SC-I"]) => slope = 1.0,
-            "offsets" if of(&["SC-E", "SC-I"]) => offset = 0.01,
+            "slopes" if of(&["T-E"]) => slope = 0.5,
+            "slopes" if of(&["DC-I", "G"]) => slope = 0.2,
+            "slopes" if of(&["T-I"]) => slope = 0.05,
+            "offsets" if of(&["SC-E", "SC-I"]) => offset = 1.0,
+            "offsets" if of(&["T-E"]) => offset = 10.0,
+            "offsets" if of(&["T-I", "G", "DC-I"]) => offset = 100.0,
+            "offsets" if id == "M" => offset = 500.0,
+            "model-slopes" if id == "M" => slope = 2e-3,
             "alike" if of(&["DC-I"]) => (offset, slope) = (9.0, 0.05),
             "models" | "subdivision" if id == "M/2" => offset += 5_000.0,
             _ => {}
@@ -118,7 +133,9 @@ impl Maker {
             (true, _) => 9_000_000,
             _ => 1_310_720,
         };
-        record.longest_list = if id == "M" { lights * 3 / 4 } else { 96 };
+        record.memory_bytes = Some(record.lists_bytes);
+        let is_extreme = id == "M" && self.turned != "models";
+        record.longest_list = if is_extreme { lights * 3 / 4 } else { 96 };
         record.listed_per_sample = Some(match (id, self.turned) {
             ("M", _) => 100.0,
             ("M/2", "models") => 200.0,
@@ -207,6 +224,8 @@ impl Maker {
             let swing = match self.turned {
                 "steady" if of("SC-E") => 5.0,
                 "spread" if of("SC-E") || of("SC-I") => 5.0,
+                "spread" if of("T-E") || of("DC-I") || of("G") => 0.5,
+                "spread" => 1e-4,
                 "steady-explicit" if of("T-E") || of("SC-E") => 60.0,
                 "steady-alike" if of("G") => 0.4,
                 _ => swing(id),
@@ -283,7 +302,11 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
         maker.add("tests", &family[..3], maker.tests(family));
     }
     for (family, sizes) in [
-        ("T-E", &["28x28", "16x16"][..]),
+        ("T-I", &["28x28", "16x16"][..]),
+        ("T-E", &["28x28", "16x16"]),
+        ("DC-I", &["128x128x64", "64x64x40"]),
+        ("DC-E", &["64x64x40", "32x32x40"]),
+        ("SC-I", &["48x48x40", "32x32x40"]),
         ("SC-E", &["48x48x40", "32x32x40"]),
         ("G", &["20x20x20", "16x16x16", "40x12x20"]),
     ] {

@@ -145,8 +145,7 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     MODES.iter().filter_map(sentence).collect()
 }
 
-/// The fastest without a loss in each mode, and all that cannot be told from it, in the first scene that
-/// has figures.
+/// The fastest without a loss in each mode, and all that tie with it, in the first scene that has figures.
 pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let fastest = |mode: &&str| {

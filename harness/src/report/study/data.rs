@@ -196,7 +196,10 @@ mod tests {
         );
         assert_eq!(short("G/20x20x20/bvh"), "G");
         assert_eq!(short("G/20x20x20/supports/bvh"), "G/supports");
-        assert_eq!((short("T-I/28x28/hs/bvh"), short("T-I/28x28")), ("T-I/hs".into(), "T-I".into()));
+        assert_eq!(
+            (short("T-I/28x28/hs/bvh"), short("T-I/28x28")),
+            ("T-I/hs".into(), "T-I".into())
+        );
         assert_eq!(stand_in("G/20x20x20/supports"), Some("G over supports"));
         assert_eq!(stand_in("T-I/28x28/hs"), Some("T-I by HS only"));
         assert_eq!((stand_in("G/20x20x20"), stand_in("SC-I/48x48x40/hs")), (None, None));

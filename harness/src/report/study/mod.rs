@@ -44,6 +44,8 @@ use crate::error::HarnessError;
 use crate::results::write_atomically;
 use crate::study::Done;
 
+pub use claims::claims_markdown;
+
 /// Writes the report of a study into a folder, `index.html`, `charts/*.svg` and
 /// `study-data.json`; returns what to print: what was found, what the comparison paper's claims
 /// come to, what lacks, and where the report is.

@@ -215,7 +215,8 @@ const FRESNEL: Check = Check {
         };
         let figure =
             format!("missing energy: mrp-published {} %, ltc {} %", percent(mrp), percent(ltc));
-        let why = "the specular term alone; a test of shading shows that it is 0 outside the cone";
+        let why =
+            "the specular term by itself; a test of shading shows that it is 0 outside the cone";
         Answer { figure, verdict: Verdict::unmeasured(why) }
     },
 };

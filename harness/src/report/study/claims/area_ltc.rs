@@ -216,8 +216,8 @@ fn least(done: &Done, scene: &str) -> Answer {
         others.iter().filter(|other| other.1 <= own).map(|other| other.0.as_str()).collect();
     let is_measured = |name: &str| others.iter().any(|(known, _)| known == name);
     let by_mrp = MRP.iter().filter(|name| nearer.contains(name)).count();
-    let is_beaten = by_mrp == MRP.len()
-        || nearer.iter().any(|name| name.starts_with("monte-carlo-reflected:"));
+    let is_beaten =
+        by_mrp == MRP.len() || nearer.iter().any(|name| name.starts_with("monte-carlo-reflected:"));
     let verdict = match (is_beaten, by_mrp, nearer.is_empty()) {
         (true, ..) => Verdict::Fails,
         (false, 1.., _) => Verdict::Differs("MRP is nearer by one of two readings".to_owned()),

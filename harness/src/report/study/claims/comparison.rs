@@ -11,7 +11,7 @@ mod spread;
 use super::super::super::fit::Fit;
 use super::super::super::format::significant;
 use super::super::super::raster::MARK;
-use super::super::data::{Entry, entries, family, is_bvh, is_of_the_paper, lines};
+use super::super::data::{Entry, entries, family, is_bvh, is_of_the_paper, lines, stand_in};
 use super::super::order::Order;
 use super::super::scaling::fit;
 use super::{Answer, Check, Paper};
@@ -337,5 +337,12 @@ fn bounds(done: &Done, scene: &str) -> Answer {
     if figures.is_empty() || !has_depth {
         return Answer::unknown("scaling of explicit and implicit bounds, with the depth pre-pass");
     }
-    Answer { figure: figures.join("; ") + &pairs.exceptions(), verdict: pairs.verdict() }
+    let mut notes: Vec<String> = lines
+        .iter()
+        .filter(|(id, _)| family(id) == "T-I")
+        .filter_map(|(id, _)| Some(format!("with {}", stand_in(id)?)))
+        .collect();
+    notes.dedup();
+    let verdict = pairs.verdict().qualified(&notes);
+    Answer { figure: figures.join("; ") + &pairs.exceptions(), verdict }
 }

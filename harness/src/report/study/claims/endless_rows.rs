@@ -109,8 +109,7 @@ pub(super) fn by_case(done: &Done, scene: &str, needs_test: bool, judge: Judge<'
 /// rounds cannot order.
 pub(super) fn verdict(outcomes: &[Outcome]) -> Verdict {
     let count = |wanted| outcomes.iter().filter(|outcome| **outcome == wanted).count();
-    let (good, ties, unsure) =
-        (count(Outcome::Good), count(Outcome::Tie), count(Outcome::Unsure));
+    let (good, ties, unsure) = (count(Outcome::Good), count(Outcome::Tie), count(Outcome::Unsure));
     if ties + unsure == 0 {
         return Verdict::of_parts(good, outcomes.len(), "cases");
     }

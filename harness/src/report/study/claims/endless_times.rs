@@ -133,7 +133,9 @@ pub(super) fn sixteenfold(done: &Done, scene: &str) -> Answer {
     }
     let verdict = match less {
         0 => verdict(&outcomes),
-        less => Verdict::Differs(format!("less than 5 % more in {less} of {} cases", outcomes.len())),
+        less => {
+            Verdict::Differs(format!("less than 5 % more in {less} of {} cases", outcomes.len()))
+        }
     };
     Answer { figure: figures.join("; "), verdict }
 }

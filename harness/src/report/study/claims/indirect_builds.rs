@@ -46,7 +46,7 @@ pub(super) fn one_pass(done: &Done, scene: &str) -> Answer {
     Answer { figure, verdict }
 }
 
-/// Builds by compute that differ in the number of directions alone, by that number, ms.
+/// Builds by compute that differ only in the number of directions, by that number, ms.
 fn by_directions(done: &Done, scene: &str) -> Vec<(f64, f64)> {
     let all = timed_runs(done, scene, cdi::BUILDS);
     let Some(first) = all.iter().find(|run| run.deep.build == "compute") else { return Vec::new() };

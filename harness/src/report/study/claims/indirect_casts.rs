@@ -27,7 +27,7 @@ pub(super) fn cast_share(done: &Done, scene: &str) -> Answer {
     let scene_ms = record.passes.median_ms(Some(PassKind::Scene));
     let total_ms = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     let figure = format!(
-        "choosing lights and casting {} of {} ms, {} %; casting alone {} ms",
+        "choosing lights and casting {} of {} ms, {} %; only casting {} ms",
         significant(lights_ms),
         significant(total_ms),
         percent(lights_ms / total_ms),
@@ -154,7 +154,9 @@ pub(super) fn too_alike(done: &Done, scene: &str, simple: &str) -> Option<Verdic
     let ratio = triangles(scene)? / triangles(simple)?;
     (ratio < LEAST).then(|| {
         let ratio = significant(ratio);
-        Verdict::undecided(&format!("{ratio} times the triangles of {simple}, not the paper\u{2019}s 20"))
+        Verdict::undecided(&format!(
+            "{ratio} times the triangles of {simple}, not the paper\u{2019}s 20"
+        ))
     })
 }
 

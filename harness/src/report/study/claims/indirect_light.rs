@@ -173,8 +173,5 @@ pub(super) fn similar(done: &Done, scene: &str) -> Answer {
     if let Some(verdict) = stale(&[against.cast]) {
         return Answer { figure, verdict };
     }
-    Answer {
-        figure,
-        verdict: Verdict::undecided("the paper gives no measure to hold it against"),
-    }
+    Answer { figure, verdict: Verdict::undecided("the paper gives no measure to hold it against") }
 }

@@ -10,8 +10,10 @@ pub fn claims_markdown(done: &Done) -> String {
 }
 
 fn table(paper: &Paper, claims: &[Claim<'_>]) -> String {
-    let mut text =
-        format!("| what {} says | where | its figures | verdict |\n|---|---|---|---|\n", paper.name);
+    let mut text = format!(
+        "| what {} says | where | its figures | verdict |\n|---|---|---|---|\n",
+        paper.name
+    );
     for claim in claims {
         let check = claim.check;
         let cells = [check.words, check.place, check.paper, &claim.verdict_text()].map(cell);

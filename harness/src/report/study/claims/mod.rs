@@ -18,6 +18,7 @@ mod indirect;
 mod indirect_builds;
 mod indirect_casts;
 mod indirect_light;
+mod markdown;
 mod table;
 mod verdict;
 
@@ -25,6 +26,7 @@ use std::fmt::Write;
 
 use super::super::rank::listed;
 use crate::study::Done;
+pub use markdown::claims_markdown;
 pub(super) use table::claims_html;
 pub(super) use verdict::{Answer, Verdict};
 

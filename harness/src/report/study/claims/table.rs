@@ -2,7 +2,9 @@
 
 use super::super::super::format::escape;
 use super::super::figure::table;
-use super::{Claim, Paper};
+use super::{Answer, Claim, Paper};
+
+const HEADS: [&str; 4] = ["claim", "the paper", "measured here", "verdict"];
 
 /// All claims as a table.
 pub(in crate::report::study) fn claims_html(
@@ -10,52 +12,10 @@ pub(in crate::report::study) fn claims_html(
     claims: &[Claim<'_>],
     is_software: bool,
 ) -> String {
-    let Some(first) = claims.first() else { return String::new() };
-    let mut heads = vec!["claim".to_owned(), "the paper".to_owned()];
-    heads.extend(first.answers.iter().map(|(scene, _)| escape(scene)));
-    heads.push("verdict".to_owned());
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let rows: Vec<Vec<String>> = claims
-        .iter()
-        .map(|claim| {
-            let verdict = claim.verdict();
-            let check = claim.check;
-            let mut row = vec![format!("{} <small>{}</small>", check.words, escape(check.place))];
-            let departure = match check.departure {
-                "" => String::new(),
-                departure => format!("<br><small>Here: {}</small>", escape(departure)),
-            };
-            row.push(format!("<b class=\"of\">paper: </b>{}{departure}", escape(check.paper)));
-            row.extend(claim.answers.iter().map(|(scene, answer)| {
-                let figure = match answer.figure.as_str() {
-                    "" => answer.verdict.text(),
-                    figure => figure.to_owned(),
-                };
-                // Where the table is too narrow for heads, the scene stands before its figure.
-                let of = format!("<b class=\"of\">{}: </b>", escape(scene));
-                let own = match claim.answers.len() {
-                    1 => String::new(),
-                    _ => format!(
-                        "<span class=\"verdict {}\">{}</span><br>",
-                        answer.verdict.id(),
-                        escape(&answer.verdict.text())
-                    ),
-                };
-                let figure = escape(&figure).replace("; ", ";<br>");
-                if answer.figure.is_empty() && !own.is_empty() {
-                    return of + &own;
-                }
-                of + &own + &figure
-            }));
-            row.push(format!(
-                "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
-                verdict.id(),
-                check.id,
-                escape(&claim.verdict_text())
-            ));
-            row
-        })
-        .collect();
+    if claims.is_empty() {
+        return String::new();
+    }
+    let rows: Vec<Vec<String>> = claims.iter().map(row).collect();
     let caveat = if is_software {
         " This study ran on a software adapter: the verdicts are not a GPU\u{2019}s."
     } else {
@@ -66,6 +26,41 @@ pub(in crate::report::study) fn claims_html(
          measured</h2>\n<p class=\"note\">{}{caveat}</p>\n{}</section>\n",
         paper.name,
         paper.about,
-        table(&format!("Claims of {}", paper.name), &heads, &rows)
+        table(&format!("Claims of {}", paper.name), &HEADS, &rows)
     )
+}
+
+/// The claim, the paper's figures and our departure, what each scene says, and the verdict.
+fn row(claim: &Claim<'_>) -> Vec<String> {
+    let check = claim.check;
+    let departure = match check.departure {
+        "" => String::new(),
+        departure => format!("<br><small>Here: {}</small>", escape(departure)),
+    };
+    let verdict = claim.verdict();
+    vec![
+        format!("{} <small>{}</small>", check.words, escape(check.place)),
+        // Where the table is too narrow for heads, words stand before the figures.
+        format!("<b class=\"of\">paper: </b>{}{departure}", escape(check.paper)),
+        claim.answers.iter().map(|answer| measured(answer, claim.answers.len() > 1)).collect(),
+        format!(
+            "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
+            verdict.id(),
+            check.id,
+            escape(&claim.verdict_text())
+        ),
+    ]
+}
+
+/// What one scene says; of several, each with its own verdict.
+fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> String {
+    let verdict = escape(&answer.verdict.text());
+    let figure = escape(&answer.figure);
+    let own = format!("<span class=\"verdict {}\">{verdict}</span>", answer.verdict.id());
+    match (is_one_of_several, figure.is_empty()) {
+        (false, true) => format!("<p>{verdict}</p>"),
+        (false, false) => format!("<p>{figure}</p>"),
+        (true, true) => format!("<p><b>{}</b> {own}</p>", escape(scene)),
+        (true, false) => format!("<p><b>{}</b> {own}<br>{figure}</p>", escape(scene)),
+    }
 }

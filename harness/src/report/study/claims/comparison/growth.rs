@@ -97,10 +97,8 @@ struct Slopes<'a> {
 impl<'a> Slopes<'a> {
     fn of(done: &'a Done, scene: &'a str, time: Time) -> Result<Self, Answer> {
         let lines = grown(done, scene, RANGE[1]);
-        let all: Vec<(&str, Fit)> = lines
-            .iter()
-            .filter_map(|(id, records)| Some((*id, fit(records, time)?)))
-            .collect();
+        let all: Vec<(&str, Fit)> =
+            lines.iter().filter_map(|(id, records)| Some((*id, fit(records, time)?))).collect();
         match all.is_empty() {
             true => Err(Answer::unknown("scaling over three counts of lights")),
             false => Ok(Self { basis: basis(&lines), all }),

@@ -66,9 +66,7 @@ pub(super) fn discontinuity(done: &Done, scene: &str) -> Answer {
         }
     }
     let verdict = match (growth(tiles), growth(clusters)) {
-        (tiles, _) if !(tiles > LEAST_GROWTH) => {
-            Verdict::undecided("the two views are too alike")
-        }
+        (tiles, _) if !(tiles > LEAST_GROWTH) => Verdict::undecided("the two views are too alike"),
         (tiles, clusters) if (clusters / tiles / FAR_LESS - 1.0).abs() <= NEAR_LIMIT => {
             let share = percent(clusters / tiles);
             Verdict::Differs(format!(
@@ -201,9 +199,7 @@ pub(super) fn subdivision(done: &Done, scene: &str) -> Answer {
         );
     }
     let verdict = match (Order::of_times(parts, grid), stand_in(&grid.strategy)) {
-        (Order::Unsure, _) => {
-            Verdict::Differs("too few laps for so small a difference".to_owned())
-        }
+        (Order::Unsure, _) => Verdict::Differs("too few laps for so small a difference".to_owned()),
         (_, Some(what)) => Verdict::Differs(format!("with {what}")),
         (Order::Less | Order::Tie, None) => Verdict::Holds,
         (Order::More, None) if ms[0] - ids <= ms[1] => {

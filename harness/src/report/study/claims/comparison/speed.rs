@@ -36,9 +36,7 @@ pub(super) fn dense_before_sparse(done: &Done, scene: &str) -> Answer {
         Order::Less if ratio <= LITTLE => Verdict::Holds,
         Order::Less => Verdict::Differs("by more than a little".to_owned()),
         Order::Tie => Verdict::Differs("a tie".to_owned()),
-        Order::Unsure => {
-            Verdict::Differs("too few laps for so small a difference".to_owned())
-        }
+        Order::Unsure => Verdict::Differs("too few laps for so small a difference".to_owned()),
         Order::More => Verdict::Fails,
     };
     Answer { figure, verdict }
@@ -59,7 +57,7 @@ pub(super) fn sparse_memory(done: &Done, scene: &str) -> Answer {
         format!("at {lights} lights, {what}: DC-E {dense} MiB, SC-E {sparse} MiB")
     };
     let (Some(all_dense), Some(all_sparse)) = (dense.memory_bytes, sparse.memory_bytes) else {
-        // The lists are a part of the memory: alone they decide nothing.
+        // The lists are only a part of the memory: they decide nothing.
         let figure = told("groups and lists only", [dense.lists_bytes, sparse.lists_bytes]);
         return Answer { figure, verdict: Verdict::unmeasured("all memory that assignment needs") };
     };

@@ -111,7 +111,7 @@ const CHECKS: [Check; 12] = [
         place: "failure modes, figure 3a",
         words: "Ranges lose light that would be seen, on reflective surfaces most.",
         paper: "pictures",
-        departure: "the whole image of the path\u{2019}s first pose, not its reflective surfaces alone",
+        departure: "the whole image of the path\u{2019}s first pose, not only its reflective surfaces",
         decide: range,
     },
     Check {
