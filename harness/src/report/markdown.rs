@@ -5,12 +5,14 @@ use std::fmt::Write;
 use super::comparison::{Comparison, comparisons};
 use super::format::significant;
 use super::loss::error_columns;
-use super::metrics::METRICS;
+use super::metrics::{METRICS, Metric};
 use crate::results::{PassKind, Record, Results};
 
-/// The columns of a document's table, by id, in order; errors follow where a method may lose light.
-const COLUMNS: [&str; 9] = [
+/// The columns of a document's table, by id, in order, those without a value left out; errors follow where a
+/// method may lose light.
+const COLUMNS: [&str; 11] = [
     "both_ms",
+    "span_ms",
     "speedup",
     "speedup_sphere",
     "shade_ms",
@@ -19,6 +21,7 @@ const COLUMNS: [&str; 9] = [
     "efficiency",
     "missed",
     "differing",
+    "memory_bytes",
 ];
 
 /// The result tables of all comparisons as GitHub-flavoured Markdown, one after the other. The
@@ -28,7 +31,11 @@ pub fn render_markdown(results: &Results) -> String {
 }
 
 fn table(comparison: &Comparison<'_>) -> String {
-    let known = || COLUMNS.iter().flat_map(|id| METRICS.iter().find(|metric| metric.id == *id));
+    let has_value = |metric: &&'static Metric| {
+        comparison.records.iter().any(|(_, record)| (metric.value)(comparison, record).is_some())
+    };
+    let column = |id: &&str| METRICS.iter().find(|metric| metric.id == *id).filter(has_value);
+    let known = || COLUMNS.iter().filter_map(column);
     let metrics = || known().chain(error_columns(comparison));
     let heads: String = metrics().map(|m| format!(" {} {} |", m.head, m.unit)).collect();
     let mut text = format!("| strategy |{heads}\n|---|{}\n", "---|".repeat(metrics().count()));
@@ -42,7 +49,7 @@ fn table(comparison: &Comparison<'_>) -> String {
             }
             cells += " |";
         }
-        let _ = writeln!(text, "| {} |{cells}", record.strategy);
+        let _ = writeln!(text, "| {} |{cells}", comparison.name(record));
     }
     text
 }
