@@ -69,7 +69,7 @@ fn expected(lights: &[Light], query: &Query) -> DVec3 {
 /// place of 1, by 1 / alpha^2, which is up to 2.5e5.
 fn relative_error(query: &Query) -> f64 {
     let alpha = f64::from(query[1][3].max(0.045)).powi(2);
-    (2e-4 + 4.0 * f64::from(f32::EPSILON) / (alpha * alpha)).max(2e-3).min(2e-2)
+    (2e-4 + 4.0 * f64::from(f32::EPSILON) / (alpha * alpha)).clamp(2e-3, 2e-2)
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::{
 const SINGLE_PASS: &str = "compute";
 
 /// Computes how far the image of each record of [`MODELS`] whose deep images were built otherwise is
-/// from that of the record with the same settings and [`SINGLE_PASS`], where both images are there.
+/// from that of the record with the same settings and `SINGLE_PASS`, where both images are there.
 ///
 /// # Errors
 ///

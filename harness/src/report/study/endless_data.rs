@@ -149,8 +149,9 @@ impl<'a> Case<'a> {
 
     /// The record by position alone, with the usual clusters and the early exit where it is there.
     pub(super) fn position(&self) -> Option<&'a Record> {
-        self.find(|s| s.is_position() && s.grid == USUAL && s.exits)
-            .or_else(|| self.find(|s| s.is_position()))
+        let is_usual = |setting: &Setting<'_>| setting.grid == USUAL && setting.exits;
+        let any = |setting: &Setting<'_>| setting.is_position();
+        self.find(|setting| setting.is_position() && is_usual(setting)).or_else(|| self.find(any))
     }
 
     /// The record of no culling.

@@ -182,7 +182,9 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
-            format!(", {} to {} times as long", significant(ratio.low), significant(ratio.high))
+            let ends = [ratio.low, ratio.high].map(significant);
+            let range = if ends[0] == ends[1] { ends[0].clone() } else { ends.join(" to ") };
+            format!(", {range} times as long")
         });
         text += &format!(
             "; next is {} with {}{slower}",

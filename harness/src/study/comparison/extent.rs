@@ -216,5 +216,4 @@ const QUICK: Extent = Extent {
     thresholds: &["0.01", "0.1"],
     reuse: &[4],
     reuse_poses: 16,
-    ..FULL
 };

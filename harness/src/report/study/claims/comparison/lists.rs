@@ -66,7 +66,9 @@ pub(super) fn discontinuity(done: &Done, scene: &str) -> Answer {
         }
     }
     let verdict = match (growth(tiles), growth(clusters)) {
-        (tiles, _) if !(tiles > LEAST_GROWTH) => Verdict::undecided("the two views are too alike"),
+        (tiles, _) if tiles.is_nan() || tiles <= LEAST_GROWTH => {
+            Verdict::undecided("the two views are too alike")
+        }
         (tiles, clusters) if (clusters / tiles / FAR_LESS - 1.0).abs() <= NEAR_LIMIT => {
             let share = percent(clusters / tiles);
             Verdict::Differs(format!(
