@@ -290,7 +290,6 @@ mod tests {
         assert!(error("DC-E/hs").contains("linear or bvh"), "{}", error("DC-E/hs"));
         assert!(error("T-I/28x28/16x16").contains("16x16"), "{}", error("T-I/28x28/16x16"));
         assert!(error("SC-E/n7").contains("n54"), "{}", error("SC-E/n7"));
-        assert!(error("SC-E/cone").contains("cone45"), "{}", error("SC-E/cone"));
         assert!(error("T-E/dif").contains("cap32"), "{}", error("T-E/dif"));
         assert!(error("DC-E/n6").contains("linear or bvh"), "{}", error("DC-E/n6"));
         assert!(error("DC-E/cap0").contains("cap32"), "{}", error("DC-E/cap0"));
