@@ -1,7 +1,16 @@
 /** More than this between the fastest and the slowest frame, and the axis starts logarithmic. */
 const LOG_ABOVE = 60;
 
-const measured = (passes) => Object.entries(passes).filter(([, pass]) => isNumber(pass.median_ms));
+/** A pass's time in a record: the mean along a path, where a frame without the pass counts as 0, else the median. */
+function timeOf(record, pass) {
+  if (!record.along_path || !pass.samples?.length) return pass.median_ms;
+  return pass.samples.reduce((sum, time) => sum + (isNumber(time) ? time : 0), 0) / pass.samples.length;
+}
+
+/** Names and times of the passes that were measured. */
+const measured = (record) => Object.entries(record.passes)
+  .map(([name, pass]) => [name, timeOf(record, pass)])
+  .filter(([, time]) => isNumber(time));
 
 /** The names of all passes, in the order in which a frame runs them. */
 function passNames(records) {
@@ -27,7 +36,7 @@ function timeAxis(records, logarithmic) {
   if (!logarithmic) {
     return { place: (time) => time / most, ticks: linearTicks(most) };
   }
-  const times = records.flatMap((record) => measured(record.passes).map(([, pass]) => pass.median_ms));
+  const times = records.flatMap((record) => measured(record).map(([, time]) => time));
   const positive = [...times, ...frames].filter((time) => time > 0);
   const low = Math.floor(Math.log10(Math.min(...positive, most)));
   const high = Math.max(Math.ceil(Math.log10(most)), low + 1);
@@ -43,11 +52,11 @@ const tickText = (value) => Number(value.toPrecision(6)).toLocaleString("en-US",
 const at = (share) => `${(Math.min(Math.max(share, 0), 1) * 100).toFixed(3)}%`;
 
 function breakdown(record, current) {
-  const rows = measured(record.passes).map(([name, pass]) =>
+  const rows = measured(record).map(([name, time]) =>
     h("tr", { class: name === current ? "current" : null },
       h("td", {}, dot(passClass(name)), name),
-      h("td", {}, ms(pass.median_ms)),
-      h("td", {}, record.frame_ms > 0 ? percent(pass.median_ms / record.frame_ms) : "")));
+      h("td", {}, ms(time)),
+      h("td", {}, record.frame_ms > 0 ? percent(time / record.frame_ms) : "")));
   return [
     h("b", {}, record.strategy),
     h("table", {}, ...rows, h("tr", { class: "total" }, h("td", {}, "frame"), h("td", {}, ms(record.frame_ms)), h("td"))),
@@ -56,21 +65,21 @@ function breakdown(record, current) {
 
 function stackedBar(record, axis) {
   let start = 0;
-  return measured(record.passes).map(([name, pass]) => {
+  return measured(record).map(([name, time]) => {
     const segment = h("span", {
       class: `segment ${passClass(name)}`,
-      style: `left:${at(axis.place(start))};width:${at(axis.place(pass.median_ms))}`,
+      style: `left:${at(axis.place(start))};width:${at(axis.place(time))}`,
       "data-pass": name,
     }, h("span", { class: "label" }, name));
-    start += pass.median_ms;
+    start += time;
     return segment;
   });
 }
 
 /** Lengths cannot be added up on a logarithmic axis: a dot per pass, and a line to the frame. */
 function dots(record, axis) {
-  const passes = measured(record.passes).filter(([, pass]) => pass.median_ms > 0);
-  const shares = passes.map(([, pass]) => axis.place(pass.median_ms));
+  const passes = measured(record).filter(([, time]) => time > 0);
+  const shares = passes.map(([, time]) => axis.place(time));
   const frame = axis.place(record.frame_ms);
   const first = Math.min(...shares, frame);
   return [
@@ -84,7 +93,7 @@ function dots(record, axis) {
 function barRow(record, axis, logarithmic) {
   const shown = isNumber(record.frame_ms) && record.frame_ms > 0;
   const marks = shown ? (logarithmic ? dots : stackedBar)(record, axis) : [];
-  const passes = measured(record.passes).map(([name, pass]) => `${name} ${ms(pass.median_ms)}`);
+  const passes = measured(record).map(([name, time]) => `${name} ${ms(time)}`);
   const track = h("div", {
     class: "track",
     role: "img",

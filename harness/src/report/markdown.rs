@@ -57,7 +57,8 @@ fn table(comparison: &Comparison<'_>) -> String {
 /// The passes of the assignment, where there are several: ` (bounds 0.0294, cull 0.0239)`.
 fn passes(record: &Record) -> String {
     let assign = |(name, times): (&str, &crate::results::PassTimes)| {
-        (times.kind == PassKind::Assign).then(|| format!("{name} {}", significant(times.median_ms)))
+        let time_ms = || record.time_of(|other, _| other == name);
+        (times.kind == PassKind::Assign).then(|| format!("{name} {}", significant(time_ms())))
     };
     let passes: Vec<String> = record.passes.iter().filter_map(assign).collect();
     if passes.len() < 2 { String::new() } else { format!(" ({})", passes.join(", ")) }

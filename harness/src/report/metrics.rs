@@ -55,7 +55,7 @@ pub(super) static METRICS: &[Metric] = &[
         head: "assign + shade",
         unit: "ms",
         terminal: "both",
-        about: "Assigning and shading together, median: compare strategies by it. The small figures \
+        about: "Assigning and shading together, median over frames, along a path the mean: compare strategies by it. The small figures \
                 below it are the interval in which the median lies, from order statistics of the \
                 rounds: with a probability of at least 95 % from six rounds on, with fewer as their \
                 tip says.",
@@ -105,7 +105,7 @@ pub(super) static METRICS: &[Metric] = &[
         head: "assign",
         unit: "ms",
         terminal: "assign",
-        about: "Every pass that makes the lists, median of their sum.",
+        about: "Every pass that makes the lists, summed: median over frames, along a path the mean.",
         better: Better::Less,
         value: |_, r| finite(r.assign_ms),
         show: format::significant,
@@ -116,7 +116,7 @@ pub(super) static METRICS: &[Metric] = &[
         head: "shade",
         unit: "ms",
         terminal: "shade",
-        about: "Lighting every sample with the lights of its list, median.",
+        about: "Lighting every sample with the lights of its list: median over frames, along a path the mean.",
         better: Better::Less,
         value: |_, r| finite(r.shade_ms),
         show: format::significant,
@@ -127,7 +127,7 @@ pub(super) static METRICS: &[Metric] = &[
         head: "frame",
         unit: "ms",
         terminal: "",
-        about: "All passes, those that draw the surfaces included, median of their sum.",
+        about: "All passes, those that draw the surfaces included, summed: median over frames, along a path the mean.",
         better: Better::Less,
         value: |_, r| finite(r.frame_ms),
         show: format::significant,

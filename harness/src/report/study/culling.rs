@@ -3,8 +3,7 @@
 
 use super::super::finding::lights;
 use super::super::format::{number, significant};
-use super::super::lead::Lead;
-use super::super::rank::{listed, ranks};
+use super::super::rank::{ALIKE, listed};
 use super::data::{Entry, counts, entries, lines};
 use super::figure::{Charts, name, part, table};
 use super::scaling::{fit, points};
@@ -145,16 +144,29 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     MODES.iter().filter_map(sentence).collect()
 }
 
-/// The fastest without a loss in each mode, and all that tie with it, in the first scene that has figures.
+/// The fastest without a loss in each mode by mean frame, the survey's statistic, in the first scene that has
+/// figures. Frames that are alike tie, whether their methods cull or not.
 pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let fastest = |mode: &&str| {
-            let lead = Lead::of(&ranks(by_time(done, scene, mode)))?;
-            Some((format!("{mode} {}", lead.headline()), lead.leader().lights))
+            let mut records = by_time(done, scene, mode);
+            records.retain(|record| record.is_exact());
+            let first = *records.first()?;
+            let alike = |record: &&&Record| record.frame_ms <= first.frame_ms * (1.0 + ALIKE);
+            let names: Vec<&str> =
+                records.iter().take_while(alike).map(|record| record.strategy.as_str()).collect();
+            let verb = if names.len() > 1 { "tie" } else { "is fastest" };
+            let time = significant(first.frame_ms);
+            Some((first.lights, format!("{mode} {} {verb} ({time} ms a frame)", listed(&names))))
         };
-        let all: Vec<(String, u64)> = MODES.iter().filter_map(fastest).collect();
-        let most = all.first()?.1;
-        let parts: Vec<&str> = all.iter().map(|(part, _)| part.as_str()).collect();
+        let all: Vec<(u64, String)> = MODES.iter().filter_map(fastest).collect();
+        let most = all.first()?.0;
+        // Modes may have been measured at other counts of lights.
+        let part = |(count, words): &(u64, String)| match *count == most {
+            true => words.clone(),
+            false => format!("at {} {words}", lights(*count)),
+        };
+        let parts: Vec<String> = all.iter().map(part).collect();
         Some(format!("In {scene} at {}, without a loss: {}.", lights(most), parts.join("; ")))
     })
 }

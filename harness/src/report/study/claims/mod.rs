@@ -130,14 +130,14 @@ impl Claim<'_> {
         }
     }
 
-    /// The verdict, and how many scenes decide it where some do not: `holds (1 of 3 scenes)`.
+    /// The verdict, and how many scenes decide it where some do not: `holds (1 of 3 scenes measured)`.
     pub(super) fn verdict_text(&self) -> String {
         let is_known = |answer: &Answer| !matches!(answer.verdict, Verdict::Unknown(_));
         let known = self.answers.iter().filter(|(_, answer)| is_known(answer)).count();
         let text = self.verdict().text();
         match self.answers.len() {
             all if known == 0 || known == all => text,
-            all => format!("{text} ({known} of {all} scenes)"),
+            all => format!("{text} ({known} of {all} scenes measured)"),
         }
     }
 
@@ -183,7 +183,10 @@ mod tests {
         assert_eq!(claim(&[Holds, Holds]).verdict(), Holds);
         assert_eq!(claim(&[Fails, Fails]).verdict(), Fails);
         assert_eq!(claim(&[Holds, unknown()]).verdict(), Holds);
-        assert_eq!(claim(&[Holds, unknown(), unknown()]).verdict_text(), "holds (1 of 3 scenes)");
+        assert_eq!(
+            claim(&[Holds, unknown(), unknown()]).verdict_text(),
+            "holds (1 of 3 scenes measured)"
+        );
         assert_eq!(claim(&[Holds, Holds]).verdict_text(), "holds");
         assert_eq!(claim(&[unknown(), unknown()]).verdict(), unknown());
         assert_eq!(claim(&[unknown(), unknown()]).verdict_text(), "no path");
