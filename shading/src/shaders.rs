@@ -29,6 +29,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "ltc_unsplit",
         "mask",
         "forward_mask",
+        "gbuffer_ids",
         "emissive",
         "uv_transforms",
         "base_color_texture",
