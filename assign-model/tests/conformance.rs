@@ -30,8 +30,7 @@ fn whole_models_conform() {
 #[test]
 fn models_in_parts_conform() {
     conforms(Some(20.0), CullSettings::default());
-    // Parts that several samples share; finer ones are in `lists_are_short` and `faults_are_rejected`.
-    conforms(Some(5.0), CullSettings::default());
+    // Finer parts are in `lists_are_short` and `faults_are_rejected`: over all cases they take minutes.
 }
 
 #[test]
