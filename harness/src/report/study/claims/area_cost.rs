@@ -2,6 +2,7 @@
 //! frames, so frames decide; shading stands beside them.
 
 use super::super::super::format::{percent, significant};
+use super::super::super::rank::ALIKE;
 use super::super::area::{SPOTS, model};
 use super::super::data::entries;
 use super::{Answer, Check, Verdict};
@@ -33,9 +34,6 @@ pub(super) enum Faster {
     /// Their intervals overlap, or they are within half a per cent of each other.
     Tie,
 }
-
-/// Nearer to 1, a ratio is of no interest.
-const ALIKE: f64 = 0.005;
 
 /// Compares two records of different jobs: by the intervals of their medians, for their frames were
 /// not drawn in turn.
