@@ -19,6 +19,8 @@ mod verdict;
 pub use answer::answer;
 pub use verdict::{METRIC, Verdict, error_of, verdict};
 
+use std::time::Instant;
+
 use clap::ValueEnum;
 
 use crate::{
@@ -59,6 +61,10 @@ const ONE_POSE: &str = "--poses 1: the camera stood still in the path's first vi
 
 /// Laps over the poses: in the first two rounds, and in the last, whose laps must tell ties.
 const LAPS: [u32; 2] = [2, 8];
+
+/// Poses at which the first two rounds compare images: enough to drop a method that loses something.
+/// The last round compares as many as a comparison may.
+const SEARCH_CHECKS: &str = "2";
 
 /// Lights that a list keeps, where the budget allows an error.
 const CAPS: [u32; 4] = [8, 16, 32, 64];
@@ -147,6 +153,7 @@ impl<'a> Search<'a> {
         last: usize,
     ) -> Result<Results, HarnessError> {
         eprintln!("round    {name}: {} strategies", strategies.split(',').count());
+        let began = Instant::now();
         let out = self.args.out.join(name);
         let frames = FRAMES[usize::from(self.bench.gpu().is_software())][last];
         let frames = self.poses.unwrap_or(frames).to_string();
@@ -157,6 +164,9 @@ impl<'a> Search<'a> {
         option(&["--strategies", strategies, "--frames", &frames]);
         if self.poses.is_some() {
             option(&["--path", "--laps", &laps]);
+            if last == 0 {
+                option(&["--checks", SEARCH_CHECKS]);
+            }
         }
         if last == 0 {
             option(&["--truth", "none", "--pictures", "none"]);
@@ -170,6 +180,7 @@ impl<'a> Search<'a> {
         let (results, _) =
             self.bench.compare(&CompareArgs { out: out.clone(), stage, ..compare }, words)?;
         results.write(&out.join("results.json"))?;
+        eprintln!("         {name} took {:.1} s", began.elapsed().as_secs_f64());
         Ok(results)
     }
 }
