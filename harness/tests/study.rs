@@ -119,6 +119,10 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
     let mut other = sound.clone();
     other.machine.adapter = "another".into();
     assert!(refused(&other).contains("machine.adapter"));
+    // One scene, one commit: its times stand side by side.
+    let mut other = sound.clone();
+    other.machine.commit = "another".into();
+    assert!(refused(&other).contains("machine.commit"));
     let mut other = sound.clone();
     other.command.push("--spots".into());
     assert!(refused(&other).contains("--spots"));
