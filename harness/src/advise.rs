@@ -60,7 +60,10 @@ const ONE_POSE: &str = "--poses 1: the camera stood still in the path's first vi
                         of the others; --poses 2 or more judge several";
 
 /// Laps over the poses: in the first two rounds, and in the last, whose laps must tell ties.
-const LAPS: [u32; 2] = [2, 8];
+const LAPS: [u32; 2] = [1, 8];
+
+/// Frames of each method before the clock starts, at least. A GPU is warmed until it is steady anyway.
+const WARMUP: &str = "4";
 
 /// Poses at which the first two rounds compare images: enough to drop a method that loses something.
 /// The last round compares as many as a comparison may.
@@ -167,6 +170,9 @@ impl<'a> Search<'a> {
             if last == 0 {
                 option(&["--checks", SEARCH_CHECKS]);
             }
+        }
+        if !self.bench.gpu().is_software() {
+            option(&["--warmup", WARMUP]);
         }
         if last == 0 {
             option(&["--truth", "none", "--pictures", "none"]);
