@@ -23,6 +23,7 @@
 //! faulty ones.
 
 mod assignment;
+mod compiled;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod cull;

@@ -196,7 +196,7 @@ impl Deferred {
         // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.
         // The strategy's author vouches for its look-up.
         #[allow(unsafe_code, reason = "its loop ends")]
-        let module = unsafe { shader.create_uncounted(&gpu.device, "package::deferred") }?;
+        let module = unsafe { shader.create_uncounted(gpu, "package::deferred") }?;
         let pipeline = compute_pipeline(
             gpu,
             &[renderer.frame.layout(), lists.lookup.layout, &layout],
@@ -252,19 +252,7 @@ pub(crate) fn compute_pipeline(
     entry_point: &str,
 ) -> wgpu::ComputePipeline {
     let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(|l| Some(*l)).collect();
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(entry_point),
-        bind_group_layouts: &layouts,
-        immediate_size: 0,
-    });
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(&layout),
-        module,
-        entry_point: Some(entry_point),
-        compilation_options: Default::default(),
-        cache: None,
-    })
+    gpu.compute_pipeline(module, entry_point, &layouts, true)
 }
 
 /// A bind group entry of an image.
@@ -324,8 +312,5 @@ fn deferred_layout(
     if model_ids {
         entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
     }
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shade"),
-        entries: &entries,
-    })
+    gpu.bind_group_layout("shade", &entries)
 }

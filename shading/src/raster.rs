@@ -128,7 +128,7 @@ fn pipeline(
     // SAFETY: forward lighting's one loop counts up to the length of a list, which is a `u32` read
     // once; the strategy's author vouches for its look-up. The other passes have no loop.
     #[allow(unsafe_code, reason = "its loop ends")]
-    let module = unsafe { shader.create_uncounted(&gpu.device, "package::geometry") }?;
+    let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, scene.has_emissive());
     let (lists, reads_table) = match pass {
         RasterPass::Forward { lists, .. } => {

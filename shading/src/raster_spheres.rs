@@ -66,17 +66,11 @@ impl RasterSpheres {
         for entry in &mut entries {
             entry.visibility = wgpu::ShaderStages::FRAGMENT;
         }
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("raster spheres"),
-            entries: &entries,
-        });
+        let layout = gpu.bind_group_layout("raster spheres", &entries);
         let inputs = LightingInputs::new(gpu, options)?;
         let stages = wgpu::ShaderStages::FRAGMENT;
         let entries: Vec<_> = LightingInputs::layout(inputs.has_table(), stages).collect();
-        let inputs_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("raster spheres"),
-            entries: &entries,
-        });
+        let inputs_layout = gpu.bind_group_layout("raster spheres", &entries);
         let entries: Vec<_> = inputs.entries().collect();
         let inputs = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("raster spheres"),
@@ -86,7 +80,7 @@ impl RasterSpheres {
         let module = options
             .set_flags(shaders::lighting(LISTS_GROUP))
             .flag("emissive", emissive)
-            .create(&gpu.device, "package::raster_spheres")?;
+            .create(gpu, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
             pipeline(renderer, [&layout, &inputs_layout], &module, [vertex, fragment], volumes)
         };

@@ -64,10 +64,7 @@ impl GBufferSamples {
             entries.push(storage_entry(binding, stages, false));
             resources.push(entry(binding, buffer));
         }
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("surfaces"),
-            entries: &entries,
-        });
+        let layout = gpu.bind_group_layout("surfaces", &entries);
         let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surfaces"),
             layout: &layout,
@@ -75,7 +72,7 @@ impl GBufferSamples {
         });
         let module = shaders::lighting(LISTS_GROUP)
             .flag("emissive", targets.emissive.is_some())
-            .create(&gpu.device, "package::surfaces")?;
+            .create(gpu, "package::surfaces")?;
         let groups = [renderer.frame.layout(), &layout];
         let pipeline = compute_pipeline(gpu, &groups, &module, "surfaces");
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
