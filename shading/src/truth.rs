@@ -1,15 +1,10 @@
 //! The truth about lists, on the CPU in f64: which lights reach which sample.
 
-use std::time::Duration;
-
 use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot};
 use glam::{DVec3, Vec3A};
-use obvhs::{
-    BvhBuildParams,
-    aabb::Aabb,
-    bvh2::{Bvh2, builder::build_bvh2},
-};
+use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use rayon::prelude::*;
+use scenes::{BuildEffort, build_hierarchy};
 
 use crate::Samples;
 
@@ -70,8 +65,7 @@ impl<'a> LightBvh<'a> {
                 Aabb::new((light.position - reach).into(), (light.position + reach).into())
             })
             .collect();
-        let params = BvhBuildParams::medium_build();
-        Self { lights, bvh: build_bvh2(&boxes, params, &mut Duration::default()) }
+        Self { lights, bvh: build_hierarchy(&boxes, BuildEffort::Thorough) }
     }
 
     /// The lights it was built over.
