@@ -238,6 +238,22 @@ mod tests {
         assert_eq!(truth.missed, 1);
     }
 
+    #[test]
+    fn lights_at_one_place_or_in_a_row_take_seconds() {
+        let start = std::time::Instant::now();
+        for apart_m in [0.0, 2.0] {
+            let at = |ix: u32| Vec3::new(ix as f32 * apart_m, 0.0, 0.0);
+            let lights: Vec<Light> =
+                (0..100_000).map(|ix| Light::point(at(ix), 1.5, Vec3::ONE)).collect();
+            let mut found = 0;
+            LightBvh::new(&lights).lights_at([0.1, 0.0, 0.0], |_, _| found += 1);
+            assert_eq!(found, if apart_m > 0.0 { 1 } else { 100_000 });
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{seconds:.2} s");
+        assert!(seconds < 10.0, "{seconds} s");
+    }
+
     /// Lights of every kind along a line, among them emitters much larger than their range.
     fn mixed(count: u32) -> Vec<Light> {
         let mut lights = lights(count);

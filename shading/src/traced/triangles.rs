@@ -181,6 +181,31 @@ mod tests {
         assert!((200..1500).contains(&hits), "{hits}");
     }
 
+    /// One of those that are the same is in the hierarchy, and all of them can be hit.
+    #[test]
+    fn coincident_triangles_take_seconds_and_hit_in_ascending_order() {
+        let mut corners = vec![[Vec3::ZERO; 3]; 100_000];
+        corners.extend(vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 200_000]);
+        // A pile of triangles that differ by less than their boxes grow.
+        corners.extend((1..100_000).map(|ix| {
+            let away = Vec3::Z * (-1e-6 * ix as f32);
+            [away, Vec3::X + away, Vec3::Y + away]
+        }));
+        let start = std::time::Instant::now();
+        let triangles = Triangles::new(corners);
+        let origin = DVec3::new(0.2, 0.2, 1.0);
+        for least in [0, 100_000, 250_000, 299_999] {
+            let counts = |hit: &Hit| hit.triangle >= least;
+            let hit = triangles.first(origin, DVec3::NEG_Z, 2.0, counts).expect("hit");
+            assert_eq!((hit.triangle, hit.distance_m), (least.max(100_000), 1.0));
+            assert!(triangles.any(origin, DVec3::NEG_Z, 2.0, counts));
+            assert!(!triangles.any(origin, DVec3::NEG_Z, 0.5, counts));
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{seconds:.2} s");
+        assert!(seconds < 10.0, "{seconds} s");
+    }
+
     #[test]
     fn nothing_slips_through_an_edge_and_odd_rays_hit_nothing() {
         let corner = |x, z| Vec3::new(x, 0.3, z);
