@@ -1,14 +1,14 @@
-//! Rays and distances against a scene's triangles: the one module that touches obvhs.
+//! Rays and distances against a scene's triangles, which obvhs traverses.
 
 use glam::Vec3;
 use obvhs::{
+    Boundable,
     bvh2::Bvh2,
-    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
     ray::{Ray, RayHit},
     triangle::Triangle,
 };
 
-use crate::{Aabb, Scene};
+use crate::{Aabb, BuildEffort, DistinctTriangles, Scene, build_hierarchy};
 
 /// The most triangles of a hierarchy: 64 bytes each while it is built.
 const MAX_TRIANGLES: u64 = 4_000_000;
@@ -31,17 +31,14 @@ pub(crate) struct TriangleBvh {
 
 impl TriangleBvh {
     /// Over the triangles that touch `region`: all of them in scenes of up to [`MAX_TRIANGLES`],
-    /// else at most as many, the largest first.
+    /// else at most as many, the largest first. Repeats and triangles without area are left out.
     pub(crate) fn new(scene: &Scene, region: Aabb) -> Self {
-        let triangles = choose(scene, region, MAX_TRIANGLES);
-        let indices = (0..triangles.len() as u32).collect();
-        let bvh = PlocBuilder::with_capacity(triangles.len()).build(
-            PlocSearchDistance::Minimum,
-            &triangles,
-            indices,
-            SortPrecision::U64,
-            0,
-        );
+        let chosen = choose(scene, region, MAX_TRIANGLES);
+        let convert = |[a, b, c]: [Vec3; 3]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() };
+        let firsts = DistinctTriangles::of(&chosen).firsts;
+        let triangles: Vec<_> = firsts.iter().map(|ix| convert(chosen[*ix as usize])).collect();
+        let boxes: Vec<_> = triangles.iter().map(Boundable::aabb).collect();
+        let bvh = build_hierarchy(&boxes, BuildEffort::Fast);
         let order = bvh.primitive_indices.iter();
         let triangles = order.map(|&ix| triangles[ix as usize]).collect();
         Self { bvh, triangles }
@@ -80,13 +77,12 @@ impl TriangleBvh {
 /// The triangles that touch `region`. Where the scene has more than `most`, about half of that
 /// number are the scene's largest triangles (walls and floors, which views and loops depend on
 /// most), and the rest are evenly chosen among the others.
-fn choose(scene: &Scene, region: Aabb, most: u64) -> Vec<Triangle> {
+fn choose(scene: &Scene, region: Aabb, most: u64) -> Vec<[Vec3; 3]> {
     let touching =
         scene.world_triangles().filter(|t| !Aabb::from_points(*t).intersection(region).is_empty());
-    let convert = |[a, b, c]: [Vec3; 3]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() };
     let count = scene.triangle_count();
     if count <= most {
-        return touching.map(convert).collect();
+        return touching.collect();
     }
     let half = most / 2;
     let step = count.div_ceil(half);
@@ -105,7 +101,6 @@ fn choose(scene: &Scene, region: Aabb, most: u64) -> Vec<Triangle> {
             others += 1;
             (others - 1) % step == 0
         })
-        .map(convert)
         .collect()
 }
 
@@ -142,8 +137,7 @@ mod tests {
         let scene = crate::atrium(1);
         let all = choose(&scene, scene.bounds, u64::MAX);
         assert_eq!(all.len() as u64, scene.triangle_count());
-        let area = |t: &Triangle| double_area([t.v0, t.v1, t.v2].map(Vec3::from));
-        let largest = |list: &[Triangle]| list.iter().map(area).fold(0.0, f32::max);
+        let largest = |list: &[[Vec3; 3]]| list.iter().map(|t| double_area(*t)).fold(0.0, f32::max);
         for most in [1000, 100, 10] {
             let few = choose(&scene, scene.bounds, most);
             assert!(few.len() as u64 <= most && few.len() as u64 > most / 4, "{}", few.len());

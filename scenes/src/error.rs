@@ -106,11 +106,15 @@ pub enum SceneError {
 /// The most characters that a message quotes of what a file or a person wrote.
 const MAX_QUOTED: usize = 300;
 
-/// The text with its control characters and line separators escaped.
+/// Line separators, and marks that change the direction of the text around them.
+const UNSEEN: [std::ops::RangeInclusive<char>; 3] =
+    ['\u{200e}'..='\u{200f}', '\u{2028}'..='\u{202e}', '\u{2066}'..='\u{2069}'];
+
+/// The text with its control characters, line separators and marks of direction escaped.
 pub(crate) fn one_line(text: impl Display) -> String {
     let mut line = String::new();
     for c in text.to_string().chars() {
-        if c.is_control() || matches!(c, '\u{2028}' | '\u{2029}') {
+        if c.is_control() || UNSEEN.iter().any(|range| range.contains(&c)) {
             line.extend(c.escape_default());
         } else {
             line.push(c);

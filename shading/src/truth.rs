@@ -1,15 +1,10 @@
 //! The truth about lists, on the CPU in f64: which lights reach which sample.
 
-use std::time::Duration;
-
 use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot};
 use glam::{DVec3, Vec3A};
-use obvhs::{
-    BvhBuildParams,
-    aabb::Aabb,
-    bvh2::{Bvh2, builder::build_bvh2},
-};
+use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use rayon::prelude::*;
+use scenes::{BuildEffort, build_hierarchy};
 
 use crate::Samples;
 
@@ -70,8 +65,7 @@ impl<'a> LightBvh<'a> {
                 Aabb::new((light.position - reach).into(), (light.position + reach).into())
             })
             .collect();
-        let params = BvhBuildParams::medium_build();
-        Self { lights, bvh: build_bvh2(&boxes, params, &mut Duration::default()) }
+        Self { lights, bvh: build_hierarchy(&boxes, BuildEffort::Thorough) }
     }
 
     /// The lights it was built over.
@@ -242,6 +236,22 @@ mod tests {
         let truth =
             LightBvh::new(&lights).check(&samples, &snapshot(&[&[3, 4, 5, 6], &[0, 1]]), false);
         assert_eq!(truth.missed, 1);
+    }
+
+    #[test]
+    fn lights_at_one_place_or_in_a_row_take_seconds() {
+        let start = std::time::Instant::now();
+        for apart_m in [0.0, 2.0] {
+            let at = |ix: u32| Vec3::new(ix as f32 * apart_m, 0.0, 0.0);
+            let lights: Vec<Light> =
+                (0..100_000).map(|ix| Light::point(at(ix), 1.5, Vec3::ONE)).collect();
+            let mut found = 0;
+            LightBvh::new(&lights).lights_at([0.1, 0.0, 0.0], |_, _| found += 1);
+            assert_eq!(found, if apart_m > 0.0 { 1 } else { 100_000 });
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{seconds:.2} s");
+        assert!(seconds < 10.0, "{seconds} s");
     }
 
     /// Lights of every kind along a line, among them emitters much larger than their range.

@@ -1,5 +1,7 @@
 //! Animated cameras: the tracks of the nodes from the root to the camera, evaluated exactly.
 
+use std::collections::HashSet;
+
 use glam::{Mat4, Quat, Vec4, Vec4Swizzles};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
@@ -38,6 +40,12 @@ struct Track {
     values: Vec<Vec4>,
     interpolation: Interpolation,
     is_rotation: bool,
+}
+
+/// The nodes that any animation acts on.
+pub(super) fn targets(file: &File) -> HashSet<usize> {
+    let channels = file.root.animations.iter().flat_map(|animation| &animation.channels);
+    channels.map(|channel| channel.target.node.value()).collect()
 }
 
 /// The animation of the camera at the end of `chain`; `None` where nothing moves it. Only the

@@ -1,6 +1,9 @@
 //! The container: JSON, binary chunk, buffers and URIs, every range checked.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Mutex,
+};
 
 use base64::Engine;
 use gltf::json::{
@@ -9,6 +12,10 @@ use gltf::json::{
     validation::{Checked, Error as Fault, Validate},
 };
 
+use super::{
+    Warnings, limits,
+    parts::{is_absolute, read_part, read_regular},
+};
 use crate::SceneError;
 
 /// Extensions that a file may require. Those of materials beyond metallic-roughness are read as
@@ -31,6 +38,8 @@ pub(super) struct File {
     pub(super) path: PathBuf,
     pub(super) root: Root,
     buffers: Vec<Vec<u8>>,
+    /// What was noted while parts were read, which images do in parallel.
+    notes: Mutex<Warnings>,
 }
 
 impl File {
@@ -39,17 +48,29 @@ impl File {
         let bytes = read(path)?;
         let (json, binary) = split(path, &bytes)?;
         let root = parse(path, json)?;
-        let mut file = Self { path: path.into(), root, buffers: Vec::new() };
+        let mut file =
+            Self { path: path.into(), root, buffers: Vec::new(), notes: Mutex::default() };
+        let (mut together, most) = (0_u64, limits::budget_bytes());
         for (ix, buffer) in file.root.buffers.iter().enumerate() {
             let field = format!("buffers[{ix}]");
+            let wanted = buffer.byte_length.0;
             let mut data = match (&buffer.uri, binary) {
-                (Some(uri), _) => file.fetch(uri, &format!("{field}.uri"))?,
-                (None, Some(binary)) if ix == 0 => binary.to_vec(),
+                (Some(uri), _) => {
+                    let most_left = most.saturating_sub(together).saturating_add(1);
+                    file.fetch(uri, &format!("{field}.uri"), wanted.min(most_left))?
+                }
+                (None, Some(binary)) if ix == 0 => binary
+                    [..binary.len().min(usize::try_from(wanted).unwrap_or(usize::MAX))]
+                    .to_vec(),
                 (None, _) => {
                     return Err(file.invalid(field, "without uri", "a uri or the GLB's BIN chunk"));
                 }
             };
-            let wanted = buffer.byte_length.0;
+            together = together.saturating_add(data.len() as u64);
+            if together > most {
+                let accepted = format!("at most {most} bytes together with those before");
+                return Err(file.invalid(format!("{field}.byteLength"), wanted, accepted));
+            }
             if (data.len() as u64) < wanted {
                 let accepted = format!("at most {}, the bytes there are", data.len());
                 return Err(file.invalid(format!("{field}.byteLength"), wanted, accepted));
@@ -58,6 +79,11 @@ impl File {
             file.buffers.push(data);
         }
         Ok(file)
+    }
+
+    /// Takes what was noted while parts were read.
+    pub(super) fn take_notes(&self) -> Warnings {
+        self.notes.lock().map(|mut notes| std::mem::take(&mut *notes)).unwrap_or_default()
     }
 
     /// The error for a field that does not hold what it must.
@@ -93,8 +119,8 @@ impl File {
             })
     }
 
-    /// The bytes a URI names: a data URI, or a file beside the scene.
-    pub(super) fn fetch(&self, uri: &str, field: &str) -> Result<Vec<u8>, SceneError> {
+    /// The bytes a URI names: a data URI, or the first `most` of a file beside the scene.
+    pub(super) fn fetch(&self, uri: &str, field: &str, most: u64) -> Result<Vec<u8>, SceneError> {
         let shown: String = uri.chars().take(60).collect();
         if let Some(data) = uri.strip_prefix("data:") {
             let (head, body) = data.split_once(',').ok_or_else(|| {
@@ -115,22 +141,34 @@ impl File {
         let name = percent_encoding::percent_decode_str(uri)
             .decode_utf8()
             .map_err(|_| self.invalid(field, &shown, "UTF-8 when percent-decoded"))?;
+        let name = Path::new(name.as_ref());
+        if is_absolute(name) {
+            let shown = format!("{shown:?}");
+            return Err(self.invalid(field, &shown, "a data URI or a relative path"));
+        }
         let folder = self.path.parent().unwrap_or(Path::new(""));
-        let part = folder.join(name.as_ref());
-        std::fs::read(&part).map_err(|source| SceneError::ReadPart {
+        let part = read_part(folder, name, most).map_err(|source| SceneError::ReadPart {
             file: self.path.clone(),
             field: field.into(),
-            part,
+            part: folder.join(name),
             source,
-        })
+        })?;
+        if let Some(outside) = part.outside
+            && let Ok(mut notes) = self.notes.lock()
+        {
+            notes.add(format!("{field} {shown:?} lies outside the scene's folder: {outside:?}"));
+        }
+        Ok(part.bytes)
     }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
-    std::fs::read(path).map_err(|source| SceneError::Read { file: path.into(), source })
+    read_regular(path, limits::MAX_FILE_BYTES)
+        .map_err(|source| SceneError::Read { file: path.into(), source })
 }
 
-fn invalid(
+/// The error for a field that does not hold what it must.
+pub(super) fn invalid(
     path: &Path,
     field: impl Into<String>,
     value: impl ToString,
@@ -187,6 +225,7 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
 
 /// Parses and validates the JSON, so that indices between its parts are in range.
 fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
+    limits::check_counts(path, json)?;
     let root: Root = gltf::json::deserialize::from_slice(json).map_err(|e| {
         // Other versions look different: better to name the version than what differs.
         let other: Option<serde_json::Value> = serde_json::from_slice(json).ok();

@@ -1,80 +1,207 @@
-//! Images: decoded in parallel, one entry per encoding in use.
+//! Images: their pixels counted by their headers, then decoded in parallel, one entry per encoding
+//! in use. Entries of the file that name the same bytes share one image.
 
-use std::{collections::HashMap, io::Cursor};
+use std::{
+    borrow::Cow,
+    collections::{HashMap, HashSet},
+    io::Cursor,
+};
 
 use image::{ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 
-use super::file::File;
+use super::{file::File, limits, warnings::kept_name};
 use crate::{Encoding, Image, SceneError};
 
 /// The longest side accepted, pixels: what GPUs offer.
 const MAX_SIDE: u32 = 16_384;
 
+/// What a decoder may allocate beside its pixels, bytes.
+const DECODER_BYTES: u64 = 64 << 20;
+
 /// The images in use, numbered in order of first use.
-#[derive(Default)]
 pub(super) struct ImageTable {
+    /// By image of the file, the first one that names the same bytes.
+    firsts: Vec<usize>,
     numbers: HashMap<(usize, Encoding), u32>,
     uses: Vec<(usize, Encoding)>,
+    /// The file's own entries in use, also those that share their bytes.
+    entries: HashSet<(usize, Encoding)>,
+}
+
+/// An image of the file, still encoded.
+struct Source<'a> {
+    /// For errors.
+    label: String,
+    bytes: Cow<'a, [u8]>,
+    size: [u32; 2],
 }
 
 impl ImageTable {
+    /// No image is in use yet.
+    pub(super) fn new(file: &File) -> Self {
+        let mut first_of = HashMap::new();
+        let images = file.root.images.iter().enumerate();
+        let firsts = images.map(|(ix, image)| {
+            // Buffer views that start at the same byte and are as long are the same.
+            let view = image.buffer_view.and_then(|view| file.root.get(view));
+            let place =
+                view.map(|v| (v.buffer.value(), v.byte_offset.map_or(0, |o| o.0), v.byte_length.0));
+            match (&image.uri, place) {
+                (None, None) => ix,
+                (uri, place) => *first_of.entry((uri, place)).or_insert(ix),
+            }
+        });
+        Self {
+            firsts: firsts.collect(),
+            numbers: HashMap::new(),
+            uses: Vec::new(),
+            entries: HashSet::new(),
+        }
+    }
+
     /// The number of the file's image `ix` in that encoding.
     pub(super) fn number(&mut self, ix: usize, encoding: Encoding) -> u32 {
-        *self.numbers.entry((ix, encoding)).or_insert_with(|| {
-            self.uses.push((ix, encoding));
+        self.entries.insert((ix, encoding));
+        let first = self.first(ix);
+        *self.numbers.entry((first, encoding)).or_insert_with(|| {
+            self.uses.push((first, encoding));
             self.uses.len() as u32 - 1
         })
     }
 
-    /// Decodes all of them.
+    fn first(&self, ix: usize) -> usize {
+        self.firsts.get(ix).copied().unwrap_or(ix)
+    }
+
+    /// Decodes all of them, each source once.
     pub(super) fn decode(self, file: &File) -> Result<Vec<Image>, SceneError> {
-        self.uses.into_par_iter().map(|(ix, encoding)| decode(file, ix, encoding)).collect()
+        let mut sources = Vec::new();
+        let mut place_of = HashMap::new();
+        let mut encoded = 0_u64;
+        for (ix, _) in &self.uses {
+            if place_of.contains_key(ix) {
+                continue;
+            }
+            let source = open(file, *ix)?;
+            encoded = encoded.saturating_add(source.bytes.len() as u64);
+            let most = limits::budget_bytes();
+            if encoded > most {
+                let accepted = format!("at most {most}, a quarter of the machine's memory");
+                return Err(file.invalid("bytes of all images in use", encoded, accepted));
+            }
+            place_of.insert(*ix, sources.len());
+            sources.push(source);
+        }
+        self.check_pixels(file, |ix| place_of.get(&ix).map(|place| sources[*place].size))?;
+        let decoded: Vec<_> = sources.par_iter().map(|source| decode(file, source)).collect();
+        let mut pixels = decoded.into_iter().collect::<Result<Vec<_>, _>>()?;
+        // By source, how many more images want its pixels.
+        let mut wanted = vec![0; sources.len()];
+        for (ix, _) in &self.uses {
+            wanted[place_of[ix]] += 1;
+        }
+        let images = self.uses.iter().map(|(ix, encoding)| {
+            let place = place_of[ix];
+            wanted[place] -= 1;
+            let [width, height] = sources[place].size;
+            let rgba = if wanted[place] == 0 {
+                std::mem::take(&mut pixels[place])
+            } else {
+                pixels[place].clone()
+            };
+            Image { name: name(file, *ix), width, height, rgba, encoding: *encoding }
+        });
+        Ok(images.collect())
+    }
+
+    /// Every entry of the file counts, also those that share their bytes.
+    fn check_pixels(
+        &self,
+        file: &File,
+        size: impl Fn(usize) -> Option<[u32; 2]>,
+    ) -> Result<(), SceneError> {
+        let pixels = |(ix, _): &(usize, Encoding)| {
+            size(self.first(*ix)).map_or(0, |[width, height]| u64::from(width) * u64::from(height))
+        };
+        let together = self.entries.iter().map(pixels).fold(0, u64::saturating_add);
+        let most = limits::max_pixels();
+        if together > most {
+            return Err(file.invalid(
+                format!("pixels of all {} images in use, by their headers,", self.entries.len()),
+                together,
+                format!("at most {most}, whose colours take {} MiB", (most * 4) >> 20),
+            ));
+        }
+        Ok(())
     }
 }
 
-fn decode(file: &File, ix: usize, encoding: Encoding) -> Result<Image, SceneError> {
+fn name(file: &File, ix: usize) -> String {
+    let image = file.root.images.get(ix);
+    let given = image.and_then(|image| image.name.as_deref().or(image.uri.as_deref()));
+    given.map_or_else(|| format!("images[{ix}]"), kept_name)
+}
+
+/// The file's image, its header read.
+fn open(file: &File, ix: usize) -> Result<Source<'_>, SceneError> {
     let field = format!("images[{ix}]");
     let images = &file.root.images;
-    let source = images
+    let image = images
         .get(ix)
         .ok_or_else(|| file.invalid("image", ix, format!("below {}", images.len())))?;
-    let fetched;
-    let (bytes, label) = match (&source.uri, source.buffer_view) {
+    let (bytes, label) = match (&image.uri, image.buffer_view) {
         (Some(uri), _) => {
-            fetched = file.fetch(uri, &format!("{field}.uri"))?;
+            let bytes = file.fetch(uri, &format!("{field}.uri"), limits::MAX_IMAGE_BYTES)?;
             let short: String = uri.chars().take(60).collect();
-            (&fetched[..], format!("{field} ({short})"))
+            (Cow::Owned(bytes), format!("{field} ({short})"))
         }
-        (None, Some(view)) => (file.view(view.value())?, field.clone()),
+        (None, Some(view)) => (Cow::Borrowed(file.view(view.value())?), field.clone()),
         (None, None) => {
             return Err(file.invalid(field, "without uri and bufferView", "one of them"));
         }
     };
-    let fail = |reason: String| SceneError::Image {
-        file: file.path.clone(),
-        image: label.clone(),
-        reason,
-    };
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|e| fail(e.to_string()))?;
-    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
-        return Err(fail("its first bytes are those of neither".into()));
+    let mut source = Source { label, bytes, size: [0; 2] };
+    let size = reader(file, &source)?.into_dimensions();
+    let (width, height) = size.map_err(|e| fail(file, &source, e.to_string()))?;
+    if width == 0 || height == 0 {
+        return Err(fail(file, &source, "it has no pixels".into()));
     }
+    if width.max(height) > MAX_SIDE {
+        let accepted = format!("at most {MAX_SIDE} pixels on each side");
+        return Err(file.invalid(format!("{field} size"), format!("{width} x {height}"), accepted));
+    }
+    source.size = [width, height];
+    Ok(source)
+}
+
+fn decode(file: &File, source: &Source<'_>) -> Result<Vec<u8>, SceneError> {
+    let mut reader = reader(file, source)?;
+    let [width, height] = source.size.map(u64::from);
     let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
+    // Four channels of 16 bits are the most per pixel.
+    limits.max_alloc = Some(width * height * 8 + DECODER_BYTES);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(|e| fail(e.to_string()))?.into_rgba8();
-    if pixels.width() == 0 || pixels.height() == 0 {
-        return Err(fail("it has no pixels".into()));
+    let pixels = reader.decode().map_err(|e| fail(file, source, e.to_string()))?.into_rgba8();
+    if [pixels.width(), pixels.height()] != source.size {
+        return Err(fail(file, source, "its size differs from its header's".into()));
     }
-    Ok(Image {
-        name: source.name.clone().or_else(|| source.uri.clone()).unwrap_or(field),
-        width: pixels.width(),
-        height: pixels.height(),
-        rgba: pixels.into_raw(),
-        encoding,
-    })
+    Ok(pixels.into_raw())
+}
+
+fn reader<'a>(
+    file: &File,
+    source: &'a Source<'_>,
+) -> Result<ImageReader<Cursor<&'a [u8]>>, SceneError> {
+    let reader = ImageReader::new(Cursor::new(&source.bytes[..]))
+        .with_guessed_format()
+        .map_err(|e| fail(file, source, e.to_string()))?;
+    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
+        return Err(fail(file, source, "its first bytes are those of neither".into()));
+    }
+    Ok(reader)
+}
+
+fn fail(file: &File, source: &Source<'_>, reason: String) -> SceneError {
+    SceneError::Image { file: file.path.clone(), image: source.label.clone(), reason }
 }

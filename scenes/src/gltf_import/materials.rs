@@ -9,7 +9,7 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{Warnings, file::File, images::ImageTable};
+use super::{Warnings, file::File, images::ImageTable, warnings::kept_name};
 use crate::{Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
 
 /// The cutoff of masks that name none, and of blended materials.
@@ -25,7 +25,7 @@ pub(super) struct Materials {
 
 /// Converts all materials and decodes their images.
 pub(super) fn load(file: &File, warnings: &mut Warnings) -> Result<Materials, SceneError> {
-    let mut table = ImageTable::default();
+    let mut table = ImageTable::new(file);
     let mut materials = Vec::new();
     let mut uv_sets = Vec::new();
     for (ix, json) in file.root.materials.iter().enumerate() {
@@ -33,7 +33,7 @@ pub(super) fn load(file: &File, warnings: &mut Warnings) -> Result<Materials, Sc
             file,
             table: &mut table,
             warnings,
-            name: json.name.clone().unwrap_or_else(|| format!("material {ix}")),
+            name: json.name.as_deref().map_or_else(|| format!("material {ix}"), kept_name),
             uv_set: None,
         };
         materials.push(reader.material(ix, json)?);

@@ -9,7 +9,9 @@ use gltf::json::{
 };
 use rayon::prelude::*;
 
-use super::{Warnings, file::File, materials::Materials, tangents};
+use super::{
+    Warnings, file::File, limits, materials::Materials, repeats, tangents, warnings::kept_name,
+};
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
 /// All triangle meshes, and for each glTF mesh the range of its primitives among them.
@@ -18,17 +20,13 @@ pub(super) struct Meshes {
     pub(super) ranges: Vec<std::ops::Range<u32>>,
 }
 
-/// The most vertices and indices, every primitive counting its own: many primitives of a small
-/// file can share one large accessor, and each becomes a mesh of its own.
-const MAX_ELEMENTS: u64 = 1 << 27;
-
 /// Converts every mesh of the file, primitives in parallel.
 pub(super) fn load(
     file: &File,
     materials: &Materials,
     warnings: &mut Warnings,
 ) -> Result<Meshes, SceneError> {
-    check_elements(file)?;
+    limits::check_meshes(file)?;
     let all = file.root.meshes.iter().enumerate();
     let jobs: Vec<_> =
         all.flat_map(|(mesh, json)| (0..json.primitives.len()).map(move |ix| (mesh, ix))).collect();
@@ -55,25 +53,6 @@ pub(super) fn load(
     Ok(Meshes { meshes, ranges })
 }
 
-fn check_elements(file: &File) -> Result<(), SceneError> {
-    let positions = |p: &Primitive| p.attributes.get(&Checked::Valid(Semantic::Positions)).copied();
-    let primitives = file.root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let elements = primitives
-        .flat_map(|primitive| [positions(primitive), primitive.indices])
-        .filter_map(|index| Some(file.root.get(index?)?.count.0))
-        // Counts beyond 32 bits are refused by accessor.
-        .filter(|count| *count <= u64::from(u32::MAX))
-        .fold(0, u64::saturating_add);
-    if elements > MAX_ELEMENTS {
-        return Err(file.invalid(
-            "meshes' vertices and indices (each primitive counts its own)",
-            elements,
-            format!("at most {MAX_ELEMENTS}"),
-        ));
-    }
-    Ok(())
-}
-
 /// One primitive on its way.
 struct Job<'a> {
     file: &'a File,
@@ -91,7 +70,7 @@ impl<'a> Job<'a> {
         let primitive = &json.primitives[ix];
         let default = materials.materials.len() - 1;
         let material = primitive.material.map_or(default, |m| m.value().min(default));
-        let name = json.name.clone().unwrap_or_else(|| format!("mesh {mesh}"));
+        let name = json.name.as_deref().map_or_else(|| format!("mesh {mesh}"), kept_name);
         Self {
             file,
             primitive,
@@ -121,6 +100,10 @@ impl<'a> Job<'a> {
             return Ok(None);
         }
         let mut mesh = self.assemble(positions, indices, warnings)?;
+        repeats::drop_repeats(&mut mesh, warnings);
+        if mesh.indices.is_empty() {
+            return Ok(None);
+        }
         self.complete(&mut mesh, warnings)?;
         mesh.bounds = Aabb::from_points(mesh.vertices.iter().map(|v| Vec3::from(v.position)));
         Ok(Some(mesh))

@@ -8,38 +8,24 @@ mod animation;
 mod area_lights;
 mod file;
 mod images;
+mod limits;
 mod materials;
 mod meshes;
 mod nodes;
+mod parts;
+mod repeats;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
 use std::path::Path;
 
 pub(crate) use animation::AnimatedNode;
 use file::File;
+use warnings::Warnings;
 
-use crate::{CameraPath, Scene, SceneError, error::one_line, fit};
-
-/// One line for each thing left out or changed, without repeats.
-#[derive(Default)]
-struct Warnings(Vec<String>);
-
-impl Warnings {
-    fn add(&mut self, line: String) {
-        let line = one_line(line);
-        if !self.0.contains(&line) {
-            self.0.push(line);
-        }
-    }
-
-    fn append(&mut self, other: Self) {
-        for line in other.0 {
-            self.add(line);
-        }
-    }
-}
+use crate::{CameraPath, Scene, SceneError, fit};
 
 /// Loads a glTF 2.0 file.
 ///
@@ -52,8 +38,13 @@ impl Warnings {
 /// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
 ///
 /// At most 200 million triangles are accepted, every node counting its mesh's, and at most 2^27
-/// vertices and indices, every primitive counting its own. The boxes and the path of scenes of
-/// more than 2 million triangles are found from a sample of them.
+/// vertices and indices, every primitive counting its own. Images in use have at most 2^31 pixels
+/// together, and 16,384 per side. Buffers, meshes and decoded images may take a quarter of the
+/// machine's memory each. The boxes and the path of scenes of more than 2 million triangles are
+/// found from a sample of them.
+///
+/// Parts are read from regular files beside the scene, never by absolute paths. A part outside the
+/// scene's folder is read with a warning that names it.
 ///
 /// The path is the animation of the first animated camera; else it is fitted to the scene and
 /// starts at the first camera where there is one.
@@ -67,14 +58,16 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let file = File::open(path)?;
     let mut warnings = Warnings::default();
     let materials = materials::load(&file, &mut warnings)?;
+    warnings.append(file.take_notes());
     let meshes = meshes::load(&file, &materials, &mut warnings)?;
     let placed = nodes::load(&file, &meshes, &mut warnings)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
     let mut animated = None;
+    let targets = animation::targets(&file);
     for chain in &placed.camera_chains {
-        if animated.is_none() {
+        if animated.is_none() && chain.iter().any(|node| targets.contains(node)) {
             animated = animation::load(&file, chain, &mut warnings)?;
         }
     }
@@ -90,11 +83,12 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         path: CameraPath::still(fit::ORIGIN),
         bounds: crate::Aabb::EMPTY,
         core_bounds: crate::Aabb::EMPTY,
-        warnings: warnings.0,
+        warnings: warnings.into_lines(),
     };
     drop_unused_default(&mut scene);
     scene.bounds = fit::bounds(&scene);
-    if !(scene.bounds.size().is_finite() && scene.bounds.diagonal() < 1e12) {
+    let bounds = &scene.bounds;
+    if bounds.is_empty() || !(bounds.size().is_finite() && bounds.diagonal() < 1e12) {
         let size = scene.bounds.size();
         return Err(file.invalid("scene bounds", size, "at most 1e12 across"));
     }

@@ -12,12 +12,19 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{Warnings, area_lights, file::File, meshes::Meshes};
+use super::{Warnings, area_lights, file::File, meshes::Meshes, warnings::kept_name};
 use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
 
 /// The most triangles drawn, every node counting its mesh's. A small file can place one large
 /// mesh often, and what follows takes time and memory by that number.
 pub(super) const MAX_TRIANGLES: u64 = 200_000_000;
+
+/// The most meshes drawn, every node counting those of its own.
+const MAX_INSTANCES: usize = 1 << 23;
+
+/// The most nodes between cameras and their roots, all cameras together: a deep tree can hold a
+/// camera at every node. The animation of further cameras is not looked for.
+const MAX_CHAIN_NODES: usize = 1 << 16;
 
 /// What the nodes place.
 #[derive(Default)]
@@ -28,6 +35,8 @@ pub(super) struct Placed {
     pub(super) cameras: Vec<Camera>,
     /// For each camera, the nodes from the root to the one that holds it.
     pub(super) camera_chains: Vec<Vec<usize>>,
+    /// How many nodes these hold together.
+    chain_nodes: usize,
     /// Every node counts its mesh's; beyond [`MAX_TRIANGLES`], instances are no longer kept.
     triangles: u64,
 }
@@ -90,14 +99,14 @@ pub(super) fn load(
         if !to_world.is_finite() {
             return Err(file.invalid(format!("nodes[{ix}] transform"), "not finite", "finite"));
         }
-        let name = node.name.clone().unwrap_or_else(|| format!("node {ix}"));
+        let name = node.name.as_deref().map_or_else(|| format!("node {ix}"), kept_name);
         if let Some(mesh) = node.mesh {
             placed.add_model(&name, mesh.value(), to_world, meshes, warnings);
         }
         placed.add_light(file, node, to_world, warnings)?;
         placed.lights.extend(area_lights::of_node(file, ix, node, to_world)?);
         if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
-            let chain = chain(&parents, ix);
+            let chain = placed.chain_within_limits(&parents, ix, warnings);
             placed.add_camera(camera, &name, to_world, chain, warnings);
         }
         for child in node.children.iter().flatten().rev() {
@@ -111,6 +120,11 @@ pub(super) fn load(
             placed.triangles,
             format!("at most {MAX_TRIANGLES}"),
         ));
+    }
+    if placed.instances.len() > MAX_INSTANCES {
+        let accepted = format!("at most {MAX_INSTANCES}");
+        let field = "scene meshes (each node counts those of its own)";
+        return Err(file.invalid(field, "too many", accepted));
     }
     Ok(placed)
 }
@@ -128,13 +142,27 @@ fn roots(file: &File) -> Vec<usize> {
     (0..is_child.len()).filter(|ix| !is_child[*ix]).collect()
 }
 
-fn chain(parents: &[Option<usize>], leaf: usize) -> Vec<usize> {
-    let mut chain: Vec<_> = std::iter::successors(Some(leaf), |ix| parents[*ix]).collect();
-    chain.reverse();
-    chain
-}
-
 impl Placed {
+    /// The nodes from the root to a camera's; none beyond [`MAX_CHAIN_NODES`].
+    fn chain_within_limits(
+        &mut self,
+        parents: &[Option<usize>],
+        leaf: usize,
+        warnings: &mut Warnings,
+    ) -> Vec<usize> {
+        let left = MAX_CHAIN_NODES - self.chain_nodes;
+        let upwards = std::iter::successors(Some(leaf), |ix| parents[*ix]);
+        let mut chain: Vec<_> = upwards.take(left + 1).collect();
+        if chain.len() > left {
+            self.chain_nodes = MAX_CHAIN_NODES;
+            warnings.add("too many cameras in too deep a tree: not all animations are read".into());
+            return Vec::new();
+        }
+        self.chain_nodes += chain.len();
+        chain.reverse();
+        chain
+    }
+
     fn add_model(
         &mut self,
         name: &str,
@@ -154,7 +182,7 @@ impl Placed {
         let parts = &meshes.meshes[range.start as usize..range.end as usize];
         let triangles = parts.iter().map(|mesh| mesh.triangle_count() as u64).sum();
         self.triangles = self.triangles.saturating_add(triangles);
-        if self.triangles > MAX_TRIANGLES {
+        if self.triangles > MAX_TRIANGLES || self.instances.len() > MAX_INSTANCES {
             return;
         }
         let bounds = parts.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
@@ -180,7 +208,7 @@ impl Placed {
         let json = lights.get(ix).ok_or_else(|| {
             file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
         })?;
-        let name = json.name.clone().unwrap_or_else(|| format!("light {ix}"));
+        let name = json.name.as_deref().map_or_else(|| format!("light {ix}"), kept_name);
         let Some(light) = convert_light(json, to_world) else {
             warnings.add(format!("light {name:?}: directional lights are left out"));
             return Ok(());
@@ -197,7 +225,7 @@ impl Placed {
         chain: Vec<usize>,
         warnings: &mut Warnings,
     ) {
-        let name = json.name.clone().unwrap_or_else(|| node_name.into());
+        let name = json.name.as_deref().map_or_else(|| node_name.into(), kept_name);
         let (lens, near_m, far_m) = match (json.type_, &json.perspective, &json.orthographic) {
             (Checked::Valid(CameraType::Perspective), Some(p), _) => {
                 (Lens::Perspective { fov_y: p.yfov }, p.znear, p.zfar)

@@ -4,15 +4,13 @@
 //! the triangles themselves are intersected in double precision, so that edges of shadows lie where
 //! the vertices say, and no ray slips between two triangles that share an edge.
 
-use std::time::Duration;
-
 use glam::{DVec3, Vec3};
 use obvhs::{
-    BvhBuildParams,
     aabb::Aabb,
-    bvh2::{Bvh2, builder::build_bvh2},
+    bvh2::Bvh2,
     ray::{Ray, RayHit},
 };
+use scenes::{BuildEffort, DistinctTriangles, build_hierarchy};
 
 /// How much larger boxes are than triangles, as a share of the largest coordinate: eight units in
 /// the last place, for traversal's rounding and that of the ray's origin.
@@ -33,7 +31,9 @@ pub(super) struct Hit {
 
 /// A hierarchy over triangles.
 pub(super) struct Triangles {
+    /// Over one of each kind of triangles that are the same.
     bvh: Bvh2,
+    distinct: DistinctTriangles,
     corners: Vec<[Vec3; 3]>,
 }
 
@@ -42,14 +42,15 @@ impl Triangles {
     pub(super) fn new(corners: Vec<[Vec3; 3]>) -> Self {
         let farthest = corners.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs().max_element()));
         let slack = farthest * BOX_SLACK;
-        let boxes: Vec<Aabb> = corners
-            .iter()
-            .map(|[a, b, c]| {
-                Aabb::new((a.min(*b).min(*c) - slack).into(), (a.max(*b).max(*c) + slack).into())
+        let distinct = DistinctTriangles::of(&corners);
+        let firsts = distinct.firsts.iter();
+        let boxes: Vec<Aabb> = firsts
+            .map(|ix| {
+                let [a, b, c] = corners[*ix as usize];
+                Aabb::new((a.min(b).min(c) - slack).into(), (a.max(b).max(c) + slack).into())
             })
             .collect();
-        let params = BvhBuildParams::medium_build();
-        Self { bvh: build_bvh2(&boxes, params, &mut Duration::default()), corners }
+        Self { bvh: build_hierarchy(&boxes, BuildEffort::Thorough), distinct, corners }
     }
 
     /// World-space corners of a triangle.
@@ -69,12 +70,12 @@ impl Triangles {
         let mut first: Option<Hit> = None;
         let ray = ray(origin, direction, max_m)?;
         self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, leaf| {
-            let triangle = self.bvh.primitive_indices[leaf];
             let nearer = |hit: &Hit| {
-                first.is_none_or(|f| (hit.distance_m, triangle) < (f.distance_m, f.triangle))
+                first.is_none_or(|f| (hit.distance_m, hit.triangle) < (f.distance_m, f.triangle))
             };
-            let hit = self.intersect(triangle, origin, direction, max_m);
-            match hit.filter(|hit| nearer(hit) && counts(hit)) {
+            let hit = self.intersect(self.triangle_of(leaf), origin, direction, max_m);
+            let mut same = self.all_like(hit);
+            match same.find(|hit| !nearer(hit) || counts(hit)).filter(nearer) {
                 Some(hit) => {
                     first = Some(hit);
                     (hit.distance_m as f32).next_up()
@@ -95,10 +96,21 @@ impl Triangles {
     ) -> bool {
         let Some(ray) = ray(origin, direction, max_m) else { return false };
         !self.bvh.ray_traverse_miss(ray, |_, leaf| {
-            let triangle = self.bvh.primitive_indices[leaf];
-            let hit = self.intersect(triangle, origin, direction, max_m);
+            let hit = self.intersect(self.triangle_of(leaf), origin, direction, max_m);
             // Anything below the ray's end ends the search.
-            hit.filter(&counts).map_or(f32::INFINITY, |_| 0.0)
+            if self.all_like(hit).any(|hit| counts(&hit)) { 0.0 } else { f32::INFINITY }
+        })
+    }
+
+    /// The triangle of a leaf; of those that are the same, the one of the lowest index.
+    fn triangle_of(&self, leaf: usize) -> u32 {
+        self.distinct.firsts[self.bvh.primitive_indices[leaf] as usize]
+    }
+
+    /// A hit, and the same hit of every triangle that is the same, in ascending order.
+    fn all_like(&self, hit: Option<Hit>) -> impl Iterator<Item = Hit> {
+        std::iter::successors(hit, |hit| {
+            self.distinct.next(hit.triangle).map(|triangle| Hit { triangle, ..*hit })
         })
     }
 
@@ -167,6 +179,31 @@ mod tests {
             hits += usize::from(looped.is_some());
         }
         assert!((200..1500).contains(&hits), "{hits}");
+    }
+
+    /// One of those that are the same is in the hierarchy, and all of them can be hit.
+    #[test]
+    fn coincident_triangles_take_seconds_and_hit_in_ascending_order() {
+        let mut corners = vec![[Vec3::ZERO; 3]; 100_000];
+        corners.extend(vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 200_000]);
+        // A pile of triangles that differ by less than their boxes grow.
+        corners.extend((1..100_000).map(|ix| {
+            let away = Vec3::Z * (-1e-6 * ix as f32);
+            [away, Vec3::X + away, Vec3::Y + away]
+        }));
+        let start = std::time::Instant::now();
+        let triangles = Triangles::new(corners);
+        let origin = DVec3::new(0.2, 0.2, 1.0);
+        for least in [0, 100_000, 250_000, 299_999] {
+            let counts = |hit: &Hit| hit.triangle >= least;
+            let hit = triangles.first(origin, DVec3::NEG_Z, 2.0, counts).expect("hit");
+            assert_eq!((hit.triangle, hit.distance_m), (least.max(100_000), 1.0));
+            assert!(triangles.any(origin, DVec3::NEG_Z, 2.0, counts));
+            assert!(!triangles.any(origin, DVec3::NEG_Z, 0.5, counts));
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{seconds:.2} s");
+        assert!(seconds < 10.0, "{seconds} s");
     }
 
     #[test]

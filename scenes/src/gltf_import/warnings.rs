@@ -1,0 +1,223 @@
+//! What the importer left out or changed, one line each, bounded whatever the file holds.
+
+use std::{
+    collections::{HashMap, HashSet},
+    hash::{DefaultHasher, Hash, Hasher},
+};
+
+use crate::error::one_line;
+
+/// Lines of one kind that are kept; the others are counted.
+const MOST_OF_A_KIND: usize = 20;
+
+/// Lines of all kinds that are kept.
+const MOST_LINES: usize = 400;
+
+/// Characters of a quoted name that are shown.
+const MOST_OF_A_NAME: usize = 60;
+
+/// Characters of a line that are shown.
+const MOST_OF_A_LINE: usize = 400;
+
+/// Characters of a name that are kept in a scene.
+const MOST_KEPT: usize = 120;
+
+/// One line for each thing left out or changed, without repeats. Two lines are of one kind when
+/// they differ in names and numbers only.
+#[derive(Default)]
+pub(super) struct Warnings {
+    lines: Vec<Line>,
+    /// Hashes of all lines, those not kept included.
+    seen: HashSet<u64>,
+    kinds: HashMap<u64, Kind>,
+    /// Lines of new kinds that came after [`MOST_LINES`].
+    others: usize,
+}
+
+struct Line {
+    text: String,
+    kind: u64,
+}
+
+#[derive(Default)]
+struct Kind {
+    kept: usize,
+    left_out: usize,
+}
+
+impl Warnings {
+    /// Notes a line, unless it was noted before.
+    pub(super) fn add(&mut self, line: String) {
+        self.add_short(shortened(&line));
+    }
+
+    fn add_short(&mut self, line: String) {
+        if !self.seen.insert(hash(&line)) {
+            return;
+        }
+        let kind = hash(&without_names_and_numbers(&line));
+        let full = self.lines.len() >= MOST_LINES;
+        if full && !self.kinds.contains_key(&kind) {
+            self.others += 1;
+            return;
+        }
+        let count = self.kinds.entry(kind).or_default();
+        if full || count.kept == MOST_OF_A_KIND {
+            count.left_out += 1;
+        } else {
+            count.kept += 1;
+            self.lines.push(Line { text: line, kind });
+        }
+    }
+
+    /// Adds another list's lines, and what it left out.
+    pub(super) fn append(&mut self, other: Self) {
+        for line in other.lines {
+            self.add_short(line.text);
+        }
+        self.others += other.others;
+        for (kind, count) in other.kinds {
+            match self.kinds.get_mut(&kind) {
+                Some(known) => known.left_out += count.left_out,
+                None => self.others += count.left_out,
+            }
+        }
+    }
+
+    /// The lines in the order of their first one, each kind's count of further ones after its last.
+    pub(super) fn into_lines(self) -> Vec<String> {
+        let mut last = HashMap::new();
+        for (ix, line) in self.lines.iter().enumerate() {
+            last.insert(line.kind, ix);
+        }
+        let mut lines = Vec::new();
+        for (ix, line) in self.lines.into_iter().enumerate() {
+            let more = self.kinds.get(&line.kind).map_or(0, |kind| kind.left_out);
+            lines.push(line.text);
+            if more > 0 && last.get(&line.kind) == Some(&ix) {
+                lines.push(format!("and {} more like the last one", grouped(more)));
+            }
+        }
+        if self.others > 0 {
+            lines.push(format!("and {} more warnings of other kinds", grouped(self.others)));
+        }
+        lines
+    }
+}
+
+/// A name as scenes keep it: cut after [`MOST_KEPT`] characters, so that a long one that many
+/// objects share costs little.
+pub(super) fn kept_name(name: &str) -> String {
+    cut(name, MOST_KEPT)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.into(),
+    }
+}
+
+fn hash(text: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// A line without control characters, its quoted names cut.
+fn shortened(line: &str) -> String {
+    let mut short = String::new();
+    // Characters since the quote that is open.
+    let mut quoted: Option<usize> = None;
+    let mut chars = line.chars();
+    while let Some(c) = chars.next() {
+        if c == '"' {
+            quoted = if quoted.is_some() { None } else { Some(0) };
+            short.push(c);
+            continue;
+        }
+        if let Some(count) = &mut quoted {
+            *count += 1;
+            if *count == MOST_OF_A_NAME + 1 {
+                short.push_str("...");
+            }
+        }
+        let escaped = if c == '\\' { chars.next() } else { None };
+        if quoted.is_none_or(|count| count <= MOST_OF_A_NAME) {
+            short.push(c);
+            short.extend(escaped);
+        }
+    }
+    cut(&one_line(short), MOST_OF_A_LINE)
+}
+
+/// What lines of one kind have in common.
+fn without_names_and_numbers(line: &str) -> String {
+    let mut kind = String::new();
+    let mut in_name = false;
+    let mut chars = line.chars();
+    while let Some(c) = chars.next() {
+        match c {
+            '"' => in_name = !in_name,
+            '\\' => drop(chars.next()),
+            _ if in_name || c.is_ascii_digit() => {}
+            _ => kind.push(c),
+        }
+    }
+    kind
+}
+
+/// A count with commas between groups of three digits.
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (ix, digit) in digits.chars().enumerate() {
+        if ix > 0 && (digits.len() - ix).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_are_counted_capped_and_short() {
+        let mut warnings = Warnings::default();
+        for ix in 0..80_000 {
+            let mut of_a_job = Warnings::default();
+            of_a_job
+                .add(format!("mesh {:?}: {ix} normals of length 0 replaced", format!("m\"{ix}")));
+            of_a_job.add("vertex colours (COLOR_0) are ignored".into());
+            warnings.append(of_a_job);
+        }
+        warnings.add(format!("node {:?}: not drawn", "n\u{1b}[31m\u{202e}".repeat(1_000_000)));
+        warnings.add("x".repeat(1_000_000));
+        let lines = warnings.into_lines();
+        assert_eq!(lines.len(), 20 + 1 + 1 + 2, "{lines:#?}");
+        assert_eq!(lines[0], "mesh \"m\\\"0\": 0 normals of length 0 replaced");
+        assert_eq!(lines[1], "vertex colours (COLOR_0) are ignored");
+        assert_eq!(lines[21], "and 79,980 more like the last one");
+        assert!(
+            lines[22].starts_with("node \"n\\u{1b}[31m") && lines[22].ends_with("\": not drawn")
+        );
+        assert!(lines.iter().all(|line| line.chars().count() <= MOST_OF_A_LINE + 3), "{lines:#?}");
+        assert!(!lines.iter().any(|line| line.contains(['\u{1b}', '\u{202e}'])), "{lines:#?}");
+    }
+
+    #[test]
+    fn many_kinds_are_bounded_too() {
+        let mut warnings = Warnings::default();
+        let letters = |ix: usize| ix.to_string().bytes().map(|b| char::from(b + 49)).collect();
+        for ix in 0..10_000 {
+            let name: String = letters(ix);
+            warnings.add(format!("EXT_{name} is ignored"));
+        }
+        let lines = warnings.into_lines();
+        assert_eq!(lines.len(), MOST_LINES + 1);
+        assert_eq!(lines[MOST_LINES], "and 9,600 more warnings of other kinds");
+    }
+}
