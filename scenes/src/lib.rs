@@ -35,6 +35,6 @@ pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Places, Radii, THRESHOLD, 
 pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
 pub use path::{CameraPath, Pose};
 pub use primary_light::primary_light;
-pub use registry::{SceneEntry, list, open};
+pub use registry::{SceneEntry, list, open, open_lights};
 pub use scene::{Camera, Instance, Lens, Mesh, Model, Scene, Vertex};
 pub use town::{TownSize, town};

@@ -63,7 +63,6 @@ impl Reader<'_> {
             .as_ref()
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |s| s.emissive_strength.0);
-        self.note_extensions(json);
         let material = Material {
             base_color: Vec4::from(pbr.base_color_factor.0).clamp(Vec4::ZERO, Vec4::ONE),
             metallic: pbr.metallic_factor.0.clamp(0.0, 1.0),
@@ -74,7 +73,7 @@ impl Reader<'_> {
             double_sided: json.double_sided,
             base_color_texture: self.info(pbr.base_color_texture.as_ref(), Srgb),
             metallic_roughness_texture: self.info(pbr.metallic_roughness_texture.as_ref(), Linear),
-            normal_texture: json.normal_texture.as_ref().map(|t| {
+            normal_texture: json.normal_texture.as_ref().and_then(|t| {
                 let transform = t.extensions.as_ref().and_then(|e| {
                     let value = e.others.get("KHR_texture_transform")?;
                     serde_json::from_value(value.clone()).ok()
@@ -112,30 +111,11 @@ impl Reader<'_> {
         }
     }
 
-    /// Extensions that change the look and are not modelled.
-    fn note_extensions(&mut self, json: &Json) {
-        let Some(extensions) = &json.extensions else {
-            return;
-        };
-        let known = [
-            ("KHR_materials_unlit", extensions.unlit.is_some()),
-            ("KHR_materials_transmission", extensions.transmission.is_some()),
-            ("KHR_materials_volume", extensions.volume.is_some()),
-            ("KHR_materials_specular", extensions.specular.is_some()),
-            ("KHR_materials_ior", extensions.ior.is_some()),
-        ];
-        let others = extensions.others.keys().map(String::as_str);
-        let known = known.iter().filter(|(_, used)| *used).map(|(name, _)| *name);
-        for extension in known.chain(others) {
-            self.warnings.add(format!("material {:?}: {extension} is ignored", self.name));
-        }
-    }
-
     fn info(&mut self, info: Option<&Info>, encoding: Encoding) -> Option<TextureRef> {
         let info = info?;
         let extensions = info.extensions.as_ref();
         let transform = extensions.and_then(|e| e.texture_transform.as_ref());
-        Some(self.texture(info.index, info.tex_coord, transform, encoding))
+        self.texture(info.index, info.tex_coord, transform, encoding)
     }
 
     fn texture(
@@ -144,9 +124,21 @@ impl Reader<'_> {
         tex_coord: u32,
         transform: Option<&TextureTransform>,
         encoding: Encoding,
-    ) -> TextureRef {
+    ) -> Option<TextureRef> {
         // Indices are validated with the JSON; see `file::parse`.
         let texture = &self.file.root.textures[index.value()];
+        if texture.source.value() == u32::MAX as usize {
+            let extensions = texture.extensions.iter().flat_map(|e| e.others.keys());
+            let mut extensions: Vec<_> = extensions.map(String::as_str).collect();
+            if extensions.is_empty() {
+                extensions.push("none");
+            }
+            self.warnings.add(format!(
+                "texture {index} has no image that is read ({}): materials lose it",
+                extensions.join(", ")
+            ));
+            return None;
+        }
         let set = transform.and_then(|t| t.tex_coord).unwrap_or(tex_coord);
         if *self.uv_set.get_or_insert(set) != set {
             self.warnings.add(format!(
@@ -155,11 +147,11 @@ impl Reader<'_> {
             ));
         }
         let sampler = texture.sampler.and_then(|ix| self.file.root.get(ix));
-        TextureRef {
+        Some(TextureRef {
             image: self.table.number(texture.source.value(), encoding),
             sampler: sampler.map_or_else(Sampler::default, convert_sampler),
             uv_transform: transform.map_or(Affine2::IDENTITY, uv_transform),
-        }
+        })
     }
 }
 

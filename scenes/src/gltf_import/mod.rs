@@ -4,13 +4,17 @@
 //! here, so that no file makes the importer panic.
 
 mod accessor;
+mod adapt;
 mod animation;
 mod area_lights;
+mod extensions;
 mod file;
 mod images;
 mod materials;
 mod meshes;
+mod models;
 mod nodes;
+mod skins;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -43,11 +47,13 @@ impl Warnings {
 
 /// Loads a glTF 2.0 file.
 ///
-/// Meshes used by several nodes are shared, each node becoming a model. Missing normals are
-/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Skins, morph
-/// targets, vertex colours, lines, points and directional lights are left out, and blended
-/// materials become masks; [`Scene::warnings`] says so. Lights without a range get the distance
-/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD). Those that
+/// Meshes used by several nodes are shared, each node becoming a model, and each instance of
+/// EXT_mesh_gpu_instancing. Skinned meshes are posed where their joints rest. Missing normals are
+/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Morph
+/// targets, lines, points, directional lights and animations of anything but cameras are left
+/// out, and blended materials become masks; [`Scene::warnings`] says so, and names every
+/// extension that is not read. Lights without a range get the distance at which their illuminance
+/// falls to [`THRESHOLD`](crate::THRESHOLD). Those that
 /// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
 /// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
 ///
@@ -64,14 +70,16 @@ impl Warnings {
 /// glTF 2, whose images do not decode, that requires an unknown extension, or that has no
 /// triangles or too many.
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
-    let file = File::open(path)?;
-    let mut warnings = Warnings::default();
+    let mut file = File::open(path)?;
+    let mut warnings = std::mem::take(&mut file.warnings);
     let materials = materials::load(&file, &mut warnings)?;
-    let meshes = meshes::load(&file, &materials, &mut warnings)?;
-    let placed = nodes::load(&file, &meshes, &mut warnings)?;
+    let mut meshes = meshes::load(&file, &materials, &mut warnings)?;
+    let walk = nodes::walk(&file)?;
+    let placed = nodes::place(&file, &walk, &mut meshes, &mut warnings)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
+    animation::note_unplayed(&file, &walk, &mut warnings);
     let mut animated = None;
     for chain in &placed.camera_chains {
         if animated.is_none() {
@@ -104,6 +112,35 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         None => fit::path(&scene),
     };
     Ok(scene)
+}
+
+/// Loads the lights of a glTF 2.0 file and nothing else, so that it may hold nothing else.
+///
+/// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings.
+///
+/// # Errors
+///
+/// [`SceneError`] as [`load_gltf`] has them of the file's JSON, buffers, nodes and lights.
+pub(crate) fn load_gltf_lights(path: &Path) -> Result<Scene, SceneError> {
+    let mut file = File::open(path)?;
+    let mut warnings = std::mem::take(&mut file.warnings);
+    let walk = nodes::walk(&file)?;
+    let lights = nodes::lights(&file, &walk, &mut warnings)?;
+    animation::note_unplayed(&file, &walk, &mut warnings);
+    Ok(Scene {
+        name: name(path),
+        meshes: Vec::new(),
+        materials: vec![crate::Material::default()],
+        images: Vec::new(),
+        instances: Vec::new(),
+        models: Vec::new(),
+        lights,
+        cameras: Vec::new(),
+        path: CameraPath::still(fit::ORIGIN),
+        bounds: crate::Aabb::EMPTY,
+        core_bounds: crate::Aabb::EMPTY,
+        warnings: warnings.0,
+    })
 }
 
 /// The file's stem, or its folder's name where that is just "scene".
