@@ -32,7 +32,7 @@ pub use emitters::Outlines;
 pub use error::SceneError;
 pub use gltf_import::load_gltf;
 pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, Places, Radii, THRESHOLD, scatter_lights};
-pub use material::{Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
+pub use material::{Dielectric, Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
 pub use path::{CameraPath, Pose};
 pub use primary_light::primary_light;
 pub use registry::{SceneEntry, list, open, open_lights};
