@@ -69,6 +69,8 @@ impl Gpu {
             max_buffer_size: available.max_buffer_size,
             max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
             max_texture_dimension_2d: available.max_texture_dimension_2d,
+            // A G-buffer with every image takes 36 bytes of WebGPU's 32.
+            max_color_attachment_bytes_per_sample: available.max_color_attachment_bytes_per_sample,
             // Of WebGPU's eight, lights and lists take up to six.
             max_storage_buffers_per_shader_stage: available
                 .max_storage_buffers_per_shader_stage

@@ -78,6 +78,7 @@ impl Stage {
             scene = scene.without_emission();
         }
         let Set { optics, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
+        scene.warnings.extend(lit.warnings.iter().map(|line| format!("--lights-from: {line}")));
         Ok(Self {
             scene_hash: scene.hash(),
             radius_scale,
@@ -164,6 +165,8 @@ struct Lit {
     lights: Vec<Light>,
     bounds: Aabb,
     own: usize,
+    /// What the file that other lights come from leaves out.
+    warnings: Vec<String>,
 }
 
 impl Lit {
@@ -174,16 +177,18 @@ impl Lit {
             LightBox::Bounds => scene.bounds,
         };
         if args.bounce.is_on() {
-            return Ok(Self { lights: Vec::new(), bounds, own: 0 });
+            return Ok(Self { lights: Vec::new(), bounds, own: 0, warnings: Vec::new() });
         }
         let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
+        let mut warnings = Vec::new();
         if let Some(file) = &args.lights_from {
-            let other = scenes::open(file)?.scaled(args.scene_scale as f32)?;
+            let other = scenes::open_lights(file)?.scaled(args.scene_scale as f32)?;
             if other.lights.is_empty() {
                 let accepted = "a file that holds lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
             }
             lights.extend(other.lights);
+            warnings = other.warnings;
         }
         let own = lights.len();
         let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
@@ -218,7 +223,7 @@ impl Lit {
         if let Some(least) = args.influence {
             set_influence(&mut lights, least as f32);
         }
-        Ok(Self { lights, bounds, own })
+        Ok(Self { lights, bounds, own, warnings })
     }
 }
 

@@ -4,7 +4,7 @@ use assign::LightShape;
 use blake3::Hasher;
 use glam::Vec3;
 
-use crate::{Encoding, Lens, Pose, Scene, TextureRef};
+use crate::{Dielectric, Encoding, Lens, Pose, Scene, TextureRef};
 
 /// Changes whenever what goes into the hash, or its order, changes.
 const VERSION: u32 = 1;
@@ -70,6 +70,7 @@ impl Scene {
         self.hash_materials(&mut feed);
         self.hash_lights(&mut feed);
         self.hash_cameras(&mut feed);
+        self.hash_additions(&mut feed);
         feed.0.finalize().to_hex().to_string()
     }
 
@@ -147,6 +148,25 @@ impl Scene {
         }
     }
 
+    /// What most scenes have none of: without it they keep the hash that they always had.
+    fn hash_additions(&self, feed: &mut Feed) {
+        if self.meshes.iter().any(|mesh| !mesh.colors.is_empty()) {
+            feed.int(COLORS);
+            for mesh in &self.meshes {
+                feed.bytes(bytemuck::cast_slice(&mesh.colors));
+            }
+        }
+        let plain = Dielectric::default();
+        if self.materials.iter().any(|m| m.unlit || m.dielectric != plain) {
+            feed.int(REFLECTANCES);
+            for material in &self.materials {
+                feed.int(u64::from(material.unlit));
+                feed.floats(&material.dielectric.f0.to_array());
+                feed.floats(&[material.dielectric.f90]);
+            }
+        }
+    }
+
     fn hash_cameras(&self, feed: &mut Feed) {
         feed.int(self.cameras.len() as u64);
         for camera in &self.cameras {
@@ -159,6 +179,10 @@ impl Scene {
         }
     }
 }
+
+/// Marks the start of what scenes may have beside the rest.
+const COLORS: u64 = 0x636f_6c6f_7273;
+const REFLECTANCES: u64 = 0x0066_3066_3930;
 
 #[cfg(test)]
 mod tests {

@@ -62,6 +62,8 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Three per triangle, counter-clockwise seen from the front; each below `vertices.len()`.
     pub indices: Vec<u32>,
+    /// Factors on the base colour, linear RGB and opacity, 0..=1: one per vertex, or none at all.
+    pub colors: Vec<[f32; 4]>,
     /// Index into [`Scene::materials`].
     pub material: u32,
     /// Box around the vertices, object space.
@@ -113,7 +115,8 @@ pub struct Model {
 impl Model {
     /// Whether it turns counter-clockwise triangles clockwise.
     pub fn is_mirrored(&self) -> bool {
-        self.object_to_world.determinant() < 0.0
+        // In f64: tiny determinants are 0 in f32.
+        self.object_to_world.as_dmat4().determinant() < 0.0
     }
 }
 

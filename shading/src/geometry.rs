@@ -56,6 +56,8 @@ pub(crate) struct DrawKey {
 pub struct SceneGpu {
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
+    /// Colours of all vertices, where any mesh has some.
+    colors: Option<wgpu::Buffer>,
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
     /// Of bind group 2: without and with the table of linearly transformed cosines.
@@ -77,6 +79,10 @@ impl SceneGpu {
         };
         let vertices = buffer("vertices", &vertex_bytes, wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("indices", &index_bytes, wgpu::BufferUsages::INDEX)?;
+        let colors = colors(scene);
+        let colors = (!colors.is_empty())
+            .then(|| buffer("vertex colours", cast_slice(&colors), wgpu::BufferUsages::VERTEX))
+            .transpose()?;
         let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
         let layout = |table| {
             let stages = wgpu::ShaderStages::FRAGMENT;
@@ -92,7 +98,7 @@ impl SceneGpu {
             })
         };
         let layouts = [layout(false), layout(true)];
-        Ok(Self { vertices, indices, draws, materials, layouts, instances })
+        Ok(Self { vertices, indices, colors, draws, materials, layouts, instances })
     }
 
     /// Layout of bind group 2.
@@ -116,6 +122,11 @@ impl SceneGpu {
         self.materials.has_emissive
     }
 
+    /// Whether any material reflects other than glTF's plain dielectric does.
+    pub(crate) fn has_dielectrics(&self) -> bool {
+        self.materials.has_dielectrics
+    }
+
     /// Whether any material has an alpha mask.
     pub fn has_mask(&self) -> bool {
         self.draws.iter().any(|draw| draw.key.material.mask)
@@ -137,6 +148,9 @@ impl SceneGpu {
         pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
     ) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
+        if let Some(colors) = &self.colors {
+            pass.set_vertex_buffer(1, colors.slice(..));
+        }
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut bound = (None, None);
         for draw in &self.draws {
@@ -209,6 +223,20 @@ fn concatenate(scene: &Scene) -> (Vec<MeshRange>, Vec<u8>, Vec<u8>) {
     (ranges, vertices, indices)
 }
 
+/// The colours of all meshes' vertices behind each other, white where a mesh has none; nothing
+/// where no mesh has any.
+fn colors(scene: &Scene) -> Vec<[f32; 4]> {
+    if scene.meshes.iter().all(|mesh| mesh.colors.is_empty()) {
+        return Vec::new();
+    }
+    let of_mesh = |mesh: &scenes::Mesh| {
+        let mut colors = mesh.colors.clone();
+        colors.resize(mesh.vertices.len(), [1.0; 4]);
+        colors
+    };
+    scene.meshes.iter().flat_map(of_mesh).collect()
+}
+
 /// Instances sorted by pipeline, material and mesh, and one draw for each run of one mesh.
 fn plan(
     scene: &Scene,
@@ -219,9 +247,11 @@ fn plan(
         .instances
         .iter()
         .map(|instance| {
-            let material = scene.meshes[instance.mesh as usize].material;
+            let mesh = &scene.meshes[instance.mesh as usize];
+            let material = mesh.material;
+            let vertex_colors = !mesh.colors.is_empty();
             let key = DrawKey {
-                material: materials.key(material),
+                material: MaterialKey { vertex_colors, ..materials.key(material) },
                 mirrored: scene.models[instance.model as usize].is_mirrored(),
             };
             (key, material, instance)

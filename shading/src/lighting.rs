@@ -186,12 +186,14 @@ impl Deferred {
     ) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
-        let layout = deferred_layout(gpu, emissive, model_ids, inputs.has_table());
+        let dielectrics = renderer.scene.has_dielectrics();
+        let layout = deferred_layout(gpu, [emissive, model_ids, dielectrics], inputs.has_table());
         let shader = lists
             .options
             .set_flags(shaders::lighting(LISTS_GROUP))
             .module("package::strategy", lists.lookup.module.source())
             .flag("model_ids", model_ids)
+            .flag("dielectrics", dielectrics)
             .flag("emissive", emissive);
         // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.
         // The strategy's author vouches for its look-up.
@@ -222,6 +224,8 @@ impl Deferred {
         ];
         entries.extend(self.inputs.entries());
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
+        let dielectric = targets.dielectric.as_ref();
+        entries.extend(dielectric.map(|view| texture(DIELECTRIC_BINDING, view)));
         if self.model_ids {
             entries.push(texture(MODEL_BINDING, &targets.model_ids));
         }
@@ -284,10 +288,12 @@ pub(crate) const TEXELS: wgpu::TextureSampleType =
 /// Where deferred lighting and the probe bind model ids.
 pub(crate) const MODEL_BINDING: u32 = 5;
 
+/// Where deferred lighting binds what dielectrics reflect.
+const DIELECTRIC_BINDING: u32 = 10;
+
 fn deferred_layout(
     gpu: &Gpu,
-    emissive: bool,
-    model_ids: bool,
+    [emissive, model_ids, dielectrics]: [bool; 3],
     table: bool,
 ) -> wgpu::BindGroupLayout {
     let mut entries = vec![
@@ -308,6 +314,9 @@ fn deferred_layout(
     entries.extend(LightingInputs::layout(table, wgpu::ShaderStages::COMPUTE));
     if emissive {
         entries.push(texture_entry(3, TEXELS));
+    }
+    if dielectrics {
+        entries.push(texture_entry(DIELECTRIC_BINDING, TEXELS));
     }
     if model_ids {
         entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));

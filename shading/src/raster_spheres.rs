@@ -63,6 +63,8 @@ impl RasterSpheres {
             texture_entry(2, TEXELS),
         ];
         entries.extend(emissive.then(|| texture_entry(3, TEXELS)));
+        let dielectrics = renderer.scene.has_dielectrics();
+        entries.extend(dielectrics.then(|| texture_entry(4, TEXELS)));
         for entry in &mut entries {
             entry.visibility = wgpu::ShaderStages::FRAGMENT;
         }
@@ -80,6 +82,7 @@ impl RasterSpheres {
         let module = options
             .set_flags(shaders::lighting(LISTS_GROUP))
             .flag("emissive", emissive)
+            .flag("dielectrics", dielectrics)
             .create(gpu, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
             pipeline(renderer, [&layout, &inputs_layout], &module, [vertex, fragment], volumes)
@@ -123,6 +126,7 @@ impl RasterSpheres {
             texture(2, &targets.normal),
         ];
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
+        entries.extend(targets.dielectric.as_ref().map(|view| texture(4, view)));
         let images = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("raster spheres"),
             layout: &self.layout,

@@ -2,6 +2,7 @@
 
 use assign::{Light, LightShape};
 use glam::DVec3;
+use scenes::Dielectric;
 
 use crate::{area_reference::SeenArea, ltc};
 
@@ -16,6 +17,32 @@ pub struct Surface {
     pub normal: DVec3,
     /// Perceptual roughness.
     pub roughness: f64,
+    /// What its dielectric share reflects.
+    pub dielectric: Reflectance,
+}
+
+/// What a dielectric reflects at normal and at grazing incidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflectance {
+    /// At normal incidence, linear RGB.
+    pub f0: DVec3,
+    /// At grazing incidence.
+    pub f90: f64,
+}
+
+impl Default for Reflectance {
+    fn default() -> Self {
+        Self { f0: DVec3::splat(DIELECTRIC_F0), f90: 1.0 }
+    }
+}
+
+impl From<Dielectric> for Reflectance {
+    fn from(dielectric: Dielectric) -> Self {
+        if dielectric == Dielectric::default() {
+            return Self::default();
+        }
+        Self { f0: dielectric.f0.as_dvec3(), f90: f64::from(dielectric.f90) }
+    }
 }
 
 /// Below this perceptual roughness GGX's peak overflows single precision: `brdf.wesl`.
@@ -43,7 +70,12 @@ pub fn reflect_light(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> DVec3
 
 /// Reflectance at normal incidence.
 pub(crate) fn f0_of(surface: &Surface) -> DVec3 {
-    DVec3::splat(DIELECTRIC_F0).lerp(surface.base_color, surface.metallic)
+    surface.dielectric.f0.lerp(surface.base_color, surface.metallic)
+}
+
+/// Reflectance at grazing incidence.
+pub(crate) fn f90_of(surface: &Surface) -> f64 {
+    surface.dielectric.f90 + (1.0 - surface.dielectric.f90) * surface.metallic
 }
 
 /// The BRDF for light from a direction.
@@ -59,7 +91,8 @@ pub(crate) fn lobes_of(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> Lob
     let smith = |a: f64, b: f64| a * (b * b * (1.0 - alpha_2) + alpha_2).sqrt();
     let visibility = 0.5 / (smith(cos_l, cos_v) + smith(cos_v, cos_l)).max(1e-6);
     let f0 = f0_of(surface);
-    let fresnel = f0 + (DVec3::ONE - f0) * (1.0 - cos_vh).powi(5);
+    let f90 = DVec3::splat(f90_of(surface));
+    let fresnel = f0 + (f90 - f0) * (1.0 - cos_vh).powi(5);
     let diffuse = (DVec3::ONE - fresnel) * (1.0 - surface.metallic) * surface.base_color
         / std::f64::consts::PI;
     Lobes { diffuse, specular: distribution * visibility * fresnel }
@@ -139,7 +172,8 @@ mod tests {
     /// White metal, or a black dielectric: the specular term alone.
     fn surface(roughness: f64, metallic: f64) -> Surface {
         let base_color = DVec3::splat(metallic);
-        Surface { base_color, metallic, normal: DVec3::Z, roughness }
+        let dielectric = Reflectance::default();
+        Surface { base_color, metallic, normal: DVec3::Z, roughness, dielectric }
     }
 
     /// Light reflected over the hemisphere for unit irradiance, by the midpoint rule.

@@ -77,7 +77,7 @@ fn instance() {
 #[test]
 fn material() {
     let fields = fields!(MaterialRecord: base_color, emissive, metallic, roughness, normal_scale,
-        alpha_cutoff, unused, uv_transforms);
+        alpha_cutoff, unused, dielectric, uv_transforms);
     check_element("Material", size_of::<MaterialRecord>(), &fields);
 }
 

@@ -60,6 +60,7 @@ fn expected(lights: &[Light], query: &Query) -> DVec3 {
         metallic: f64::from(query[2][3]),
         normal: xyz(query[2]),
         roughness: f64::from(query[1][3]),
+        dielectric: Default::default(),
     };
     let light = &lights[query[0][3].to_bits() as usize];
     light_contribution(light, xyz(query[0]), &surface, xyz(query[1]))

@@ -278,3 +278,29 @@ fn without_area_lights_no_model_changes_the_shader() {
         sources.push(with.source);
     }
 }
+
+/// Flags of materials that few scenes have, beside each that they touch.
+#[test]
+fn flags_of_rare_materials() {
+    let base = ["base_color_texture", "emissive"];
+    for rare in subsets(&["vertex_colors", "unlit", "dielectrics"]) {
+        let with = |more: &[&'static str]| -> Flags {
+            rare.iter().chain(&base).chain(more).copied().collect()
+        };
+        check_geometry(&with(&["gbuffer", "gbuffer_ids"]), None, Some("fragment_gbuffer"), &[0]);
+        check_geometry(&with(&["mask"]), None, Some("fragment_mask"), &[0]);
+        check_geometry(&with(&["forward"]), Some(LOOK_UPS[0]), Some("fragment_forward"), &[0]);
+        let plain = with(&["gbuffer"]).difference(&rare).copied().collect();
+        let changes = rare.contains("vertex_colors") || rare.contains("dielectrics");
+        let [a, b] =
+            [with(&["gbuffer"]), plain].map(|f| link("package::geometry", &f, None).source);
+        assert_eq!(a != b, changes, "{rare:?}");
+    }
+    for flags in with_areas(vec![["dielectrics"].into()]) {
+        check_compute("deferred", &flags, LOOK_UPS[0], LOOK_UPS[0].2, &[0, 1, 2, 4, 6, 10]);
+        let spheres = link("package::raster_spheres", &flags, None);
+        assert!(spheres.bindings.contains(&(1, 4)), "{flags:?}");
+    }
+    let surfaces = link("package::surfaces", &["dielectrics"].into(), None);
+    assert!(surfaces.bindings.contains(&(1, 8)) && surfaces.bindings.contains(&(1, 9)));
+}

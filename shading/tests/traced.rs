@@ -33,6 +33,7 @@ fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Image>) -> Scen
         name: "quad".into(),
         vertices: corners.map(|(u, v)| vertex(quad, u, v)).to_vec(),
         indices: vec![0, 1, 2, 0, 2, 3],
+        colors: Vec::new(),
         material: 0,
         bounds,
     });
@@ -62,7 +63,8 @@ fn grey(albedo: f32) -> Material {
 }
 
 fn surface(normal: DVec3, albedo: f64, roughness: f64) -> Surface {
-    Surface { base_color: DVec3::splat(albedo), metallic: 0.0, normal, roughness }
+    let dielectric = Default::default();
+    Surface { base_color: DVec3::splat(albedo), metallic: 0.0, normal, roughness, dielectric }
 }
 
 fn sample(position: DVec3, normal: DVec3, roughness: f64) -> SurfaceSample {

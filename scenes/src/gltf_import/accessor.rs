@@ -77,7 +77,8 @@ impl File {
             1 => Type::Scalar,
             2 => Type::Vec2,
             3 => Type::Vec3,
-            _ => Type::Vec4,
+            4 => Type::Vec4,
+            _ => Type::Mat4,
         };
         if kind != accepted {
             let name = |t: Type| format!("{t:?}").to_uppercase();

@@ -4,16 +4,20 @@
 //! here, so that no file makes the importer panic.
 
 mod accessor;
+mod adapt;
 mod animation;
 mod area_lights;
+mod extensions;
 mod file;
 mod images;
 mod limits;
 mod materials;
 mod meshes;
+mod models;
 mod nodes;
 mod parts;
 mod repeats;
+mod skins;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -29,11 +33,13 @@ use crate::{CameraPath, Scene, SceneError, fit};
 
 /// Loads a glTF 2.0 file.
 ///
-/// Meshes used by several nodes are shared, each node becoming a model. Missing normals are
-/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Skins, morph
-/// targets, vertex colours, lines, points and directional lights are left out, and blended
-/// materials become masks; [`Scene::warnings`] says so. Lights without a range get the distance
-/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD). Those that
+/// Meshes used by several nodes are shared, each node becoming a model, and each instance of
+/// EXT_mesh_gpu_instancing. Skinned meshes are posed where their joints rest. Missing normals are
+/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Morph
+/// targets, lines, points, directional lights and animations of anything but cameras are left
+/// out, and blended materials become masks; [`Scene::warnings`] says so, and names every
+/// extension that is not read. Lights without a range get the distance at which their illuminance
+/// falls to [`THRESHOLD`](crate::THRESHOLD). Those that
 /// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
 /// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
 ///
@@ -56,14 +62,16 @@ use crate::{CameraPath, Scene, SceneError, fit};
 /// triangles or too many.
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let file = File::open(path)?;
-    let mut warnings = Warnings::default();
+    let mut warnings = file.take_notes();
     let materials = materials::load(&file, &mut warnings)?;
     warnings.append(file.take_notes());
-    let meshes = meshes::load(&file, &materials, &mut warnings)?;
-    let placed = nodes::load(&file, &meshes, &mut warnings)?;
+    let mut meshes = meshes::load(&file, &materials, &mut warnings)?;
+    let walk = nodes::walk(&file)?;
+    let placed = nodes::place(&file, &walk, &mut meshes, &mut warnings)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
+    animation::note_unplayed(&file, &walk, &mut warnings);
     let mut animated = None;
     let targets = animation::targets(&file);
     for chain in &placed.camera_chains {
@@ -98,6 +106,35 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         None => fit::path(&scene),
     };
     Ok(scene)
+}
+
+/// Loads the lights of a glTF 2.0 file and nothing else, so that it may hold nothing else.
+///
+/// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings.
+///
+/// # Errors
+///
+/// [`SceneError`] as [`load_gltf`] has them of the file's JSON, buffers, nodes and lights.
+pub(crate) fn load_gltf_lights(path: &Path) -> Result<Scene, SceneError> {
+    let file = File::open(path)?;
+    let mut warnings = file.take_notes();
+    let walk = nodes::walk(&file)?;
+    let lights = nodes::lights(&file, &walk, &mut warnings)?;
+    animation::note_unplayed(&file, &walk, &mut warnings);
+    Ok(Scene {
+        name: name(path),
+        meshes: Vec::new(),
+        materials: vec![crate::Material::default()],
+        images: Vec::new(),
+        instances: Vec::new(),
+        models: Vec::new(),
+        lights,
+        cameras: Vec::new(),
+        path: CameraPath::still(fit::ORIGIN),
+        bounds: crate::Aabb::EMPTY,
+        core_bounds: crate::Aabb::EMPTY,
+        warnings: warnings.into_lines(),
+    })
 }
 
 /// The file's stem, or its folder's name where that is just "scene".

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use assign::{Light, LightShape};
-use glam::{Mat4, Quat, Vec3};
+use glam::{Mat4, Quat, Vec3, Vec4};
 use gltf::json::{
     Index,
     camera::{Camera as JsonCamera, Type as CameraType},
@@ -12,15 +12,11 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{Warnings, area_lights, file::File, meshes::Meshes, warnings::kept_name};
-use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
-
-/// The most triangles drawn, every node counting its mesh's. A small file can place one large
-/// mesh often, and what follows takes time and memory by that number.
-pub(super) const MAX_TRIANGLES: u64 = 200_000_000;
-
-/// The most meshes drawn, every node counting those of its own.
-const MAX_INSTANCES: usize = 1 << 23;
+use super::{
+    Warnings, area_lights, file::File, meshes::Meshes,
+    models::{MAX_INSTANCES, MAX_TRIANGLES}, skins::Skins, warnings::kept_name,
+};
+use crate::{Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
 
 /// The most nodes between cameras and their roots, all cameras together: a deep tree can hold a
 /// camera at every node. The animation of further cameras is not looked for.
@@ -38,7 +34,31 @@ pub(super) struct Placed {
     /// How many nodes these hold together.
     chain_nodes: usize,
     /// Every node counts its mesh's; beyond [`MAX_TRIANGLES`], instances are no longer kept.
-    triangles: u64,
+    pub(super) triangles: u64,
+}
+
+/// A node of the scene that is drawn, and where.
+pub(super) struct Visit {
+    pub(super) ix: usize,
+    pub(super) to_world: Mat4,
+    /// The same with scales of 0 taken for 1: it turns directions where `to_world` loses them.
+    facing: Mat4,
+    /// Whether neither it nor a node above it is hidden (KHR_node_visibility).
+    is_visible: bool,
+}
+
+impl Visit {
+    /// Where the node is and which way it looks.
+    fn placed(&self) -> Mat4 {
+        Mat4 { w_axis: self.to_world.w_axis, ..self.facing }
+    }
+}
+
+/// The nodes of a scene, parents before their children.
+pub(super) struct Walk {
+    pub(super) visits: Vec<Visit>,
+    /// The parent of every node that is reached.
+    pub(super) parents: Vec<Option<usize>>,
 }
 
 /// A node's local transform, before any animation.
@@ -73,20 +93,48 @@ impl Local {
             }
         }
     }
+
+    /// The matrix with axes of length 0 replaced, so that it still turns what looks along them.
+    fn facing(&self) -> Mat4 {
+        match *self {
+            Self::Matrix(matrix) => with_axes(matrix),
+            Self::Parts { translation, rotation, scale } => {
+                let scale = Vec3::select(scale.cmpeq(Vec3::ZERO), Vec3::ONE, scale);
+                Mat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        }
+    }
+}
+
+/// A matrix whose axes of length 0 are replaced by ones across the others.
+fn with_axes(matrix: Mat4) -> Mat4 {
+    let mut axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
+    for ix in 0..3 {
+        if axes[ix] != Vec3::ZERO {
+            continue;
+        }
+        let (next, last) = (axes[(ix + 1) % 3], axes[(ix + 2) % 3]);
+        let across = next.cross(last).try_normalize();
+        let any = || {
+            let other = if next == Vec3::ZERO { last } else { next };
+            let unit = other.try_normalize().map(|axis| axis.any_orthonormal_vector());
+            unit.unwrap_or(Vec3::AXES[ix])
+        };
+        axes[ix] = across.unwrap_or_else(any);
+    }
+    let [x, y, z] = axes.map(|axis| axis.extend(0.0));
+    Mat4::from_cols(x, y, z, matrix.w_axis)
 }
 
 /// Walks the default scene (or the first, or all nodes without a parent).
-pub(super) fn load(
-    file: &File,
-    meshes: &Meshes,
-    warnings: &mut Warnings,
-) -> Result<Placed, SceneError> {
+pub(super) fn walk(file: &File) -> Result<Walk, SceneError> {
     let nodes = &file.root.nodes;
-    let mut placed = Placed::default();
     let mut parents = vec![None; nodes.len()];
     let mut seen = vec![false; nodes.len()];
-    let mut stack: Vec<_> = roots(file).into_iter().rev().map(|ix| (ix, Mat4::IDENTITY)).collect();
-    while let Some((ix, parent_to_world)) = stack.pop() {
+    let root = |ix| (ix, Mat4::IDENTITY, Mat4::IDENTITY, true);
+    let mut stack: Vec<_> = roots(file).into_iter().rev().map(root).collect();
+    let mut visits = Vec::new();
+    while let Some((ix, parent_to_world, parent_facing, shows)) = stack.pop() {
         if std::mem::replace(&mut seen[ix], true) {
             return Err(file.invalid(
                 format!("nodes[{ix}]"),
@@ -95,23 +143,41 @@ pub(super) fn load(
             ));
         }
         let node = &nodes[ix];
-        let to_world = parent_to_world * Local::of(node).matrix();
+        let local = Local::of(node);
+        let to_world = parent_to_world * local.matrix();
         if !to_world.is_finite() {
             return Err(file.invalid(format!("nodes[{ix}] transform"), "not finite", "finite"));
         }
-        let name = node.name.as_deref().map_or_else(|| format!("node {ix}"), kept_name);
-        if let Some(mesh) = node.mesh {
-            placed.add_model(&name, mesh.value(), to_world, meshes, warnings);
-        }
-        placed.add_light(file, node, to_world, warnings)?;
-        placed.lights.extend(area_lights::of_node(file, ix, node, to_world)?);
-        if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
-            let chain = placed.chain_within_limits(&parents, ix, warnings);
-            placed.add_camera(camera, &name, to_world, chain, warnings);
-        }
+        let facing = parent_facing * local.facing();
+        let is_visible = shows && is_visible(node);
         for child in node.children.iter().flatten().rev() {
             parents[child.value()] = Some(ix);
-            stack.push((child.value(), to_world));
+            stack.push((child.value(), to_world, facing, is_visible));
+        }
+        visits.push(Visit { ix, to_world, facing, is_visible });
+    }
+    Ok(Walk { visits, parents })
+}
+
+/// Places what the visited nodes hold.
+pub(super) fn place(
+    file: &File,
+    walk: &Walk,
+    meshes: &mut Meshes,
+    warnings: &mut Warnings,
+) -> Result<Placed, SceneError> {
+    let mut placed = Placed::default();
+    let mut skins = Skins::new(file, walk);
+    for visit in &walk.visits {
+        let node = &file.root.nodes[visit.ix];
+        let name = node.name.as_deref().map_or_else(|| format!("node {}", visit.ix), kept_name);
+        if visit.is_visible {
+            placed.add_models(file, visit, &name, meshes, &mut skins, warnings)?;
+            placed.add_lights(file, visit, warnings)?;
+        }
+        if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
+            let chain = placed.chain_within_limits(&walk.parents, visit.ix, warnings);
+            placed.add_camera(camera, &name, visit.placed(), chain, warnings);
         }
     }
     if placed.triangles > MAX_TRIANGLES {
@@ -127,6 +193,26 @@ pub(super) fn load(
         return Err(file.invalid(field, "too many", accepted));
     }
     Ok(placed)
+}
+
+/// The lights of the visited nodes alone.
+pub(super) fn lights(
+    file: &File,
+    walk: &Walk,
+    warnings: &mut Warnings,
+) -> Result<Vec<Light>, SceneError> {
+    let mut placed = Placed::default();
+    for visit in walk.visits.iter().filter(|visit| visit.is_visible) {
+        placed.add_lights(file, visit, warnings)?;
+    }
+    Ok(placed.lights)
+}
+
+/// KHR_node_visibility: a hidden node hides all nodes below it.
+fn is_visible(node: &Node) -> bool {
+    let extensions = node.extensions.as_ref().map(|e| &e.others);
+    let visibility = extensions.and_then(|all| all.get("KHR_node_visibility"));
+    visibility.and_then(|v| v.get("visible")?.as_bool()).unwrap_or(true)
 }
 
 fn roots(file: &File) -> Vec<usize> {
@@ -163,32 +249,17 @@ impl Placed {
         chain
     }
 
-    fn add_model(
+    fn add_lights(
         &mut self,
-        name: &str,
-        mesh: usize,
-        object_to_world: Mat4,
-        meshes: &Meshes,
+        file: &File,
+        visit: &Visit,
         warnings: &mut Warnings,
-    ) {
-        let range = meshes.ranges[mesh].clone();
-        if range.start == range.end {
-            return;
-        }
-        if object_to_world.determinant() == 0.0 {
-            warnings.add(format!("node {name:?}: scaled to no volume, not drawn"));
-            return;
-        }
-        let parts = &meshes.meshes[range.start as usize..range.end as usize];
-        let triangles = parts.iter().map(|mesh| mesh.triangle_count() as u64).sum();
-        self.triangles = self.triangles.saturating_add(triangles);
-        if self.triangles > MAX_TRIANGLES || self.instances.len() > MAX_INSTANCES {
-            return;
-        }
-        let bounds = parts.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
-        let model = self.models.len() as u32;
-        self.models.push(Model { name: name.into(), bounds_object: bounds, object_to_world });
-        self.instances.extend(range.map(|mesh| Instance { mesh, model }));
+    ) -> Result<(), SceneError> {
+        let node = &file.root.nodes[visit.ix];
+        self.add_light(file, node, visit.placed(), warnings)?;
+        let area = area_lights::of_node(file, visit.ix, node, visit.to_world, warnings)?;
+        self.lights.extend(area);
+        Ok(())
     }
 
     fn add_light(

@@ -1,3 +1,6 @@
+mod placing;
+mod valid;
+
 use std::path::PathBuf;
 
 use assign::{LightKind, LightShape};
@@ -366,31 +369,21 @@ fn no_damage_makes_it_panic() {
     }
     let mut pointers = Vec::new();
     leaves(&whole.json, String::new(), &mut pointers);
-    let odd = [
-        json!(0),
-        json!(1),
-        json!(-1),
-        json!(7),
-        json!(4_000_000_000_u32),
-        json!(u64::MAX),
-        json!(1e30),
-        json!(1e300),
-        json!("x"),
-        json!(null),
-        json!([]),
-        json!({}),
-        json!(5125),
-        json!(5120),
-    ];
     for pointer in &pointers {
-        for value in &odd {
+        for value in odd_values() {
             let mut json = whole.json.clone();
-            *json.pointer_mut(pointer).expect("a leaf") = value.clone();
+            *json.pointer_mut(pointer).expect("a leaf") = value;
             let damaged = Sample { json, binary: whole.binary.clone() };
             count(load(&damaged));
         }
     }
     assert!(loaded > 20 && refused > 20, "{loaded} loaded, {refused} refused");
+}
+
+fn odd_values() -> impl Iterator<Item = Value> {
+    let numbers = [json!(0), json!(1), json!(-1), json!(7), json!(4_000_000_000_u32)];
+    let large = [json!(u64::MAX), json!(1e30), json!(1e300), json!(5125), json!(5120)];
+    numbers.into_iter().chain(large).chain([json!("x"), json!(null), json!([]), json!({})])
 }
 
 fn leaves(value: &Value, at: String, out: &mut Vec<String>) {

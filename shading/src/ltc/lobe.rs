@@ -150,6 +150,7 @@ mod tests {
                     metallic,
                     normal: DVec3::Z,
                     roughness,
+                    dielectric: Default::default(),
                 };
                 let reflected = reflect_light(&surface(1.0, 0.3), lobe.to_eye, to_light).x;
                 let expected = specular * (0.3 * (1.0 - schlick) + schlick);

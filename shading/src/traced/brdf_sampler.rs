@@ -80,7 +80,9 @@ mod tests {
         let mut rng = Pcg64Mcg::seed_from_u64(3);
         let normal = DVec3::new(0.3, 0.8, -0.5).normalize();
         for (roughness, metallic) in [(0.3, 0.0), (0.6, 1.0), (1.0, 0.4)] {
-            let surface = Surface { base_color: DVec3::ONE, metallic, normal, roughness };
+            let dielectric = Default::default();
+            let surface =
+                Surface { base_color: DVec3::ONE, metallic, normal, roughness, dielectric };
             let to_eye = (normal + DVec3::X).normalize();
             let sampler = BrdfSampler::new(&surface, to_eye);
             // The solid angle of a cone's directions, each counted by the inverse of its density.

@@ -189,6 +189,17 @@ impl<'a> TracedScene<'a> {
         [0, 1, 2].map(|corner| mesh.vertices[mesh.indices[first + corner] as usize])
     }
 
+    /// The colour that a hit's vertices give it, white where they have none.
+    fn vertex_color(&self, hit: &Hit) -> Vec4 {
+        let mesh = self.mesh(hit);
+        if mesh.colors.is_empty() {
+            return Vec4::ONE;
+        }
+        let first = 3 * self.sources[hit.triangle as usize].1 as usize;
+        let corners = [0, 1, 2].map(|corner| mesh.colors[mesh.indices[first + corner] as usize]);
+        interpolate(corners, hit.weights, Vec4::from)
+    }
+
     /// Whether the front is hit: a mirrored model turns its triangles' sense.
     fn is_front(&self, hit: &Hit) -> bool {
         hit.is_front == (self.record(hit).handedness > 0.0)
@@ -204,7 +215,7 @@ impl<'a> TracedScene<'a> {
         let material = self.material(hit);
         let Some(cutoff) = material.alpha_cutoff else { return true };
         let uv = interpolate(self.vertices(hit).map(|v| v.uv), hit.weights, Vec2::from);
-        self.base_color(material, uv, |_| 0.0).w >= cutoff
+        self.base_color(material, uv, |_| 0.0).w * self.vertex_color(hit).w >= cutoff
     }
 
     fn geometric_normal(&self, hit: &Hit) -> DVec3 {
@@ -233,14 +244,19 @@ impl<'a> TracedScene<'a> {
         if let Some(texture) = &material.emissive_texture {
             emission *= self.texel(texture, uv, &level).truncate();
         }
+        let color = self.vertex_color(hit);
+        if material.unlit {
+            emission *= color.truncate();
+        }
         let normal = self.shading_normal(hit, &vertices, direction, uv, &level);
         SurfaceSample {
             position,
             surface: Surface {
-                base_color: self.base_color(material, uv, &level).truncate().as_dvec3(),
+                base_color: (self.base_color(material, uv, &level) * color).truncate().as_dvec3(),
                 metallic: f64::from(metallic),
                 normal,
                 roughness: f64::from(roughness),
+                dielectric: material.dielectric.into(),
             },
             emission: emission.as_dvec3(),
             to_eye: -direction,

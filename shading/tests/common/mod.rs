@@ -27,6 +27,7 @@ fn quad(material: u32) -> Mesh {
         name: format!("quad {material}"),
         vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
+        colors: Vec::new(),
         material,
         bounds: Aabb::new(Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)),
     }
