@@ -1,16 +1,12 @@
 //! Animated cameras: the tracks of the nodes from the root to the camera, evaluated exactly.
 
-use glam::{Mat4, Quat, Vec4, Vec4Swizzles};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec4, Vec4Swizzles};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
     validation::Checked,
 };
 
-use super::{
-    Warnings,
-    file::File,
-    nodes::{Local, pose},
-};
+use super::{Warnings, cameras::pose, file::File, nodes::Local};
 use crate::{Pose, SceneError};
 
 /// A camera whose node, or one above it, is animated.
@@ -18,6 +14,8 @@ use crate::{Pose, SceneError};
 pub(crate) struct AnimatedNode {
     /// From the root to the camera.
     chain: Vec<Part>,
+    /// Where world space begins, in the file's.
+    origin: DVec3,
     start_s: f32,
     end_s: f32,
 }
@@ -45,6 +43,7 @@ struct Track {
 pub(super) fn load(
     file: &File,
     chain: &[usize],
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<AnimatedNode>, SceneError> {
     let moves = |channel: &&Channel| chain.contains(&channel.target.node.value());
@@ -93,7 +92,7 @@ pub(super) fn load(
     let ends = |t: &Track| (t.times[0], t.times[t.times.len() - 1]);
     let start_s = tracks().map(|t| ends(t).0).fold(f32::INFINITY, f32::min);
     let end_s = tracks().map(|t| ends(t).1).fold(f32::NEG_INFINITY, f32::max);
-    Ok(Some(AnimatedNode { chain: parts, start_s, end_s }))
+    Ok(Some(AnimatedNode { chain: parts, origin, start_s, end_s }))
 }
 
 fn track(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, SceneError> {
@@ -130,8 +129,9 @@ impl AnimatedNode {
     /// The pose at `t` (0..1) of the animation.
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
-        let world = self.chain.iter().fold(Mat4::IDENTITY, |world, part| world * part.matrix(time));
-        pose(&world)
+        let root = DMat4::from_translation(-self.origin);
+        let parts = self.chain.iter().map(|part| part.matrix(time).as_dmat4());
+        pose(&parts.fold(root, |world, part| world * part))
     }
 }
 

@@ -6,11 +6,13 @@
 mod accessor;
 mod animation;
 mod area_lights;
+mod cameras;
 mod file;
 mod images;
 mod materials;
 mod meshes;
 mod nodes;
+mod origin;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -56,7 +58,8 @@ impl Warnings {
 /// more than 2 million triangles are found from a sample of them.
 ///
 /// The path is the animation of the first animated camera; else it is fitted to the scene and
-/// starts at the first camera where there is one.
+/// starts at the first camera where there is one. A scene that stands far from its file's origin is
+/// moved to its own ([`Scene::origin`]).
 ///
 /// # Errors
 ///
@@ -68,14 +71,16 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let mut warnings = Warnings::default();
     let materials = materials::load(&file, &mut warnings)?;
     let meshes = meshes::load(&file, &materials, &mut warnings)?;
-    let placed = nodes::load(&file, &meshes, &mut warnings)?;
+    let (placed, origin) = origin::place(&file, &meshes, &mut warnings)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
     let mut animated = None;
-    for chain in &placed.camera_chains {
+    let mut view_camera = 0;
+    for (ix, chain) in placed.camera_chains.iter().enumerate() {
         if animated.is_none() {
-            animated = animation::load(&file, chain, &mut warnings)?;
+            animated = animation::load(&file, chain, origin, &mut warnings)?;
+            view_camera = if animated.is_some() { ix } else { 0 };
         }
     }
     let mut scene = Scene {
@@ -87,6 +92,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         models: placed.models,
         lights: placed.lights,
         cameras: placed.cameras,
+        view_camera,
+        origin,
         path: CameraPath::still(fit::ORIGIN),
         bounds: crate::Aabb::EMPTY,
         core_bounds: crate::Aabb::EMPTY,

@@ -1,19 +1,16 @@
 //! The node hierarchy: placed models, lights and cameras.
 
-use std::f32::consts::PI;
-
 use assign::{Light, LightShape};
-use glam::{Mat4, Quat, Vec3};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec3};
 use gltf::json::{
     Index,
-    camera::{Camera as JsonCamera, Type as CameraType},
     extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType},
     scene::Node,
     validation::Checked,
 };
 
-use super::{Warnings, area_lights, file::File, meshes::Meshes};
-use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
+use super::{Warnings, area_lights, cameras, file::File, meshes::Meshes};
+use crate::{Aabb, Camera, Instance, Model, SceneError, lights::THRESHOLD};
 
 /// The most triangles drawn, every node counting its mesh's. A small file can place one large
 /// mesh often, and what follows takes time and memory by that number.
@@ -66,17 +63,20 @@ impl Local {
     }
 }
 
-/// Walks the default scene (or the first, or all nodes without a parent).
+/// Walks the default scene (or the first, or all nodes without a parent). World space begins at
+/// `origin` of the file: transforms are multiplied in f64, so that nothing is lost far away.
 pub(super) fn load(
     file: &File,
     meshes: &Meshes,
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Placed, SceneError> {
     let nodes = &file.root.nodes;
     let mut placed = Placed::default();
     let mut parents = vec![None; nodes.len()];
     let mut seen = vec![false; nodes.len()];
-    let mut stack: Vec<_> = roots(file).into_iter().rev().map(|ix| (ix, Mat4::IDENTITY)).collect();
+    let root = DMat4::from_translation(-origin);
+    let mut stack: Vec<_> = roots(file).into_iter().rev().map(|ix| (ix, root)).collect();
     while let Some((ix, parent_to_world)) = stack.pop() {
         if std::mem::replace(&mut seen[ix], true) {
             return Err(file.invalid(
@@ -86,7 +86,8 @@ pub(super) fn load(
             ));
         }
         let node = &nodes[ix];
-        let to_world = parent_to_world * Local::of(node).matrix();
+        let exact = parent_to_world * Local::of(node).matrix().as_dmat4();
+        let to_world = exact.as_mat4();
         if !to_world.is_finite() {
             return Err(file.invalid(format!("nodes[{ix}] transform"), "not finite", "finite"));
         }
@@ -97,12 +98,13 @@ pub(super) fn load(
         placed.add_light(file, node, to_world, warnings)?;
         placed.lights.extend(area_lights::of_node(file, ix, node, to_world)?);
         if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
-            let chain = chain(&parents, ix);
-            placed.add_camera(camera, &name, to_world, chain, warnings);
+            let camera_ix = node.camera.map_or(0, |camera| camera.value());
+            placed.cameras.push(cameras::placed(file, camera_ix, camera, &name, &exact)?);
+            placed.camera_chains.push(chain(&parents, ix));
         }
         for child in node.children.iter().flatten().rev() {
             parents[child.value()] = Some(ix);
-            stack.push((child.value(), to_world));
+            stack.push((child.value(), exact));
         }
     }
     if placed.triangles > MAX_TRIANGLES {
@@ -188,62 +190,13 @@ impl Placed {
         self.lights.push(light);
         Ok(())
     }
-
-    fn add_camera(
-        &mut self,
-        json: &JsonCamera,
-        node_name: &str,
-        to_world: Mat4,
-        chain: Vec<usize>,
-        warnings: &mut Warnings,
-    ) {
-        let name = json.name.clone().unwrap_or_else(|| node_name.into());
-        let (lens, near_m, far_m) = match (json.type_, &json.perspective, &json.orthographic) {
-            (Checked::Valid(CameraType::Perspective), Some(p), _) => {
-                (Lens::Perspective { fov_y: p.yfov }, p.znear, p.zfar)
-            }
-            (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
-                let lens =
-                    Lens::Orthographic { half_width: o.xmag.abs(), half_height: o.ymag.abs() };
-                (lens, o.znear, Some(o.zfar))
-            }
-            _ => {
-                warnings.add(format!("camera {name:?} is left out: no projection"));
-                return;
-            }
-        };
-        let (lens_ok, least_near) = match lens {
-            Lens::Perspective { fov_y } => (fov_y > 0.0 && fov_y < PI, f32::MIN_POSITIVE),
-            Lens::Orthographic { half_width, half_height } => {
-                (half_width > 0.0 && half_height > 0.0, 0.0)
-            }
-        };
-        let far_ok = far_m.is_none_or(|far| far > near_m && far.is_finite());
-        if !(lens_ok && near_m >= least_near && near_m.is_finite() && far_ok) {
-            warnings.add(format!(
-                "camera {name:?} is left out: field of view, near or far out of range"
-            ));
-            return;
-        }
-        self.camera_chains.push(chain);
-        self.cameras.push(Camera { name, pose: pose(&to_world), lens, near_m, far_m });
-    }
-}
-
-/// A glTF camera or spot looks down its node's -Z; scale does not matter.
-pub(super) fn pose(to_world: &Mat4) -> Pose {
-    let eye = to_world.w_axis.truncate();
-    let forward = (-to_world.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
-    let up = to_world.y_axis.truncate();
-    let up = (up - forward * forward.dot(up)).normalize_or(forward.any_orthonormal_vector());
-    Pose { eye, target: eye + forward, up }
 }
 
 /// Intensity is candela times colour. A light without a range gets the one at which its
 /// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported
 /// where lights are uploaded. `None` for directional lights.
 fn convert_light(json: &JsonLight, to_world: Mat4) -> Option<Light> {
-    let pose = pose(&to_world);
+    let pose = cameras::pose(&to_world.as_dmat4());
     let intensity = Vec3::from(json.color) * json.intensity;
     let shines =
         intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() > 0.0;
