@@ -30,6 +30,7 @@ use crate::{
     error::HarnessError,
     report::{self, needs_built_hierarchy},
     results::{BASELINE, EARLY_EXIT, Record, Results},
+    sight::untested,
 };
 
 /// The strategies of the first round.
@@ -144,6 +145,14 @@ impl<'a> Search<'a> {
         let poses = (moves && args.stage.camera.is_none())
             .then(|| args.poses.unwrap_or(default))
             .filter(|poses| *poses > 1);
+        let gpu = bench.gpu().clone();
+        let stage = bench.stage(&args.stage)?;
+        let all: Vec<u32> = (0..poses.unwrap_or(0)).collect();
+        if let Some(why) = untested(&gpu, stage, &all, poses.unwrap_or(0))? {
+            let why = why.words(u64::from(stage.lights.count()), poses.is_some());
+            let message = format!("advise: nothing can be said: {why}");
+            return Err(CliError::new(message + " (--camera, --lights)").into());
+        }
         Ok(Self { args, bench, shared: AdviseArgs::shared_words(command), poses })
     }
 

@@ -4,6 +4,7 @@
 //! ([`CliError`]), and exit code [`BAD_INPUT`]. Names of scenes and strategies are passed on as
 //! they are; whoever looks them up offers the [`nearest`] ones.
 
+mod camera;
 mod cdi;
 mod error;
 mod fit_ltc;
@@ -22,6 +23,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use shading::{AreaModel, Cut};
 
+pub use camera::{Camera, CameraPose};
 pub use cdi::CdiArgs;
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
@@ -30,7 +32,7 @@ pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
 pub(crate) use values::MAX_CHECKS;
-pub use values::{Camera, CameraPose, DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
+pub use values::{DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
 pub use vpl::{BuildChoice, DeepArgs, PrimaryRay, RangeChoice, SpreadChoice, VplArgs};
 
 use crate::results::{Mode, TruthLevel};

@@ -12,15 +12,16 @@ use crate::{
     checks::{check_modes, check_writable, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
     cli::{CliError, CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
-    drift::unsteady,
+    drift::note_drift,
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
-    measure::{Contest, Plan, Timetable, unbounded_image},
+    measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{BASELINE, Clock, Machine, Record, RejectedLight, Results, Truth},
+    results::{BASELINE, Machine, RejectedLight, Results, Truth, Untested},
+    sight::untested,
     stage::Stage,
 };
 
@@ -148,10 +149,13 @@ impl Bench {
             gpu,
             stage,
             pictures: Vec::new(),
+            untested: None,
         };
+        run.follow_path();
         run.results.warnings.extend(left_out);
         run.warn(&choices);
         remove_stale(&args.out)?;
+        run.look()?;
         run.measure_all(&choices)?;
         Ok((run.results, run.pictures))
     }
@@ -180,9 +184,41 @@ struct Run<'a> {
     gpu: Gpu,
     stage: &'a mut Stage,
     pictures: Pictures,
+    untested: Option<Untested>,
 }
 
 impl Run<'_> {
+    /// Sets the stage for the poses that are timed.
+    fn follow_path(&mut self) {
+        if self.args.path {
+            self.stage.follow_path(self.plan.timed);
+        }
+    }
+
+    /// Puts camera and lights back to what the arguments ask for.
+    fn reset(&mut self) -> Result<(), HarnessError> {
+        self.stage.set_up(&self.gpu, &self.args.stage)?;
+        self.follow_path();
+        Ok(())
+    }
+
+    /// Looks whether the run puts anything to a test, and says loudly where it does not.
+    fn look(&mut self) -> Result<(), HarnessError> {
+        let Plan { timed, checks, .. } = self.plan;
+        let poses = if self.args.path { checked_poses(timed, checks) } else { Vec::new() };
+        self.untested = untested(&self.gpu, self.stage, &poses, timed)?;
+        if self.args.path {
+            self.reset()?;
+        }
+        let lights = u64::from(self.stage.lights.count());
+        if let Some(why) = self.untested.map(|why| why.words(lights, self.args.path)) {
+            let warning = format!("NOTHING WAS TESTED: {why}, so nothing here is exact or ranked");
+            eprintln!("warning  {warning}");
+            self.results.warnings.insert(0, warning);
+        }
+        Ok(())
+    }
+
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self, choices: &[Choice]) {
         note_faults(&mut self.results, self.stage);
@@ -299,36 +335,20 @@ impl Run<'_> {
                 times,
             );
             note_drift(&mut record);
+            record.untested = self.untested;
             self.results.records.push(record);
         }
         if self.args.path {
-            self.stage.set_up(&self.gpu, &self.args.stage)?;
+            self.reset()?;
         }
         Ok(())
     }
 }
 
-/// Notes on a record that its times drifted while it was measured. A GPU's clock only, and a still
-/// camera only: along a path poses differ in their work, and a software adapter has no clock to raise.
-fn note_drift(record: &mut Record) {
-    if record.along_path || record.clock != Clock::GpuTimestamps {
-        return;
-    }
-    let Some(why) = unsteady(&record.frames_ms()) else { return };
-    let drift = format!(
-        "{} in {}: its times are not steady, measure it again: {why}",
-        record.strategy,
-        record.mode.name()
-    );
-    record.note = Some(match record.note.take() {
-        Some(note) => format!("{note}; {drift}"),
-        None => drift,
-    });
-}
-
 /// Notes what was wrong with the scene and its lights.
 pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
     results.warnings.extend(stage.scene.warnings.iter().cloned());
+    results.warnings.extend(stage.notes.iter().cloned());
     let rejected = stage.lights.rejected().iter();
     results.rejected_lights = rejected
         .map(|rejected| RejectedLight {
@@ -364,7 +384,7 @@ fn describe(stage: &Stage) {
     if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
         eprintln!("lights   scattered with a mean radius of {:.3} m", stage.radius_scale);
     }
-    for warning in &stage.scene.warnings {
+    for warning in stage.scene.warnings.iter().chain(&stage.notes) {
         eprintln!("warning  {warning}");
     }
     for rejected in stage.lights.rejected() {

@@ -2,6 +2,7 @@
 
 pub mod advise;
 pub mod again;
+pub mod camera;
 pub mod cdi;
 pub mod chart;
 mod checks;
@@ -28,6 +29,7 @@ pub mod registry;
 pub mod report;
 pub mod results;
 pub mod schedule;
+pub mod sight;
 pub mod stage;
 pub mod stored;
 pub mod study;

@@ -24,6 +24,7 @@ mod record;
 mod renamed;
 mod stats;
 mod truth_image;
+mod untested;
 
 use std::collections::BTreeMap;
 
@@ -39,6 +40,7 @@ pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use planes::{PlaneSource, Planes};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
+pub use untested::Untested;
 
 use passes::nan_from_null;
 
@@ -249,6 +251,10 @@ pub struct Record {
     pub checked_pairs: Option<u64>,
     /// View samples: pixels that show a surface; 0 where lists were not checked.
     pub samples: u64,
+    /// Why the run certifies nothing: its view shows no surface, or no light reaches what it shows.
+    /// `null` where it was tested, and in older results.
+    #[serde(default)]
+    pub untested: Option<Untested>,
     /// Largest difference of a channel to the image of no culling, linear HDR; `null` where
     /// there was no such image, or the difference is not finite.
     #[serde(default)]

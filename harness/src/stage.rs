@@ -1,12 +1,13 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
 use assign::{Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MIN_RANGE_M, View};
-use glam::Vec3;
-use scenes::{Aabb, LightSpec, Places, Pose, Scene, primary_light, scatter_lights};
+use glam::{DVec3, Vec3};
+use scenes::{Aabb, LightSpec, Places, Scene, primary_light, scatter_lights};
 use shading::{AreaModel, Renderer};
 
 use crate::{
-    cli::{Camera, CliError, LightBox, StageArgs},
+    camera,
+    cli::{CliError, LightBox, StageArgs},
     error::HarnessError,
     optics::Optics,
     results::{Planes, Vpls},
@@ -35,6 +36,8 @@ pub struct Stage {
     pub vpls: Option<Vpls>,
     /// The camera.
     pub view: View,
+    /// What the camera's planes cut away, and the like: one sentence each.
+    pub notes: Vec<String>,
     /// The pipeline.
     pub renderer: Renderer,
     vpl_maker: VplMaker,
@@ -47,17 +50,22 @@ pub struct Stage {
 struct Set {
     optics: Optics,
     view: View,
+    notes: Vec<String>,
     radius_scale: f64,
     lit: Lit,
 }
 
 impl Set {
     fn new(scene: &Scene, unscaled_m: f32, args: &StageArgs) -> Result<Self, HarnessError> {
-        let optics = Optics::new(scene, args)?;
-        let view = optics.view(scene, pose_of(scene, args), [args.size.width, args.size.height]);
+        let mut optics = Optics::new(scene, args)?;
+        let size = [args.size.width, args.size.height];
+        let pose = camera::pose(scene, args)?;
+        optics.fit_near(scene, &[optics.view(scene, pose, size)]);
+        let view = optics.view(scene, pose, size);
+        let notes = optics.notes(scene, &view);
         let radius_scale = args.radius_scale.unwrap_or_else(|| radius_scale_of(unscaled_m));
         let lit = Lit::new(scene, radius_scale, args)?;
-        Ok(Self { optics, view, radius_scale, lit })
+        Ok(Self { optics, view, notes, radius_scale, lit })
     }
 }
 
@@ -77,7 +85,7 @@ impl Stage {
             // What is seen is what the primary light sends, and the truth knows nothing else.
             scene = scene.without_emission();
         }
-        let Set { optics, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
+        let Set { optics, view, notes, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
         scene.warnings.extend(lit.warnings.iter().map(|line| format!("--lights-from: {line}")));
         Ok(Self {
             scene_hash: scene.hash(),
@@ -92,6 +100,7 @@ impl Stage {
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
+            notes,
             optics,
             unscaled_m,
         })
@@ -100,12 +109,14 @@ impl Stage {
     /// The same scene under the lights and from the camera of other arguments, which must name the
     /// same scene at the same scale.
     pub fn set_up(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
-        let Set { optics, view, radius_scale, lit } = Set::new(&self.scene, self.unscaled_m, args)?;
+        let Set { optics, view, notes, radius_scale, lit } =
+            Set::new(&self.scene, self.unscaled_m, args)?;
         self.radius_scale = radius_scale;
         self.light_box = lit.bounds;
         self.own_lights = lit.own;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
         self.view = view;
+        self.notes = notes;
         self.optics = optics;
         self.bounce(gpu, args)
     }
@@ -140,6 +151,23 @@ impl Stage {
         let size = [self.view.viewport.width, self.view.viewport.height];
         self.view = self.optics.view(&self.scene, self.scene.path.pose(frame, count), size);
         self.prepare()
+    }
+
+    /// Brings the near plane in front of every surface that the view or a pose of the path shows, of
+    /// `count` poses, where no option and no file says where it is.
+    pub fn follow_path(&mut self, count: u32) {
+        let size = [self.view.viewport.width, self.view.viewport.height];
+        let pose = |frame| self.scene.path.pose(frame, count);
+        let mut views: Vec<View> =
+            (0..count).map(|frame| self.optics.view(&self.scene, pose(frame), size)).collect();
+        views.push(self.view);
+        self.optics.fit_near(&self.scene, &views);
+        self.view.near_m = self.optics.near_m();
+    }
+
+    /// The eye in the coordinates of the scene's file, metres.
+    pub fn eye(&self) -> DVec3 {
+        self.scene.origin + self.view.eye().as_dvec3()
     }
 
     /// Near and far plane of the view.
@@ -182,7 +210,8 @@ impl Lit {
         let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
         let mut warnings = Vec::new();
         if let Some(file) = &args.lights_from {
-            let other = scenes::open_lights(file)?.scaled(args.scene_scale as f32)?;
+            let origin = scene.origin / args.scene_scale;
+            let other = scenes::open_lights(file, origin)?.scaled(args.scene_scale as f32)?;
             if other.lights.is_empty() {
                 let accepted = "a file that holds lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
@@ -256,15 +285,6 @@ fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
 fn radius_scale_of(diagonal_m: f32) -> f64 {
     let diagonal_m = f64::from(diagonal_m);
     (diagonal_m / diagonal_m.clamp(10.0, 60.0)).clamp(1e-6, 1e6)
-}
-
-/// The pose asked for, or the first of the scene's path.
-fn pose_of(scene: &Scene, args: &StageArgs) -> Pose {
-    match args.camera {
-        None => scene.path.pose(0, 1),
-        Some(Camera::OnPath { frame, count }) => scene.path.pose(frame, count),
-        Some(Camera::Pose(pose)) => Pose::new(Vec3::from(pose.eye), Vec3::from(pose.target)),
-    }
 }
 
 #[cfg(test)]

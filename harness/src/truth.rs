@@ -16,6 +16,7 @@ use crate::{
     error::HarnessError,
     machine::machine,
     results::{Results, Truth, TruthImage, TruthLevel, write_atomically},
+    sight::untested,
     stage::Stage,
 };
 
@@ -86,6 +87,12 @@ pub fn render(
     let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes: Vec::new() };
     let mut results = Results::new(machine(&gpu), command, level);
     note_faults(&mut results, stage);
+    if let Some(why) = untested(&gpu, stage, &[], 0)? {
+        let why = why.words(u64::from(stage.lights.count()), false);
+        let warning = format!("NOTHING IS LIT directly: {why}");
+        eprintln!("warning  {warning}");
+        results.warnings.insert(0, warning);
+    }
     results.truth_image = Some(truth);
     Ok(results)
 }

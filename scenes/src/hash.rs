@@ -33,8 +33,9 @@ impl Feed {
         }
     }
 
-    fn pose(&mut self, pose: &Pose) {
-        for v in [pose.eye, pose.target, pose.up] {
+    /// The eye, a point looked at, and what is up.
+    fn pose(&mut self, marks: [Vec3; 3]) {
+        for v in marks {
             self.floats(&v.to_array());
         }
     }
@@ -80,7 +81,7 @@ impl Scene {
         let mut feed = Feed(Hasher::new());
         feed.int(u64::from(VERSION));
         for frame in 0..PATH_POSES {
-            feed.pose(&self.path.pose(frame, PATH_POSES));
+            feed.pose(self.path.marks(frame, PATH_POSES));
         }
         feed.0.finalize().to_hex().to_string()
     }
@@ -170,7 +171,8 @@ impl Scene {
     fn hash_cameras(&self, feed: &mut Feed) {
         feed.int(self.cameras.len() as u64);
         for camera in &self.cameras {
-            feed.pose(&camera.pose);
+            let Pose { eye, up, .. } = camera.pose;
+            feed.pose([eye, eye + camera.pose.forward(), up]);
             feed.floats(&match camera.lens {
                 Lens::Perspective { fov_y } => [0.0, fov_y, 0.0],
                 Lens::Orthographic { half_width, half_height } => [1.0, half_width, half_height],
@@ -186,7 +188,7 @@ const REFLECTANCES: u64 = 0x0066_3066_3930;
 
 #[cfg(test)]
 mod tests {
-    use crate::{CameraPath, Pose, atrium};
+    use crate::{CameraPath, atrium};
 
     /// The first pose, where every path of a scene starts, does not tell paths apart.
     #[test]
@@ -194,7 +196,7 @@ mod tests {
         let scene = atrium(1);
         let mut other = scene.clone();
         let first = scene.path.pose(0, 1);
-        other.path = CameraPath::still(Pose::new(first.eye, first.target));
+        other.path = CameraPath::still(first);
         assert_eq!(other.path.pose(0, 1).eye, first.eye);
         assert_eq!(scene.hash(), other.hash());
         assert_ne!(scene.path_hash(), other.path_hash());

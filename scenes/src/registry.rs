@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use glam::DVec3;
+
 use crate::{Scene, SceneError, TownSize, atrium, gltf_import::load_gltf_lights, load_gltf, town};
 
 /// A procedural scene.
@@ -57,16 +59,21 @@ pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
 }
 
 /// Opens the lights of a procedural scene or of a glTF file: a scene whose lights are all there
-/// is to use. The file may hold nothing but lights.
+/// is to use. The file may hold nothing but lights. World space
+/// begins at `origin` of the file.
 ///
 /// # Errors
 ///
 /// As [`open`], but for scenes without triangles.
-pub fn open_lights(name_or_path: &str) -> Result<Scene, SceneError> {
-    match gltf_path(name_or_path) {
-        Some(path) => load_gltf_lights(path),
-        None => open(name_or_path),
+pub fn open_lights(name_or_path: &str, origin: DVec3) -> Result<Scene, SceneError> {
+    if let Some(path) = gltf_path(name_or_path) {
+        return load_gltf_lights(path, origin);
     }
+    let mut scene = open(name_or_path)?;
+    for light in &mut scene.lights {
+        light.position = (light.position.as_dvec3() - origin).as_vec3();
+    }
+    Ok(scene)
 }
 
 /// The path where a name is that of a glTF file.

@@ -2,7 +2,7 @@
 
 use assign::{Light, LightShape};
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 
 use crate::{Aabb, CameraPath, Image, Material, Pose, SceneError};
 
@@ -27,6 +27,12 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// The scene's own cameras; may be empty.
     pub cameras: Vec<Camera>,
+    /// The camera whose lens and planes the scene is seen through where none is asked for: the one that
+    /// the path animates, else the first. Beyond the end where there are none.
+    pub view_camera: usize,
+    /// Where world space begins in the coordinates of the scene's file, metres: 0 but for files whose
+    /// scene stands far from their origin.
+    pub origin: DVec3,
     /// A camera's way through the scene; frame 0 shows a lot of it.
     pub path: CameraPath,
     /// Box around all triangles, world space.
@@ -285,6 +291,7 @@ impl Scene {
             }
         }
         self.path = self.path.scaled(factor);
+        self.origin *= f64::from(factor);
         for bounds in [&mut self.bounds, &mut self.core_bounds] {
             *bounds = Aabb::new(bounds.min * factor, bounds.max * factor);
         }

@@ -50,6 +50,8 @@ fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Image>) -> Scen
         }],
         lights: Vec::new(),
         cameras: Vec::new(),
+        view_camera: 0,
+        origin: glam::DVec3::ZERO,
         path: CameraPath::still(Pose::new(Vec3::ZERO, Vec3::NEG_Z)),
         bounds,
         core_bounds: bounds,
@@ -378,7 +380,7 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
         let view = match *name {
             "atrium" => {
                 let pose = scene.path.pose(0, 1);
-                View::look_at(pose.eye, pose.target, 1.0, 0.05, size)
+                View::look_at(pose.eye, pose.eye + pose.forward(), 1.0, 0.05, size)
             }
             _ => common::view(size),
         };

@@ -54,7 +54,7 @@ fn error(record: &Record, id: &str) -> Option<f64> {
 
 /// Whether a method may lose light, or is known to have lost some.
 fn is_lossy(record: &Record) -> bool {
-    !record.is_control() && !record.is_exact()
+    !record.is_control() && !record.shows_no_loss()
 }
 
 /// The columns of a comparison: those of all, and errors where a method may lose light.

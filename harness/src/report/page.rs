@@ -169,7 +169,7 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String
     let value = (metric.value)(comparison, record);
     let class = match (metric.better, value) {
         (Better::Zero, Some(value)) if value != 0.0 => " class=\"fault\"",
-        (Better::Zero, Some(_)) => " class=\"good\"",
+        (Better::Zero, Some(_)) if record.untested.is_none() => " class=\"good\"",
         (Better::Less | Better::More, Some(value))
             if competes(record) && is_best(metric, comparison, record, value) =>
         {

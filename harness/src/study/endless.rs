@@ -182,9 +182,12 @@ mod tests {
             let Ok(pose) = afar(one, side).parse::<crate::cli::CameraPose>() else {
                 panic!("{} is a pose", afar(one, side));
             };
-            assert!(pose.eye[1] > one.max.y && pose.eye[0] < 0.0 && pose.eye[2] < 0.0, "{pose:?}");
+            assert!(
+                pose.eye[1] > f64::from(one.max.y) && pose.eye[0] < 0.0 && pose.eye[2] < 0.0,
+                "{pose:?}"
+            );
             let middle = [side as f32 * 15.0 - 15.0, 0.0, side as f32 * 7.0 - 7.0];
-            assert_eq!(pose.target, middle);
+            assert_eq!(pose.target, middle.map(f64::from));
         }
     }
 

@@ -100,6 +100,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         missed_pairs: Some(0),
         checked_pairs: Some(3_275_827),
         samples: 230_400,
+        untested: None,
         max_abs_diff: Some(0.0),
         max_rel_diff: Some(0.0),
         differing_channels: Some(0),

@@ -66,6 +66,8 @@ pub fn atrium(seed: u64) -> Scene {
         models: hall.models,
         lights: Vec::new(),
         cameras: Vec::new(),
+        view_camera: 0,
+        origin: glam::DVec3::ZERO,
         path: path(),
         bounds: Aabb::EMPTY,
         core_bounds: Aabb::EMPTY,

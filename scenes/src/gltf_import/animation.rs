@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use glam::{Mat4, Quat, Vec4, Vec4Swizzles};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec4, Vec4Swizzles};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
     validation::Checked,
@@ -10,8 +10,9 @@ use gltf::json::{
 
 use super::{
     Warnings, area_lights,
+    cameras::pose,
     file::File,
-    nodes::{Local, Walk, pose},
+    nodes::{Local, Walk},
 };
 use crate::{Pose, SceneError};
 
@@ -20,6 +21,8 @@ use crate::{Pose, SceneError};
 pub(crate) struct AnimatedNode {
     /// From the root to the camera.
     chain: Vec<Part>,
+    /// Where world space begins, in the file's.
+    origin: DVec3,
     start_s: f32,
     end_s: f32,
 }
@@ -53,6 +56,7 @@ pub(super) fn targets(file: &File) -> HashSet<usize> {
 pub(super) fn load(
     file: &File,
     chain: &[usize],
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<AnimatedNode>, SceneError> {
     let moves = |channel: &&Channel| chain.contains(&channel.target.node.value());
@@ -101,7 +105,7 @@ pub(super) fn load(
     let ends = |t: &Track| (t.times[0], t.times[t.times.len() - 1]);
     let start_s = tracks().map(|t| ends(t).0).fold(f32::INFINITY, f32::min);
     let end_s = tracks().map(|t| ends(t).1).fold(f32::NEG_INFINITY, f32::max);
-    Ok(Some(AnimatedNode { chain: parts, start_s, end_s }))
+    Ok(Some(AnimatedNode { chain: parts, origin, start_s, end_s }))
 }
 
 /// Says which animations are not played: those that move meshes, lights or joints.
@@ -177,8 +181,9 @@ impl AnimatedNode {
     /// The pose at `t` (0..1) of the animation.
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
-        let world = self.chain.iter().fold(Mat4::IDENTITY, |world, part| world * part.matrix(time));
-        pose(&world)
+        let root = DMat4::from_translation(-self.origin);
+        let parts = self.chain.iter().map(|part| part.matrix(time).as_dmat4());
+        pose(&parts.fold(root, |world, part| world * part))
     }
 }
 

@@ -7,6 +7,7 @@ mod accessor;
 mod adapt;
 mod animation;
 mod area_lights;
+mod cameras;
 mod extensions;
 mod file;
 mod images;
@@ -15,6 +16,7 @@ mod materials;
 mod meshes;
 mod models;
 mod nodes;
+mod origin;
 mod parts;
 mod repeats;
 mod skins;
@@ -24,6 +26,8 @@ mod tests;
 mod warnings;
 
 use std::path::Path;
+
+use glam::DVec3;
 
 pub(crate) use animation::AnimatedNode;
 use file::File;
@@ -53,7 +57,8 @@ use crate::{CameraPath, Scene, SceneError, fit};
 /// scene's folder is read with a warning that names it.
 ///
 /// The path is the animation of the first animated camera; else it is fitted to the scene and
-/// starts at the first camera where there is one.
+/// starts at the first camera where there is one. A scene that stands far from its file's origin is
+/// moved to its own ([`Scene::origin`]).
 ///
 /// # Errors
 ///
@@ -66,17 +71,18 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let materials = materials::load(&file, &mut warnings)?;
     warnings.append(file.take_notes());
     let mut meshes = meshes::load(&file, &materials, &mut warnings)?;
-    let walk = nodes::walk(&file)?;
-    let placed = nodes::place(&file, &walk, &mut meshes, &mut warnings)?;
+    let (walk, placed, origin) = origin::place(&file, &mut meshes, &mut warnings)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
     animation::note_unplayed(&file, &walk, &mut warnings);
     let mut animated = None;
     let targets = animation::targets(&file);
-    for chain in &placed.camera_chains {
+    let mut view_camera = 0;
+    for (ix, chain) in placed.camera_chains.iter().enumerate() {
         if animated.is_none() && chain.iter().any(|node| targets.contains(node)) {
-            animated = animation::load(&file, chain, &mut warnings)?;
+            animated = animation::load(&file, chain, origin, &mut warnings)?;
+            view_camera = if animated.is_some() { ix } else { 0 };
         }
     }
     let mut scene = Scene {
@@ -88,6 +94,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         models: placed.models,
         lights: placed.lights,
         cameras: placed.cameras,
+        view_camera,
+        origin,
         path: CameraPath::still(fit::ORIGIN),
         bounds: crate::Aabb::EMPTY,
         core_bounds: crate::Aabb::EMPTY,
@@ -110,15 +118,16 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 
 /// Loads the lights of a glTF 2.0 file and nothing else, so that it may hold nothing else.
 ///
-/// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings.
+/// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings. World space
+/// begins at `origin` of the file.
 ///
 /// # Errors
 ///
 /// [`SceneError`] as [`load_gltf`] has them of the file's JSON, buffers, nodes and lights.
-pub(crate) fn load_gltf_lights(path: &Path) -> Result<Scene, SceneError> {
+pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, SceneError> {
     let file = File::open(path)?;
     let mut warnings = file.take_notes();
-    let walk = nodes::walk(&file)?;
+    let walk = nodes::walk(&file, origin)?;
     let lights = nodes::lights(&file, &walk, &mut warnings)?;
     animation::note_unplayed(&file, &walk, &mut warnings);
     Ok(Scene {
@@ -130,6 +139,8 @@ pub(crate) fn load_gltf_lights(path: &Path) -> Result<Scene, SceneError> {
         models: Vec::new(),
         lights,
         cameras: Vec::new(),
+        view_camera: 0,
+        origin,
         path: CameraPath::still(fit::ORIGIN),
         bounds: crate::Aabb::EMPTY,
         core_bounds: crate::Aabb::EMPTY,

@@ -1,22 +1,23 @@
 //! The node hierarchy: placed models, lights and cameras.
 
-use std::f32::consts::PI;
-
 use assign::{Light, LightShape};
-use glam::{Mat4, Quat, Vec3, Vec4};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4};
 use gltf::json::{
     Index,
-    camera::{Camera as JsonCamera, Type as CameraType},
     extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType},
     scene::Node,
     validation::Checked,
 };
 
 use super::{
-    Warnings, area_lights, file::File, meshes::Meshes,
-    models::{MAX_INSTANCES, MAX_TRIANGLES}, skins::Skins, warnings::kept_name,
+    Warnings, area_lights, cameras,
+    file::File,
+    meshes::Meshes,
+    models::{MAX_INSTANCES, MAX_TRIANGLES},
+    skins::Skins,
+    warnings::kept_name,
 };
-use crate::{Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
+use crate::{Camera, Instance, Model, SceneError, lights::THRESHOLD};
 
 /// The most nodes between cameras and their roots, all cameras together: a deep tree can hold a
 /// camera at every node. The animation of further cameras is not looked for.
@@ -41,17 +42,11 @@ pub(super) struct Placed {
 pub(super) struct Visit {
     pub(super) ix: usize,
     pub(super) to_world: Mat4,
-    /// The same with scales of 0 taken for 1: it turns directions where `to_world` loses them.
-    facing: Mat4,
+    /// Where the node is and which way it looks: scales of 0 are taken for 1, so that it turns directions
+    /// where `to_world` loses them.
+    placed: DMat4,
     /// Whether neither it nor a node above it is hidden (KHR_node_visibility).
     is_visible: bool,
-}
-
-impl Visit {
-    /// Where the node is and which way it looks.
-    fn placed(&self) -> Mat4 {
-        Mat4 { w_axis: self.to_world.w_axis, ..self.facing }
-    }
 }
 
 /// The nodes of a scene, parents before their children.
@@ -126,13 +121,15 @@ fn with_axes(matrix: Mat4) -> Mat4 {
     Mat4::from_cols(x, y, z, matrix.w_axis)
 }
 
-/// Walks the default scene (or the first, or all nodes without a parent).
-pub(super) fn walk(file: &File) -> Result<Walk, SceneError> {
+/// Walks the default scene (or the first, or all nodes without a parent). World space begins at
+/// `origin` of the file: transforms are multiplied in f64, so that nothing is lost far away.
+pub(super) fn walk(file: &File, origin: DVec3) -> Result<Walk, SceneError> {
     let nodes = &file.root.nodes;
     let mut parents = vec![None; nodes.len()];
     let mut seen = vec![false; nodes.len()];
-    let root = |ix| (ix, Mat4::IDENTITY, Mat4::IDENTITY, true);
-    let mut stack: Vec<_> = roots(file).into_iter().rev().map(root).collect();
+    let root = DMat4::from_translation(-origin);
+    let mut stack: Vec<_> =
+        roots(file).into_iter().rev().map(|ix| (ix, root, root, true)).collect();
     let mut visits = Vec::new();
     while let Some((ix, parent_to_world, parent_facing, shows)) = stack.pop() {
         if std::mem::replace(&mut seen[ix], true) {
@@ -144,17 +141,19 @@ pub(super) fn walk(file: &File) -> Result<Walk, SceneError> {
         }
         let node = &nodes[ix];
         let local = Local::of(node);
-        let to_world = parent_to_world * local.matrix();
+        let exact = parent_to_world * local.matrix().as_dmat4();
+        let to_world = exact.as_mat4();
         if !to_world.is_finite() {
             return Err(file.invalid(format!("nodes[{ix}] transform"), "not finite", "finite"));
         }
-        let facing = parent_facing * local.facing();
+        let facing = parent_facing * local.facing().as_dmat4();
         let is_visible = shows && is_visible(node);
         for child in node.children.iter().flatten().rev() {
             parents[child.value()] = Some(ix);
-            stack.push((child.value(), to_world, facing, is_visible));
+            stack.push((child.value(), exact, facing, is_visible));
         }
-        visits.push(Visit { ix, to_world, facing, is_visible });
+        let placed = DMat4 { w_axis: exact.w_axis, ..facing };
+        visits.push(Visit { ix, to_world, placed, is_visible });
     }
     Ok(Walk { visits, parents })
 }
@@ -175,9 +174,13 @@ pub(super) fn place(
             placed.add_models(file, visit, &name, meshes, &mut skins, warnings)?;
             placed.add_lights(file, visit, warnings)?;
         }
-        if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
+        if let Some((index, camera)) =
+            node.camera.and_then(|index| Some((index, file.root.get(index)?)))
+        {
+            let camera = cameras::placed(file, index.value(), camera, &name, &visit.placed)?;
+            placed.cameras.push(camera);
             let chain = placed.chain_within_limits(&walk.parents, visit.ix, warnings);
-            placed.add_camera(camera, &name, visit.placed(), chain, warnings);
+            placed.camera_chains.push(chain);
         }
     }
     if placed.triangles > MAX_TRIANGLES {
@@ -256,7 +259,7 @@ impl Placed {
         warnings: &mut Warnings,
     ) -> Result<(), SceneError> {
         let node = &file.root.nodes[visit.ix];
-        self.add_light(file, node, visit.placed(), warnings)?;
+        self.add_light(file, node, &visit.placed, warnings)?;
         let area = area_lights::of_node(file, visit.ix, node, visit.to_world, warnings)?;
         self.lights.extend(area);
         Ok(())
@@ -266,7 +269,7 @@ impl Placed {
         &mut self,
         file: &File,
         node: &Node,
-        to_world: Mat4,
+        to_world: &DMat4,
         warnings: &mut Warnings,
     ) -> Result<(), SceneError> {
         let of_node = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
@@ -287,62 +290,14 @@ impl Placed {
         self.lights.push(light);
         Ok(())
     }
-
-    fn add_camera(
-        &mut self,
-        json: &JsonCamera,
-        node_name: &str,
-        to_world: Mat4,
-        chain: Vec<usize>,
-        warnings: &mut Warnings,
-    ) {
-        let name = json.name.as_deref().map_or_else(|| node_name.into(), kept_name);
-        let (lens, near_m, far_m) = match (json.type_, &json.perspective, &json.orthographic) {
-            (Checked::Valid(CameraType::Perspective), Some(p), _) => {
-                (Lens::Perspective { fov_y: p.yfov }, p.znear, p.zfar)
-            }
-            (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
-                let lens =
-                    Lens::Orthographic { half_width: o.xmag.abs(), half_height: o.ymag.abs() };
-                (lens, o.znear, Some(o.zfar))
-            }
-            _ => {
-                warnings.add(format!("camera {name:?} is left out: no projection"));
-                return;
-            }
-        };
-        let (lens_ok, least_near) = match lens {
-            Lens::Perspective { fov_y } => (fov_y > 0.0 && fov_y < PI, f32::MIN_POSITIVE),
-            Lens::Orthographic { half_width, half_height } => {
-                (half_width > 0.0 && half_height > 0.0, 0.0)
-            }
-        };
-        let far_ok = far_m.is_none_or(|far| far > near_m && far.is_finite());
-        if !(lens_ok && near_m >= least_near && near_m.is_finite() && far_ok) {
-            warnings.add(format!(
-                "camera {name:?} is left out: field of view, near or far out of range"
-            ));
-            return;
-        }
-        self.camera_chains.push(chain);
-        self.cameras.push(Camera { name, pose: pose(&to_world), lens, near_m, far_m });
-    }
 }
-
-/// A glTF camera or spot looks down its node's -Z; scale does not matter.
-pub(super) fn pose(to_world: &Mat4) -> Pose {
-    let eye = to_world.w_axis.truncate();
-    let forward = (-to_world.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
-    let up = to_world.y_axis.truncate();
-    let up = (up - forward * forward.dot(up)).normalize_or(forward.any_orthonormal_vector());
-    Pose { eye, target: eye + forward, up }
 }
 
 /// Intensity is candela times colour. A light without a range gets the one at which its
 /// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported
 /// where lights are uploaded. `None` for directional lights.
-fn convert_light(json: &JsonLight, to_world: Mat4) -> Option<Light> {
-    let pose = pose(&to_world);
+fn convert_light(json: &JsonLight, to_world: &DMat4) -> Option<Light> {
+    let pose = cameras::pose(to_world);
     let intensity = Vec3::from(json.color) * json.intensity;
     let shines =
         intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() > 0.0;

@@ -1,3 +1,4 @@
+mod cameras;
 mod placing;
 mod valid;
 
@@ -307,7 +308,7 @@ fn faulty_lights_stay_to_be_reported() {
     assert_eq!(faults(&scene), expected);
     assert_eq!(scene.warnings, ["light \"light 7\": directional lights are left out"]);
     let pose = scene.path.pose(0, 10);
-    assert!(pose.eye.is_finite() && pose.target.is_finite());
+    assert!(pose.eye.is_finite() && pose.forward().is_finite());
     assert_eq!(scene.hash(), scene.clone().hash());
     assert_eq!(faults(&scene.scaled(1e-6).expect("in range"))[..6], expected[..6]);
 }

@@ -73,6 +73,8 @@ pub fn town(seed: u64, size: TownSize) -> Scene {
         models: town.models,
         lights: Vec::new(),
         cameras: Vec::new(),
+        view_camera: 0,
+        origin: glam::DVec3::ZERO,
         path: tour::path(&land),
         bounds: Aabb::EMPTY,
         core_bounds: Aabb::EMPTY,

@@ -126,6 +126,8 @@ pub(crate) fn showcase() -> Scene {
         ],
         lights: Vec::new(),
         cameras: Vec::new(),
+        view_camera: 0,
+        origin: glam::DVec3::ZERO,
         path: CameraPath::still(Pose::new(Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 1.2, 0.0))),
         bounds: scene_box,
         core_bounds: scene_box,

@@ -150,7 +150,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let fastest = |mode: &&str| {
             let mut records = by_time(done, scene, mode);
-            records.retain(|record| record.is_exact());
+            records.retain(|record| record.shows_no_loss());
             let first = *records.first()?;
             let alike = |record: &&&Record| record.frame_ms <= first.frame_ms * (1.0 + ALIKE);
             let names: Vec<&str> =
