@@ -153,7 +153,8 @@ fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye:
     let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));
     if let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape {
         let cos_outer = f64::from(outer_angle).cos();
-        let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-3);
+        // Equal angles end the light at once.
+        let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-30);
         let cos = direction.as_dvec3().normalize().dot(-to_light);
         weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);
     }
