@@ -87,7 +87,7 @@ impl<'a> SeenEmitter<'a> {
         numbers: Numbers,
     ) -> Estimate {
         let Some(drawn) = Pairs::new(self) else {
-            return Estimate::exact(self.from_its_middle(scene));
+            return Estimate::exact(self.by_middle(scene));
         };
         let both = |point: Point| drawn.radiance(scene, point.at(0));
         if pairs < RATIO_PAIRS {
@@ -109,12 +109,12 @@ impl<'a> SeenEmitter<'a> {
     ) -> DVec3 {
         match Pairs::new(self) {
             Some(drawn) => drawn.radiance(scene, coordinates).shadowed,
-            None => self.from_its_middle(scene),
+            None => self.by_middle(scene),
         }
     }
 
     /// The whole emitter's light, where its middle is seen.
-    fn from_its_middle(&self, scene: &TracedScene<'_>) -> DVec3 {
+    fn by_middle(&self, scene: &TracedScene<'_>) -> DVec3 {
         let SurfaceSample { position, surface, to_eye, .. } = self.sample;
         if scene.sees(self.sample, *position + self.center) {
             light_contribution(self.light, *position, surface, *to_eye)
@@ -175,10 +175,10 @@ impl<'a> Pairs<'a> {
     }
 
     /// Radiance by one pair.
-    fn radiance(&self, scene: &TracedScene<'_>, [u, v, choice, s, t]: [f64; 5]) -> Drawn {
+    fn radiance(&self, scene: &TracedScene<'_>, [u, v, s, t, choice]: [f64; 5]) -> Drawn {
         let uniform = 1.0 / self.rectangle.solid_angle();
         let second = match &self.brdf {
-            Some(brdf) => brdf.sample([choice, s, t]),
+            Some(brdf) => brdf.sample([s, t, choice]),
             None => self.rectangle.direction(s, t),
         };
         let directions = [self.rectangle.direction(u, v), second];
