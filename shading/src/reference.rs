@@ -83,11 +83,9 @@ pub(crate) fn lobes_of(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> Lob
     let cos_l = surface.normal.dot(to_light).max(0.0);
     let cos_v = surface.normal.dot(to_eye).abs().max(MIN_COS_VIEW);
     let half_way = (to_eye + to_light).normalize_or_zero();
-    let cos_h = surface.normal.dot(half_way).clamp(0.0, 1.0);
     let cos_vh = to_eye.dot(half_way).clamp(0.0, 1.0);
     let alpha_2 = surface.roughness.max(MIN_ROUGHNESS).powi(4);
-    let peak = cos_h * cos_h * (alpha_2 - 1.0) + 1.0;
-    let distribution = alpha_2 / (std::f64::consts::PI * peak * peak);
+    let distribution = ggx(alpha_2, surface.normal, half_way);
     let smith = |a: f64, b: f64| a * (b * b * (1.0 - alpha_2) + alpha_2).sqrt();
     let visibility = 0.5 / (smith(cos_l, cos_v) + smith(cos_v, cos_l)).max(1e-6);
     let f0 = f0_of(surface);
@@ -96,6 +94,17 @@ pub(crate) fn lobes_of(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> Lob
     let diffuse = (DVec3::ONE - fresnel) * (1.0 - surface.metallic) * surface.base_color
         / std::f64::consts::PI;
     Lobes { diffuse, specular: distribution * visibility * fresnel }
+}
+
+/// GGX's distribution of half vectors (Walter et al. 2007, equation 33), for alpha squared and unit
+/// vectors. Its denominator is `cos^2 (alpha^2 - 1) + 1`, which loses its digits where the cosine is nearly
+/// 1 and alpha is small: highlights. So the squared sine comes from the distance q of the two vectors'
+/// ends, `sin^2 = q^2 (1 - q^2 / 4)`. A half vector below the horizon counts as one on it.
+pub(crate) fn ggx(alpha_2: f64, normal: DVec3, half_way: DVec3) -> f64 {
+    let q_2 = normal.distance_squared(half_way).min(2.0);
+    let sin_2 = q_2 * (1.0 - 0.25 * q_2);
+    let peak = sin_2 * (1.0 - alpha_2) + alpha_2;
+    alpha_2 / (std::f64::consts::PI * peak * peak)
 }
 
 /// The window `(1 - (d / range)^4)^2`, clamped at 0.

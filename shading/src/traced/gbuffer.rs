@@ -1,7 +1,7 @@
-//! Primary surfaces as the rasteriser drew them: truth and image see the same samples.
+//! Primary surfaces as deferred lighting reads them: what the G-buffer's formats cost.
 //!
 //! Positions are rebuilt from depth by the shader code that deferred lighting runs, surfaces are the
-//! G-buffer's, so that an image and its truth differ by lighting alone.
+//! G-buffer's. Lit in f64, they differ from the truth by the rounding of depth and G-buffer alone.
 
 use assign::{EncoderPasses, Passes, Projection, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;

@@ -2,6 +2,7 @@
 
 pub(crate) mod areas;
 pub(crate) mod evaluate;
+pub(crate) mod quads;
 
 use assign::{Gpu, Light, LightShape, View};
 use glam::{Affine2, Mat4, Vec2, Vec3, Vec4};
