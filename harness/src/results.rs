@@ -16,12 +16,15 @@
 mod bill;
 mod file;
 mod indirect;
+mod lack;
 mod machine;
+mod metrics;
 mod operations;
 mod passes;
 mod planes;
 mod record;
 mod renamed;
+mod seal;
 mod stats;
 mod truth_image;
 
@@ -31,12 +34,14 @@ use serde::{Deserialize, Serialize};
 pub use shading::Mode;
 
 pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
+pub(crate) use file::remove_temporaries;
 pub use file::{ResultsError, write_atomically};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use machine::{DeviceType, Machine};
 pub use operations::{EvaluatedTerms, Operations};
 pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use planes::{PlaneSource, Planes};
+pub(crate) use seal::{sealed, unsealed};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
 
