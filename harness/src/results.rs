@@ -25,6 +25,7 @@ mod planes;
 mod record;
 mod renamed;
 mod seal;
+mod shown;
 mod stats;
 mod truth_image;
 

@@ -111,14 +111,16 @@ impl Results {
                 Err(ResultsError::Version { path: path.to_owned(), found })
             }
             _ => {
-                let results = serde_json::from_value(value).map_err(|e| fail(e.to_string()))?;
+                // From the text: the order of passes counts.
+                let results = serde_json::from_slice(&bytes).map_err(|e| fail(e.to_string()))?;
                 Ok((results, checksum))
             }
         }
     }
 
-    /// Gives records of earlier versions the names and the bills of today.
+    /// Gives records of earlier versions the names and the bills of today, and shows what names hide.
     pub(super) fn name_as_today(&mut self) {
+        self.show_hidden();
         self.rename_records();
         self.records.iter_mut().for_each(Record::bill_again);
     }

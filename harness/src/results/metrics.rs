@@ -53,8 +53,8 @@ impl Results {
     pub(super) fn take_metrics(&mut self, results: &Path, of: &str) {
         let known = beside(results)
             .and_then(|path| std::fs::read(path).ok())
-            .and_then(|bytes| unsealed(&bytes).ok())
-            .and_then(|(value, _)| serde_json::from_value::<Metrics>(value).ok());
+            .filter(|bytes| unsealed(bytes).is_ok())
+            .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
         let Some(known) = known.filter(|known| known.of == of) else { return };
         for (record, metrics) in self.records.iter_mut().zip(known.records) {
             if record.strategy != metrics.strategy || record.mode != metrics.mode {

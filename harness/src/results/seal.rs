@@ -6,13 +6,8 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::visible::visible;
-
 /// The field that holds the checksum: the last of the file.
 const FIELD: &str = "checksum";
-
-/// The field whose words are kept as they are: a command that is to be run again.
-const COMMAND: &str = "command";
 
 /// Digits of a checksum.
 const DIGITS: usize = 32;
@@ -28,7 +23,7 @@ pub(crate) fn sealed(value: &impl Serialize) -> Result<String, serde_json::Error
     })
 }
 
-/// What a file holds, and its checksum; characters that a terminal would obey are escaped.
+/// What a file holds, without the order of its fields, and its checksum.
 ///
 /// # Errors
 ///
@@ -43,10 +38,7 @@ pub(crate) fn unsealed(bytes: &[u8]) -> Result<(Value, String), String> {
         Some(stated) if stated.as_str() != Some(&sum) => Err(format!(
             "checksum is {stated}: its contents come to {sum}, so it was changed after it was written"
         )),
-        _ => {
-            make_visible(&mut value);
-            Ok((value, sum))
-        }
+        _ => Ok((value, sum)),
     }
 }
 
@@ -79,26 +71,6 @@ fn hash(value: &Value, hasher: &mut blake3::Hasher) {
                 hash(value, hasher);
             }
         }
-    }
-}
-
-/// Escapes hidden characters in all text but commands.
-fn make_visible(value: &mut Value) {
-    match value {
-        Value::String(text) => {
-            if let std::borrow::Cow::Owned(shown) = visible(text) {
-                *text = shown;
-            }
-        }
-        Value::Array(values) => values.iter_mut().for_each(make_visible),
-        Value::Object(fields) => {
-            for (name, value) in fields.iter_mut() {
-                if name != COMMAND {
-                    make_visible(value);
-                }
-            }
-        }
-        Value::Null | Value::Bool(_) | Value::Number(_) => {}
     }
 }
 

@@ -9,6 +9,7 @@ use super::StudyScene;
 use crate::{
     messages::say,
     results::{Results, ResultsError, sealed, unsealed, write_atomically},
+    visible::visible,
 };
 
 /// The file that lists a study's jobs.
@@ -64,8 +65,8 @@ impl Manifest {
         let bytes = std::fs::read(&path)
             .map_err(|source| ResultsError::Read { path: path.clone(), source })?;
         let manifest = || {
-            let (value, _) = unsealed(&bytes)?;
-            let manifest: Self = serde_json::from_value(value).map_err(|e| e.to_string())?;
+            unsealed(&bytes)?;
+            let manifest: Self = serde_json::from_slice(&bytes).map_err(|e| e.to_string())?;
             manifest.check().map(|()| manifest)
         };
         let manifest = manifest().map_err(|reason| {
@@ -79,6 +80,12 @@ impl Manifest {
     fn check(&self) -> Result<(), String> {
         if self.jobs.is_empty() {
             return Err("jobs is empty: it must list at least one".to_owned());
+        }
+        if let Some(job) = self.jobs.iter().find(|job| visible(&job.scene) != job.scene) {
+            return Err(format!(
+                "jobs.scene is {:?}: it must hold no control characters",
+                job.scene
+            ));
         }
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         for (ix, job) in self.jobs.iter().enumerate() {
