@@ -24,10 +24,11 @@ use std::time::Instant;
 use clap::ValueEnum;
 
 use crate::{
-    checks::check_writable,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
     compare::Bench,
     error::HarnessError,
+    messages::say,
+    out_folder::OutFolder,
     report::{self, needs_built_hierarchy},
     results::{BASELINE, EARLY_EXIT, Record, Results},
     sight::untested,
@@ -88,7 +89,7 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
         let accepted = "one mode: deferred, deferred-ids, forward or forward-no-prepass";
         return Err(CliError::out_of_range("--mode", value, accepted).into());
     }
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
 
@@ -140,7 +141,7 @@ impl<'a> Search<'a> {
             return Err(CliError::new(format!("--poses: {scene} has no camera path")).into());
         }
         if args.poses == Some(1) {
-            eprintln!("warning  {ONE_POSE}");
+            say(format!("warning  {ONE_POSE}"));
         }
         let poses = (moves && args.stage.camera.is_none())
             .then(|| args.poses.unwrap_or(default))
@@ -164,7 +165,7 @@ impl<'a> Search<'a> {
         more: &[&str],
         last: usize,
     ) -> Result<Results, HarnessError> {
-        eprintln!("round    {name}: {} strategies", strategies.split(',').count());
+        say(format!("round    {name}: {} strategies", strategies.split(',').count()));
         let began = Instant::now();
         let out = self.args.out.join(name);
         let frames = FRAMES[usize::from(self.bench.gpu().is_software())][last];

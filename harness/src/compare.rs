@@ -9,17 +9,19 @@ use scenes::Scene;
 use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
-    checks::{check_modes, check_writable, checked, has_mode, remove_stale, served},
+    checks::{check_area_options, check_modes, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
+    cli::{CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
     drift::note_drift,
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
     measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
+    messages::{say, say_error},
+    out_folder::{OutFolder, leave_all},
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
-    report,
+    report::{self, significant},
     results::{BASELINE, Machine, RejectedLight, Results, Truth, Untested},
     sight::untested,
     stage::Stage,
@@ -45,7 +47,7 @@ pub struct Bench {
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // What is wrong with the words shows before a device is opened.
     check_modes(args, &choices(args)?)?;
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (results, pictures) = bench.compare(args, command)?;
     write(&results, &pictures, &args.out)
@@ -74,7 +76,7 @@ impl Bench {
         let gpu = Gpu::open(adapter)?;
         end_on_device_error(&gpu);
         let machine = machine(&gpu);
-        eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
+        say(format!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver));
         Ok(Self { gpu, machine, stage: None, triangles: None })
     }
 
@@ -137,7 +139,8 @@ impl Bench {
         let choices = checked(choices, &gpu)?;
         let machine = machine(&gpu);
         let stage = self.stage(&args.stage)?;
-        stage.area_model = args.area_model;
+        check_area_options(args, stage)?;
+        stage.area_model = args.area_model.unwrap_or_default();
         stage.compensation = args.compensate.map(|lights| lights as f32);
         // What a strategy cannot serve shows before anything long begins.
         let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
@@ -224,7 +227,7 @@ impl Run<'_> {
         note_faults(&mut self.results, self.stage);
         if let Some(vpls) = &self.stage.vpls {
             let words = vpls.summary();
-            eprintln!("vpls     {words}");
+            say(format!("vpls     {words}"));
             if vpls.kept == 0 {
                 let none = "no virtual point light is left: every image is black";
                 self.results.warnings.push(format!("{words}: {none}"));
@@ -368,26 +371,30 @@ fn progress_bar(total: u64) -> ProgressBar {
 /// An error that no call returned is the device's: one line, exit code 1, no panic.
 fn end_on_device_error(gpu: &Gpu) {
     gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
-        eprintln!("lightbench: device: {}", CliError::new(error.to_string()));
+        say_error(format!("device: {error}"));
+        leave_all();
         std::process::exit(1);
     }));
 }
 
 fn describe(stage: &Stage) {
-    eprintln!(
+    say(format!(
         "scene    {}: {} triangles, {} models, {} lights",
         stage.scene.name,
         stage.scene.triangle_count(),
         stage.scene.models.len(),
         stage.lights.count()
-    );
+    ));
     if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
-        eprintln!("lights   scattered with a mean radius of {:.3} m", stage.radius_scale);
+        say(format!(
+            "lights   scattered with a mean radius of {} m",
+            significant(stage.radius_scale)
+        ));
     }
     for warning in stage.scene.warnings.iter().chain(&stage.notes) {
-        eprintln!("warning  {warning}");
+        say(format!("warning  {warning}"));
     }
     for rejected in stage.lights.rejected() {
-        eprintln!("warning  light {} left out: {}", rejected.index, rejected.fault);
+        say(format!("warning  light {} left out: {}", rejected.index, rejected.fault));
     }
 }

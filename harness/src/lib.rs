@@ -1,5 +1,7 @@
 //! `lightbench` as a library: its command line, its measurements, its results and its report.
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod advise;
 pub mod again;
 pub mod camera;
@@ -16,10 +18,13 @@ pub mod drift;
 pub mod error;
 pub mod errors;
 pub mod fit_ltc;
+pub mod interrupted;
 pub mod list_lengths;
 pub mod machine;
 pub mod measure;
+pub mod messages;
 pub mod optics;
+pub mod out_folder;
 pub mod painter;
 pub mod pass_samples;
 pub mod pictures;
@@ -34,4 +39,5 @@ pub mod stage;
 pub mod stored;
 pub mod study;
 pub mod truth;
+pub mod visible;
 pub mod vpls;

@@ -13,6 +13,7 @@ use crate::{
     results::{Errors, Images, Operations, Record, mean},
     schedule::rounds,
     stage::Stage,
+    visible::visible,
 };
 
 /// What was seen of a method: its lists, and how far its images are from what they should be.
@@ -84,7 +85,7 @@ pub fn record(
     let count = u64::from(stage.lights.count());
     let has_lists = lists.bytes > 0;
     let mut record = Record {
-        scene: stage.scene.name.clone(),
+        scene: visible(&stage.scene.name).into_owned(),
         scene_hash: stage.scene_hash.clone(),
         path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
         scene_scale: args.stage.scene_scale,

@@ -10,11 +10,12 @@ use shading::traced::{self, GBufferSamples, TracedScene, Transport, TruthSetting
 use shading::{EDGE, HdrImage, luminance};
 
 use crate::{
-    checks::{check_writable, remove_stale},
+    checks::remove_stale,
     cli::{CliError, TruthArgs},
     compare::{Bench, note_faults},
     error::HarnessError,
     machine::machine,
+    out_folder::OutFolder,
     results::{Results, Truth, TruthImage, TruthLevel, write_atomically},
     sight::untested,
     stage::Stage,
@@ -32,7 +33,7 @@ const ERROR_IMAGE: &str = "error.png";
 /// provenance.
 pub fn truth(args: &TruthArgs, command: Vec<String>) -> Result<String, HarnessError> {
     check(args)?;
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let results = render(&mut bench, args, command)?;
     let data = args.out.join("results.json");
@@ -168,7 +169,7 @@ fn keep(
     let black = HdrImage { pixels: vec![[0.0; 3]; radiance.pixels.len()], ..*standard_error };
     let gain = ((over_mean(1.0) / WHITE) as f32).min(f32::MAX);
     write_atomically(&out.join(ERROR_IMAGE), &standard_error.difference_png(&black, gain)?)?;
-    radiance.write_exr(&out.join(RAW))?;
+    write_atomically(&out.join(RAW), &radiance.to_exr()?)?;
     Ok(TruthImage {
         scene: stage.scene.name.clone(),
         scene_hash: stage.scene_hash.clone(),
