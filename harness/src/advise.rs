@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
         let (results, _) =
             self.bench.compare(&CompareArgs { out: out.clone(), stage, ..compare }, words)?;
         results.write(&out.join("results.json"))?;
-        eprintln!("         {name} took {:.1} s", began.elapsed().as_secs_f64());
+        say(format!("         {name} took {:.1} s", began.elapsed().as_secs_f64()));
         Ok(results)
     }
 }

@@ -216,7 +216,7 @@ impl Run<'_> {
         let lights = u64::from(self.stage.lights.count());
         if let Some(why) = self.untested.map(|why| why.words(lights, self.args.path)) {
             let warning = format!("NOTHING WAS TESTED: {why}, so nothing here is exact or ranked");
-            eprintln!("warning  {warning}");
+            say(format!("warning  {warning}"));
             self.results.warnings.insert(0, warning);
         }
         Ok(())

@@ -91,7 +91,7 @@ pub fn render(
     if let Some(why) = untested(&gpu, stage, &[], 0)? {
         let why = why.words(u64::from(stage.lights.count()), false);
         let warning = format!("NOTHING IS LIT directly: {why}");
-        eprintln!("warning  {warning}");
+        say(format!("warning  {warning}"));
         results.warnings.insert(0, warning);
     }
     results.truth_image = Some(truth);
