@@ -9,6 +9,7 @@ use gltf::json::{
     validation::{Checked, Error as Fault, Validate},
 };
 
+use super::json_path::as_in_file;
 use crate::SceneError;
 
 /// Extensions that a file may require. Those of materials beyond metallic-roughness are read as
@@ -208,7 +209,7 @@ fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
     root.validate(&root, gltf::json::Path::new, &mut |at, error| {
         // Required extensions are checked above, against a longer list.
         if error != Fault::Unsupported && fault.is_none() {
-            fault = Some((at().to_string(), error));
+            fault = Some((as_in_file(&at().to_string()), error));
         }
     });
     match fault {

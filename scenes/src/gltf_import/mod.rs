@@ -8,6 +8,7 @@ mod animation;
 mod area_lights;
 mod file;
 mod images;
+mod json_path;
 mod materials;
 mod meshes;
 mod nodes;
