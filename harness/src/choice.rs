@@ -326,6 +326,8 @@ mod tests {
             ("T-E/hs/no-exit/no-exit", "no-exit", "no-exit"),
             ("T-I/hs/sat-p", "hs", "sat-p"),
             ("SC-E/cap8/cap16", "cap8", "cap16"),
+            ("SC-E/bvh/bvh", "bvh", "bvh"),
+            ("T-I/28x28/bvh/16x16", "28x28", "16x16"),
             ("SC-E/dif/n6", "dif", "n6"),
             ("SC-E/n6/dif", "dif", "n6"),
             ("SC-E/ball/bvh", "ball", "bvh"),

@@ -1,9 +1,9 @@
 //! Studies: lists of comparisons, each a job of its own, so that a study goes on where it was
 //! interrupted and can be split over machines.
 //!
-//! A job is a `lightbench compare`, `truth` or `cdi` command. Its folder, `jobs/NAME`, holds what that command writes;
-//! a job whose `results.json` is there is done. `study.json` beside `jobs` lists all jobs, those of
-//! other shards too.
+//! A job is a `lightbench compare`, `truth` or `cdi` command. Its folder, `jobs/NAME`, holds what that
+//! command writes. A job is done where its `results.json` is there, whole and with all records of its
+//! command. `study.json` beside `jobs` lists all jobs, those of other shards too.
 
 mod against_builds;
 mod against_truth;

@@ -15,6 +15,7 @@ use crate::{
     compare::{Bench, note_faults},
     error::HarnessError,
     machine::machine,
+    messages::say,
     out_folder::OutFolder,
     results::{Results, Truth, TruthImage, TruthLevel, write_atomically},
     sight::untested,

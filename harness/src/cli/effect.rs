@@ -6,7 +6,7 @@
 use clap::{ArgMatches, parser::ValueSource};
 
 use super::{CdiArgs, CliError, CompareArgs, Invocation, StageArgs};
-use crate::choice::choices;
+use crate::choice::{Choice, choices};
 
 /// Options, when they change something, and what they belong to.
 struct Rule<A> {
@@ -92,21 +92,20 @@ fn check_rules<A>(rules: &[Rule<A>], args: &A, matches: &ArgMatches) -> Result<(
 /// Tests and source go to strategies that name none of their own.
 fn check_strategies(args: &CompareArgs, matches: &ArgMatches) -> Result<(), CliError> {
     let takes = |option: &str| is_given(option, matches);
-    if !takes("test") && !takes("source") {
+    if !["test", "source", "operations"].into_iter().any(takes) {
         return Ok(());
     }
     // What is wrong with an id is said where the strategies are chosen.
     let Ok(choices) = choices(args) else { return Ok(()) };
-    for (option, what) in [("test", "tests"), ("source", "a source")] {
-        let has_effect = |choice: &crate::choice::Choice| match option {
-            "test" => choice.takes_tests(),
-            _ => choice.takes_source(),
-        };
-        if takes(option) && !choices.iter().any(has_effect) {
-            let accepted = format!(
-                "given with strategies that it applies to: each of --strategies has {what} of its own, \
-                 or takes none"
-            );
+    type Applies = fn(&Choice) -> bool;
+    let rules: [(&str, Applies, &str); 3] = [
+        ("test", Choice::takes_tests, "tests frusta and names no tests of its own"),
+        ("source", Choice::takes_source, "looks for lights and names no source of its own"),
+        ("operations", Choice::has_groups, "has lists"),
+    ];
+    for (option, applies, what) in rules {
+        if takes(option) && !choices.iter().any(applies) {
+            let accepted = format!("given with a strategy that {what}: none of --strategies does");
             return Err(without_effect(option, &accepted));
         }
     }

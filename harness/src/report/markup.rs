@@ -38,10 +38,6 @@ impl Html {
     pub(super) fn as_str(&self) -> &str {
         &self.0
     }
-
-    pub(super) fn into_string(self) -> String {
-        self.0
-    }
 }
 
 /// HTML from a template that is written here: `html!("<b>{}</b>", name)`. Values are escaped unless they

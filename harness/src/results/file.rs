@@ -156,33 +156,37 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
 /// How names of temporary files end, behind the number of their process.
 const TEMPORARY: &str = ".tmp";
 
-/// Folders within folders in which temporary files are looked for: those of a study's jobs.
-const DEPTH: u32 = 3;
-
-/// Removes the temporary files that killed runs left in a folder and those within. The folder must be
-/// held: files of a run that is still writing would go too.
+/// Removes the temporary files that killed runs left in an output folder, among its charts and its jobs.
+/// The folder must be held: files of a run that is still writing would go too.
 pub(crate) fn remove_temporaries(folder: &Path) {
-    remove_temporaries_in(folder, DEPTH);
-}
-
-fn remove_temporaries_in(folder: &Path, depth: u32) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+    let jobs = folder.join("jobs");
+    let each_job = entries(&jobs).filter(|(kind, _)| kind.is_dir()).map(|(_, path)| path);
+    let folders = [folder.to_owned(), folder.join("charts"), jobs.clone()];
+    for folder in folders.into_iter().chain(each_job) {
         // Links are neither followed nor removed.
-        let Ok(kind) = entry.file_type() else { continue };
-        if kind.is_dir() && depth > 1 {
-            remove_temporaries_in(&entry.path(), depth - 1);
-        } else if kind.is_file() && is_temporary(&entry.file_name().to_string_lossy()) {
-            // One that cannot be removed stands in nobody's way.
-            let _ = fs::remove_file(entry.path());
+        for (_, path) in entries(&folder).filter(|(kind, _)| kind.is_file()) {
+            if path.file_name().is_some_and(|name| is_temporary(&name.to_string_lossy())) {
+                // One that cannot be removed stands in nobody's way.
+                let _ = fs::remove_file(path);
+            }
         }
     }
 }
 
+/// What lies in a folder; nothing where it cannot be read.
+fn entries(folder: &Path) -> impl Iterator<Item = (fs::FileType, PathBuf)> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter_map(|entry| Some((entry.file_type().ok()?, entry.path())))
+}
+
 /// Whether a name is one that [`write_atomically`] gives: `results.json.4711.tmp`.
 fn is_temporary(name: &str) -> bool {
-    name.strip_suffix(TEMPORARY)
-        .and_then(|rest| rest.rsplit_once('.'))
-        .is_some_and(|(file, process)| !file.is_empty() && process.parse::<u32>().is_ok())
+    const WRITTEN: [&str; 5] = [".json", ".html", ".svg", ".png", ".exr"];
+    name.strip_suffix(TEMPORARY).and_then(|rest| rest.rsplit_once('.')).is_some_and(
+        |(file, process)| {
+            process.parse::<u32>().is_ok() && WRITTEN.iter().any(|end| file.ends_with(end))
+        },
+    )
 }
 
 #[cfg(test)]

@@ -200,7 +200,7 @@ mod tests {
                 text.parse().unwrap_or_else(|e| panic!("{text}: {e}"));
             let ground = Vec3::new(3.0 * size, 0.0, 1.5 * size);
             let eye = one.min + 0.05 * ground + Vec3::Y * (0.4 * size + 0.2 * ground.length());
-            assert_eq!(Vec3::from(pose.eye), eye, "{text}");
+            assert_eq!(glam::DVec3::from(pose.eye).as_vec3(), eye, "{text}");
             let range: f32 = range_m(one).to_string().parse().unwrap();
             assert_eq!(range, range_m(one));
             assert!(range > 0.1 * size && range < size, "{range}");

@@ -16,7 +16,9 @@ use gltf::json::{
 };
 
 use super::{
-    Warnings, adapt, extensions, limits,
+    Warnings, adapt, extensions,
+    json_path::as_in_file,
+    limits,
     parts::{is_absolute, read_part, read_regular},
 };
 use crate::SceneError;
@@ -251,7 +253,7 @@ fn parse(path: &Path, json: &[u8], warnings: &mut Warnings) -> Result<Root, Scen
     root.validate(&root, gltf::json::Path::new, &mut |at, error| {
         // Required extensions are checked above, against a longer list.
         if error != Fault::Unsupported && fault.is_none() {
-            let field = at().to_string();
+            let field = as_in_file(&at().to_string());
             fault = (!adapt::is_tolerated(&field, error)).then_some((field, error));
         }
     });

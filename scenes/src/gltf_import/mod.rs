@@ -11,6 +11,7 @@ mod cameras;
 mod extensions;
 mod file;
 mod images;
+mod json_path;
 mod limits;
 mod materials;
 mod meshes;

@@ -291,7 +291,6 @@ impl Placed {
         Ok(())
     }
 }
-}
 
 /// Intensity is candela times colour. A light without a range gets the one at which its
 /// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported

@@ -282,6 +282,14 @@ fn missing_parts_name_the_scene_the_field_and_the_part() {
 }
 
 #[test]
+fn faults_in_extensions_are_named_as_in_the_file() {
+    let mut sample = sample();
+    sample.json["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "laser".into();
+    let error = load(&sample).expect_err("no such light").to_string();
+    assert!(error.contains("extensions.KHR_lights_punctual.lights[0].type"), "{error}");
+}
+
+#[test]
 fn faulty_lights_stay_to_be_reported() {
     let mut sample = sample();
     sample.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
