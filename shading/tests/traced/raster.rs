@@ -43,12 +43,12 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
         let view = match *name {
             "atrium" => {
                 let pose = scene.path.pose(0, 1);
-                View::look_at(pose.eye, pose.target, 1.0, 0.05, size)
+                View::looking(pose.eye, pose.forward(), pose.up, 1.0, 0.05, size)
             }
             _ => common::view(size),
         };
         let (gbuffer, _) = rasterise(&gpu, scene, &view, &common::lights(1), Mode::Deferred);
-        let (mut seen, mut missing) = (0, 0);
+        let (mut seen, mut missing) = (0_u32, 0_usize);
         let mut off = [0.0; 5];
         for pixel in 0..size[0] * size[1] {
             let raster = gbuffer.sample(pixel as usize, &traced);
