@@ -178,12 +178,18 @@ fn files_of_lights_alone_give_their_lights() {
     let path = folder.path().join("lights.gltf");
     std::fs::write(&path, lights.to_string()).expect("writes");
     let name = path.to_string_lossy();
-    let scene = crate::open_lights(&name).expect("lights").scaled(2.0).expect("in range");
+    let scene = crate::open_lights(&name, glam::DVec3::ZERO)
+        .expect("lights")
+        .scaled(2.0)
+        .expect("in range");
     assert_eq!(scene.lights.len(), 1);
     assert_eq!(scene.lights[0].position, Vec3::Y * 6.0);
     assert_warns(&scene, "EXT_odd");
     assert!(matches!(crate::open(&name), Err(SceneError::Empty { .. })));
-    assert_eq!(crate::open_lights("atrium").expect("known").lights, crate::atrium(1).lights);
+    assert_eq!(
+        crate::open_lights("atrium", glam::DVec3::ZERO).expect("known").lights,
+        crate::atrium(1).lights
+    );
 }
 
 #[test]
