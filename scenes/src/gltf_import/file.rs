@@ -1,6 +1,9 @@
 //! The container: JSON, binary chunk, buffers and URIs, every range checked.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+};
 
 use base64::{
     Engine,
@@ -12,7 +15,7 @@ use gltf::json::{
     validation::{Checked, Error as Fault, Validate},
 };
 
-use super::{Warnings, adapt, extensions};
+use super::{Warnings, adapt, compressed_views, extensions};
 use crate::SceneError;
 
 /// A parsed and validated file with its buffers.
@@ -22,6 +25,8 @@ pub(super) struct File {
     /// What was left out while the JSON was read.
     pub(super) warnings: Warnings,
     buffers: Vec<Vec<u8>>,
+    /// The bytes of compressed buffer views.
+    decoded: HashMap<usize, Vec<u8>>,
 }
 
 impl File {
@@ -31,12 +36,18 @@ impl File {
         let (json, binary) = split(path, &bytes)?;
         let mut warnings = Warnings::default();
         let root = parse(path, json, &mut warnings)?;
-        let mut file = Self { path: path.into(), root, warnings, buffers: Vec::new() };
+        let (buffers, decoded) = (Vec::new(), HashMap::new());
+        let mut file = Self { path: path.into(), root, warnings, buffers, decoded };
         for (ix, buffer) in file.root.buffers.iter().enumerate() {
             let field = format!("buffers[{ix}]");
             let mut data = match (&buffer.uri, binary) {
                 (Some(uri), _) => file.fetch(uri, &format!("{field}.uri"))?,
                 (None, Some(binary)) if ix == 0 => binary.to_vec(),
+                // Nothing reads it but views that are compressed elsewhere.
+                (None, _) if compressed_views::is_fallback(buffer) => {
+                    file.buffers.push(Vec::new());
+                    continue;
+                }
                 (None, _) => {
                     return Err(file.invalid(field, "without uri", "a uri or the GLB's BIN chunk"));
                 }
@@ -49,6 +60,7 @@ impl File {
             data.truncate(wanted as usize);
             file.buffers.push(data);
         }
+        file.decoded = compressed_views::decode(&file)?;
         Ok(file)
     }
 
@@ -62,26 +74,37 @@ impl File {
         invalid(&self.path, field, value, accepted)
     }
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view, decoded where they are compressed.
     pub(super) fn view(&self, ix: usize) -> Result<&[u8], SceneError> {
-        let field = || format!("bufferViews[{ix}]");
+        if let Some(bytes) = self.decoded.get(&ix) {
+            return Ok(bytes);
+        }
         let views = &self.root.buffer_views;
         let view = views
             .get(ix)
             .ok_or_else(|| self.invalid("bufferView", ix, format!("below {}", views.len())))?;
-        let buffer = self.buffers.get(view.buffer.value()).ok_or_else(|| {
-            let accepted = format!("below {}", self.buffers.len());
-            self.invalid(format!("{}.buffer", field()), view.buffer, accepted)
-        })?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let end = start.checked_add(view.byte_length.0);
-        end.and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
+        let field = format!("bufferViews[{ix}]");
+        self.part(&field, view.buffer.value(), start, view.byte_length.0)
+    }
+
+    /// Some bytes of a buffer.
+    pub(super) fn part(
+        &self,
+        field: &str,
+        buffer: usize,
+        start: u64,
+        length: u64,
+    ) -> Result<&[u8], SceneError> {
+        let bytes = self.buffers.get(buffer).ok_or_else(|| {
+            let accepted = format!("below {}", self.buffers.len());
+            self.invalid(format!("{field}.buffer"), buffer, accepted)
+        })?;
+        let end = start.checked_add(length);
+        end.and_then(|end| bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
             .ok_or_else(|| {
-                self.invalid(
-                    field(),
-                    format!("{} bytes from {start}", view.byte_length.0),
-                    format!("inside its buffer of {} bytes", buffer.len()),
-                )
+                let accepted = format!("inside its buffer of {} bytes", bytes.len());
+                self.invalid(field, format!("{length} bytes from {start}"), accepted)
             })
     }
 

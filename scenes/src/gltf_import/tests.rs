@@ -1,3 +1,5 @@
+mod compressed;
+mod materials;
 mod placing;
 mod valid;
 
