@@ -47,6 +47,34 @@ fn ior_and_specular_make_reflectances() {
 }
 
 #[test]
+fn specular_and_glossiness_make_a_dielectric() {
+    let glossy =
+        |value: Value| with_extensions(json!({"KHR_materials_pbrSpecularGlossiness": value}));
+    let coin = json!({"diffuseFactor": [0.5, 0.25, 0.0, 1.0], "specularFactor": [0.5, 0.4, 0.1],
+        "glossinessFactor": 0.75, "diffuseTexture": {"index": 0}});
+    let coin = glossy(coin).expect("valid");
+    assert_eq!(coin.base_color, Vec4::new(0.5, 0.25, 0.0, 1.0));
+    assert_eq!((coin.metallic, coin.roughness), (0.0, 0.25));
+    let expected = Dielectric { f0: Vec3::new(0.5, 0.4, 0.1), f90: 1.0 };
+    assert_eq!(coin.dielectric, expected);
+    assert!(coin.base_color_texture.is_some() && coin.metallic_roughness_texture.is_none());
+    for (value, expected) in [
+        (json!({"diffuseTexture": {"index": 9}}), "below 1"),
+        (json!({"glossinessFactor": 2}), "between 0 and 1"),
+        (json!({"diffuseFactor": 1}), "invalid type"),
+    ] {
+        let error = glossy(value).expect_err("faulty").to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    let mut textured = sample();
+    textured.json["materials"][0]["extensions"] = json!({"KHR_materials_pbrSpecularGlossiness":
+        {"specularGlossinessTexture": {"index": 0}}});
+    let scene = load(&textured).expect("valid");
+    assert_eq!((scene.materials[0].roughness, scene.materials[0].metallic), (0.5, 0.0));
+    assert_warns(&scene, "specularGlossinessTexture is left out");
+}
+
+#[test]
 fn unlit_materials_emit_their_colour_and_reflect_nothing() {
     let mut unlit = sample();
     let material = &mut unlit.json["materials"][0];
