@@ -1,6 +1,7 @@
 //! The container: JSON, binary chunk, buffers and URIs, every range checked.
 
 use std::{
+    collections::HashMap,
     path::{Path, PathBuf},
     sync::Mutex,
 };
@@ -16,7 +17,7 @@ use gltf::json::{
 };
 
 use super::{
-    Warnings, adapt, extensions,
+    Warnings, adapt, compressed_views, extensions,
     json_path::as_in_file,
     limits,
     parts::{is_absolute, read_part, read_regular},
@@ -28,6 +29,8 @@ pub(super) struct File {
     pub(super) path: PathBuf,
     pub(super) root: Root,
     buffers: Vec<Vec<u8>>,
+    /// The bytes of compressed buffer views.
+    decoded: HashMap<usize, Vec<u8>>,
     /// What was left out while the JSON was read, and noted while parts were, which images do in
     /// parallel.
     notes: Mutex<Warnings>,
@@ -40,8 +43,9 @@ impl File {
         let (json, binary) = split(path, &bytes)?;
         let mut warnings = Warnings::default();
         let root = parse(path, json, &mut warnings)?;
+        let (buffers, decoded) = (Vec::new(), HashMap::new());
         let notes = Mutex::new(warnings);
-        let mut file = Self { path: path.into(), root, buffers: Vec::new(), notes };
+        let mut file = Self { path: path.into(), root, buffers, decoded, notes };
         let (mut together, most) = (0_u64, limits::budget_bytes());
         for (ix, buffer) in file.root.buffers.iter().enumerate() {
             let field = format!("buffers[{ix}]");
@@ -54,6 +58,11 @@ impl File {
                 (None, Some(binary)) if ix == 0 => binary
                     [..binary.len().min(usize::try_from(wanted).unwrap_or(usize::MAX))]
                     .to_vec(),
+                // Nothing reads it but views that are compressed elsewhere.
+                (None, _) if compressed_views::is_fallback(buffer) => {
+                    file.buffers.push(Vec::new());
+                    continue;
+                }
                 (None, _) => {
                     return Err(file.invalid(field, "without uri", "a uri or the GLB's BIN chunk"));
                 }
@@ -70,6 +79,7 @@ impl File {
             data.truncate(wanted as usize);
             file.buffers.push(data);
         }
+        file.decoded = compressed_views::decode(&file)?;
         Ok(file)
     }
 
@@ -88,26 +98,37 @@ impl File {
         invalid(&self.path, field, value, accepted)
     }
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view, decoded where they are compressed.
     pub(super) fn view(&self, ix: usize) -> Result<&[u8], SceneError> {
-        let field = || format!("bufferViews[{ix}]");
+        if let Some(bytes) = self.decoded.get(&ix) {
+            return Ok(bytes);
+        }
         let views = &self.root.buffer_views;
         let view = views
             .get(ix)
             .ok_or_else(|| self.invalid("bufferView", ix, format!("below {}", views.len())))?;
-        let buffer = self.buffers.get(view.buffer.value()).ok_or_else(|| {
-            let accepted = format!("below {}", self.buffers.len());
-            self.invalid(format!("{}.buffer", field()), view.buffer, accepted)
-        })?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let end = start.checked_add(view.byte_length.0);
-        end.and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
+        let field = format!("bufferViews[{ix}]");
+        self.part(&field, view.buffer.value(), start, view.byte_length.0)
+    }
+
+    /// Some bytes of a buffer.
+    pub(super) fn part(
+        &self,
+        field: &str,
+        buffer: usize,
+        start: u64,
+        length: u64,
+    ) -> Result<&[u8], SceneError> {
+        let bytes = self.buffers.get(buffer).ok_or_else(|| {
+            let accepted = format!("below {}", self.buffers.len());
+            self.invalid(format!("{field}.buffer"), buffer, accepted)
+        })?;
+        let end = start.checked_add(length);
+        end.and_then(|end| bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
             .ok_or_else(|| {
-                self.invalid(
-                    field(),
-                    format!("{} bytes from {start}", view.byte_length.0),
-                    format!("inside its buffer of {} bytes", buffer.len()),
-                )
+                let accepted = format!("inside its buffer of {} bytes", bytes.len());
+                self.invalid(field, format!("{length} bytes from {start}"), accepted)
             })
     }
 

@@ -9,6 +9,8 @@ use gltf::json::{
     validation::Checked,
 };
 
+use serde::Deserialize;
+
 use super::{Warnings, file::File, images::ImageTable, warnings::kept_name};
 use crate::{Dielectric, Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
 
@@ -17,6 +19,35 @@ const DEFAULT_CUTOFF: f32 = 0.5;
 
 /// The index of refraction of a material that names none.
 const DEFAULT_IOR: f32 = 1.5;
+
+/// The extension that older exporters describe materials by.
+const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// The roughness of its materials whose glossiness is in a texture.
+const GLOSSY_ROUGHNESS: f32 = 0.5;
+
+/// What that extension says.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+struct Glossy {
+    diffuse_factor: [f32; 4],
+    diffuse_texture: Option<Info>,
+    specular_factor: [f32; 3],
+    glossiness_factor: f32,
+    specular_glossiness_texture: Option<serde_json::Value>,
+}
+
+impl Default for Glossy {
+    fn default() -> Self {
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
+    }
+}
 
 /// The file's materials, the default one after them, and what each needs from its meshes.
 pub(super) struct Materials {
@@ -88,6 +119,9 @@ impl Reader<'_> {
             unlit: false,
             name,
         };
+        if let Some(value) = json.extensions.as_ref().and_then(|e| e.others.get(GLOSSINESS)) {
+            self.make_glossy(ix, value, &mut material)?;
+        }
         if json.extensions.as_ref().is_some_and(|e| e.unlit.is_some()) {
             make_unlit(&mut material);
         }
@@ -145,6 +179,46 @@ impl Reader<'_> {
             Vec3::splat(((ior - 1.0) / (ior + 1.0)).powi(2))
         };
         Ok(Dielectric { f0: (normal * color).min(Vec3::ONE) * factor, f90: factor })
+    }
+
+    /// The older model: a diffuse and a specular colour. A dielectric of that reflectance is the
+    /// same, but for its texture of specular colour and glossiness, which is left out.
+    fn make_glossy(
+        &mut self,
+        ix: usize,
+        value: &serde_json::Value,
+        material: &mut Material,
+    ) -> Result<(), SceneError> {
+        let fail = |accepted: String| {
+            let field = format!("materials[{ix}].extensions.{GLOSSINESS}");
+            self.file.invalid(field, value, accepted)
+        };
+        let glossy: Glossy = serde_json::from_value(value.clone())
+            .map_err(|error| fail(format!("diffuse, specular and glossiness, but: {error}")))?;
+        let factors = [&glossy.diffuse_factor[..], &glossy.specular_factor].concat();
+        if !factors.iter().chain([&glossy.glossiness_factor]).all(|x| (0.0..=1.0).contains(x)) {
+            return Err(fail("factors between 0 and 1".into()));
+        }
+        let textures = self.file.root.textures.len();
+        if glossy.diffuse_texture.as_ref().is_some_and(|t| t.index.value() >= textures) {
+            return Err(fail(format!("a diffuseTexture with an index below {textures}")));
+        }
+        material.base_color = Vec4::from(glossy.diffuse_factor);
+        material.base_color_texture = self.info(glossy.diffuse_texture.as_ref(), Encoding::Srgb);
+        (material.metallic, material.metallic_roughness_texture) = (0.0, None);
+        material.roughness = 1.0 - glossy.glossiness_factor;
+        material.dielectric.f0 = Vec3::from(glossy.specular_factor);
+        if glossy.specular_glossiness_texture.is_some() {
+            // Factors alone would make a mirror of it.
+            material.dielectric = Dielectric::default();
+            material.roughness = GLOSSY_ROUGHNESS;
+            self.warnings.add(format!(
+                "material {:?}: specularGlossinessTexture is left out: drawn with roughness \
+                 {GLOSSY_ROUGHNESS} and glTF's plain reflectance",
+                self.name
+            ));
+        }
+        Ok(())
     }
 
     fn alpha(&mut self, json: &Json) -> Option<f32> {

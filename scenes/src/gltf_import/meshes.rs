@@ -12,8 +12,8 @@ use gltf::json::{
 use rayon::prelude::*;
 
 use super::{
-    Warnings, file::File, limits, materials::Materials, repeats, skins::Influence, tangents,
-    warnings::kept_name,
+    Warnings, draco::DracoMesh, file::File, limits, materials::Materials, repeats,
+    skins::Influence, tangents, warnings::kept_name,
 };
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
@@ -39,7 +39,7 @@ pub(super) fn load(
         .par_iter()
         .map(|&(mesh, ix)| {
             let mut warnings = Warnings::default();
-            let job = Job::new(file, materials, mesh, ix);
+            let mut job = Job::new(file, materials, mesh, ix);
             Ok((mesh, job.convert(&mut warnings)?, warnings))
         })
         .collect();
@@ -71,6 +71,8 @@ struct Job<'a> {
     material: usize,
     uv_set: u32,
     needs_tangents: bool,
+    /// What it holds compressed.
+    draco: Option<DracoMesh>,
 }
 
 impl<'a> Job<'a> {
@@ -88,12 +90,13 @@ impl<'a> Job<'a> {
             material,
             uv_set: materials.uv_sets[material],
             needs_tangents: materials.materials[material].normal_texture.is_some(),
+            draco: None,
         }
     }
 
     /// The mesh and what moves its vertices; `None` where there is nothing to draw.
     fn convert(
-        &self,
+        &mut self,
         warnings: &mut Warnings,
     ) -> Result<Option<(Mesh, Vec<Influence>)>, SceneError> {
         let Checked::Valid(mode) = self.primitive.mode else {
@@ -109,6 +112,9 @@ impl<'a> Job<'a> {
             return Ok(None);
         }
         self.note_ignored(warnings);
+        let promised = self.attribute(Semantic::Positions).and_then(|ix| self.file.root.get(ix));
+        let promised = promised.map_or(0, |accessor| accessor.count.0);
+        self.draco = DracoMesh::decode(self.file, self.primitive, &self.field, promised)?;
         let positions = self.positions()?;
         let indices = self.indices(mode, positions.len())?;
         if indices.is_empty() {
@@ -146,12 +152,26 @@ impl<'a> Job<'a> {
         self.primitive.attributes.get(&Checked::Valid(semantic)).copied()
     }
 
+    /// An attribute's values, from the compressed mesh where they are there.
+    fn floats<const N: usize>(
+        &self,
+        semantic: &Semantic,
+        accessor: Index<Accessor>,
+    ) -> Result<Vec<[f32; N]>, SceneError> {
+        let name = semantic.to_string();
+        let compressed = self.draco.as_ref().zip(self.file.root.get(accessor));
+        match compressed.and_then(|(draco, accessor)| draco.floats(&name, accessor)) {
+            Some(values) => Ok(values),
+            None => self.file.floats::<N>(accessor),
+        }
+    }
+
     fn positions(&self) -> Result<Vec<[f32; 3]>, SceneError> {
         let field = format!("{}.attributes.POSITION", self.field);
         let Some(accessor) = self.attribute(Semantic::Positions) else {
             return Err(self.file.invalid(field, "missing", "an accessor"));
         };
-        let positions = self.file.floats::<3>(accessor)?;
+        let positions = self.floats::<3>(&Semantic::Positions, accessor)?;
         for (ix, position) in positions.iter().enumerate() {
             if let Some(value) = position.iter().find(|x| !x.is_finite()) {
                 let field = format!("{field} (accessors[{accessor}]) element {ix}");
@@ -163,14 +183,17 @@ impl<'a> Job<'a> {
 
     /// The indices as a triangle list.
     fn indices(&self, mode: Mode, vertices: usize) -> Result<Vec<u32>, SceneError> {
-        let indices = match self.primitive.indices {
-            Some(accessor) => self.file.indices(accessor)?,
-            None => (0..vertices as u32).collect(),
+        let indices = match (&self.draco, self.primitive.indices) {
+            (Some(draco), _) => draco.indices(),
+            (None, Some(accessor)) => self.file.indices(accessor)?,
+            (None, None) => (0..vertices as u32).collect(),
         };
         if let Some(index) = indices.iter().find(|ix| **ix as usize >= vertices) {
             let accepted = format!("below {vertices}, the number of vertices");
             return Err(self.file.invalid(format!("{}.indices", self.field), index, accepted));
         }
+        // A compressed strip is stored as its triangles.
+        let mode = if self.draco.is_some() { Mode::Triangles } else { mode };
         Ok(match mode {
             Mode::TriangleStrip => indices
                 .windows(3)
@@ -234,7 +257,7 @@ impl<'a> Job<'a> {
         let Some(accessor) = self.attribute(semantic.clone()) else {
             return Ok(());
         };
-        let values = self.file.floats::<N>(accessor)?;
+        let values = self.floats::<N>(&semantic, accessor)?;
         if values.len() != vertices.len() {
             return Err(self.file.invalid(
                 format!("{}.attributes ({semantic:?}) count", self.field),
@@ -255,10 +278,10 @@ impl<'a> Job<'a> {
         };
         let kind = self.file.root.get(accessor).map(|json| json.type_);
         let mut colors = if kind == Some(Checked::Valid(Type::Vec3)) {
-            let colors = self.file.floats::<3>(accessor)?.into_iter();
+            let colors = self.floats::<3>(&Semantic::Colors(0), accessor)?.into_iter();
             colors.map(|[r, g, b]| [r, g, b, 1.0]).collect()
         } else {
-            self.file.floats::<4>(accessor)?
+            self.floats::<4>(&Semantic::Colors(0), accessor)?
         };
         self.check_count("COLOR_0", colors.len(), vertices)?;
         for channel in colors.as_flattened_mut() {
@@ -279,8 +302,8 @@ impl<'a> Job<'a> {
         if self.file.root.skins.is_empty() {
             return Ok(Vec::new());
         }
-        let joints = self.file.floats::<4>(joints)?;
-        let weights = self.file.floats::<4>(weights)?;
+        let joints = self.floats::<4>(&Semantic::Joints(0), joints)?;
+        let weights = self.floats::<4>(&Semantic::Weights(0), weights)?;
         self.check_count("JOINTS_0", joints.len(), vertices)?;
         self.check_count("WEIGHTS_0", weights.len(), vertices)?;
         let influence = |(joints, weights): ([f32; 4], [f32; 4])| {

@@ -1,10 +1,13 @@
+mod area_lights;
 mod cameras;
+mod compressed;
+mod materials;
 mod placing;
 mod valid;
 
 use std::path::PathBuf;
 
-use assign::{LightKind, LightShape};
+use assign::LightShape;
 use base64::Engine;
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
@@ -403,51 +406,4 @@ fn leaves(value: &Value, at: String, out: &mut Vec<String>) {
         }
         _ => out.push(at),
     }
-}
-
-/// The sample with an area light on its first node.
-fn with_area_light(light: Value) -> Result<Scene, SceneError> {
-    let mut sample = sample();
-    sample.json["nodes"][0]["extras"] = json!({ "someone": 1, "lightbench_area_light": light });
-    load(&sample)
-}
-
-#[test]
-fn extras_carry_area_lights() {
-    let rectangle = json!({
-        "shape": "rectangle", "width": 2.0, "height": 4.0, "intensity": 8.0, "range": 5.0,
-        "two_sided": true, "diffuse_share": 0.5
-    });
-    let scene = with_area_light(rectangle).expect("valid");
-    let light = scene.lights.iter().find(|l| l.kind() == LightKind::Rectangle).expect("there");
-    light.check().expect("sound");
-    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
-    assert_eq!((emitter.area(), light.range_m, light.intensity), (8.0, 5.0, Vec3::splat(8.0)));
-    assert_eq!((emitter.normal(), emitter.two_sided), (Vec3::NEG_Z, true));
-    assert_eq!(light.diffuse_range_m(), 2.5);
-    let triangle = json!({ "shape": "polygon", "vertices": [[0, 0, 1], [1, 0, 1], [0, 1, 1]] });
-    let scene = with_area_light(triangle).expect("valid");
-    let light = scene.lights.iter().find(|l| l.kind() == LightKind::Polygon).expect("there");
-    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
-    assert!((emitter.normal() - Vec3::Z).length() < 1e-6 && (emitter.area() - 0.5).abs() < 1e-6);
-    let scaled = scene.scaled(3.0).expect("in range");
-    let light = scaled.lights.iter().find(|l| l.kind() == LightKind::Polygon).expect("there");
-    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
-    assert!((emitter.area() - 4.5).abs() < 1e-5);
-}
-
-#[test]
-fn area_lights_that_are_not_understood_name_the_field() {
-    let error = |light| with_area_light(light).expect_err("faulty").to_string();
-    let missing = error(json!({ "shape": "rectangle", "width": 1.0 }));
-    assert!(missing.contains("nodes[0].extras.lightbench_area_light"), "{missing}");
-    assert!(missing.contains("width and height"), "{missing}");
-    let turned = error(json!({ "shape": "rectangle", "width": -1.0, "height": 1.0 }));
-    assert!(turned.contains("above 0"), "{turned}");
-    let misspelt = error(json!({ "shape": "rectangle", "width": 1, "height": 1, "colour": 1 }));
-    assert!(misspelt.contains("colour"), "{misspelt}");
-    let disc = error(json!({ "shape": "disc" }));
-    assert!(disc.contains("rectangle") && disc.contains("polygon"), "{disc}");
-    let line = error(json!({ "shape": "polygon", "vertices": [[0, 0, 0], [1, 0, 0]] }));
-    assert!(line.contains("vertex count is 2"), "{line}");
 }

@@ -135,50 +135,6 @@ fn skins_that_cannot_pose_are_named() {
     assert_warns(&load(&animated).expect("valid"), "\"node 4\" the first");
 }
 
-/// The sample with a light of EXT_lights_area on its third node, which looks along -Z.
-fn with_area_extension(light: Value) -> Result<Scene, SceneError> {
-    let mut sample = sample();
-    sample.json["extensions"]["EXT_lights_area"] = json!({"lights": [light]});
-    sample.json["nodes"][2]["extensions"] = json!({"EXT_lights_area": {"light": 0}});
-    sample.json["nodes"][2]["scale"] = json!([2, 2, 2]);
-    load(&sample)
-}
-
-#[test]
-fn ext_lights_area_gives_area_lights() {
-    let emitter_of = |scene: &Scene| {
-        scene.lights[0].check().expect("sound");
-        match scene.lights[0].shape {
-            LightShape::Area(emitter) => (emitter, scene.lights[0].intensity),
-            other => panic!("{other:?}"),
-        }
-    };
-    let rectangle = json!({"type": "rect", "intensity": 100.0, "size": 0.5, "rect": {"aspect": 2},
-        "color": [1.0, 0.5, 0.25]});
-    let scene = with_area_extension(rectangle).expect("valid");
-    let (emitter, intensity) = emitter_of(&scene);
-    // Twice the size of the file's by the node's scale; 100 cd on each of 2 square metres.
-    assert_eq!((emitter.area(), emitter.normal()), (2.0, Vec3::NEG_Z));
-    assert_eq!(intensity, Vec3::new(200.0, 100.0, 50.0));
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    let disc = json!({"type": "disc", "intensity": 10.0, "size": 1.0});
-    let scene = with_area_extension(disc).expect("valid");
-    let (emitter, _) = emitter_of(&scene);
-    assert!((emitter.area() / std::f32::consts::PI - 1.0).abs() < 1e-5, "{}", emitter.area());
-    assert!((emitter.normal() - Vec3::NEG_Z).length() < 1e-5, "{}", emitter.normal());
-    assert_warns(&scene, "a disc is drawn as a polygon");
-    let odd = with_area_extension(json!({"type": "tube", "name": "neon"})).expect("valid");
-    assert!(odd.lights.is_empty());
-    assert_warns(&odd, "light \"neon\": EXT_lights_area type \"tube\" is left out");
-    for (light, expected) in [
-        (json!({"type": "rect", "size": 0}), "size and aspect above 0"),
-        (json!({"size": 1}), "missing field `type`"),
-    ] {
-        let error = with_area_extension(light).expect_err("faulty").to_string();
-        assert!(error.contains(expected) && error.contains("lights[0]"), "{error}");
-    }
-}
-
 /// Odd values in place of every number of a skin, of instances and of an area light.
 #[test]
 fn no_odd_value_of_what_places_makes_it_panic() {
