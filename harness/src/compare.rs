@@ -329,6 +329,7 @@ fn note_drift(record: &mut Record) {
 /// Notes what was wrong with the scene and its lights.
 pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
     results.warnings.extend(stage.scene.warnings.iter().cloned());
+    results.warnings.extend(stage.open_lights.map(|open| open.note()));
     let rejected = stage.lights.rejected().iter();
     results.rejected_lights = rejected
         .map(|rejected| RejectedLight {
@@ -355,12 +356,20 @@ fn end_on_device_error(gpu: &Gpu) {
 
 fn describe(stage: &Stage) {
     eprintln!(
-        "scene    {}: {} triangles, {} models, {} lights",
+        "scene    {}: {} triangles, {} models, {} lights{}",
         stage.scene.name,
         stage.scene.triangle_count(),
         stage.scene.models.len(),
-        stage.lights.count()
+        stage.lights.count(),
+        match stage.suns.as_slice().len() {
+            0 => String::new(),
+            1 => ", 1 sun".to_owned(),
+            count => format!(", {count} suns"),
+        }
     );
+    if let Some(open) = &stage.open_lights {
+        eprintln!("lights   {}", open.note());
+    }
     if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
         eprintln!("lights   scattered with a mean radius of {:.3} m", stage.radius_scale);
     }

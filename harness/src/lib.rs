@@ -18,6 +18,7 @@ pub mod fit_ltc;
 pub mod list_lengths;
 pub mod machine;
 pub mod measure;
+pub mod open_lights;
 pub mod optics;
 pub mod painter;
 pub mod pass_samples;

@@ -60,7 +60,7 @@ impl Feed {
 }
 
 impl Scene {
-    /// BLAKE3 over geometry, transforms, materials, images, lights and cameras, as 64 hexadecimal
+    /// BLAKE3 over geometry, transforms, materials, images, lights, suns and cameras, as 64 hexadecimal
     /// digits. Names, the path ([`path_hash`](Self::path_hash)) and the warnings do not enter.
     /// Procedural scenes may differ in the last bit between platforms whose `sin` and `cos` do.
     pub fn hash(&self) -> String {
@@ -70,6 +70,7 @@ impl Scene {
         self.hash_materials(&mut feed);
         self.hash_lights(&mut feed);
         self.hash_cameras(&mut feed);
+        self.hash_suns(&mut feed);
         feed.0.finalize().to_hex().to_string()
     }
 
@@ -144,6 +145,18 @@ impl Scene {
                     feed.floats(&vertex.to_array());
                 }
             }
+        }
+    }
+
+    /// Nothing enters where there are none: scenes without suns keep their hash.
+    fn hash_suns(&self, feed: &mut Feed) {
+        if self.suns.is_empty() {
+            return;
+        }
+        feed.int(self.suns.len() as u64);
+        for sun in &self.suns {
+            feed.floats(&sun.direction.to_array());
+            feed.floats(&sun.irradiance.to_array());
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot};
+use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot, Sun, Suns};
 use glam::{DVec3, Vec3A};
 use obvhs::{
     BvhBuildParams,
@@ -21,6 +21,7 @@ pub const EDGE: f64 = 1e-6;
 pub struct LightBvh<'a> {
     lights: &'a [Light],
     bvh: Bvh2,
+    suns: Suns,
 }
 
 /// What the truth says of one strategy's lists in one frame.
@@ -71,7 +72,19 @@ impl<'a> LightBvh<'a> {
             })
             .collect();
         let params = BvhBuildParams::medium_build();
-        Self { lights, bvh: build_bvh2(&boxes, params, &mut Duration::default()) }
+        let bvh = build_bvh2(&boxes, params, &mut Duration::default());
+        Self { lights, bvh, suns: Suns::default() }
+    }
+
+    /// The same with suns, which reach every sample and stand in no list.
+    #[must_use]
+    pub fn with_suns(self, suns: Suns) -> Self {
+        Self { suns, ..self }
+    }
+
+    /// The suns.
+    pub fn suns(&self) -> &[Sun] {
+        self.suns.as_slice()
     }
 
     /// The lights it was built over.

@@ -4,7 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod common;
 
-use assign::{Emitter, EncoderPasses, Everything, Gpu, Light, LightBuffer, LightShape, View};
+use assign::{
+    Emitter, EncoderPasses, Everything, Gpu, Light, LightBuffer, LightShape, Sun, Suns, View,
+};
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -12,10 +14,10 @@ use scenes::{Aabb, CameraPath, Encoding, Image, Instance, Material, Mesh, Model,
 use scenes::{TextureRef, Vertex};
 use shading::{
     HdrImage, LightBvh, Lighting, LightingOptions, Mode, Renderer, record_before_lighting,
-    reference::{Surface, light_contribution, reflect_light},
+    reference::{Surface, light_contribution, reflect_light, sun_contribution},
     traced::{
         Estimate, GBufferSamples, SurfaceSample, TracedScene, Transport, TruthImage, TruthSettings,
-        bounced_light, direct_light, truth_image,
+        bounced_light, direct_light, direct_radiance, truth_image,
     },
 };
 
@@ -48,6 +50,8 @@ fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Image>) -> Scen
             object_to_world: Mat4::IDENTITY,
         }],
         lights: Vec::new(),
+        open_lights: Vec::new(),
+        suns: Vec::new(),
         cameras: Vec::new(),
         path: CameraPath::still(Pose::new(Vec3::ZERO, Vec3::NEG_Z)),
         bounds,
@@ -104,6 +108,32 @@ fn a_shadow_ends_where_the_blocker_does() {
         }
         assert!(!is_lit(&scene, 0.0));
     }
+}
+
+/// A square of 1 m at a height of 1 m shades the floor where a sun at 45 degrees throws it, and a
+/// floor below a wall that the sun lights gets a bounce of it.
+#[test]
+fn suns_cast_shadows_and_bounce() {
+    let floor = [Vec3::ZERO, Vec3::Z * 9.0, Vec3::X * 9.0];
+    let blocker = [Vec3::Y, Vec3::Z * 0.5, Vec3::X * 0.5];
+    let wall = [Vec3::X * 3.0, Vec3::Y * 9.0, Vec3::Z * 9.0];
+    let scene =
+        scene_of(&[floor, blocker, wall], Material { double_sided: true, ..grey(0.5) }, vec![]);
+    let traced = TracedScene::new(&scene);
+    let sun = Sun { direction: Vec3::new(1.0, -1.0, 0.0).normalize(), irradiance: Vec3::ONE };
+    let lights = LightBvh::new(&[]).with_suns(Suns::new(&[sun]).unwrap());
+    for (x, lit) in [(0.499, true), (0.501, false), (1.499, false), (1.501, true)] {
+        let at = sample(DVec3::new(x, 0.0, 0.1), DVec3::Y, 0.6);
+        let seen = direct_radiance(&lights, &at, Some(&traced), 1, &mut rng());
+        let expected = sun_contribution(&sun, &at.surface, at.to_eye);
+        assert!(expected.x > 0.05, "{expected}");
+        assert_eq!(seen.mean, if lit { expected } else { DVec3::ZERO }, "at {x}");
+    }
+    let at = sample(DVec3::new(1.0, 0.0, 0.1), DVec3::Y, 0.6);
+    let bounced = bounced_light(&lights, &at, &traced, 2_000, &mut rng());
+    assert!(bounced.mean.x > 5.0 * bounced.standard_error().x, "{bounced:?}");
+    let dark = bounced_light(&LightBvh::new(&[]), &at, &traced, 100, &mut rng());
+    assert_eq!(dark.mean, DVec3::ZERO);
 }
 
 #[test]
@@ -323,12 +353,13 @@ fn rasterise(
     scene: &Scene,
     view: &View,
     lights: &[Light],
+    suns: Suns,
 ) -> (GBufferSamples, HdrImage) {
     let lights = LightBuffer::new(gpu, lights).unwrap();
     let mut renderer = Renderer::new(gpu, scene, view).unwrap();
     renderer.prepare(view, &lights).unwrap();
     let mut strategy = Everything::new(gpu).unwrap();
-    let options = LightingOptions { kinds: lights.kinds(), ..LightingOptions::default() };
+    let options = LightingOptions { kinds: lights.kinds(), suns, ..LightingOptions::default() };
     let lighting = Lighting::new(&renderer, &strategy, Mode::Deferred, options).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -350,8 +381,9 @@ fn truth_without_shadows_is_what_the_pipeline_shows() {
     let mut lights = common::lights(40);
     // Far enough to throw shadows.
     lights.iter_mut().for_each(|light| light.range_m += 4.0);
-    let (gbuffer, image) = rasterise(&gpu, &scene, &view, &lights);
-    let settings = TruthSettings::new(Transport::Unshadowed);
+    let suns = common::suns();
+    let (gbuffer, image) = rasterise(&gpu, &scene, &view, &lights, suns);
+    let settings = TruthSettings { suns, ..TruthSettings::new(Transport::Unshadowed) };
     let sample_of = |pixel| gbuffer.sample(pixel, &traced);
     let truth = truth_image(&traced, &lights, [96, 64], sample_of, settings, &|_, _| ());
     assert!(truth.standard_error.pixels.iter().flatten().all(|e| *e == 0.0));
@@ -359,7 +391,7 @@ fn truth_without_shadows_is_what_the_pipeline_shows() {
     {
         assert!((pixel - truth).abs() <= 2e-2 * truth + 1e-5, "{pixel} for {truth}");
     }
-    let direct = TruthSettings::new(Transport::Direct);
+    let direct = TruthSettings { suns, ..TruthSettings::new(Transport::Direct) };
     let shadowed = truth_image(&traced, &lights, [96, 64], sample_of, direct, &|_, _| ());
     let sum = |image: &HdrImage| image.pixels.iter().flatten().sum::<f32>();
     let share = sum(&shadowed.radiance) / sum(&truth.radiance);
@@ -380,7 +412,7 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
             }
             _ => common::view(size),
         };
-        let (gbuffer, _) = rasterise(&gpu, scene, &view, &common::lights(1));
+        let (gbuffer, _) = rasterise(&gpu, scene, &view, &common::lights(1), Suns::default());
         let (mut seen, mut missing) = (0, 0);
         let mut off = [0.0; 5];
         for pixel in 0..size[0] * size[1] {

@@ -16,7 +16,7 @@
 //! | `vertices` | of a polygon, `[x, y, z]` in node space, metres: 3 to 10, plane, convex, counter-clockwise seen from the front | refused |
 //! | `color` | linear RGB | white |
 //! | `intensity` | along the normal, as of a punctual light: radiance times area | 1 |
-//! | `range` | metres from the closest point of the emitter | where an unbounded light would have faded to [`THRESHOLD`] |
+//! | `range` | metres from the closest point of the emitter | as of a punctual light without one ([`close_ranges`](crate::close_ranges)) |
 //! | `two_sided` | whether it emits from its back too | `false` |
 //! | `diffuse_share` | where diffuse light ends, as a share of the range, above 0 and at most 1 | 1 |
 //!
@@ -29,7 +29,7 @@ use gltf::json::scene::Node;
 use serde::Deserialize;
 
 use super::file::File;
-use crate::{SceneError, lights::THRESHOLD};
+use crate::SceneError;
 
 /// The key in a node's `extras`.
 const KEY: &str = "lightbench_area_light";
@@ -117,8 +117,5 @@ pub(super) fn of_node(
     let emitter = if json.two_sided { emitter.two_sided() } else { emitter };
     let emitter = emitter.with_diffuse_share(json.diffuse_share);
     let intensity = Vec3::from(json.color) * json.intensity;
-    let unbounded = Light::range_from_threshold(intensity, THRESHOLD);
-    // Of a faulty intensity follows no range: the fault to report is the intensity's.
-    let unbounded = if unbounded > 0.0 && unbounded.is_finite() { unbounded } else { 1.0 };
-    Ok(Some(Light::area(emitter, position, json.range.unwrap_or(unbounded), intensity)))
+    Ok(Some(Light::area(emitter, position, json.range.unwrap_or(f32::INFINITY), intensity)))
 }

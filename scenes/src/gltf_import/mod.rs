@@ -11,6 +11,7 @@ mod images;
 mod materials;
 mod meshes;
 mod nodes;
+mod punctual;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -20,7 +21,9 @@ use std::path::Path;
 pub(crate) use animation::AnimatedNode;
 use file::File;
 
-use crate::{CameraPath, Scene, SceneError, error::one_line, fit};
+use assign::MAX_SUNS;
+
+use crate::{CameraPath, Scene, SceneError, close_ranges, error::one_line, fit};
 
 /// One line for each thing left out or changed, without repeats.
 #[derive(Default)]
@@ -45,9 +48,9 @@ impl Warnings {
 ///
 /// Meshes used by several nodes are shared, each node becoming a model. Missing normals are
 /// computed flat, missing tangents by MikkTSpace where the material has a normal map. Skins, morph
-/// targets, vertex colours, lines, points and directional lights are left out, and blended
-/// materials become masks; [`Scene::warnings`] says so. Lights without a range get the distance
-/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD). Those that
+/// targets, vertex colours, lines and points are left out, and blended
+/// materials become masks; [`Scene::warnings`] says so. [`close_ranges`] gives lights without a range
+/// their end. Those that
 /// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
 /// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
 ///
@@ -69,6 +72,10 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let materials = materials::load(&file, &mut warnings)?;
     let meshes = meshes::load(&file, &materials, &mut warnings)?;
     let placed = nodes::load(&file, &meshes, &mut warnings)?;
+    if placed.suns.len() > MAX_SUNS {
+        let field = "number of directional lights (KHR_lights_punctual)";
+        return Err(file.invalid(field, placed.suns.len(), format!("at most {MAX_SUNS}")));
+    }
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
@@ -86,6 +93,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         instances: placed.instances,
         models: placed.models,
         lights: placed.lights,
+        suns: placed.suns,
+        open_lights: Vec::new(),
         cameras: placed.cameras,
         path: CameraPath::still(fit::ORIGIN),
         bounds: crate::Aabb::EMPTY,
@@ -99,6 +108,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         return Err(file.invalid("scene bounds", size, "at most 1e12 across"));
     }
     scene.core_bounds = fit::core_bounds(&scene);
+    scene.open_lights = close_ranges(&mut scene.lights, scene.core_bounds.diagonal());
     scene.path = match animated {
         Some(animated) => CameraPath::animated(animated),
         None => fit::path(&scene),

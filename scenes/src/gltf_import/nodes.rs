@@ -2,18 +2,17 @@
 
 use std::f32::consts::PI;
 
-use assign::{Light, LightShape};
+use assign::{Light, Sun};
 use glam::{Mat4, Quat, Vec3};
 use gltf::json::{
     Index,
     camera::{Camera as JsonCamera, Type as CameraType},
-    extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType},
     scene::Node,
     validation::Checked,
 };
 
 use super::{Warnings, area_lights, file::File, meshes::Meshes};
-use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
+use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError};
 
 /// The most triangles drawn, every node counting its mesh's. A small file can place one large
 /// mesh often, and what follows takes time and memory by that number.
@@ -24,7 +23,9 @@ pub(super) const MAX_TRIANGLES: u64 = 200_000_000;
 pub(super) struct Placed {
     pub(super) models: Vec<Model>,
     pub(super) instances: Vec<Instance>,
+    /// Their ranges are infinite where the file gives none.
     pub(super) lights: Vec<Light>,
+    pub(super) suns: Vec<Sun>,
     pub(super) cameras: Vec<Camera>,
     /// For each camera, the nodes from the root to the one that holds it.
     pub(super) camera_chains: Vec<Vec<usize>>,
@@ -163,32 +164,6 @@ impl Placed {
         self.instances.extend(range.map(|mesh| Instance { mesh, model }));
     }
 
-    fn add_light(
-        &mut self,
-        file: &File,
-        node: &Node,
-        to_world: Mat4,
-        warnings: &mut Warnings,
-    ) -> Result<(), SceneError> {
-        let of_node = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let Some(reference) = of_node else {
-            return Ok(());
-        };
-        let of_root = file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let lights = of_root.map_or(&[][..], |e| &e.lights);
-        let ix = reference.light.value();
-        let json = lights.get(ix).ok_or_else(|| {
-            file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
-        })?;
-        let name = json.name.clone().unwrap_or_else(|| format!("light {ix}"));
-        let Some(light) = convert_light(json, to_world) else {
-            warnings.add(format!("light {name:?}: directional lights are left out"));
-            return Ok(());
-        };
-        self.lights.push(light);
-        Ok(())
-    }
-
     fn add_camera(
         &mut self,
         json: &JsonCamera,
@@ -230,38 +205,11 @@ impl Placed {
     }
 }
 
-/// A glTF camera or spot looks down its node's -Z; scale does not matter.
+/// A glTF camera looks down its node's -Z; scale does not matter.
 pub(super) fn pose(to_world: &Mat4) -> Pose {
     let eye = to_world.w_axis.truncate();
     let forward = (-to_world.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
     let up = to_world.y_axis.truncate();
     let up = (up - forward * forward.dot(up)).normalize_or(forward.any_orthonormal_vector());
     Pose { eye, target: eye + forward, up }
-}
-
-/// Intensity is candela times colour. A light without a range gets the one at which its
-/// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported
-/// where lights are uploaded. `None` for directional lights.
-fn convert_light(json: &JsonLight, to_world: Mat4) -> Option<Light> {
-    let pose = pose(&to_world);
-    let intensity = Vec3::from(json.color) * json.intensity;
-    let shines =
-        intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() > 0.0;
-    // Of a faulty intensity follows no range: the fault to report is the intensity's.
-    let unbounded = || if shines { Light::range_from_threshold(intensity, THRESHOLD) } else { 1.0 };
-    let shape = match (&json.type_, &json.spot) {
-        (Checked::Valid(LightType::Point), _) => LightShape::Point,
-        (Checked::Valid(LightType::Spot), Some(spot)) => LightShape::Spot {
-            direction: pose.forward(),
-            inner_angle: spot.inner_cone_angle.min(spot.outer_cone_angle),
-            outer_angle: spot.outer_cone_angle,
-        },
-        _ => return None,
-    };
-    Some(Light {
-        position: pose.eye,
-        range_m: json.range.unwrap_or_else(unbounded),
-        intensity,
-        shape,
-    })
 }

@@ -1,11 +1,14 @@
 //! Light that comes from lights without a detour.
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Sun};
 use glam::DVec3;
 use rand_pcg::Pcg64Mcg;
 
 use super::{Estimate, SurfaceSample, TracedScene, area::SeenEmitter};
-use crate::{LightBvh, reference::light_contribution};
+use crate::{
+    LightBvh,
+    reference::{light_contribution, sun_contribution},
+};
 
 /// Pairs of directions to an area light with shadows, unless told otherwise.
 pub const AREA_SAMPLES: u32 = 64;
@@ -32,7 +35,20 @@ pub fn direct_light(
     }
 }
 
-/// Radiance that all lights add to a sample, summed in ascending index.
+/// Radiance that a sun adds to a sample; with shadows where there is a scene to cast them.
+pub fn direct_sun(
+    sun: &Sun,
+    sample: &SurfaceSample,
+    visibility: Option<&TracedScene<'_>>,
+) -> Estimate {
+    let radiance = sun_contribution(sun, &sample.surface, sample.to_eye);
+    let to_sun = -sun.direction.as_dvec3().normalize();
+    let is_seen =
+        radiance != DVec3::ZERO && visibility.is_none_or(|scene| scene.sees_sky(sample, to_sun));
+    Estimate::exact(if is_seen { radiance } else { DVec3::ZERO })
+}
+
+/// Radiance that all suns add to a sample, and then all lights in ascending index.
 pub fn direct_radiance(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
@@ -45,7 +61,9 @@ pub fn direct_radiance(
     // The hierarchy finds them in an order of its own.
     reaching.sort_unstable();
     let all = lights.lights();
-    reaching.into_iter().fold(Estimate::default(), |sum, light| {
+    let suns = lights.suns().iter().map(|sun| direct_sun(sun, sample, visibility));
+    let suns = suns.fold(Estimate::default(), |sum, sun| sum + sun);
+    reaching.into_iter().fold(suns, |sum, light| {
         sum + direct_light(&all[light as usize], sample, visibility, area_samples, rng)
     })
 }

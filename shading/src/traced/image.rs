@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use assign::Light;
+use assign::{Light, Suns};
 use glam::DVec3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -27,7 +27,7 @@ pub enum Transport {
 }
 
 /// How a truth image is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthSettings {
     /// The light that it shows.
     pub transport: Transport,
@@ -37,12 +37,20 @@ pub struct TruthSettings {
     pub area_samples: u32,
     /// Images of different seeds are independent.
     pub seed: u32,
+    /// Suns, in addition to the lights.
+    pub suns: Suns,
 }
 
 impl TruthSettings {
     /// 64 samples of either kind, seed 1.
     pub fn new(transport: Transport) -> Self {
-        Self { transport, bounce_samples: 64, area_samples: AREA_SAMPLES, seed: 1 }
+        Self {
+            transport,
+            bounce_samples: 64,
+            area_samples: AREA_SAMPLES,
+            seed: 1,
+            suns: Suns::default(),
+        }
     }
 }
 
@@ -95,7 +103,7 @@ pub fn truth_image(
     progress: &(dyn Fn(u32, u32) + Sync),
 ) -> TruthImage {
     let sound: Vec<Light> = lights.iter().filter(|light| light.check().is_ok()).copied().collect();
-    let lights = LightBvh::new(&sound);
+    let lights = LightBvh::new(&sound).with_suns(settings.suns);
     let [width, height] = size;
     let mut estimates = vec![Estimate::default(); width as usize * height as usize];
     let rows_done = AtomicU32::new(0);
