@@ -48,6 +48,7 @@ mod readback;
 mod reuse;
 mod shader;
 mod spot_ramp;
+mod sun;
 mod view;
 
 pub use assignment::{Assignment, Lookup, StrategyModule};
@@ -77,4 +78,5 @@ pub use readback::Readback;
 pub use reuse::Reuse;
 pub use shader::Shader;
 pub use spot_ramp::SpotRamp;
+pub use sun::{MAX_IRRADIANCE, MAX_SUNS, Sun, Suns};
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};

@@ -352,6 +352,7 @@ impl Run<'_> {
 pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
     results.warnings.extend(stage.scene.warnings.iter().cloned());
     results.warnings.extend(stage.notes.iter().cloned());
+    results.warnings.extend(stage.open_lights.map(|open| open.note()));
     let rejected = stage.lights.rejected().iter();
     results.rejected_lights = rejected
         .map(|rejected| RejectedLight {
@@ -379,12 +380,20 @@ fn end_on_device_error(gpu: &Gpu) {
 
 fn describe(stage: &Stage) {
     say(format!(
-        "scene    {}: {} triangles, {} models, {} lights",
+        "scene    {}: {} triangles, {} models, {} lights{}",
         stage.scene.name,
         stage.scene.triangle_count(),
         stage.scene.models.len(),
-        stage.lights.count()
+        stage.lights.count(),
+        match stage.suns.as_slice().len() {
+            0 => String::new(),
+            1 => ", 1 sun".to_owned(),
+            count => format!(", {count} suns"),
+        }
     ));
+    if let Some(open) = &stage.open_lights {
+        say(format!("lights   {}", open.note()));
+    }
     if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
         say(format!(
             "lights   scattered with a mean radius of {} m",

@@ -109,6 +109,8 @@ pub fn record(
         light_box: [stage.light_box.min, stage.light_box.max]
             .map(|corner| (stage.scene.origin + corner.as_dvec3()).to_array()),
         own_lights: stage.own_lights as u64,
+        open_lights: stage.open_lights.map(|open| open.count),
+        open_threshold: stage.open_lights.map(|open| open.threshold),
         width: stage.view.viewport.width,
         height: stage.view.viewport.height,
         frames: plan.timed * plan.laps.max(1),

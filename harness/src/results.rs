@@ -167,7 +167,8 @@ pub struct Record {
     pub mode: Mode,
     /// Lights that took part.
     pub lights: u64,
-    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`, `vpl`.
+    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`, `vpl`; and `sun`, which
+    /// stands in no list and is none of [`lights`](Self::lights).
     #[serde(default)]
     pub light_kinds: BTreeMap<String, u64>,
     /// How area lights were shaded: `ltc`; absent where there was none.
@@ -194,6 +195,13 @@ pub struct Record {
     /// Lights that the scene's file holds, of [`lights`](Self::lights).
     #[serde(default)]
     pub own_lights: u64,
+    /// Lights whose file gives no range, of [`own_lights`](Self::own_lights); absent where there is none,
+    /// and in older results.
+    #[serde(default)]
+    pub open_lights: Option<u64>,
+    /// The greatest intensity over squared distance that one of them still gives at its end.
+    #[serde(default)]
+    pub open_threshold: Option<f64>,
     /// Image width, pixels.
     pub width: u32,
     /// Image height, pixels.

@@ -1,14 +1,17 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MIN_RANGE_M, View};
+use assign::{
+    Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns, View,
+};
 use glam::{DVec3, Vec3};
-use scenes::{Aabb, LightSpec, Places, Scene, primary_light, scatter_lights};
+use scenes::{Aabb, LightSpec, Places, Scene, close_ranges, primary_light, scatter_lights};
 use shading::{AreaModel, Renderer};
 
 use crate::{
     camera,
     cli::{CliError, LightBox, StageArgs},
     error::HarnessError,
+    open_lights::OpenLights,
     optics::Optics,
     results::{Planes, Vpls},
     vpls::VplMaker,
@@ -26,6 +29,10 @@ pub struct Stage {
     pub light_box: Aabb,
     /// Lights of the scene's own among all that were handed over.
     pub own_lights: usize,
+    /// Lights whose file gives no range.
+    pub open_lights: Option<OpenLights>,
+    /// Suns, which light all samples beside the lists.
+    pub suns: Suns,
     /// The lights, faulty ones left out.
     pub lights: LightBuffer,
     /// How area lights are shaded.
@@ -92,6 +99,8 @@ impl Stage {
             radius_scale,
             light_box: lit.bounds,
             own_lights: lit.own,
+            open_lights: lit.open,
+            suns: lit.suns,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
             area_model: AreaModel::default(),
             compensation: None,
@@ -114,6 +123,8 @@ impl Stage {
         self.radius_scale = radius_scale;
         self.light_box = lit.bounds;
         self.own_lights = lit.own;
+        self.open_lights = lit.open;
+        self.suns = lit.suns;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
         self.view = view;
         self.notes = notes;
@@ -175,8 +186,8 @@ impl Stage {
         self.optics.planes(&self.view)
     }
 
-    /// Lights of each kind, by name.
-    pub fn light_kinds(&self) -> [(&'static str, u64); 5] {
+    /// Lights of each kind, by name, and suns.
+    pub fn light_kinds(&self) -> [(&'static str, u64); 6] {
         let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
         [
             ("point", count(LightKind::Point)),
@@ -184,6 +195,7 @@ impl Stage {
             ("rectangle", count(LightKind::Rectangle)),
             ("polygon", count(LightKind::Polygon)),
             ("vpl", count(LightKind::Vpl)),
+            ("sun", self.suns.as_slice().len() as u64),
         ]
     }
 }
@@ -191,10 +203,12 @@ impl Stage {
 /// The lights of a stage.
 struct Lit {
     lights: Vec<Light>,
+    suns: Suns,
     bounds: Aabb,
     own: usize,
     /// What the file that other lights come from leaves out.
     warnings: Vec<String>,
+    open: Option<OpenLights>,
 }
 
 impl Lit {
@@ -205,19 +219,36 @@ impl Lit {
             LightBox::Bounds => scene.bounds,
         };
         if args.bounce.is_on() {
-            return Ok(Self { lights: Vec::new(), bounds, own: 0, warnings: Vec::new() });
+            let (lights, suns) = (Vec::new(), Suns::default());
+            return Ok(Self { lights, suns, bounds, own: 0, warnings: Vec::new(), open: None });
         }
-        let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
+        let (mut lights, mut suns, mut open) = match args.no_own_lights {
+            true => (Vec::new(), Vec::new(), Vec::new()),
+            false => (scene.lights.clone(), scene.suns.clone(), scene.open_lights.clone()),
+        };
         let mut warnings = Vec::new();
         if let Some(file) = &args.lights_from {
             let origin = scene.origin / args.scene_scale;
-            let other = scenes::open_lights(file, origin)?.scaled(args.scene_scale as f32)?;
-            if other.lights.is_empty() {
+            let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale as f32)?;
+            if other.lights.is_empty() && other.suns.is_empty() {
                 let accepted = "a file that holds lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
             }
+            // The scene that they light decides where they end.
+            for &ix in &other.open_lights {
+                other.lights[ix as usize].range_m = f32::INFINITY;
+            }
+            let first = lights.len() as u32;
+            let closed = close_ranges(&mut other.lights, scene.core_bounds.diagonal());
+            open.extend(closed.into_iter().map(|ix| first + ix));
             lights.extend(other.lights);
             warnings = other.warnings;
+            suns.extend(other.suns);
+            if suns.len() > MAX_SUNS {
+                let value = format!("{file}: {} directional lights with the scene's", suns.len());
+                let accepted = format!("a file with which they are at most {MAX_SUNS}");
+                return Err(CliError::out_of_range("--lights-from", &value, &accepted).into());
+            }
         }
         let own = lights.len();
         let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
@@ -252,7 +283,8 @@ impl Lit {
         if let Some(least) = args.influence {
             set_influence(&mut lights, least as f32);
         }
-        Ok(Self { lights, bounds, own, warnings })
+        let open = OpenLights::new(&lights, &open);
+        Ok(Self { lights, suns: Suns::new(&suns)?, bounds, own, warnings, open })
     }
 }
 

@@ -124,6 +124,7 @@ fn trace(
             area_samples: args.samples,
             // Other numbers for each: their errors are independent.
             seed: if transport == Transport::Bounce { 2 } else { 1 },
+            suns: stage.suns,
             ..TruthSettings::new(transport)
         };
         let bar = progress_bar(u64::from(samples.height));

@@ -276,3 +276,80 @@ fn lists_and_help_teach() {
     assert!(!text(&["list", "adapters"]).is_empty());
     assert!(text(&["--help"]).contains("How to read the result"));
 }
+
+/// A floor of 10 m under a camera, one lamp of 0.05 cd without a range, and perhaps a sun.
+fn floor_file(folder: &Path, has_sun: bool) -> String {
+    let corners: [[f32; 3]; 4] = [[-5., 0., -5.], [-5., 0., 5.], [5., 0., 5.], [5., 0., -5.]];
+    let mut bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
+    bytes.extend([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|ix| ix.to_le_bytes()));
+    std::fs::write(folder.join("floor.bin"), &bytes).expect("writes");
+    let down = [-0.5_f32.sqrt(), 0.0, 0.0, 0.5_f32.sqrt()];
+    let light = |ix: u32, height: f32| {
+        let extensions = serde_json::json!({"KHR_lights_punctual": {"light": ix}});
+        serde_json::json!({"translation": [0.0, height, 0.0], "rotation": down, "extensions": extensions})
+    };
+    let nodes = if has_sun { vec![0, 1, 2, 3] } else { vec![0, 1, 3] };
+    let json = serde_json::json!({
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "point", "intensity": 0.05}, {"type": "directional", "intensity": 0.5}]}},
+        "buffers": [{"byteLength": bytes.len(), "uri": "floor.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "accessors": [
+            {"bufferView": 0, "count": 4, "componentType": 5126, "type": "VEC3",
+             "min": [-5.0, 0.0, -5.0], "max": [5.0, 0.0, 5.0]},
+            {"bufferView": 1, "count": 6, "componentType": 5123, "type": "SCALAR"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
+        "nodes": [{"mesh": 0}, light(0, 3.0), light(1, 4.0),
+            {"camera": 0, "translation": [0.0, 6.0, 0.0], "rotation": down}],
+        "scenes": [{"nodes": nodes}],
+    });
+    let file = folder.join(if has_sun { "sun.gltf" } else { "lamp.gltf" });
+    std::fs::write(&file, json.to_string()).expect("writes");
+    file.to_str().expect("UTF-8").to_owned()
+}
+
+/// The image of `None` of a run.
+fn image_of_none(out: &Path) -> shading::HdrImage {
+    shading::HdrImage::read_exr(&out.join("deferred-None.exr")).expect("an image")
+}
+
+/// A dim lamp without a range lights its floor as it would without an end, and the run says where it
+/// ends; a sun lights it once, whatever the method.
+#[test]
+fn lights_without_an_end_are_seen_and_stated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("run");
+    let few = ["--lights", "0", "--strategies", "None,SC-E/16x16x4,RasterSphere"];
+    let run = |file: &str, more: &[&str]| {
+        let size = ["--size", "32x18", "--frames", "1", "--warmup", "0", "--unbounded"];
+        let out = ["--out", out.to_str().expect("UTF-8"), "--scene", file];
+        let output = lightbench(&[&["compare"][..], &few[..], &size, &out, more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let words = String::from_utf8_lossy(&output.stderr).into_owned();
+        let results = Results::read(&folder.path().join("run/results.json")).expect("results");
+        (results, image_of_none(&folder.path().join("run")), words)
+    };
+    let lamp = floor_file(folder.path(), false);
+    let (results, dim, words) = run(&lamp, &[]);
+    let record = &results.records[0];
+    assert_eq!((record.lights, record.open_lights), (1, Some(1)));
+    assert!(record.unbounded_errors["rel_mse"] < Some(1e-4), "{:?}", record.unbounded_errors);
+    assert!(dim.pixels.iter().all(|pixel| pixel[0] > 1e-5), "a black pixel");
+    for place in [words, results.warnings.concat()] {
+        assert!(
+            place.contains("1 light has no range in its file, and an end at 70.7 m"),
+            "{place}"
+        );
+    }
+    let (results, _, words) = run(&lamp, &["--threshold", "0.02"]);
+    assert!(words.contains("an end at 1.58 m"), "{words}");
+    assert!(results.records[0].unbounded_errors["rel_mse"] > Some(0.9), "{results:?}");
+    let (results, sunny, words) = run(&floor_file(folder.path(), true), &[]);
+    assert!(words.contains("1 lights, 1 sun"), "{words}");
+    assert_eq!(results.records[0].light_kinds["sun"], 1);
+    assert!(results.records.iter().all(|record| record.is_lossless()), "{:?}", results.records);
+    assert!(sunny.pixels.iter().zip(&dim.pixels).all(|(sun, dim)| sun[0] > dim[0] + 0.01));
+}

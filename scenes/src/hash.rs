@@ -61,7 +61,7 @@ impl Feed {
 }
 
 impl Scene {
-    /// BLAKE3 over geometry, transforms, materials, images, lights and cameras, as 64 hexadecimal
+    /// BLAKE3 over geometry, transforms, materials, images, lights, suns and cameras, as 64 hexadecimal
     /// digits. Names, the path ([`path_hash`](Self::path_hash)) and the warnings do not enter.
     /// Procedural scenes may differ in the last bit between platforms whose `sin` and `cos` do.
     pub fn hash(&self) -> String {
@@ -166,6 +166,13 @@ impl Scene {
                 feed.floats(&[material.dielectric.f90]);
             }
         }
+        if !self.suns.is_empty() {
+            feed.int(SUNS);
+        }
+        for sun in &self.suns {
+            feed.floats(&sun.direction.to_array());
+            feed.floats(&sun.irradiance.to_array());
+        }
     }
 
     fn hash_cameras(&self, feed: &mut Feed) {
@@ -184,6 +191,7 @@ impl Scene {
 
 /// Marks the start of what scenes may have beside the rest.
 const COLORS: u64 = 0x636f_6c6f_7273;
+const SUNS: u64 = 0x7375_6e73;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     ShadingError,
-    lighting_inputs::LightingInputs,
+    lighting_inputs::{Bound, LightingInputs},
     materials::{MaterialKey, Materials},
 };
 
@@ -60,8 +60,8 @@ pub struct SceneGpu {
     colors: Option<wgpu::Buffer>,
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
-    /// Of bind group 2: without and with the table of linearly transformed cosines.
-    layouts: [wgpu::BindGroupLayout; 2],
+    /// Of bind group 2, for each of [`Bound::ALL`].
+    layouts: [wgpu::BindGroupLayout; 4],
     pub(crate) instances: wgpu::Buffer,
 }
 
@@ -84,26 +84,26 @@ impl SceneGpu {
             .then(|| buffer("vertex colours", cast_slice(&colors), wgpu::BufferUsages::VERTEX))
             .transpose()?;
         let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
-        let layout = |table| {
+        let layout = |bound| {
             let stages = wgpu::ShaderStages::FRAGMENT;
             let own = [
                 storage_entry(0, wgpu::ShaderStages::VERTEX, true),
                 storage_entry(1, stages, true),
             ];
             let entries: Vec<_> =
-                own.into_iter().chain(LightingInputs::layout(table, stages)).collect();
+                own.into_iter().chain(LightingInputs::layout(bound, stages)).collect();
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("scene"),
                 entries: &entries,
             })
         };
-        let layouts = [layout(false), layout(true)];
+        let layouts = Bound::ALL.map(layout);
         Ok(Self { vertices, indices, colors, draws, materials, layouts, instances })
     }
 
     /// Layout of bind group 2.
-    pub(crate) fn layout(&self, reads_table: bool) -> &wgpu::BindGroupLayout {
-        &self.layouts[usize::from(reads_table)]
+    pub(crate) fn layout(&self, bound: Bound) -> &wgpu::BindGroupLayout {
+        &self.layouts[bound.index()]
     }
 
     /// Bind group 2, with what lighting reads.
@@ -112,7 +112,7 @@ impl SceneGpu {
         let entries: Vec<_> = own.into_iter().chain(inputs.entries()).collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
-            layout: self.layout(inputs.has_table()),
+            layout: self.layout(inputs.bound()),
             entries: &entries,
         })
     }

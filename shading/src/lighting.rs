@@ -1,11 +1,11 @@
 //! Lighting with one strategy's lists, in one mode.
 
-use assign::{AssignError, Assignment, Gpu, LightKinds, Passes, Shader, View};
+use assign::{AssignError, Assignment, Gpu, LightKinds, Passes, Shader, Suns, View};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     AreaModel, Mode, Renderer, ShadingError,
-    lighting_inputs::LightingInputs,
+    lighting_inputs::{Bound, LightingInputs},
     raster::{LISTS_GROUP, Lists, RasterPass, RasterPipelines},
     shaders,
 };
@@ -37,6 +37,9 @@ pub struct LightingOptions {
     /// where virtual point lights lie thick or thin, and is no light that anything sends: `None`,
     /// which changes no bit, wherever errors are measured.
     pub compensation: Option<f32>,
+    /// Suns, which light every sample beside its list; without any, nothing of them is compiled or
+    /// bound.
+    pub suns: Suns,
 }
 
 /// How a light's fall-off ends at its range.
@@ -69,7 +72,8 @@ impl LightingOptions {
         let shader = shader
             .light_kinds(self.kinds)
             .flag("hard_cut", self.cut == Cut::Hard)
-            .flag("compensation", self.compensation.is_some());
+            .flag("compensation", self.compensation.is_some())
+            .flag("suns", !self.suns.is_empty());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }
@@ -187,7 +191,7 @@ impl Deferred {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
         let dielectrics = renderer.scene.has_dielectrics();
-        let layout = deferred_layout(gpu, [emissive, model_ids, dielectrics], inputs.has_table());
+        let layout = deferred_layout(gpu, [emissive, model_ids, dielectrics], inputs.bound());
         let shader = lists
             .options
             .set_flags(shaders::lighting(LISTS_GROUP))
@@ -195,9 +199,9 @@ impl Deferred {
             .flag("model_ids", model_ids)
             .flag("dielectrics", dielectrics)
             .flag("emissive", emissive);
-        // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.
-        // The strategy's author vouches for its look-up.
-        #[allow(unsafe_code, reason = "its loop ends")]
+        // SAFETY: its loops count up to the number of suns and to the length of a list, which is a
+        // `u32` read once. The strategy's author vouches for its look-up.
+        #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::deferred") }?;
         let pipeline = compute_pipeline(
             gpu,
@@ -289,12 +293,12 @@ pub(crate) const TEXELS: wgpu::TextureSampleType =
 pub(crate) const MODEL_BINDING: u32 = 5;
 
 /// Where deferred lighting binds what dielectrics reflect.
-const DIELECTRIC_BINDING: u32 = 10;
+const DIELECTRIC_BINDING: u32 = 11;
 
 fn deferred_layout(
     gpu: &Gpu,
     [emissive, model_ids, dielectrics]: [bool; 3],
-    table: bool,
+    bound: Bound,
 ) -> wgpu::BindGroupLayout {
     let mut entries = vec![
         texture_entry(0, wgpu::TextureSampleType::Depth),
@@ -311,7 +315,7 @@ fn deferred_layout(
             count: None,
         },
     ];
-    entries.extend(LightingInputs::layout(table, wgpu::ShaderStages::COMPUTE));
+    entries.extend(LightingInputs::layout(bound, wgpu::ShaderStages::COMPUTE));
     if emissive {
         entries.push(texture_entry(3, TEXELS));
     }

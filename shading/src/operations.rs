@@ -102,7 +102,7 @@ pub fn count_operations(
         entry(EXPOSURE_BINDING, &shown),
     ];
     let inputs = LightingInputs::new(gpu, options)?;
-    entries.extend(LightingInputs::layout(inputs.has_table(), stages));
+    entries.extend(LightingInputs::layout(inputs.bound(), stages));
     resources.extend(inputs.entries());
     let model_ids = strategy.needs().models;
     if model_ids {

@@ -8,6 +8,7 @@ use crate::{
     ShadingError,
     geometry::{DrawKey, SceneGpu},
     lighting::LightingOptions,
+    lighting_inputs::Bound,
     materials::TEXTURE_FLAGS,
     shaders,
     targets::{
@@ -142,18 +143,17 @@ fn pipeline(
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
     let shown = Shown::of(scene);
     let shader = shader(pass, key, shown);
-    // SAFETY: forward lighting's one loop counts up to the length of a list, which is a `u32` read
-    // once; the strategy's author vouches for its look-up. The other passes have no loop.
-    #[allow(unsafe_code, reason = "its loop ends")]
+    // SAFETY: forward lighting's loops count up to the number of suns and to the length of a list,
+    // which is a `u32` read once; the strategy's author vouches for its look-up. The other passes have
+    // no loop.
+    #[allow(unsafe_code, reason = "its loops end")]
     let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, shown);
-    let (lists, reads_table) = match pass {
-        RasterPass::Forward { lists, .. } => {
-            (Some(lists.lookup.layout), lists.options.reads_table())
-        }
-        _ => (None, false),
+    let (lists, bound) = match pass {
+        RasterPass::Forward { lists, .. } => (Some(lists.lookup.layout), lists.options.bound()),
+        _ => (None, Bound { table: false, suns: false }),
     };
-    let scene_layout = scene.layout(reads_table);
+    let scene_layout = scene.layout(bound);
     let textures = fragment.and_then(|_| scene.materials.layout(key.material));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),

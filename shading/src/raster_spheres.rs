@@ -4,7 +4,7 @@
 //! around each light are drawn where they lie behind the surface, every fragment adds one light to
 //! one pixel, and blending sums. A pixel is read and written once per volume that covers it.
 
-use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, View};
+use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, Suns, View};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
@@ -27,7 +27,8 @@ pub const RASTER_SPHERE_TOLERANCE: f64 = 1e-3;
 #[derive(Debug)]
 pub struct RasterSpheres {
     volumes: wgpu::RenderPipeline,
-    emission: Option<wgpu::RenderPipeline>,
+    /// Emission and suns, where there are any.
+    first: Option<wgpu::RenderPipeline>,
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
     vertex_count: u32,
@@ -45,8 +46,9 @@ impl RasterSpheres {
         kinds: LightKinds,
         area: AreaModel,
         cut: Cut,
+        suns: Suns,
     ) -> Result<Self, ShadingError> {
-        let options = LightingOptions { kinds, area, cut, ..LightingOptions::default() };
+        let options = LightingOptions { kinds, area, cut, suns, ..LightingOptions::default() };
         let gpu = &renderer.gpu;
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {
@@ -71,7 +73,7 @@ impl RasterSpheres {
         let layout = gpu.bind_group_layout("raster spheres", &entries);
         let inputs = LightingInputs::new(gpu, options)?;
         let stages = wgpu::ShaderStages::FRAGMENT;
-        let entries: Vec<_> = LightingInputs::layout(inputs.has_table(), stages).collect();
+        let entries: Vec<_> = LightingInputs::layout(inputs.bound(), stages).collect();
         let inputs_layout = gpu.bind_group_layout("raster spheres", &entries);
         let entries: Vec<_> = inputs.entries().collect();
         let inputs = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -90,7 +92,8 @@ impl RasterSpheres {
         let triangles = sphere();
         Ok(Self {
             volumes: pipeline("vertex_volume", "fragment_volume", true),
-            emission: emissive.then(|| pipeline("vertex_all", "fragment_emission", false)),
+            first: (emissive || !suns.is_empty())
+                .then(|| pipeline("vertex_all", "fragment_first", false)),
             vertex_count: triangles.len() as u32,
             triangles: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("sphere"),
@@ -157,8 +160,8 @@ impl RasterSpheres {
             pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
             pass.set_bind_group(1, &images, &[]);
             pass.set_bind_group(2, &self.inputs, &[]);
-            if let Some(emission) = &self.emission {
-                pass.set_pipeline(emission);
+            if let Some(first) = &self.first {
+                pass.set_pipeline(first);
                 pass.draw(0..3, 0..1);
             }
             pass.set_pipeline(&self.volumes);

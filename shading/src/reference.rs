@@ -1,6 +1,6 @@
 //! The lighting function in f64 on the CPU: what the shaders are tested against.
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Sun};
 use glam::DVec3;
 use scenes::Dielectric;
 
@@ -136,6 +136,12 @@ pub fn light_contribution(
         return seen.map_or(DVec3::ZERO, |seen| seen.truth());
     }
     point_contribution(light, position, surface, to_eye)
+}
+
+/// Radiance that a sun adds to a surface.
+pub fn sun_contribution(sun: &Sun, surface: &Surface, to_eye: DVec3) -> DVec3 {
+    let to_sun = -sun.direction.as_dvec3().normalize();
+    sun.irradiance.as_dvec3() * reflect_light(surface, to_eye, to_sun)
 }
 
 /// What linearly transformed cosines make of an area light at `position`; of other lights

@@ -126,13 +126,16 @@ fn model_ids() {
 
 #[test]
 fn raster_spheres() {
-    for flags in with_areas(subsets(&["emissive", "spots"])) {
+    for flags in with_areas(subsets(&["emissive", "spots", "suns"])) {
         let linked = link("package::raster_spheres", &flags, None);
         let emissive = flags.contains("emissive");
+        let has_suns = flags.contains("suns");
         let expected = if emissive { vec![0, 1, 2, 3] } else { vec![0, 1, 2] };
         let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
         assert_eq!(images, expected, "{flags:?}");
-        assert_eq!(linked.entry_points.len(), if emissive { 4 } else { 2 }, "{flags:?}");
+        let entry_points = if emissive || has_suns { 4 } else { 2 };
+        assert_eq!(linked.entry_points.len(), entry_points, "{flags:?}");
+        assert_eq!(linked.bindings.contains(&(2, 10)), has_suns, "{flags:?}");
     }
 }
 
@@ -158,7 +161,7 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        let sets = material_flags(Some("forward"), &["emissive", "spots", "forward_mask"]);
+        let sets = material_flags(Some("forward"), &["emissive", "spots", "forward_mask", "suns"]);
         // Area lights read no texture: one material with all of them will do.
         let areas =
             with_areas(sets.iter().max_by_key(|set| set.len()).into_iter().cloned().collect());
@@ -185,6 +188,7 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
     assert_eq!(of_group(1), lists, "{root} {flags:?} {}", look_up.0);
     let mut images = images.to_vec();
     images.extend(flags.contains("area_ltc_table").then_some(7));
+    images.extend((root == "deferred" && flags.contains("suns")).then_some(10));
     images.sort_unstable();
     assert_eq!(of_group(2), images, "{root} {flags:?} {}", look_up.0);
 }
@@ -192,9 +196,14 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in
-            with_areas(subsets(&["emissive", "spots", "model_ids", "hard_cut", "compensation"]))
-        {
+        for flags in with_areas(subsets(&[
+            "emissive",
+            "spots",
+            "model_ids",
+            "hard_cut",
+            "compensation",
+            "suns",
+        ])) {
             let mut images = vec![0, 1, 2, 4, 6];
             images.extend(flags.contains("emissive").then_some(3));
             images.extend(flags.contains("model_ids").then_some(5));
@@ -256,6 +265,18 @@ fn flags_change_the_shader() {
     let shapes = (0, 3);
     let spots = source(&["forward", "base_color_texture", "spots"]);
     assert!(spots.bindings.contains(&shapes) && !forward.bindings.contains(&shapes));
+}
+
+/// A scene without suns compiles nothing of them and binds nothing for them.
+#[test]
+fn without_suns_the_shader_knows_none() {
+    let source = |flags: &[&'static str]| {
+        let flags = flags.iter().copied().collect();
+        link("package::deferred", &flags, Some(LOOK_UPS[0]))
+    };
+    let (with, without) = (source(&["suns"]), source(&[]));
+    assert!(with.source.contains("sun_light") && with.bindings.contains(&(2, 10)));
+    assert!(!without.source.contains("sun") && !without.bindings.contains(&(2, 10)));
 }
 
 /// A scene without area lights compiles nothing of them and binds nothing for them, whatever the model.

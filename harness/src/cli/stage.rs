@@ -67,8 +67,9 @@ pub struct StageArgs {
     #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
     pub diffuse_share: f64,
 
-    /// Give every light the range at which its intensity over squared distance falls to this,
-    /// 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02]
+    /// Give every light the range at which its intensity over squared distance (candela: lux) falls
+    /// to this, 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02, lights whose
+    /// file gives no range 0.02 or less, so that dim ones are seen]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
     pub threshold: Option<f64>,
 

@@ -3,7 +3,7 @@
 use super::comparison::{Comparison, comparisons};
 use super::format::{factor, number, short_adapter, significant};
 use super::lead::{Lead, span};
-use super::loss::loss;
+use super::loss::{loss, range_loss};
 use super::rank::{is_timed, tie};
 use super::raster;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel, Untested};
@@ -234,6 +234,15 @@ pub fn notices(results: &Results) -> Vec<String> {
     }
     if results.truth.level == TruthLevel::None && !results.records.is_empty() {
         notices.push("The lists were not checked for missed lights (--truth none).".to_owned());
+    }
+    // Methods that lose nothing else say the same: the first of each scene and mode stands for all.
+    let mut told = Vec::new();
+    for record in &results.records {
+        let case = (&record.scene, record.mode);
+        if let Some(loss) = range_loss(record).filter(|_| !told.contains(&case)) {
+            notices.push(loss);
+            told.push(case);
+        }
     }
     if let Some(first) = results.rejected_lights.first() {
         let count = lights(results.rejected_lights.len() as u64);

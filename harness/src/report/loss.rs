@@ -114,6 +114,19 @@ pub(super) fn loss(record: &Record) -> Option<String> {
     Some(parts.join(" and ") + &errors)
 }
 
+/// What the ends of lights lose in a record, whatever its method; `None` where it was not measured.
+pub(super) fn range_loss(record: &Record) -> Option<String> {
+    let error = |id| record.unbounded_errors.get(id).copied().flatten();
+    Some(format!(
+        "{}, {}: against lights without an end the image of {} has {} % missing energy and relMSE {}.",
+        record.scene,
+        record.mode.name(),
+        record.strategy,
+        percent(error("missing_energy")?),
+        difference(error("rel_mse")?)
+    ))
+}
+
 fn checked(record: &Record) -> String {
     record
         .checked_pairs

@@ -101,11 +101,14 @@ pub(super) fn comparisons_html(results: &Results) -> Html {
     comparisons(results).iter().enumerate().map(section).collect()
 }
 
+/// The kind of light that stands in no list.
+const SUN: &str = "sun";
+
 pub(super) fn setting(record: &Record) -> String {
     let kinds: Vec<_> = record
         .light_kinds
         .iter()
-        .filter(|(_, count)| **count > 0)
+        .filter(|(kind, count)| **count > 0 && *kind != SUN)
         .map(|(kind, count)| format!("{} {kind}", number(*count as f64)))
         .collect();
     let mut parts = vec![if kinds.is_empty() {
@@ -113,6 +116,11 @@ pub(super) fn setting(record: &Record) -> String {
     } else {
         format!("{} lights ({})", number(record.lights as f64), kinds.join(", "))
     }];
+    match record.light_kinds.get(SUN).copied().unwrap_or(0) {
+        0 => {}
+        1 => parts.push("1 sun".to_owned()),
+        count => parts.push(format!("{count} suns")),
+    }
     parts.push(format!("{}\u{a0}\u{d7}\u{a0}{} pixels", record.width, record.height));
     parts.push(format!("{} triangles", number(record.triangles as f64)));
     if record.scene_scale != 1.0 {

@@ -78,6 +78,8 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         planes: None,
         light_box: [[-15.0, 0.0, -7.0], [15.0, 10.0, 7.0]],
         own_lights: 0,
+        open_lights: None,
+        open_threshold: None,
         width: 640,
         height: 360,
         frames,

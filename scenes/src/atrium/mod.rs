@@ -65,6 +65,8 @@ pub fn atrium(seed: u64) -> Scene {
         instances: hall.instances,
         models: hall.models,
         lights: Vec::new(),
+        open_lights: Vec::new(),
+        suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,
         origin: glam::DVec3::ZERO,

@@ -16,7 +16,7 @@
 //! | `vertices` | of a polygon, `[x, y, z]` in node space, metres: 3 to 10, plane, convex, counter-clockwise seen from the front | refused |
 //! | `color` | linear RGB | white |
 //! | `intensity` | along the normal, as of a punctual light: radiance times area | 1 |
-//! | `range` | metres from the closest point of the emitter | where an unbounded light would have faded to [`THRESHOLD`] |
+//! | `range` | metres from the closest point of the emitter | as of a punctual light without one ([`close_ranges`](crate::close_ranges)) |
 //! | `two_sided` | whether it emits from its back too | `false` |
 //! | `diffuse_share` | where diffuse light ends, as a share of the range, above 0 and at most 1 | 1 |
 //!
@@ -133,115 +133,6 @@ fn of_extras(
     let emitter = if json.two_sided { emitter.two_sided() } else { emitter };
     let emitter = emitter.with_diffuse_share(json.diffuse_share);
     let intensity = Vec3::from(json.color) * json.intensity;
-    Ok(Some(light(emitter, position, json.range, intensity)))
-}
-
-/// An area light; without a range, it ends where an unbounded light would have faded to
-/// [`THRESHOLD`].
-fn light(emitter: Emitter, position: Vec3, range_m: Option<f32>, intensity: Vec3) -> Light {
-    let unbounded = Light::range_from_threshold(intensity, THRESHOLD);
-    // Of a faulty intensity follows no range: the fault to report is the intensity's.
-    let unbounded = if unbounded > 0.0 && unbounded.is_finite() { unbounded } else { 1.0 };
-    Light::area(emitter, position, range_m.unwrap_or(unbounded), intensity)
-}
-
-/// The extension's name, on nodes and at the root.
-const EXTENSION: &str = "EXT_lights_area";
-
-/// One light of EXT_lights_area.
-#[derive(Deserialize)]
-struct ExtensionJson {
-    name: Option<String>,
-    #[serde(rename = "type")]
-    kind: String,
-    #[serde(default = "white")]
-    color: [f32; 3],
-    /// Luminance, candela per square metre.
-    #[serde(default = "one")]
-    intensity: f32,
-    /// Height of a rectangle, diameter of a disc, metres.
-    #[serde(default = "one")]
-    size: f32,
-    #[serde(default)]
-    rect: RectangleJson,
-}
-
-#[derive(Deserialize)]
-struct RectangleJson {
-    /// Width over height.
-    #[serde(default = "one")]
-    aspect: f32,
-}
-
-impl Default for RectangleJson {
-    fn default() -> Self {
-        Self { aspect: 1.0 }
-    }
-}
-
-/// The light of EXT_lights_area that a node refers to.
-fn of_extension(
-    file: &File,
-    ix: usize,
-    node: &Node,
-    to_world: Mat4,
-    warnings: &mut Warnings,
-) -> Result<Option<Light>, SceneError> {
-    let Some(reference) = node.extensions.as_ref().and_then(|e| e.others.get(EXTENSION)) else {
-        return Ok(None);
-    };
-    let root = file.root.extensions.as_ref().and_then(|e| e.others.get(EXTENSION));
-    let lights = root.and_then(|e| e.get("lights")?.as_array()).map_or(&[][..], Vec::as_slice);
-    let number = reference.get("light").unwrap_or(&serde_json::Value::Null);
-    let found = number.as_u64().and_then(|n| lights.get(usize::try_from(n).ok()?));
-    let value = found.ok_or_else(|| {
-        let field = format!("nodes[{ix}].extensions.{EXTENSION}.light");
-        file.invalid(field, number, format!("below {}, the number of its lights", lights.len()))
-    })?;
-    let field = || format!("extensions.{EXTENSION}.lights[{number}]");
-    let json: ExtensionJson = serde_json::from_value(value.clone())
-        .map_err(|error| file.invalid(field(), value, format!("an area light, but: {error}")))?;
-    let (width, height) = (json.size * json.rect.aspect, json.size);
-    if !(width > 0.0 && height > 0.0 && width.is_finite()) {
-        return Err(file.invalid(field(), value, "a light with size and aspect above 0"));
-    }
-    let name = json.name.unwrap_or_else(|| format!("area light {number}"));
-    // A mirroring transform turns outlines round.
-    let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let place = |x: f32, y: f32| to_world.transform_vector3(Vec3::new(x, y * side, 0.0));
-    let position = to_world.transform_point3(Vec3::ZERO);
-    let (emitter, position) = match json.kind.as_str() {
-        "rect" => {
-            let half_y = place(0.0, -0.5 * height);
-            (Emitter::rectangle(place(0.5 * width, 0.0), half_y), position)
-        }
-        "disc" => {
-            warnings.add(format!(
-                "light {name:?}: a disc is drawn as a polygon of {MAX_VERTICES} vertices and the \
-                 same area"
-            ));
-            // A regular polygon's area is n / 2 r^2 sin(2 pi / n).
-            let step = TAU / MAX_VERTICES as f32;
-            let radius = 0.5 * height * (step / step.sin()).sqrt();
-            let vertex = |ix: usize| {
-                let (sin, cos) = (step * ix as f32).sin_cos();
-                position + place(radius * cos, -radius * sin)
-            };
-            let vertices: Vec<Vec3> = (0..MAX_VERTICES).map(vertex).collect();
-            match Emitter::polygon(&vertices) {
-                Ok(polygon) => polygon,
-                Err(fault) => {
-                    warnings.add(format!("light {name:?} of {EXTENSION} is left out: {fault}"));
-                    return Ok(None);
-                }
-            }
-        }
-        other => {
-            warnings.add(format!("light {name:?}: {EXTENSION} type {other:?} is left out"));
-            return Ok(None);
-        }
-    };
-    // Radiance times area.
-    let intensity = Vec3::from(json.color) * json.intensity * emitter.area();
-    Ok(Some(light(emitter, position, None, intensity)))
+use super::{Warnings, file::File};
+use crate::SceneError;
 }

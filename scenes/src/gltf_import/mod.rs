@@ -22,6 +22,7 @@ mod models;
 mod nodes;
 mod origin;
 mod parts;
+mod punctual;
 mod repeats;
 mod skins;
 mod tangents;
@@ -31,23 +32,23 @@ mod warnings;
 
 use std::path::Path;
 
+use assign::{MAX_SUNS, Sun};
 use glam::DVec3;
 
 pub(crate) use animation::AnimatedNode;
 use file::File;
 use warnings::Warnings;
 
-use crate::{CameraPath, Scene, SceneError, fit};
+use crate::{CameraPath, Scene, SceneError, close_ranges, fit};
 
 /// Loads a glTF 2.0 file.
 ///
 /// Meshes used by several nodes are shared, each node becoming a model, and each instance of
 /// EXT_mesh_gpu_instancing. Skinned meshes are posed where their joints rest. Missing normals are
 /// computed flat, missing tangents by MikkTSpace where the material has a normal map. Morph
-/// targets, lines, points, directional lights and animations of anything but cameras are left
+/// targets, lines, points and animations of anything but cameras are left
 /// out, and blended materials become masks; [`Scene::warnings`] says so, and names every
-/// extension that is not read. Lights without a range get the distance at which their illuminance
-/// falls to [`THRESHOLD`](crate::THRESHOLD). Those that
+/// extension that is not read. [`close_ranges`] gives lights without a range their end. Those that
 /// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
 /// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
 ///
@@ -76,6 +77,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     warnings.append(file.take_notes());
     let mut meshes = meshes::load(&file, &materials, &mut warnings)?;
     let (walk, placed, origin) = origin::place(&file, &mut meshes, &mut warnings)?;
+    check_suns(&file, &placed.suns)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
@@ -97,6 +99,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         instances: placed.instances,
         models: placed.models,
         lights: placed.lights,
+        suns: placed.suns,
+        open_lights: Vec::new(),
         cameras: placed.cameras,
         view_camera,
         origin,
@@ -113,6 +117,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         return Err(file.invalid("scene bounds", size, "at most 1e12 across"));
     }
     scene.core_bounds = fit::core_bounds(&scene);
+    scene.open_lights = close_ranges(&mut scene.lights, scene.core_bounds.diagonal());
     scene.path = match animated {
         Some(animated) => CameraPath::animated(animated),
         None => fit::path(&scene),
@@ -123,7 +128,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 /// Loads the lights of a glTF 2.0 file and nothing else, so that it may hold nothing else.
 ///
 /// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings. World space
-/// begins at `origin` of the file.
+/// begins at `origin` of the file. Lights without a range reach infinitely far: the scene that they light
+/// decides where they end.
 ///
 /// # Errors
 ///
@@ -132,7 +138,8 @@ pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, Scen
     let file = File::open(path)?;
     let mut warnings = file.take_notes();
     let walk = nodes::walk(&file, origin)?;
-    let lights = nodes::lights(&file, &walk, &mut warnings)?;
+    let (lights, suns) = nodes::lights(&file, &walk, &mut warnings)?;
+    check_suns(&file, &suns)?;
     animation::note_unplayed(&file, &walk, &mut warnings);
     Ok(Scene {
         name: name(path),
@@ -142,6 +149,8 @@ pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, Scen
         instances: Vec::new(),
         models: Vec::new(),
         lights,
+        suns,
+        open_lights: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,
         origin,
@@ -150,6 +159,14 @@ pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, Scen
         core_bounds: crate::Aabb::EMPTY,
         warnings: warnings.into_lines(),
     })
+}
+
+fn check_suns(file: &File, suns: &[Sun]) -> Result<(), SceneError> {
+    if suns.len() <= MAX_SUNS {
+        return Ok(());
+    }
+    let field = "number of directional lights (KHR_lights_punctual)";
+    Err(file.invalid(field, suns.len(), format!("at most {MAX_SUNS}")))
 }
 
 /// The file's stem, or its folder's name where that is just "scene".

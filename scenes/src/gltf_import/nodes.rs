@@ -1,10 +1,9 @@
 //! The node hierarchy: placed models, lights and cameras.
 
-use assign::{Light, LightShape};
+use assign::{Light, Sun};
 use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4};
 use gltf::json::{
     Index,
-    extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType},
     scene::Node,
     validation::Checked,
 };
@@ -17,7 +16,7 @@ use super::{
     skins::Skins,
     warnings::kept_name,
 };
-use crate::{Camera, Instance, Model, SceneError, lights::THRESHOLD};
+use crate::{Camera, Instance, Model, SceneError};
 
 /// The most nodes between cameras and their roots, all cameras together: a deep tree can hold a
 /// camera at every node. The animation of further cameras is not looked for.
@@ -28,7 +27,9 @@ const MAX_CHAIN_NODES: usize = 1 << 16;
 pub(super) struct Placed {
     pub(super) models: Vec<Model>,
     pub(super) instances: Vec<Instance>,
+    /// Their ranges are infinite where the file gives none.
     pub(super) lights: Vec<Light>,
+    pub(super) suns: Vec<Sun>,
     pub(super) cameras: Vec<Camera>,
     /// For each camera, the nodes from the root to the one that holds it.
     pub(super) camera_chains: Vec<Vec<usize>>,
@@ -198,17 +199,17 @@ pub(super) fn place(
     Ok(placed)
 }
 
-/// The lights of the visited nodes alone.
+/// The lights and suns of the visited nodes alone.
 pub(super) fn lights(
     file: &File,
     walk: &Walk,
     warnings: &mut Warnings,
-) -> Result<Vec<Light>, SceneError> {
+) -> Result<(Vec<Light>, Vec<Sun>), SceneError> {
     let mut placed = Placed::default();
     for visit in walk.visits.iter().filter(|visit| visit.is_visible) {
         placed.add_lights(file, visit, warnings)?;
     }
-    Ok(placed.lights)
+    Ok((placed.lights, placed.suns))
 }
 
 /// KHR_node_visibility: a hidden node hides all nodes below it.
@@ -265,56 +266,4 @@ impl Placed {
         Ok(())
     }
 
-    fn add_light(
-        &mut self,
-        file: &File,
-        node: &Node,
-        to_world: &DMat4,
-        warnings: &mut Warnings,
-    ) -> Result<(), SceneError> {
-        let of_node = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let Some(reference) = of_node else {
-            return Ok(());
-        };
-        let of_root = file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let lights = of_root.map_or(&[][..], |e| &e.lights);
-        let ix = reference.light.value();
-        let json = lights.get(ix).ok_or_else(|| {
-            file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
-        })?;
-        let name = json.name.as_deref().map_or_else(|| format!("light {ix}"), kept_name);
-        let Some(light) = convert_light(json, to_world) else {
-            warnings.add(format!("light {name:?}: directional lights are left out"));
-            return Ok(());
-        };
-        self.lights.push(light);
-        Ok(())
-    }
-}
-
-/// Intensity is candela times colour. A light without a range gets the one at which its
-/// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported
-/// where lights are uploaded. `None` for directional lights.
-fn convert_light(json: &JsonLight, to_world: &DMat4) -> Option<Light> {
-    let pose = cameras::pose(to_world);
-    let intensity = Vec3::from(json.color) * json.intensity;
-    let shines =
-        intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() > 0.0;
-    // Of a faulty intensity follows no range: the fault to report is the intensity's.
-    let unbounded = || if shines { Light::range_from_threshold(intensity, THRESHOLD) } else { 1.0 };
-    let shape = match (&json.type_, &json.spot) {
-        (Checked::Valid(LightType::Point), _) => LightShape::Point,
-        (Checked::Valid(LightType::Spot), Some(spot)) => LightShape::Spot {
-            direction: pose.forward(),
-            inner_angle: spot.inner_cone_angle.min(spot.outer_cone_angle),
-            outer_angle: spot.outer_cone_angle,
-        },
-        _ => return None,
-    };
-    Some(Light {
-        position: pose.eye,
-        range_m: json.range.unwrap_or_else(unbounded),
-        intensity,
-        shape,
-    })
 }

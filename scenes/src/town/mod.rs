@@ -72,6 +72,8 @@ pub fn town(seed: u64, size: TownSize) -> Scene {
         instances: town.instances,
         models: town.models,
         lights: Vec::new(),
+        open_lights: Vec::new(),
+        suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,
         origin: glam::DVec3::ZERO,

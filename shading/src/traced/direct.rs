@@ -1,10 +1,13 @@
 //! Light that comes from lights without a detour.
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Sun};
 use glam::DVec3;
 
 use super::{Estimate, Numbers, SurfaceSample, TracedScene, area::SeenEmitter, numbers::Point};
-use crate::{LightBvh, reference::light_contribution};
+use crate::{
+    LightBvh,
+    reference::{light_contribution, sun_contribution},
+};
 
 /// Pairs of directions to an area light with shadows, unless told otherwise.
 pub const AREA_SAMPLES: u32 = 64;
@@ -37,7 +40,29 @@ fn exact_light(
     if is_seen { radiance } else { DVec3::ZERO }
 }
 
-/// Radiance that all lights add to a sample, summed in ascending index.
+/// Radiance that a sun adds to a sample; with shadows where there is a scene to cast them.
+pub fn direct_sun(
+    sun: &Sun,
+    sample: &SurfaceSample,
+    visibility: Option<&TracedScene<'_>>,
+) -> DVec3 {
+    let radiance = sun_contribution(sun, &sample.surface, sample.to_eye);
+    let to_sun = -sun.direction.as_dvec3().normalize();
+    let is_seen =
+        radiance != DVec3::ZERO && visibility.is_none_or(|scene| scene.sees_sky(sample, to_sun));
+    if is_seen { radiance } else { DVec3::ZERO }
+}
+
+/// Radiance that all suns add to a sample.
+fn direct_suns(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    visibility: Option<&TracedScene<'_>>,
+) -> DVec3 {
+    lights.suns().iter().map(|sun| direct_sun(sun, sample, visibility)).sum()
+}
+
+/// Radiance that all suns add to a sample, and then all lights in ascending index.
 pub fn direct_radiance(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
@@ -45,7 +70,8 @@ pub fn direct_radiance(
     area_samples: u32,
     numbers: Numbers,
 ) -> Estimate {
-    reaching(lights, sample).into_iter().fold(Estimate::default(), |sum, light_ix| {
+    let suns = Estimate::exact(direct_suns(lights, sample, visibility));
+    reaching(lights, sample).into_iter().fold(suns, |sum, light_ix| {
         let light = &lights.lights()[light_ix as usize];
         sum + direct_light(light, sample, visibility, area_samples, numbers.part(light_ix.into()))
     })
@@ -69,7 +95,8 @@ pub(super) fn direct_radiance_once(
             _ => exact_light(light, sample, Some(scene)),
         }
     };
-    reaching(lights, sample).into_iter().map(from_light).sum()
+    let suns = direct_suns(lights, sample, Some(scene));
+    reaching(lights, sample).into_iter().map(from_light).fold(suns, |sum, light| sum + light)
 }
 
 /// The lights that reach a sample, ascending.

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use assign::Light;
+use assign::{Light, Suns};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ pub enum Transport {
 }
 
 /// How a truth image is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthSettings {
     /// The light that it shows.
     pub transport: Transport,
@@ -41,13 +41,16 @@ pub struct TruthSettings {
     pub area_samples: u32,
     /// Images of different seeds are independent.
     pub seed: u64,
+    /// Suns, in addition to the lights.
+    pub suns: Suns,
 }
 
 impl TruthSettings {
     /// One bounce, 64 samples of either kind, seed 1.
     pub fn new(transport: Transport) -> Self {
         let (bounce_samples, area_samples) = (64, AREA_SAMPLES);
-        Self { transport, bounces: 1, bounce_samples, area_samples, seed: 1 }
+        let suns = Suns::default();
+        Self { transport, bounces: 1, bounce_samples, area_samples, seed: 1, suns }
     }
 }
 
@@ -100,7 +103,7 @@ pub fn truth_image(
     progress: &(dyn Fn(u32, u32) + Sync),
 ) -> TruthImage {
     let sound: Vec<Light> = lights.iter().filter(|light| light.check().is_ok()).copied().collect();
-    let lights = LightBvh::new(&sound);
+    let lights = LightBvh::new(&sound).with_suns(settings.suns);
     let [width, height] = size;
     let mut estimates = vec![Estimate::default(); width as usize * height as usize];
     let rows_done = AtomicU32::new(0);

@@ -13,7 +13,7 @@
 //!
 //! | light | without shadows | with shadows |
 //! |---|---|---|
-//! | points, spots | exact | exact: one ray each |
+//! | points, spots, suns | exact | exact: one ray each |
 //! | rectangles, polygons | quadrature, to 1e-4 | directions to the emitter, sampled |
 //! | bounces, and surfaces that emit | | paths, sampled |
 //!
@@ -49,7 +49,7 @@ mod texture;
 mod triangles;
 
 pub use bounce::{MAX_BOUNCES, bounced_light};
-pub use direct::{AREA_SAMPLES, direct_light, direct_radiance};
+pub use direct::{AREA_SAMPLES, direct_light, direct_radiance, direct_sun};
 pub use estimate::Estimate;
 pub use gbuffer::GBufferSamples;
 pub use image::{Transport, TruthImage, TruthSettings, truth_image};

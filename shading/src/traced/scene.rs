@@ -116,6 +116,12 @@ impl<'a> TracedScene<'a> {
         !self.triangles.any(origin, direction, end_m, |hit| self.is_solid(hit))
     }
 
+    /// Whether a ray from the sample leaves the scene.
+    pub fn sees_sky(&self, from: &SurfaceSample, direction: DVec3) -> bool {
+        let solid = |hit: &Hit| self.is_solid(hit);
+        !self.triangles.any(from.ray_origin(), direction, f64::INFINITY, solid)
+    }
+
     /// How far a ray goes before it meets a triangle, from either side, metres; `None` where it meets
     /// none. Holes of alpha masks count as surface, as in deep images.
     pub fn distance_m(&self, origin: DVec3, direction: DVec3) -> Option<f64> {

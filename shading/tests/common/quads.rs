@@ -1,6 +1,6 @@
 //! Scenes of rectangles, and what the pipeline makes of a scene.
 
-use assign::{EncoderPasses, Everything, Gpu, Light, LightBuffer, View};
+use assign::{EncoderPasses, Everything, Gpu, Light, LightBuffer, Suns, View};
 use glam::{Mat4, Vec3, Vec4};
 use scenes::{Aabb, CameraPath, Image, Instance, Material, Mesh, Model, Pose, Scene, Vertex};
 use shading::{
@@ -38,6 +38,8 @@ pub(crate) fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Imag
             object_to_world: Mat4::IDENTITY,
         }],
         lights: Vec::new(),
+        open_lights: Vec::new(),
+        suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,
         origin: glam::DVec3::ZERO,
@@ -59,13 +61,14 @@ pub(crate) fn rasterise(
     scene: &Scene,
     view: &View,
     lights: &[Light],
+    suns: Suns,
     mode: Mode,
 ) -> (GBufferSamples, HdrImage) {
     let lights = LightBuffer::new(gpu, lights).unwrap();
     let mut renderer = Renderer::new(gpu, scene, view).unwrap();
     renderer.prepare(view, &lights).unwrap();
     let mut strategy = Everything::new(gpu).unwrap();
-    let options = LightingOptions { kinds: lights.kinds(), ..LightingOptions::default() };
+    let options = LightingOptions { kinds: lights.kinds(), suns, ..LightingOptions::default() };
     let lighting = Lighting::new(&renderer, &strategy, mode, options).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut passes = EncoderPasses { encoder: &mut encoder };

@@ -255,7 +255,7 @@ fn forward_shading_keeps_its_digits_in_a_highlight_and_the_g_buffer_does_not() {
     let scene = scene(Vec3::ONE, 1.0, 0.05);
     let (_, light) = lights()[0];
     let [forward, deferred] = [Mode::Forward, Mode::Deferred].map(|mode| {
-        let (_, image) = rasterise(&gpu, &scene, &view(), &[light], mode);
+        let (_, image) = rasterise(&gpu, &scene, &view(), &[light], Suns::default(), mode);
         off(&pairs(&image, &scene, &light))
     });
     println!("forward {:.1e}, deferred {:.1e}", forward.highlight, deferred.highlight);

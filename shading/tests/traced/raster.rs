@@ -1,6 +1,6 @@
 //! The truth against what the GPU draws.
 
-use assign::View;
+use assign::{Suns, View};
 use shading::{
     HdrImage, Mode,
     traced::{TracedScene, Transport, TruthSettings, truth_image},
@@ -17,8 +17,9 @@ fn truth_without_shadows_is_what_the_pipeline_shows() {
     let mut lights = common::lights(40);
     // Far enough to throw shadows.
     lights.iter_mut().for_each(|light| light.range_m += 4.0);
-    let (gbuffer, image) = rasterise(&gpu, &scene, &view, &lights, Mode::Deferred);
-    let settings = TruthSettings::new(Transport::Unshadowed);
+    let suns = common::suns();
+    let (gbuffer, image) = rasterise(&gpu, &scene, &view, &lights, suns, Mode::Deferred);
+    let settings = TruthSettings { suns, ..TruthSettings::new(Transport::Unshadowed) };
     let sample_of = |pixel| gbuffer.sample(pixel, &traced);
     let truth = truth_image(&traced, &lights, [96, 64], sample_of, settings, &|_, _| ());
     assert!(truth.standard_error.pixels.iter().flatten().all(|e| *e == 0.0));
@@ -26,7 +27,7 @@ fn truth_without_shadows_is_what_the_pipeline_shows() {
     {
         assert!((pixel - truth).abs() <= 2e-2 * truth + 1e-5, "{pixel} for {truth}");
     }
-    let direct = TruthSettings::new(Transport::Direct);
+    let direct = TruthSettings { suns, ..TruthSettings::new(Transport::Direct) };
     let shadowed = truth_image(&traced, &lights, [96, 64], sample_of, direct, &|_, _| ());
     let sum = |image: &HdrImage| image.pixels.iter().flatten().sum::<f32>();
     let share = sum(&shadowed.radiance) / sum(&truth.radiance);
@@ -47,7 +48,7 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
             }
             _ => common::view(size),
         };
-        let (gbuffer, _) = rasterise(&gpu, scene, &view, &common::lights(1), Mode::Deferred);
+        let (gbuffer, _) = rasterise(&gpu, scene, &view, &common::lights(1), Suns::default(), Mode::Deferred);
         let (mut seen, mut missing) = (0_u32, 0_usize);
         let mut off = [0.0; 5];
         for pixel in 0..size[0] * size[1] {
