@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use assign::{Emitter, Light, LightShape, View};
+use assign::{Emitter, Light, LightShape, Suns, View};
 use glam::{DVec2, DVec3, Vec3};
 use scenes::{Material, Scene};
 use shading::{
