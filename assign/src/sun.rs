@@ -1,7 +1,7 @@
 //! Suns: lights so far away that a whole scene sees them in the same direction.
 //!
 //! A sun reaches every sample, so no list could leave it out, whatever the strategy. Suns therefore lie
-//! beside the lists: a shader adds them first, in their order, and then sums the list's lights.
+//! beside the lists: a shader sums the list's lights and then adds the suns, in their order.
 
 use glam::Vec3;
 
