@@ -126,7 +126,7 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
             "models",
             "Models of area lights against the truth",
             &escape(&about(truth)),
-            &(errors_table(&known) + &words_table(&known)),
+            &(errors_table(&known, truth) + &words_table(&known)),
         );
     }
     let plot = Plot {
@@ -171,18 +171,27 @@ fn about(truth: &TruthImage) -> String {
     )
 }
 
-fn errors_table(entries: &[Entry<'_>]) -> String {
+fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> String {
     let mut heads = vec!["model".to_owned(), "shade <span class=\"unit\">ms</span>".to_owned()];
     heads.extend(ERROR_METRICS.iter().map(|metric| escape(metric.head)));
-    let rows: Vec<Vec<String>> = entries
+    let cells = |of: &dyn Fn(&str) -> Option<f64>| -> Vec<String> {
+        let cell = |id| of(id).map_or_else(|| ABSENT.to_owned(), difference);
+        ERROR_METRICS.iter().map(|metric| cell(metric.id)).collect()
+    };
+    let mut rows: Vec<Vec<String>> = entries
         .iter()
         .map(|Entry { record, .. }| {
             let mut row = vec![name(model(record)), significant(record.shade_ms)];
-            let cell = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), difference);
-            row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
+            row.extend(cells(&|id| error(record, id)));
             row
         })
         .collect();
+    // Every model reads the G-buffer: what its rounding costs is in all rows above.
+    if !truth.gbuffer_errors.is_empty() {
+        let mut row = vec!["rounding of the G-buffer".to_owned(), ABSENT.to_owned()];
+        row.extend(cells(&|id| truth.gbuffer_errors.get(id).copied().flatten()));
+        rows.push(row);
+    }
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     table("Errors of models against the truth", &heads, &rows)
 }
