@@ -9,7 +9,7 @@ use std::time::Instant;
 use assign::{EncoderPasses, Gpu};
 use indicatif::{ProgressBar, ProgressStyle};
 use shading::traced::{
-    self, GBufferSamples, SurfaceSample, TracedScene, Transport, TruthSettings, truth_image,
+    self, GBufferSamples, Paths, SurfaceSample, TracedScene, Transport, TruthSettings, truth_image,
 };
 use shading::{EDGE, HdrImage, luminance};
 
@@ -57,6 +57,10 @@ fn check(args: &TruthArgs) -> Result<(), CliError> {
     if args.indirect && args.bounces == 0 {
         let accepted = "given with --bounces: nothing else would be left";
         return Err(CliError::new(format!("--indirect: it must be {accepted}")));
+    }
+    if args.matte_bounces && !(args.bounces == 1 && args.stage.bounce.primary) {
+        let accepted = "given with --primary and --bounces 1: it is what --vpls approaches";
+        return Err(CliError::new(format!("--matte-bounces: it must be {accepted}")));
     }
     Ok(())
 }
@@ -166,8 +170,7 @@ fn settings(args: &TruthArgs, transport: Transport) -> TruthSettings {
     let of_transport = if transport == Transport::Bounce { 2 } else { 1 };
     let seed = args.sample_seed.unwrap_or(args.stage.seed);
     TruthSettings {
-        bounces: args.bounces,
-        bounce_samples: args.samples,
+        paths: Paths { count: args.samples, bounces: args.bounces, is_matte: args.matte_bounces },
         area_samples: args.samples,
         seed: seed.wrapping_mul(2).wrapping_add(of_transport),
         ..TruthSettings::new(transport)
@@ -233,6 +236,7 @@ fn keep(
         shadows: args.shadows,
         bounces: args.bounces,
         is_indirect: args.indirect,
+        is_matte: args.matte_bounces,
         samples: args.samples,
         sample_seed: Some(args.sample_seed.unwrap_or(args.stage.seed)),
         gbuffer_errors: Errors::new(),

@@ -72,6 +72,7 @@ fn truth() -> TruthImage {
         shadows: false,
         bounces: 0,
         is_indirect: false,
+        is_matte: false,
         samples: 64,
         sample_seed: Some(1),
         gbuffer_errors: [("rel_mse".to_owned(), Some(3.25e-5))].into(),

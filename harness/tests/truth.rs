@@ -91,6 +91,10 @@ fn what_makes_no_truth_is_refused() {
         &["--bounces", "17", "--shadows"],
         "--bounces is 17: it must be a whole number from 0 to 16",
     );
+    refused(
+        &["--bounces", "1", "--shadows", "--matte-bounces"],
+        "--matte-bounces: it must be given with --primary and --bounces 1",
+    );
     refused(&["--samples", "0"], "--samples is 0: it must be a whole number from 1 to 65,536");
     refused(&["--strategies", "None"], "--strategies");
 }

@@ -26,6 +26,11 @@ pub struct TruthArgs {
     #[arg(long)]
     pub indirect: bool,
 
+    /// With --primary and --bounces 1: surfaces that light bounces off reflect as virtual point lights
+    /// emit, diffusely
+    #[arg(long)]
+    pub matte_bounces: bool,
+
     /// Samples of each pixel where they are drawn, of shadows and of bounces, 1 to 65,536
     #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::samples)]
     pub samples: u32,

@@ -38,6 +38,9 @@ pub struct TruthImage {
     /// Whether what comes straight from lights is left out.
     #[serde(default)]
     pub is_indirect: bool,
+    /// Whether the surfaces of bounces reflect as virtual point lights emit, without a specular term.
+    #[serde(default)]
+    pub is_matte: bool,
     /// Samples of each pixel, where samples were drawn.
     pub samples: u32,
     /// Seed of the samples; `None` in older results.

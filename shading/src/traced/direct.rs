@@ -4,7 +4,10 @@ use assign::{Light, LightShape};
 use glam::DVec3;
 
 use super::{Estimate, Numbers, SurfaceSample, TracedScene, area::SeenEmitter, numbers::Point};
-use crate::{LightBvh, reference::light_contribution};
+use crate::{
+    LightBvh,
+    reference::{light_contribution, matte_contribution},
+};
 
 /// Pairs of directions to an area light with shadows, unless told otherwise.
 pub const AREA_SAMPLES: u32 = 64;
@@ -68,6 +71,21 @@ pub(super) fn direct_radiance_once(
                 .unwrap_or_default(),
             _ => exact_light(light, sample, Some(scene)),
         }
+    };
+    reaching(lights, sample).into_iter().map(from_light).sum()
+}
+
+/// What a sample reflects of all lights as a virtual point light emits, with shadows.
+pub(super) fn matte_radiance(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    scene: &TracedScene<'_>,
+) -> DVec3 {
+    let from_light = |light_ix: u32| {
+        let light = &lights.lights()[light_ix as usize];
+        let radiance = matte_contribution(light, sample.position, &sample.surface);
+        let is_seen = radiance != DVec3::ZERO && scene.sees(sample, light.position.as_dvec3());
+        if is_seen { radiance } else { DVec3::ZERO }
     };
     reaching(lights, sample).into_iter().map(from_light).sum()
 }
