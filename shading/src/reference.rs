@@ -163,6 +163,23 @@ pub fn ltc_contribution(
 
 /// A point, a spot or a VPL; an area light counts as a point at its middle that faces all ways.
 fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye: DVec3) -> DVec3 {
+    let (arriving, to_light) = arriving(light, position);
+    arriving * reflect_light(surface, to_eye, to_light)
+}
+
+/// Radiance that a surface sends out alike in all directions where it reflects as a virtual point light
+/// emits: diffusely, what is left of Fresnel's term being its mean over these directions. An area light
+/// counts as a point.
+pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surface) -> DVec3 {
+    let (arriving, to_light) = arriving(light, position);
+    let cos = surface.normal.dot(to_light).clamp(0.0, 1.0);
+    let kept = (DVec3::ONE - f0_of(surface)) * (1.0 - ltc::diffuse_fresnel(cos));
+    let albedo = (1.0 - surface.metallic) * surface.base_color * kept;
+    arriving * albedo * cos / std::f64::consts::PI
+}
+
+/// Irradiance across the way from a light to a position, and the unit vector to the light.
+fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
     let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));
@@ -178,7 +195,7 @@ fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye:
         weight = fall_off_beyond(distance_2, f64::from(light.range_m), min_m)
             * normal.as_dvec3().normalize().dot(-to_light).max(0.0);
     }
-    light.intensity.as_dvec3() * weight * reflect_light(surface, to_eye, to_light)
+    (light.intensity.as_dvec3() * weight, to_light)
 }
 
 #[cfg(test)]

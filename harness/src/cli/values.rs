@@ -15,6 +15,7 @@ const MAX_FRAMES: u32 = 100_000;
 pub(crate) const MAX_CHECKS: u32 = 8;
 const MAX_LAPS: u32 = 1_000;
 const MAX_SAMPLES: u32 = 65_536;
+const MAX_BOUNCES: u32 = shading::traced::MAX_BOUNCES;
 /// The largest side of a reflective shadow map, pixels.
 const MAX_RSM: u32 = 2048;
 const SCALES: (f64, f64) = (1e-6, 1e6);
@@ -228,7 +229,7 @@ pub(super) fn checks(text: &str) -> Result<u32, String> {
 }
 
 pub(super) fn bounces(text: &str) -> Result<u32, String> {
-    whole(text, 0, 1).ok_or_else(|| "0 or 1".to_owned())
+    whole(text, 0, MAX_BOUNCES).ok_or_else(|| format!("a whole number from 0 to {MAX_BOUNCES}"))
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {

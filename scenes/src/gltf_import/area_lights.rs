@@ -133,6 +133,6 @@ fn of_extras(
     let emitter = if json.two_sided { emitter.two_sided() } else { emitter };
     let emitter = emitter.with_diffuse_share(json.diffuse_share);
     let intensity = Vec3::from(json.color) * json.intensity;
-use super::{Warnings, file::File};
-use crate::SceneError;
+    use super::{Warnings, file::File};
+    use crate::SceneError;
 }

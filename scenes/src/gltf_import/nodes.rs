@@ -2,11 +2,7 @@
 
 use assign::{Light, Sun};
 use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4};
-use gltf::json::{
-    Index,
-    scene::Node,
-    validation::Checked,
-};
+use gltf::json::{Index, scene::Node, validation::Checked};
 
 use super::{
     Warnings, area_lights, cameras,
@@ -265,5 +261,4 @@ impl Placed {
         self.lights.extend(area);
         Ok(())
     }
-
 }

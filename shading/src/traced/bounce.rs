@@ -18,7 +18,7 @@ use super::{
     Estimate, Numbers, SurfaceSample, TracedScene,
     area::PAIR_DIMENSIONS,
     brdf_sampler::BrdfSampler,
-    direct::direct_radiance_once,
+    direct::{direct_radiance_once, matte_radiance},
     emissive::{DRAW_DIMENSIONS, Emission},
     numbers::Point,
 };
@@ -27,22 +27,33 @@ use crate::{LightBvh, reference::reflect_light};
 /// The most bounces of a path: Sobol sequences have 256 dimensions.
 pub const MAX_BOUNCES: u32 = 16;
 
+/// The paths of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Paths {
+    /// How many.
+    pub count: u32,
+    /// Surfaces that each may meet, at most [`MAX_BOUNCES`].
+    pub bounces: u32,
+    /// Whether those surfaces reflect lights as virtual point lights emit: diffusely, and no area lights.
+    /// Then a path ends at the first.
+    pub is_matte: bool,
+}
+
 /// Dimensions that the way to the next surface takes.
 const TURN: u32 = 3;
 /// Dimensions of each surface of a path: the way on, emission, and the lights.
 const DIMENSIONS: u32 = TURN + DRAW_DIMENSIONS + PAIR_DIMENSIONS;
 
-/// Radiance that a sample reflects of what `bounces` other surfaces, one after another, emit and
-/// reflect of the lights, shadows on all ways, diffuse and specular: an estimate from `count` paths.
+/// Radiance that a sample reflects of what other surfaces, one after another, emit and reflect of the
+/// lights, shadows on all ways, diffuse and specular.
 pub fn bounced_light(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
     scene: &TracedScene<'_>,
-    (bounces, count): (u32, u32),
+    paths: Paths,
     numbers: Numbers,
 ) -> Estimate {
-    let bounces = bounces.min(MAX_BOUNCES);
-    Estimate::of_points(count, numbers, |point| path(lights, sample, scene, bounces, point))
+    Estimate::of_points(paths.count, numbers, |point| path(lights, sample, scene, paths, point))
 }
 
 /// Radiance along one path.
@@ -50,9 +61,10 @@ fn path(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
     scene: &TracedScene<'_>,
-    bounces: u32,
+    paths: Paths,
     point: Point,
 ) -> DVec3 {
+    let bounces = if paths.is_matte { 1 } else { paths.bounces.min(MAX_BOUNCES) };
     let mut radiance = DVec3::ZERO;
     // What reaches the eye of light that leaves the path's last surface.
     let mut share = DVec3::ONE;
@@ -76,8 +88,12 @@ fn path(
         }
         let weight = density / (density + drawn_density);
         let lit = DIMENSIONS + first + TURN + DRAW_DIMENSIONS;
-        radiance +=
-            share * (hit.emission * weight + direct_radiance_once(lights, &hit, scene, point, lit));
+        let reflected = if paths.is_matte {
+            matte_radiance(lights, &hit, scene)
+        } else {
+            direct_radiance_once(lights, &hit, scene, point, lit)
+        };
+        radiance += share * (hit.emission * weight + reflected);
         at = hit;
     }
     radiance

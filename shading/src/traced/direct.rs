@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::{Estimate, Numbers, SurfaceSample, TracedScene, area::SeenEmitter, numbers::Point};
 use crate::{
     LightBvh,
-    reference::{light_contribution, sun_contribution},
+    reference::{light_contribution, matte_contribution, sun_contribution},
 };
 
 /// Pairs of directions to an area light with shadows, unless told otherwise.
@@ -97,6 +97,21 @@ pub(super) fn direct_radiance_once(
     };
     let suns = direct_suns(lights, sample, Some(scene));
     reaching(lights, sample).into_iter().map(from_light).fold(suns, |sum, light| sum + light)
+}
+
+/// What a sample reflects of all lights as a virtual point light emits, with shadows.
+pub(super) fn matte_radiance(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    scene: &TracedScene<'_>,
+) -> DVec3 {
+    let from_light = |light_ix: u32| {
+        let light = &lights.lights()[light_ix as usize];
+        let radiance = matte_contribution(light, sample.position, &sample.surface);
+        let is_seen = radiance != DVec3::ZERO && scene.sees(sample, light.position.as_dvec3());
+        if is_seen { radiance } else { DVec3::ZERO }
+    };
+    reaching(lights, sample).into_iter().map(from_light).sum()
 }
 
 /// The lights that reach a sample, ascending.

@@ -79,17 +79,17 @@ impl Estimate {
         let sums: Vec<(DVec3, DVec3)> = (0..sequences).map(of_sequence).collect();
         let total = |of: fn(&(DVec3, DVec3)) -> DVec3| sums.iter().map(of).sum::<DVec3>();
         // A channel without light has no share.
-        let all = total(|sum| sum.1).max(DVec3::splat(f64::MIN_POSITIVE));
-        let share = total(|sum| sum.0) / all;
+        let total_all = total(|sum| sum.1).max(DVec3::splat(f64::MIN_POSITIVE));
+        let share = total(|sum| sum.0) / total_all;
         let squares: DVec3 = sums
             .iter()
             .map(|(part, all)| {
-                let off = *part - share * *all;
+                let off = (*part - share * *all) / total_all;
                 off * off
             })
             .sum();
         let freedom = f64::from(sequences.max(2) - 1) / f64::from(sequences);
-        Self { mean: whole * share, variance: whole * whole * squares / (all * all) / freedom }
+        Self { mean: whole * share, variance: whole * whole * squares / freedom }
     }
 
     /// Square root of the variance.

@@ -7,7 +7,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    AREA_SAMPLES, Estimate, Numbers, SurfaceSample, TracedScene, bounced_light, direct_radiance,
+    AREA_SAMPLES, Estimate, Numbers, Paths, SurfaceSample, TracedScene, bounced_light,
+    direct_radiance,
 };
 use crate::{HdrImage, LightBvh, ShadingError};
 
@@ -32,11 +33,8 @@ pub enum Transport {
 pub struct TruthSettings {
     /// The light that it shows.
     pub transport: Transport,
-    /// Surfaces that light may meet before the one that is seen, at most
-    /// [`MAX_BOUNCES`](super::MAX_BOUNCES).
-    pub bounces: u32,
-    /// Paths of each pixel, of a bounce.
-    pub bounce_samples: u32,
+    /// Paths of each pixel, of bounces.
+    pub paths: Paths,
     /// Pairs of directions to each area light with shadows.
     pub area_samples: u32,
     /// Images of different seeds are independent.
@@ -48,9 +46,9 @@ pub struct TruthSettings {
 impl TruthSettings {
     /// One bounce, 64 samples of either kind, seed 1.
     pub fn new(transport: Transport) -> Self {
-        let (bounce_samples, area_samples) = (64, AREA_SAMPLES);
+        let paths = Paths { count: 64, bounces: 1, is_matte: false };
         let suns = Suns::default();
-        Self { transport, bounces: 1, bounce_samples, area_samples, seed: 1, suns }
+        Self { transport, paths, area_samples: AREA_SAMPLES, seed: 1, suns }
     }
 }
 
@@ -140,8 +138,7 @@ fn pixel_of(
         Transport::Unshadowed => None,
         Transport::Direct => Some(scene),
         Transport::Bounce => {
-            let paths = (settings.bounces, settings.bounce_samples);
-            return bounced_light(lights, sample, scene, paths, numbers);
+            return bounced_light(lights, sample, scene, settings.paths, numbers);
         }
     };
     emitted + direct_radiance(lights, sample, shadows, settings.area_samples, numbers)

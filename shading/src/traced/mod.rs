@@ -48,7 +48,7 @@ mod surface;
 mod texture;
 mod triangles;
 
-pub use bounce::{MAX_BOUNCES, bounced_light};
+pub use bounce::{MAX_BOUNCES, Paths, bounced_light};
 pub use direct::{AREA_SAMPLES, direct_light, direct_radiance, direct_sun};
 pub use estimate::Estimate;
 pub use gbuffer::GBufferSamples;

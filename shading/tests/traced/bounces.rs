@@ -6,13 +6,14 @@ use rand::{RngExt, SeedableRng};
 use scenes::Material;
 use shading::{
     LightBvh,
+    ltc::diffuse_fresnel,
     reference::{Surface, light_contribution, reflect_light},
-    traced::{Estimate, SurfaceSample, TracedScene, bounced_light},
+    traced::{Estimate, Paths, SurfaceSample, TracedScene, bounced_light},
 };
 
 use crate::{
     common::quads::{grey, scene_of},
-    cube, numbers, sample, surface,
+    cube, numbers, paths, sample, surface,
 };
 
 #[test]
@@ -23,7 +24,8 @@ fn a_bounce_is_the_integral_over_the_walls() {
     let lights = [Light::point(Vec3::new(0.2, 0.3, -0.1), 10.0, Vec3::new(1.0, 2.0, 3.0))];
     for roughness in [0.25, 0.9] {
         let at = sample(DVec3::new(-0.3, -1.0, 0.4), DVec3::Y, roughness);
-        let estimate = bounced_light(&LightBvh::new(&lights), &at, &traced, (1, 16_384), numbers());
+        let estimate =
+            bounced_light(&LightBvh::new(&lights), &at, &traced, paths(1, 16_384), numbers());
         let expected = over_walls(&walls, &lights[0], &at);
         let off = (estimate.mean - expected).abs() / estimate.standard_error();
         let error = estimate.standard_error() / expected;
@@ -81,7 +83,7 @@ fn triangles_that_emit_light_the_scene_as_the_integral_says() {
         assert_eq!(traced.emissive_count(), 2 * quads.len());
         for roughness in [0.1, 0.9] {
             let at = sample(DVec3::new(-0.3, -1.0, 0.4), DVec3::Y, roughness);
-            let drawn = bounced_light(&LightBvh::new(&[]), &at, &traced, (1, 4096), numbers());
+            let drawn = bounced_light(&LightBvh::new(&[]), &at, &traced, paths(1, 4096), numbers());
             let emitted = |_, _, _| emission * f64::from(shine);
             let expected = over_quads(&quads, &at, emitted);
             // The midpoint rule is right to 1e-4.
@@ -103,7 +105,7 @@ fn two_bounces_are_what_a_random_walk_finds() {
     let traced = TracedScene::new(&scene);
     let light = Light::point(Vec3::new(0.2, 0.3, -0.1), 10.0, Vec3::new(1.0, 2.0, 3.0));
     let at = sample(DVec3::new(-0.3, -1.0, 0.4), DVec3::Y, 0.6);
-    let drawn = bounced_light(&LightBvh::new(&[light]), &at, &traced, (2, 8192), numbers());
+    let drawn = bounced_light(&LightBvh::new(&[light]), &at, &traced, paths(2, 8192), numbers());
     let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(3);
     let walk = Estimate::of_samples(300_000, || {
         let (mut position, mut surface, mut to_eye) = (at.position, at.surface, at.to_eye);
@@ -140,6 +142,31 @@ fn two_bounces_are_what_a_random_walk_finds() {
     assert!(off.max_element() < 4.0, "{drawn:?} for {walk:?}");
     assert!((error[0] / walk.mean.x) < 5e-3, "{drawn:?} for {walk:?}");
     // The second bounce is a part of it.
-    let one = bounced_light(&LightBvh::new(&[light]), &at, &traced, (1, 8192), numbers());
+    let one = bounced_light(&LightBvh::new(&[light]), &at, &traced, paths(1, 8192), numbers());
     assert!(drawn.mean.x > 1.2 * one.mean.x, "{drawn:?} {one:?}");
+}
+
+/// Surfaces that reflect as virtual point lights emit: no specular term, Fresnel's by its mean.
+#[test]
+fn a_matte_bounce_is_what_virtual_point_lights_send() {
+    let walls = cube();
+    let scene = scene_of(&walls, grey(0.7), vec![]);
+    let traced = TracedScene::new(&scene);
+    let light = Light::point(Vec3::new(0.2, 0.3, -0.1), 10.0, Vec3::new(1.0, 2.0, 3.0));
+    let at = sample(DVec3::new(-0.3, -1.0, 0.4), DVec3::Y, 0.6);
+    let matte = Paths { is_matte: true, ..paths(1, 16_384) };
+    let drawn = bounced_light(&LightBvh::new(&[light]), &at, &traced, matte, numbers());
+    let expected = over_quads(&walls, &at, |point, normal, _| {
+        let offset = light.position.as_dvec3() - point;
+        let cos = normal.dot(offset.normalize());
+        let window = (1.0 - (offset.length() / f64::from(light.range_m)).powi(4)).powi(2);
+        let kept = 0.96 * (1.0 - diffuse_fresnel(cos)) * f64::from(0.7_f32);
+        light.intensity.as_dvec3() * window * kept * cos
+            / offset.length_squared()
+            / std::f64::consts::PI
+    });
+    let off = (drawn.mean / expected - 1.0).abs().max_element();
+    assert!(off < 3e-4, "{drawn:?} for {expected}");
+    let whole = bounced_light(&LightBvh::new(&[light]), &at, &traced, paths(1, 16_384), numbers());
+    assert!(whole.mean.x > 1.01 * drawn.mean.x, "the specular term adds light: {whole:?}");
 }

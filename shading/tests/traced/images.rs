@@ -7,7 +7,7 @@ use shading::{
     traced::{TracedScene, Transport, TruthImage, TruthSettings, truth_image},
 };
 
-use crate::common;
+use crate::{common, paths};
 
 /// Points, a spot and two emitters among them.
 fn lights() -> Vec<Light> {
@@ -25,7 +25,7 @@ fn traced_image(transport: Transport, seed: u64) -> TruthImage {
     let traced = TracedScene::new(&scene);
     let view = common::view([48, 32]);
     let primary = |pixel: usize| traced.primary(&view, [pixel as u32 % 48, pixel as u32 / 48]);
-    let settings = TruthSettings { bounce_samples: 48, seed, ..TruthSettings::new(transport) };
+    let settings = TruthSettings { paths: paths(1, 48), seed, ..TruthSettings::new(transport) };
     truth_image(&traced, &lights(), [48, 32], primary, settings, &|_, _| ())
 }
 

@@ -17,7 +17,7 @@ use assign::Emitter;
 use glam::{DVec3, Vec3};
 use shading::{
     reference::Surface,
-    traced::{Numbers, SurfaceSample},
+    traced::{Numbers, Paths, SurfaceSample},
 };
 
 fn surface(normal: DVec3, albedo: f64, roughness: f64) -> Surface {
@@ -34,6 +34,10 @@ fn sample(position: DVec3, normal: DVec3, roughness: f64) -> SurfaceSample {
         geometric_normal: normal,
         offset_m: 1e-5,
     }
+}
+
+fn paths(bounces: u32, count: u32) -> Paths {
+    Paths { count, bounces, is_matte: false }
 }
 
 fn numbers() -> Numbers {

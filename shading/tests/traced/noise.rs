@@ -9,7 +9,7 @@ use shading::{
 
 use crate::{
     common::quads::{grey, scene_of},
-    cube, numbers, rectangle, sample,
+    cube, numbers, paths, rectangle, sample,
 };
 
 /// Variance of 4,096 independent samples over that of as many points of Sobol sequences.
@@ -50,7 +50,7 @@ fn sobol_points_have_a_twentieth_of_the_variance() {
         let lights = [light];
         let drawn = |count, seed| {
             let lights = LightBvh::new(&lights);
-            bounced_light(&lights, &at, &traced, (1, count), Numbers::new(seed))
+            bounced_light(&lights, &at, &traced, paths(1, count), Numbers::new(seed))
         };
         let gain = gain(drawn);
         assert!(gain > 20.0, "a bounce of {:?}: {gain}", light.kind());

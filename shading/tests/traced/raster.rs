@@ -48,7 +48,8 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
             }
             _ => common::view(size),
         };
-        let (gbuffer, _) = rasterise(&gpu, scene, &view, &common::lights(1), Suns::default(), Mode::Deferred);
+        let (gbuffer, _) =
+            rasterise(&gpu, scene, &view, &common::lights(1), Suns::default(), Mode::Deferred);
         let (mut seen, mut missing) = (0_u32, 0_usize);
         let mut off = [0.0; 5];
         for pixel in 0..size[0] * size[1] {

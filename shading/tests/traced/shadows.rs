@@ -11,7 +11,7 @@ use shading::{
 
 use crate::{
     common::quads::{grey, scene_of},
-    numbers, sample,
+    numbers, paths, sample,
 };
 
 /// Whether a floor at `x`, lit from 3 m above its origin, lies in the light.
@@ -80,8 +80,8 @@ fn suns_cast_shadows_and_bounce() {
         assert_eq!(seen.mean, if lit { expected } else { DVec3::ZERO }, "at {x}");
     }
     let at = sample(DVec3::new(1.0, 0.0, 0.1), DVec3::Y, 0.6);
-    let bounced = bounced_light(&lights, &at, &traced, (1, 2_048), numbers());
+    let bounced = bounced_light(&lights, &at, &traced, paths(1, 2_048), numbers());
     assert!(bounced.mean.x > 5.0 * bounced.standard_error().x, "{bounced:?}");
-    let dark = bounced_light(&LightBvh::new(&[]), &at, &traced, (1, 128), numbers());
+    let dark = bounced_light(&LightBvh::new(&[]), &at, &traced, paths(1, 128), numbers());
     assert_eq!(dark.mean, DVec3::ZERO);
 }

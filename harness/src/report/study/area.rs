@@ -127,7 +127,7 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
             "models",
             "Models of area lights against the truth",
             &about(truth),
-            &(errors_table(&known) + words_table(&known)),
+            &(errors_table(&known, truth) + words_table(&known)),
         );
     }
     let plot = Plot {
@@ -172,18 +172,27 @@ fn about(truth: &TruthImage) -> String {
     )
 }
 
-fn errors_table(entries: &[Entry<'_>]) -> Html {
+fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> Html {
     let mut heads: Vec<Html> = vec!["model".into(), unit("shade", "ms")];
     heads.extend(ERROR_METRICS.iter().map(|metric| Html::from(metric.head)));
-    let rows: Vec<Vec<Html>> = entries
+    let cells = |of: &dyn Fn(&str) -> Option<f64>| -> Vec<Html> {
+        let cell = |id| of(id).map_or_else(|| ABSENT.to_owned(), difference);
+        ERROR_METRICS.iter().map(|metric| Html::from(cell(metric.id))).collect()
+    };
+    let mut rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
             let mut row = vec![name(model(record)), significant(record.shade_ms).into()];
-            let cell = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), difference);
-            row.extend(ERROR_METRICS.iter().map(|metric| Html::from(cell(metric.id))));
+            row.extend(cells(&|id| error(record, id)));
             row
         })
         .collect();
+    // Every model reads the G-buffer: what its rounding costs is in all rows above.
+    if !truth.gbuffer_errors.is_empty() {
+        let mut row: Vec<Html> = vec!["rounding of the G-buffer".into(), ABSENT.into()];
+        row.extend(cells(&|id| truth.gbuffer_errors.get(id).copied().flatten()));
+        rows.push(row);
+    }
     table("Errors of models against the truth", &heads, &rows)
 }
 

@@ -34,7 +34,7 @@ fn faulty_lights_stay_to_be_reported() {
     let inf = "light \"light 7\": left out: sun irradiance is inf: it must be finite";
     assert_eq!((scene.warnings.clone(), scene.suns.len()), (vec![inf.to_owned()], 0));
     let pose = scene.path.pose(0, 10);
-    assert!(pose.eye.is_finite() && pose.target.is_finite());
+    assert!(pose.eye.is_finite() && pose.forward().is_finite());
     assert_eq!(scene.hash(), scene.clone().hash());
     assert_eq!(faults(&scene.scaled(1e-6).expect("in range"))[..6], expected[..6]);
 }
