@@ -105,7 +105,7 @@ mod tests {
         let mut scene = scenes::open("atrium").unwrap();
         scene.cameras = names
             .iter()
-            .zip(1_u8..)
+            .zip(1_u16..)
             .map(|(name, number)| SceneCamera {
                 name: (*name).to_owned(),
                 pose: Pose::looking(Vec3::X * f32::from(number), Vec3::NEG_Z, Vec3::X),

@@ -43,8 +43,7 @@ const BEYOND: f32 = 1.001;
 /// What lies less than this share of a plane's depth behind it is not worth a note.
 const SLACK: f64 = 1e-4;
 
-/// Positions this share of the near plane apart leave the nearest surfaces without shape; of an
-/// orthographic view, this share of a 500th of its half height.
+/// Positions this share of the near plane apart leave the nearest surfaces without shape.
 const COARSE: f32 = 0.25;
 
 /// Lens, near plane and far plane of a stage's camera.
@@ -198,12 +197,7 @@ impl Optics {
         }
         let off_m = view.eye().abs().max_element();
         let step_m = off_m * f32::EPSILON;
-        // An orthographic near plane may lie at the eye.
-        let fine_m = match self.lens {
-            Some(Lens::Orthographic { half_height, .. }) => half_height * NEAR_SHARE,
-            _ => self.near_m,
-        };
-        if step_m > COARSE * fine_m {
+        if step_m > finest_m(scene, view) {
             notes.push(format!(
                 "the camera stands {} m from the scene's origin, where positions are up to {} m apart: \
                  surfaces and lights are off by as much",
@@ -231,6 +225,22 @@ impl Optics {
     /// The near plane, metres.
     pub fn near_m(&self) -> f32 {
         self.near_m
+    }
+}
+
+/// How finely positions must be known for what a view shows to have its shape, metres: to a share of the
+/// near plane, and to a pixel of what lies far from the eye or is seen by an orthographic view.
+fn finest_m(scene: &Scene, view: &View) -> f32 {
+    let core = scene.core_bounds;
+    let eye = view.eye();
+    let away_m = eye.distance(eye.clamp(core.min, core.max.max(core.min)));
+    let height = view.viewport.height as f32;
+    match view.projection {
+        Projection::Orthographic { min, max } => (max.y - min.y) / height,
+        Projection::Perspective { min, max } if away_m > 0.0 => {
+            ((max.y - min.y) / height * away_m).min(COARSE * view.near_m)
+        }
+        Projection::Perspective { .. } => COARSE * view.near_m,
     }
 }
 

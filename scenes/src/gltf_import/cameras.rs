@@ -18,6 +18,11 @@ const LEAST_FOV_Y: f32 = 1e-6;
 /// And below this, just short of half a turn.
 const MOST_FOV_Y: f32 = 3.141;
 
+/// Planes that f32 still tells apart after a scene is scaled, metres.
+const LEAST_NEAR_M: f32 = 1e-12;
+const MOST_NEAR_M: f32 = 1e12;
+const MOST_FAR_M: f32 = 1e30;
+
 /// Camera `ix` of the file, placed by a node.
 pub(super) fn placed(
     file: &File,
@@ -69,11 +74,12 @@ impl Check<'_> {
         if let Some(aspect) = lens.aspect_ratio {
             self.is("perspective.aspectRatio", aspect, aspect > 0.0, "above 0 and finite")?;
         }
-        let near_ok = near >= f32::MIN_POSITIVE;
-        self.is("perspective.znear", near, near_ok, "above 0 metres and finite")?;
+        let near_ok = (LEAST_NEAR_M..=MOST_NEAR_M).contains(&near);
+        self.is("perspective.znear", near, near_ok, "from 1e-12 to 1e12 metres")?;
         if let Some(far) = lens.zfar {
-            let accepted = format!("above znear, {near} m, and finite, or absent: infinitely far");
-            self.is("perspective.zfar", far, far > near, accepted)?;
+            let accepted =
+                format!("above znear, {near} m, and at most 1e30 m, or absent: infinitely far");
+            self.is("perspective.zfar", far, far > near && far <= MOST_FAR_M, accepted)?;
         }
         Ok((Lens::Perspective { fov_y }, near, lens.zfar))
     }
@@ -85,9 +91,10 @@ impl Check<'_> {
         let accepted = "from 1e-9 to 1e12 metres";
         self.is("orthographic.xmag", lens.xmag, size(half_width), accepted)?;
         self.is("orthographic.ymag", lens.ymag, size(half_height), accepted)?;
-        self.is("orthographic.znear", near, near >= 0.0, "at least 0 metres and finite")?;
-        let accepted = format!("above znear, {near} m, and finite");
-        self.is("orthographic.zfar", far, far > near, accepted)?;
+        let near_ok = (0.0..=MOST_NEAR_M).contains(&near);
+        self.is("orthographic.znear", near, near_ok, "from 0 to 1e12 metres")?;
+        let accepted = format!("above znear, {near} m, and at most 1e30 m");
+        self.is("orthographic.zfar", far, far > near && far <= MOST_FAR_M, accepted)?;
         Ok((Lens::Orthographic { half_width, half_height }, near, Some(far)))
     }
 }

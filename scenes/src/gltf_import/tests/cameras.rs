@@ -34,21 +34,19 @@ fn faulty_fields_are_named_with_their_value() {
         (perspective("zfar", json!(0.1)), "perspective.zfar is 0.1: it must be above znear"),
         (perspective("zfar", json!(-1)), "perspective.zfar is -1: it must be above znear"),
         (perspective("zfar", json!(1e39)), "perspective.zfar is inf: it must be above znear"),
-        (perspective("znear", json!(0)), "perspective.znear is 0: it must be above 0 metres"),
-        (perspective("znear", json!(-2)), "perspective.znear is -2: it must be above 0 metres"),
-        (perspective("znear", json!(1e39)), "perspective.znear is inf: it must be above 0 metres"),
+        (perspective("znear", json!(0)), "perspective.znear is 0: it must be from 1e-12 to"),
+        (perspective("znear", json!(-2)), "perspective.znear is -2: it must be from 1e-12 to"),
+        (perspective("znear", json!(1e39)), "perspective.znear is inf: it must be from 1e-12 to"),
         (perspective("yfov", json!(0)), &format!("perspective.yfov is 0: it must be {yfov}")),
         (perspective("yfov", json!(3.2)), &format!("perspective.yfov is 3.2: it must be {yfov}")),
         (perspective("aspectRatio", json!(0)), "perspective.aspectRatio is 0: it must be above 0"),
         (orthographic("zfar", json!(0)), "orthographic.zfar is 0: it must be above znear, 0.1 m"),
-        (orthographic("znear", json!(-1)), "orthographic.znear is -1: it must be at least 0"),
+        (orthographic("znear", json!(-1)), "orthographic.znear is -1: it must be from 0 to 1e12"),
         (orthographic("xmag", json!(0)), &format!("orthographic.xmag is 0: it must be {size}")),
         (
             orthographic("ymag", json!(1e39)),
             &format!("orthographic.ymag is inf: it must be {size}"),
         ),
-        (json!({"type": "perspective"}), "perspective is missing: it must be present"),
-        (json!({"type": "orthographic"}), "orthographic is missing: it must be present"),
     ];
     for (camera, expected) in cases {
         let error = error_with("/cameras/0", camera);
