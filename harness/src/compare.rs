@@ -353,6 +353,9 @@ fn end_on_device_error(gpu: &Gpu) {
     }));
 }
 
+/// Lights left out that are named on the terminal; the results hold all of them.
+const MOST_REJECTED_SHOWN: usize = 20;
+
 fn describe(stage: &Stage) {
     eprintln!(
         "scene    {}: {} triangles, {} models, {} lights",
@@ -367,7 +370,11 @@ fn describe(stage: &Stage) {
     for warning in &stage.scene.warnings {
         eprintln!("warning  {warning}");
     }
-    for rejected in stage.lights.rejected() {
+    let rejected = stage.lights.rejected();
+    for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
         eprintln!("warning  light {} left out: {}", rejected.index, rejected.fault);
+    }
+    if rejected.len() > MOST_REJECTED_SHOWN {
+        eprintln!("warning  and {} more lights", rejected.len() - MOST_REJECTED_SHOWN);
     }
 }
