@@ -82,7 +82,7 @@ impl HybridShader {
         // no other lane moved it between look and exchange.
         #[allow(unsafe_code, reason = "its loops end")]
         unsafe {
-            self.shader(kinds).create_uncounted(&gpu.device, self.root())
+            self.shader(kinds).create_uncounted(gpu, self.root())
         }
     }
 }
@@ -341,8 +341,7 @@ fn depth_entry() -> wgpu::BindGroupLayoutEntry {
 }
 
 fn layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+    gpu.bind_group_layout(label, entries)
 }
 
 fn bind_group(
@@ -360,21 +359,6 @@ fn pipeline(
     module: &wgpu::ShaderModule,
     entry_point: &str,
 ) -> wgpu::ComputePipeline {
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(entry_point),
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(&layout),
-        module,
-        entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            // The kernels write what they read.
-            zero_initialize_workgroup_memory: false,
-            ..Default::default()
-        },
-        cache: None,
-    })
+    // The kernels write the workgroup memory that they read.
+    gpu.compute_pipeline(module, entry_point, layouts, false)
 }

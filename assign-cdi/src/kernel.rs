@@ -38,10 +38,7 @@ pub(crate) fn layout(
             Slot::Write => storage_entry(binding, stages, false),
         })
         .collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &entries,
-    })
+    gpu.bind_group_layout(label, &entries)
 }
 
 /// A bind group of whole buffers, bindings 0, 1, 2 and so on.
@@ -83,18 +80,9 @@ pub(crate) fn compute(
     entry_point: &str,
     layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(&pipeline_layout(gpu, layouts)),
-        module,
-        entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            // The kernels write the workgroup memory that they read.
-            zero_initialize_workgroup_memory: false,
-            ..Default::default()
-        },
-        cache: None,
-    })
+    let layouts: Vec<_> = layouts.iter().copied().map(Some).collect();
+    // The kernels write the workgroup memory that they read.
+    gpu.compute_pipeline(module, entry_point, &layouts, false)
 }
 
 /// Makes a shader module whose loops are not counted.
@@ -107,7 +95,7 @@ pub(crate) fn uncounted(
     // by themselves whatever the buffers hold.
     #[allow(unsafe_code, reason = "counted loops are not unrolled; these end by themselves")]
     unsafe {
-        shader.create_uncounted(&gpu.device, root)
+        shader.create_uncounted(gpu, root)
     }
 }
 

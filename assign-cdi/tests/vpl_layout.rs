@@ -33,7 +33,7 @@ fn the_map() {
             ("intensity", offset_of!(RsmUniform, intensity)),
             ("range_m", offset_of!(RsmUniform, range_m)),
             ("direction", offset_of!(RsmUniform, direction)),
-            ("cos_outer", offset_of!(RsmUniform, cos_outer)),
+            ("outer_chord_2", offset_of!(RsmUniform, outer_chord_2)),
             ("light_world", offset_of!(RsmUniform, light_world)),
             ("ramp_scale", offset_of!(RsmUniform, ramp_scale)),
             ("size", offset_of!(RsmUniform, size)),

@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let module = Shader::new(1)
         .module("package::strategy", strategy.lookup().module.source())
         .module("package::shade", SHADE)
-        .create(&gpu.device, "package::shade")?;
+        .create(&gpu, "package::shade")?;
     let mut bindings = FrameBindings::new(&gpu);
     let image = gpu.storage("image", u64::from(width * height) * 16)?;
     let own = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

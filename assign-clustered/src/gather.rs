@@ -44,12 +44,6 @@ impl Gather {
         glossy: bool,
     ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
-        let bind_group_layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries,
-            })
-        };
         let mut entries = vec![
             texture_entry(0, wgpu::TextureSampleType::Depth),
             storage_entry(1, stages, false),
@@ -61,34 +55,18 @@ impl Gather {
         if glossy {
             entries.push(texture_entry(3, TEXELS));
         }
-        let layout = bind_group_layout("gather", &entries);
-        let live_layout = bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
+        let layout = gpu.bind_group_layout("gather", &entries);
+        let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
         let frame = FrameBindings::new(gpu);
         let shader = gather_shader(bounds, occupancy, normals, glossy);
         // SAFETY: loops count up to a constant, to the length of a buffer by a step of at least one
         // workgroup, or over slices, of which there are 1,024 at most, or over cells, of which an edge
         // has 3 at most.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { shader.create_uncounted(&gpu.device, "package::gather") }?;
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("gather"),
-            bind_group_layouts: &[Some(frame.layout()), Some(&layout), Some(&live_layout)],
-            immediate_size: 0,
-        });
-        let pipeline = |entry_point| {
-            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry_point),
-                layout: Some(&pipeline_layout),
-                module: &module,
-                entry_point: Some(entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    // The kernel writes what it reads.
-                    zero_initialize_workgroup_memory: false,
-                    ..Default::default()
-                },
-                cache: None,
-            })
-        };
+        let module = unsafe { shader.create_uncounted(gpu, "package::gather") }?;
+        let layouts = [Some(frame.layout()), Some(&layout), Some(&live_layout)];
+        // The kernel writes the workgroup memory that it reads.
+        let pipeline = |entry_point| gpu.compute_pipeline(&module, entry_point, &layouts, false);
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
         Ok(Self {
             words: match bounds {

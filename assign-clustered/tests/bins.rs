@@ -60,7 +60,7 @@ impl Finder {
             .module("package::facing", facing)
             .module("package::bounds", bounds)
             .module("package::strategy", BINS_WESL)
-            .create(&gpu.device, "package::driver")
+            .create(&gpu, "package::driver")
             .unwrap();
         let stages = wgpu::ShaderStages::COMPUTE;
         let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {

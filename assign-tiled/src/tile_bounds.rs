@@ -34,36 +34,16 @@ impl TileBounds {
             },
             count: None,
         };
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("tile bounds"),
-            entries: &[
-                depth,
-                storage_entry(1, stages, false),
-                uniform_entry(FIRST_STRATEGY_BINDING, stages),
-            ],
-        });
+        let entries =
+            [depth, storage_entry(1, stages, false), uniform_entry(FIRST_STRATEGY_BINDING, stages)];
+        let layout = gpu.bind_group_layout("tile bounds", &entries);
         let frame = FrameBindings::new(gpu);
         // SAFETY: its one loop counts up to the pixels of a tile.
         #[allow(unsafe_code, reason = "its loop ends")]
-        let module =
-            unsafe { bounds_shader().create_uncounted(&gpu.device, "package::tile_bounds") }?;
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("tile bounds"),
-            bind_group_layouts: &[Some(frame.layout()), Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("tile bounds"),
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("reduce"),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                // The kernel writes what it reads.
-                zero_initialize_workgroup_memory: false,
-                ..Default::default()
-            },
-            cache: None,
-        });
+        let module = unsafe { bounds_shader().create_uncounted(gpu, "package::tile_bounds") }?;
+        let layouts = [Some(frame.layout()), Some(&layout)];
+        // The kernel writes the workgroup memory that it reads.
+        let pipeline = gpu.compute_pipeline(&module, "reduce", &layouts, false);
         let depths = gpu.storage("tile depths", 0)?;
         Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0] })
     }

@@ -95,7 +95,6 @@ pub struct CullerDescriptor<'a> {
 /// The driver of one strategy.
 #[derive(Debug)]
 pub struct Culler {
-    label: String,
     variant: Variant,
     module: StrategyModule,
     kernel: Option<Kernel>,
@@ -152,7 +151,6 @@ impl Culler {
         let variant = Variant { shape, settings, sparse, facing };
         variant.check(label)?;
         Ok(Self {
-            label: label.to_owned(),
             variant,
             module,
             kernel: None,
@@ -238,28 +236,11 @@ impl Culler {
         // fills up: a swap fails because another lane's succeeded, or weakly, a few times at most.
         // The strategy's author vouches for its module.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { shader.create_uncounted(&gpu.device, "package::cull") }?;
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(&self.label),
-            bind_group_layouts: &[
-                Some(self.frame.layout()),
-                Some(self.cull.layout()),
-                Some(&self.source_layout),
-            ],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(&self.label),
-            layout: Some(&layout),
-            module: &module,
-            entry_point: Some("cull_groups"),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                // The kernel writes what it reads.
-                zero_initialize_workgroup_memory: false,
-                ..Default::default()
-            },
-            cache: None,
-        });
+        let module = unsafe { shader.create_uncounted(gpu, "package::cull") }?;
+        let layouts =
+            [Some(self.frame.layout()), Some(self.cull.layout()), Some(&self.source_layout)];
+        // The kernel writes the workgroup memory that it reads.
+        let pipeline = gpu.compute_pipeline(&module, "cull_groups", &layouts, false);
         Ok(Kernel { pipeline, kinds })
     }
 
@@ -349,8 +330,5 @@ fn source_layout(gpu: &Gpu, variant: Variant) -> wgpu::BindGroupLayout {
     if variant.settings.source == LightSource::Hierarchy {
         entries.push(storage_entry(1, stages, true));
     }
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("cull source"),
-        entries: &entries,
-    })
+    gpu.bind_group_layout("cull source", &entries)
 }

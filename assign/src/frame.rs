@@ -133,15 +133,14 @@ impl FrameBindings {
     /// Makes the layout.
     pub fn new(gpu: &Gpu) -> Self {
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("frame"),
-            entries: &[
-                uniform_entry(0, stages),
-                storage_entry(1, stages, true),
-                storage_entry(2, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
-                storage_entry(3, wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE, true),
-            ],
-        });
+        let of_lights = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let entries = [
+            uniform_entry(0, stages),
+            storage_entry(1, stages, true),
+            storage_entry(2, of_lights, true),
+            storage_entry(3, of_lights, true),
+        ];
+        let layout = gpu.bind_group_layout("frame", &entries);
         Self {
             uniform: gpu.uniform("view", size_of::<ViewUniform>() as u64),
             layout,

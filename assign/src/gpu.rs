@@ -1,6 +1,8 @@
 //! The device, opened once and shared by everything that records passes.
 
-use crate::AssignError;
+use std::sync::Arc;
+
+use crate::{AssignError, compiled::Compiled};
 
 /// A device with its queue and what is known of its adapter. Cloning shares the device.
 #[derive(Clone, Debug)]
@@ -11,6 +13,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Its adapter.
     pub info: wgpu::AdapterInfo,
+    pub(crate) compiled: Arc<Compiled>,
 }
 
 /// Asked for where the adapter has them: GPU time, and adding up light volumes in f32.
@@ -20,7 +23,7 @@ const OPTIONAL_FEATURES: wgpu::Features =
 impl Gpu {
     /// Wraps a renderer's own device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
-        Self { device, queue, info }
+        Self { device, queue, info, compiled: Arc::default() }
     }
 
     /// Opens the fastest adapter: discrete before integrated before virtual before software.
@@ -66,6 +69,8 @@ impl Gpu {
             max_buffer_size: available.max_buffer_size,
             max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
             max_texture_dimension_2d: available.max_texture_dimension_2d,
+            // A G-buffer with every image takes 36 bytes of WebGPU's 32.
+            max_color_attachment_bytes_per_sample: available.max_color_attachment_bytes_per_sample,
             // Of WebGPU's eight, lights and lists take up to six.
             max_storage_buffers_per_shader_stage: available
                 .max_storage_buffers_per_shader_stage
@@ -79,7 +84,7 @@ impl Gpu {
             ..Default::default()
         }))
         .map_err(|e| AssignError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
-        Ok(Self { device, queue, info })
+        Ok(Self::new(device, queue, info))
     }
 
     /// Whether passes run on the CPU: its timestamps say nothing.
@@ -108,6 +113,29 @@ impl Gpu {
     pub fn max_storage_bytes(&self) -> u64 {
         let limits = self.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
+    /// The layout of a bind group; equal entries share one layout.
+    pub fn bind_group_layout(
+        &self,
+        label: &str,
+        entries: &[wgpu::BindGroupLayoutEntry],
+    ) -> wgpu::BindGroupLayout {
+        self.compiled.layout(&self.device, label, entries)
+    }
+
+    /// The compute pipeline of an entry point over bind groups 0, 1, …. It is compiled once where
+    /// `module` comes from [`Shader`](crate::Shader) and the layouts from
+    /// [`bind_group_layout`](Self::bind_group_layout). `zero_memory`: workgroup memory starts as zero;
+    /// kernels that write what they read do without.
+    pub fn compute_pipeline(
+        &self,
+        module: &wgpu::ShaderModule,
+        entry_point: &str,
+        layouts: &[Option<&wgpu::BindGroupLayout>],
+        zero_memory: bool,
+    ) -> wgpu::ComputePipeline {
+        self.compiled.pipeline(&self.device, module, entry_point, layouts, zero_memory)
     }
 
     /// A storage buffer of `bytes`, at least 16, with room for copies in and out.

@@ -23,6 +23,7 @@
 //! faulty ones.
 
 mod assignment;
+mod compiled;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod cull;
@@ -46,6 +47,8 @@ mod passes;
 mod readback;
 mod reuse;
 mod shader;
+mod spot_ramp;
+mod sun;
 mod view;
 
 pub use assignment::{Assignment, Lookup, StrategyModule};
@@ -56,7 +59,9 @@ pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
 pub use gpu::Gpu;
-pub use light::{Light, LightFault, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M};
+pub use light::{
+    Light, LightFault, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE,
+};
 pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
 pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
@@ -72,4 +77,6 @@ pub use passes::{EncoderPasses, Passes};
 pub use readback::Readback;
 pub use reuse::Reuse;
 pub use shader::Shader;
+pub use spot_ramp::SpotRamp;
+pub use sun::{MAX_IRRADIANCE, MAX_SUNS, Sun, Suns};
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};

@@ -15,14 +15,14 @@ use crate::emitter::Emitter;
 pub enum LightShape {
     /// Emits alike in all directions.
     Point,
-    /// Emits into a cone (KHR_lights_punctual). The fall-off between the two angles is
-    /// `((cos θ - cos outer) / max(0.001, cos inner - cos outer))^2`, clamped to 0..1.
+    /// Emits into a cone (KHR_lights_punctual), with full intensity up to the inner angle. The
+    /// fall-off between the two angles is `((cos θ - cos outer) / (cos inner - cos outer))^2`.
     Spot {
         /// The cone's axis, of unit length, world space.
         direction: Vec3,
         /// Half angle of full intensity, radians, `0 <= inner <= outer`.
         inner_angle: f32,
-        /// Half angle at which the light ends, radians, `0 < outer <= π`.
+        /// Half angle at which the light ends, radians, [`MIN_SPOT_ANGLE`] to π.
         outer_angle: f32,
     },
     /// Emits the same radiance from every point of a flat emitter, in all directions in front.
@@ -154,8 +154,8 @@ impl Light {
             if (length - 1.0).abs() > 1e-3 {
                 return out("spot direction", length, "of length 1");
             }
-            if !(outer_angle > 0.0 && outer_angle <= std::f32::consts::PI) {
-                return out("spot outer angle", outer_angle, "above 0 and at most pi radians");
+            if !(MIN_SPOT_ANGLE..=std::f32::consts::PI).contains(&outer_angle) {
+                return out("spot outer angle", outer_angle, "between 1e-5 and pi radians");
             }
             if !(0.0..=outer_angle).contains(&inner_angle) {
                 return out("spot inner angle", inner_angle, "between 0 and the outer angle");
@@ -185,9 +185,10 @@ impl Light {
         let to_point = point - self.position.as_dvec3();
         let distance = to_point.length();
         let ball = 1.0 - distance / f64::from(self.range_m);
-        let cone = |axis: Vec3, cos_outer: f64| match distance {
-            0.0 => ball,
-            _ => ball.min(axis.as_dvec3().normalize().dot(to_point) / distance - cos_outer),
+        // A share of what the axis has, so that the narrowest cone has an inside.
+        let cone = |axis: Vec3, cos_outer: f64| {
+            let inside = axis.as_dvec3().normalize().dot(to_point) / distance - cos_outer;
+            if distance == 0.0 { ball } else { ball.min(inside / (1.0 - cos_outer).min(1.0)) }
         };
         match self.shape {
             LightShape::Point => ball,
@@ -233,6 +234,9 @@ pub const MIN_RANGE_M: f32 = 1e-6;
 
 /// The longest range accepted, metres: its square stays far inside f32.
 pub const MAX_RANGE_M: f32 = 1e9;
+
+/// The narrowest spot accepted, radians: a unit vector in f32 is good to 1e-7.
+pub const MIN_SPOT_ANGLE: f32 = 1e-5;
 
 /// The greatest radiant intensity accepted in a channel. The fall-off multiplies it by up to 1e4,
 /// GGX's peak by up to 8e4, and 2^20 such lights still sum to a finite f32.

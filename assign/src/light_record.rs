@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::{
     emitter::Outline,
     light::{Light, LightShape},
+    spot_ramp::SpotRamp,
 };
 
 /// The kinds of light, as stored in the top four bits of [`LightEmission::kind_and_shape`].
@@ -100,7 +101,7 @@ impl Light {
     /// The light's record for shading; appends what its kind needs to `shapes`.
     ///
     /// Shape vectors: a point light has none; a spot has `(direction, cos outer)` and
-    /// `(1 / max(0.001, cos inner - cos outer), sin outer, 0, 0)`; a virtual point light has
+    /// `(scale, sin outer, squared chord, 0)` of its [`SpotRamp`]; a virtual point light has
     /// `(normal, cos outer = 0)` and `(0, sin outer = 1, least distance squared, 0)`; an area light has `(normal,
     /// range)`, `(half x, diffuse range)`, `(half y, vertex count)` with the count negative where
     /// two-sided, `(area, 0, 0, 0)`, and its vertices relative to its position, `(vertex, 0)` each.
@@ -108,10 +109,9 @@ impl Light {
         let first_shape = shapes.len() as u32;
         if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
             let direction = direction.normalize();
-            let cos_outer = outer_angle.cos();
-            let scale = 1.0 / (inner_angle.cos() - cos_outer).max(1e-3);
-            shapes.push([direction.x, direction.y, direction.z, cos_outer]);
-            shapes.push([scale, outer_angle.sin().max(0.0), 0.0, 0.0]);
+            let ramp = SpotRamp::new(inner_angle, outer_angle);
+            shapes.push([direction.x, direction.y, direction.z, outer_angle.cos()]);
+            shapes.push([ramp.scale, outer_angle.sin().max(0.0), ramp.outer_chord_2, 0.0]);
         }
         if let LightShape::Vpl { normal, min_distance_m } = self.shape {
             let normal = normal.normalize();

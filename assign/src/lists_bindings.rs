@@ -51,10 +51,7 @@ impl ListsBindings {
         in_kernel: bool,
         entries: &[wgpu::BindGroupLayoutEntry],
     ) -> Self {
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(label),
-            entries,
-        });
+        let layout = gpu.bind_group_layout(label, entries);
         Self { layout, in_kernel, bind_group: None }
     }
 

@@ -4,14 +4,14 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::{AssignError, LightKinds};
+use crate::{AssignError, Gpu, LightKinds, compiled::ModuleKey};
 
 /// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
 ///
 /// It starts with the contract's own modules: `package::view`, `package::sample`,
 /// `package::lights`, `package::volume`, `package::lists` and, for kernels that make lists,
 /// `package::reserve`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Shader<'a> {
     modules: Vec<(String, Cow<'a, str>)>,
     flags: Vec<(String, bool)>,
@@ -75,14 +75,10 @@ impl<'a> Shader<'a> {
         compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
-    /// Links `root` and makes a shader module of it. Every index is checked on the GPU, and on
-    /// Vulkan, Metal and DX12 every loop is counted, so that none is endless.
-    pub fn create(
-        &self,
-        device: &wgpu::Device,
-        root: &str,
-    ) -> Result<wgpu::ShaderModule, AssignError> {
-        self.module_of(root, device, |descriptor| device.create_shader_module(descriptor))
+    /// Links `root` and makes a shader module of it, once per device. Every index is checked on the GPU,
+    /// and on Vulkan, Metal and DX12 every loop is counted, so that none is endless.
+    pub fn create(&self, gpu: &Gpu, root: &str) -> Result<wgpu::ShaderModule, AssignError> {
+        self.module_of(gpu, root, true, |descriptor| gpu.device.create_shader_module(descriptor))
     }
 
     /// As [`create`](Self::create), but loops are not counted. Counters keep a loop from being
@@ -96,36 +92,48 @@ impl<'a> Shader<'a> {
     #[allow(unsafe_code, reason = "the one way to a module without loop counters")]
     pub unsafe fn create_uncounted(
         &self,
-        device: &wgpu::Device,
+        gpu: &Gpu,
         root: &str,
     ) -> Result<wgpu::ShaderModule, AssignError> {
         let checks = wgpu::ShaderRuntimeChecks {
             force_loop_bounding: false,
             ..wgpu::ShaderRuntimeChecks::checked()
         };
-        self.module_of(root, device, |descriptor| {
+        self.module_of(gpu, root, false, |descriptor| {
             // SAFETY: loop counters alone are left out, and the caller vouches for the loops.
-            unsafe { device.create_shader_module_trusted(descriptor, checks) }
+            unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
         })
     }
 
     fn module_of(
         &self,
+        gpu: &Gpu,
         root: &str,
-        device: &wgpu::Device,
+        counted: bool,
         make: impl FnOnce(wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule,
     ) -> Result<wgpu::ShaderModule, AssignError> {
-        let source = self.link(root)?;
-        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let module = make(wgpu::ShaderModuleDescriptor {
-            label: Some(root),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        match pollster::block_on(scope.pop()) {
-            None => Ok(module),
-            Some(error) => {
-                Err(AssignError::Shader { module: root.to_owned(), reason: error.to_string() })
+        let key = ModuleKey { shader: self.to_static(), root: root.to_owned(), counted };
+        gpu.compiled.module(key, || {
+            let source = self.link(root)?;
+            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+            let module = make(wgpu::ShaderModuleDescriptor {
+                label: Some(root),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            match pollster::block_on(scope.pop()) {
+                None => Ok(module),
+                Some(error) => {
+                    Err(AssignError::Shader { module: root.to_owned(), reason: error.to_string() })
+                }
             }
-        }
+        })
+    }
+
+    /// A copy that owns its sources.
+    fn to_static(&self) -> Shader<'static> {
+        let owned = |(path, source): &(String, Cow<'a, str>)| {
+            (path.clone(), Cow::Owned(source.clone().into_owned()))
+        };
+        Shader { modules: self.modules.iter().map(owned).collect(), flags: self.flags.clone() }
     }
 }

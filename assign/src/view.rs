@@ -3,9 +3,13 @@
 //! View space is right-handed with +X right, +Y up and the camera looking down -Z; *view depth*
 //! is `-z`, positive in front. Clip depth runs 0..1, reversed or not.
 
-use bytemuck::{Pod, Zeroable};
+mod extent;
+mod uniform;
+
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use thiserror::Error;
+
+pub use uniform::ViewUniform;
 
 /// The window that the camera looks through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,45 +83,24 @@ pub struct ViewError {
     pub accepted: &'static str,
 }
 
-/// A [`View`] as shaders read it: `view.wesl`, `struct View`. 256 bytes.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct ViewUniform {
-    /// World to view.
-    pub world_to_view: [[f32; 4]; 4],
-    /// View to world.
-    pub view_to_world: [[f32; 4]; 4],
-    /// View to clip, jitter included.
-    pub view_to_clip: [[f32; 4]; 4],
-    /// Position in view space on the plane of view depth 1 is `ray_scale * ndc + ray_offset`
-    /// (perspective), or at every depth (orthographic).
-    pub ray_scale: [f32; 2],
-    /// See `ray_scale`.
-    pub ray_offset: [f32; 2],
-    /// Upper left corner of the viewport, pixels.
-    pub viewport_origin: [f32; 2],
-    /// Size of the viewport, pixels.
-    pub viewport_size: [f32; 2],
-    /// View depth of the near plane, metres.
-    pub near_m: f32,
-    /// View depth of the far plane, metres; `f32::MAX` when infinite.
-    pub far_m: f32,
-    /// 1 for perspective, 0 for orthographic: the power of view depth in a ray's footprint.
-    pub perspective: f32,
-    /// How far rounding can move a world-space position seen from this camera, metres per metre
-    /// of distance from the world's origin or from the camera.
-    pub position_error: f32,
-    /// The clip depth that the depth buffer is cleared to.
-    pub depth_clear: f32,
-    /// Pads to 272 bytes.
-    pub padding: [f32; 3],
-}
-
 impl View {
     /// A perspective camera at `eye` looking at `target`, reversed infinite depth, no jitter.
     pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, near_m: f32, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize_or(Vec3::NEG_Z);
         let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
+        Self::looking(eye, forward, up, fov_y, near_m, size)
+    }
+
+    /// A perspective camera at `eye` looking along the unit vector `forward`, reversed infinite depth,
+    /// no jitter. A direction holds its precision however far from the origin the eye is.
+    pub fn looking(
+        eye: Vec3,
+        forward: Vec3,
+        up: Vec3,
+        fov_y: f32,
+        near_m: f32,
+        size: [u32; 2],
+    ) -> Self {
         let top = (fov_y * 0.5).tan();
         let corner = Vec2::new(top * size[0] as f32 / size[1].max(1) as f32, top);
         Self {
@@ -259,83 +242,7 @@ impl View {
             DepthMapping::Reversed => 0.0,
         }
     }
-
-    /// The greatest view depth that shading can rebuild from a clip depth, metres; `None` where
-    /// nothing bounds it. Where depth is not reversed and the near plane close, rounding puts the
-    /// far plane well beyond itself: 1,049 m instead of 1,000 m with a near plane at 1 mm.
-    pub fn farthest_rebuilt_m(&self) -> Option<f32> {
-        let far_m = self.far_m?;
-        // WGSL divides to 2.5 units in the last place.
-        let rebuilt = self.rebuilt_m(self.depth_clear()) * (1.0 + 4.0 * f32::EPSILON);
-        (rebuilt.is_finite() && rebuilt > 0.0).then_some(far_m.max(rebuilt))
-    }
-
-    /// The least view depth that shading can rebuild from a clip depth, metres: in front of the
-    /// near plane where a far plane far away leaves an orthographic depth few bits.
-    pub fn nearest_rebuilt_m(&self) -> f32 {
-        let rebuilt = self.rebuilt_m(1.0 - self.depth_clear());
-        let slack = 4.0 * f32::EPSILON * rebuilt.abs();
-        if rebuilt.is_finite() { self.near_m.min(rebuilt - slack) } else { 0.0 }
-    }
-
-    /// The greatest view depth inside a world-space box, metres.
-    pub fn deepest_m(&self, min_world: Vec3, max_world: Vec3) -> f32 {
-        // View depth is linear in position: each coordinate's better end, one by one.
-        let depth = -self.world_to_view.row(2);
-        let axis = depth.truncate();
-        (axis * min_world).max(axis * max_world).element_sum() + depth.w
-    }
-
-    /// The distance from the eye to the farthest point of a world-space box, metres: whichever way
-    /// the camera turns, no point of the box has a greater view depth.
-    pub fn farthest_m(&self, min_world: Vec3, max_world: Vec3) -> f32 {
-        let eye = self.eye();
-        (eye - min_world).abs().max((max_world - eye).abs()).length()
-    }
-
-    /// The view depth at which slices of a perspective view end, metres: the far plane, or the
-    /// farthest point that a light reaches (`light_bounds`) where that is nearer. No light reaches the
-    /// samples behind it, so the last slice takes them all. At least two near planes away where no far
-    /// plane is nearer.
-    pub fn slices_end_m(&self, light_bounds: Option<(Vec3, Vec3)>) -> f32 {
-        let lit = |(min, max)| self.deepest_m(min, max).max(2.0 * self.near_m);
-        match (self.far_m, light_bounds.map(lit)) {
-            (Some(far), Some(lit)) => far.min(lit),
-            (Some(end), None) | (None, Some(end)) => end,
-            (None, None) => 2.0 * self.near_m,
-        }
-    }
-
-    /// View depth of a clip depth as `view.wesl` computes it, metres.
-    fn rebuilt_m(&self, depth_clip: f32) -> f32 {
-        let clip = self.view_to_clip();
-        (clip.w_axis.z - depth_clip * clip.w_axis.w) / (clip.z_axis.z - depth_clip * clip.z_axis.w)
-    }
-
-    /// The record shaders read.
-    pub fn uniform(&self) -> ViewUniform {
-        let (perspective, min, max) = self.window();
-        ViewUniform {
-            world_to_view: self.world_to_view.to_cols_array_2d(),
-            view_to_world: self.world_to_view.inverse().to_cols_array_2d(),
-            view_to_clip: self.view_to_clip().to_cols_array_2d(),
-            ray_scale: (0.5 * (max - min)).to_array(),
-            ray_offset: (0.5 * (max + min)).to_array(),
-            viewport_origin: [self.viewport.x as f32, self.viewport.y as f32],
-            viewport_size: [self.viewport.width as f32, self.viewport.height as f32],
-            near_m: self.near_m,
-            far_m: self.far_m.unwrap_or(f32::MAX),
-            perspective: if perspective { 1.0 } else { 0.0 },
-            position_error: POSITION_ERROR,
-            depth_clear: self.depth_clear(),
-            padding: [0.0; 3],
-        }
-    }
 }
-
-/// A position reconstructed from depth passes through three roundings of a product of matrices:
-/// 16 units in the last place bound them with room (the conformance suite's far camera checks it).
-const POSITION_ERROR: f32 = 16.0 * f32::EPSILON;
 
 #[cfg(test)]
 mod tests {
@@ -377,29 +284,5 @@ mod tests {
             assert!((depth_of(10.0) - near).abs() < 1e-6, "{depth:?}: {}", depth_of(10.0));
             assert!((depth_of(1e9) - view.depth_clear()).abs() < 1e-6, "{depth:?}");
         }
-    }
-
-    #[test]
-    fn a_far_plane_at_the_farthest_corner_sees_all_of_a_box_from_any_pose() {
-        let (min, max) = (Vec3::new(-3.0, 0.0, -9.0), Vec3::new(5.0, 4.0, 2.0));
-        for target in [Vec3::ZERO, Vec3::Z, Vec3::new(-8.0, 3.0, 1.0), Vec3::NEG_Y] {
-            for eye in [Vec3::new(1.0, 1.7, 0.5), Vec3::new(40.0, -3.0, 7.0)] {
-                let view = View::look_at(eye, target, 1.0, 0.1, [64, 48]);
-                let far_m = view.farthest_m(min, max);
-                assert!(view.deepest_m(min, max) <= far_m * (1.0 + 1e-5), "{eye} to {target}");
-            }
-        }
-        let view = View::look_at(Vec3::ZERO, Vec3::X, 1.0, 0.1, [64, 48]);
-        assert_eq!(view.farthest_m(Vec3::ZERO, Vec3::new(2.0, 3.0, 6.0)), 7.0);
-    }
-
-    #[test]
-    fn an_orthographic_near_plane_may_be_rebuilt_before_itself() {
-        let mut view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 1.0, [64, 48]);
-        view.projection = Projection::Orthographic { min: Vec2::splat(-1.0), max: Vec2::ONE };
-        view.far_m = Some(1e6);
-        assert!(view.nearest_rebuilt_m() < 0.96, "{}", view.nearest_rebuilt_m());
-        view.far_m = Some(10.0);
-        assert!((view.nearest_rebuilt_m() - 1.0).abs() < 1e-5, "{}", view.nearest_rebuilt_m());
     }
 }

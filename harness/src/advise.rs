@@ -19,15 +19,19 @@ mod verdict;
 pub use answer::answer;
 pub use verdict::{METRIC, Verdict, error_of, verdict};
 
+use std::time::Instant;
+
 use clap::ValueEnum;
 
 use crate::{
-    checks::check_writable,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
     compare::Bench,
     error::HarnessError,
+    messages::say,
+    out_folder::OutFolder,
     report::{self, needs_built_hierarchy},
     results::{BASELINE, EARLY_EXIT, Record, Results},
+    sight::untested,
 };
 
 /// The strategies of the first round.
@@ -58,7 +62,14 @@ const ONE_POSE: &str = "--poses 1: the camera stood still in the path's first vi
                         of the others; --poses 2 or more judge several";
 
 /// Laps over the poses: in the first two rounds, and in the last, whose laps must tell ties.
-const LAPS: [u32; 2] = [2, 8];
+const LAPS: [u32; 2] = [1, 8];
+
+/// Frames of each method before the clock starts, at least. A GPU is warmed until it is steady anyway.
+const WARMUP: &str = "4";
+
+/// Poses at which the first two rounds compare images: enough to drop a method that loses something.
+/// The last round compares as many as a comparison may.
+const SEARCH_CHECKS: &str = "2";
 
 /// Lights that a list keeps, where the budget allows an error.
 const CAPS: [u32; 4] = [8, 16, 32, 64];
@@ -78,7 +89,7 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
         let accepted = "one mode: deferred, deferred-ids, forward or forward-no-prepass";
         return Err(CliError::out_of_range("--mode", value, accepted).into());
     }
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
 
@@ -130,11 +141,19 @@ impl<'a> Search<'a> {
             return Err(CliError::new(format!("--poses: {scene} has no camera path")).into());
         }
         if args.poses == Some(1) {
-            eprintln!("warning  {ONE_POSE}");
+            say(format!("warning  {ONE_POSE}"));
         }
         let poses = (moves && args.stage.camera.is_none())
             .then(|| args.poses.unwrap_or(default))
             .filter(|poses| *poses > 1);
+        let gpu = bench.gpu().clone();
+        let stage = bench.stage(&args.stage)?;
+        let all: Vec<u32> = (0..poses.unwrap_or(0)).collect();
+        if let Some(why) = untested(&gpu, stage, &all, poses.unwrap_or(0))? {
+            let why = why.words(u64::from(stage.lights.count()), poses.is_some());
+            let message = format!("advise: nothing can be said: {why}");
+            return Err(CliError::new(message + " (--camera, --lights)").into());
+        }
         Ok(Self { args, bench, shared: AdviseArgs::shared_words(command), poses })
     }
 
@@ -146,7 +165,8 @@ impl<'a> Search<'a> {
         more: &[&str],
         last: usize,
     ) -> Result<Results, HarnessError> {
-        eprintln!("round    {name}: {} strategies", strategies.split(',').count());
+        say(format!("round    {name}: {} strategies", strategies.split(',').count()));
+        let began = Instant::now();
         let out = self.args.out.join(name);
         let frames = FRAMES[usize::from(self.bench.gpu().is_software())][last];
         let frames = self.poses.unwrap_or(frames).to_string();
@@ -157,6 +177,12 @@ impl<'a> Search<'a> {
         option(&["--strategies", strategies, "--frames", &frames]);
         if self.poses.is_some() {
             option(&["--path", "--laps", &laps]);
+            if last == 0 {
+                option(&["--checks", SEARCH_CHECKS]);
+            }
+        }
+        if !self.bench.gpu().is_software() {
+            option(&["--warmup", WARMUP]);
         }
         if last == 0 {
             option(&["--truth", "none", "--pictures", "none"]);
@@ -170,6 +196,7 @@ impl<'a> Search<'a> {
         let (results, _) =
             self.bench.compare(&CompareArgs { out: out.clone(), stage, ..compare }, words)?;
         results.write(&out.join("results.json"))?;
+        say(format!("         {name} took {:.1} s", began.elapsed().as_secs_f64()));
         Ok(results)
     }
 }

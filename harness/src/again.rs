@@ -34,7 +34,7 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
         compare_with_truth(&mut done)?;
         compare_builds(&mut done)?;
         if args.out.is_none() {
-            done.write()?;
+            done.write_metrics()?;
         }
         return report::write_study(&done, out);
     }
@@ -46,10 +46,16 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
     let mut text = String::new();
     for given in &args.folders {
         let Source { file, folder, report: own } = Source::of(given)?;
-        let mut results = Results::read(&file)?;
+        let (mut results, lack) = Results::read_checked(&file)?;
         refresh(&mut results, &folder)?;
+        if args.out.is_none() {
+            results.write_metrics(&file)?;
+        }
+        if let Some(lack) = lack {
+            // Not for the file of errors: the reader of this report has to know.
+            results.warnings.push(format!("{}: {lack}", file.display()));
+        }
         let out = args.out.as_ref().unwrap_or(&own);
-        results.write(&out.join("results.json"))?;
         let page = report::write_html(&results, &pictures(&results, &folder), out)?;
         text += &format!("{}\nreport   {}\n", report::render_table(&results), page.display());
     }

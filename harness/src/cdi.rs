@@ -6,7 +6,7 @@ use scenes::{Scene, primary_light};
 use shading::{EDGE, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
 
 use crate::{
-    checks::{check_writable, remove_stale},
+    checks::remove_stale,
     cli::CdiArgs,
     clock::{PassClock, PassTime},
     compare::{Bench, DEFAULT_FRAMES},
@@ -14,6 +14,7 @@ use crate::{
     drift::{WarmUp, unsteady},
     error::HarnessError,
     machine::machine,
+    out_folder::OutFolder,
     pass_samples::PassSamples,
     range_errors::{range_errors, seen_points},
     results::{CastTimes, DeepImageRun, Passes, Results, Truth, TruthLevel, median},
@@ -24,7 +25,7 @@ use crate::{
 /// provenance.
 pub fn cdi(args: &CdiArgs, command: Vec<String>) -> Result<String, HarnessError> {
     settings_of(&args.deep)?;
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let results = measure(&mut bench, args, command)?;
     let data = args.out.join("results.json");

@@ -11,7 +11,7 @@ use crate::{
     error::HarnessError,
     painter::raster_spheres,
     registry::Method,
-    results::{CONTROL, ResultsError, write_atomically},
+    results::{CONTROL, ResultsError},
     stage::Stage,
 };
 
@@ -132,18 +132,26 @@ pub(crate) fn served(
     Ok((served, left_out))
 }
 
-/// Makes the output folder and writes to it once, before anything long begins.
-pub(crate) fn check_writable(out: &Path) -> Result<(), ResultsError> {
-    let probe = out.join(".lightbench");
-    write_atomically(&probe, b"")?;
-    std::fs::remove_file(&probe)
-        .map_err(|source| ResultsError::Write { path: probe.clone(), source })
+/// An error where an option of area lights was given and no light is one: only the scene's file tells.
+pub(crate) fn check_area_options(args: &CompareArgs, stage: &Stage) -> Result<(), CliError> {
+    let given = [
+        ("--area-model", args.area_model.map(|model| model.to_string())),
+        ("--influence", args.stage.influence.map(|least| least.to_string())),
+    ];
+    let has_areas = stage.lights.kinds().areas || stage.lights.count() == 0;
+    match given.into_iter().find_map(|(option, value)| Some((option, value?))) {
+        Some((option, value)) if !has_areas => {
+            let accepted = "given with area lights: there are none; --areas SHARE scatters some";
+            Err(CliError::out_of_range(option, &value, accepted))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Removes an earlier run's report: it would stand beside this run's pictures if this one is
 /// interrupted.
 pub(crate) fn remove_stale(out: &Path) -> Result<(), ResultsError> {
-    for stale in ["index.html", "results.json"].map(|name| out.join(name)) {
+    for stale in ["index.html", "results.json", "metrics.json"].map(|name| out.join(name)) {
         if stale.is_file() {
             std::fs::remove_file(&stale)
                 .map_err(|source| ResultsError::Write { path: stale, source })?;

@@ -104,6 +104,18 @@ impl Choice {
         Ok(self)
     }
 
+    /// Whether two ids mean the same method, however they are written.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let parameters = |choice: &Self| -> Vec<String> {
+            let sizes = choice.spec.parameters.split('x');
+            sizes.map(|size| size.parse().map_or(size.to_owned(), |n: f64| n.to_string())).collect()
+        };
+        let rest = |choice: &Self| Spec { parameters: String::new(), ..choice.spec.clone() };
+        self.entry.family == other.entry.family
+            && parameters(self) == parameters(other)
+            && rest(self) == rest(other)
+    }
+
     /// The id with parameters.
     pub fn id(&self) -> &str {
         &self.id
@@ -188,6 +200,16 @@ impl Choice {
         self.entry.axes.contains(&Axis::Cap)
     }
 
+    /// Whether it tests lights by what an option says, because its id says nothing.
+    pub fn takes_tests(&self) -> bool {
+        self.entry.axes.contains(&Axis::Tests) && !self.says.0
+    }
+
+    /// Whether it takes lights from where an option says, because its id says nothing.
+    pub fn takes_source(&self) -> bool {
+        self.entry.axes.contains(&Axis::Source) && !self.says.1
+    }
+
     /// Whether it tests lights against frusta by more than their half spaces: by their corners.
     pub fn tests_corners(&self) -> bool {
         let half_spaces = FrustumTests { hs: true, ..self.spec.settings.tests };
@@ -233,7 +255,7 @@ mod tests {
         assert_eq!(parameters("SC-E/32x16x8"), "32x16x8");
         assert_eq!(asked(&["--strategies", "t-i/BVH/28X28"]), ["T-I/28x28/bvh"]);
         assert_eq!(asked(&["--strategies", "m,M/2"]), ["M", "M/2"]);
-        let lights_first = asked(&["--strategies", "hg,HG/32x32x8/CAP8", "--source", "both"]);
+        let lights_first = asked(&["--strategies", "hg,HG/32x32x8/CAP8"]);
         assert_eq!(lights_first, ["HG/48x48x40", "HG/32x32x8/cap8"]);
         assert_eq!(asked(&["--strategies", "g/surfaces/8x8x2"]), ["G/8x8x2/surfaces"]);
         let boxes = asked(&["--strategies", "G/positions,G/Supports/bvh,G/8x8x8/lights"]);
@@ -304,6 +326,8 @@ mod tests {
             ("T-E/hs/no-exit/no-exit", "no-exit", "no-exit"),
             ("T-I/hs/sat-p", "hs", "sat-p"),
             ("SC-E/cap8/cap16", "cap8", "cap16"),
+            ("SC-E/bvh/bvh", "bvh", "bvh"),
+            ("T-I/28x28/bvh/16x16", "28x28", "16x16"),
             ("SC-E/dif/n6", "dif", "n6"),
             ("SC-E/n6/dif", "dif", "n6"),
             ("SC-E/ball/bvh", "ball", "bvh"),

@@ -4,33 +4,36 @@
 //! ([`CliError`]), and exit code [`BAD_INPUT`]. Names of scenes and strategies are passed on as
 //! they are; whoever looks them up offers the [`nearest`] ones.
 
+mod camera;
 mod cdi;
+mod effect;
 mod error;
 mod fit_ltc;
 mod names;
+mod parse;
 mod stage;
 mod study;
 mod truth;
 mod values;
 mod vpl;
 
-use std::ffi::OsString;
 use std::path::PathBuf;
 
 use assign::FrustumTests;
-use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use shading::{AreaModel, Cut};
 
+pub use camera::{Camera, CameraPose};
 pub use cdi::CdiArgs;
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
 pub use names::{did_you_mean, nearest};
+pub use parse::{parse, parse_stored};
 pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
 pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
 pub use truth::TruthArgs;
 pub(crate) use values::MAX_CHECKS;
-pub use values::{Camera, CameraPose, DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
+pub use values::{DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
 pub use vpl::{BuildChoice, DeepArgs, PrimaryRay, RangeChoice, SpreadChoice, VplArgs};
 
 use crate::results::{Mode, TruthLevel};
@@ -103,7 +106,6 @@ pub enum Invocation {
     after_long_help = EXAMPLES,
     after_help = "`lightbench --help` says more, with examples.",
     args_conflicts_with_subcommands = true,
-    disable_help_subcommand = true,
     max_term_width = 100,
 )]
 struct Cli {
@@ -174,9 +176,9 @@ pub struct CompareArgs {
 
     /// How the light of area lights is integrated: from one point (point, mrp, mrp-published), by linearly
     /// transformed cosines (ltc, ltc-hammon, ltc-unsplit, ltc-per-light, ltc-polynomial,
-    /// ltc-polynomial-per-light), or by samples (monte-carlo:N, monte-carlo-reflected:N)
-    #[arg(long, value_name = "MODEL", default_value = "ltc", value_parser = values::area_model)]
-    pub area_model: AreaModel,
+    /// ltc-polynomial-per-light), or by samples (monte-carlo:N, monte-carlo-reflected:N) [default: ltc]
+    #[arg(long, value_name = "MODEL", value_parser = values::area_model)]
+    pub area_model: Option<AreaModel>,
 
     /// Frames to time, 1 to 100,000, every sample kept; with --path, poses of a lap
     /// [default: 64, or 3 on a software adapter; with --path 1,200 or 60]
@@ -328,35 +330,6 @@ impl From<TruthChoice> for TruthLevel {
             TruthChoice::Full => Self::Full,
             TruthChoice::None => Self::None,
         }
-    }
-}
-
-/// Understands a command line, program name first.
-///
-/// # Errors
-///
-/// A [`CliError`] of one line for anything unknown, missing or out of range.
-pub fn parse<I, T>(arguments: I) -> Result<Invocation, CliError>
-where
-    I: IntoIterator<Item = T>,
-    T: Into<OsString> + Clone,
-{
-    match Cli::try_parse_from(arguments) {
-        Ok(Cli { command: Some(Command::List { what }), .. }) => Ok(Invocation::List(what)),
-        Ok(Cli { command: Some(Command::Compare(args)), .. }) => Ok(Invocation::Compare(args)),
-        Ok(Cli { command: Some(Command::Study(args)), .. }) => Ok(Invocation::Study(args)),
-        Ok(Cli { command: Some(Command::Report(args)), .. }) => Ok(Invocation::Report(args)),
-        Ok(Cli { command: Some(Command::Advise(args)), .. }) => Ok(Invocation::Advise(args)),
-        Ok(Cli { command: Some(Command::FitLtc(args)), .. }) => Ok(Invocation::FitLtc(args)),
-        Ok(Cli { command: Some(Command::Truth(args)), .. }) => Ok(Invocation::Truth(args)),
-        Ok(Cli { command: Some(Command::Cdi(args)), .. }) => Ok(Invocation::Cdi(args)),
-        Ok(Cli { command: None, compare }) => Ok(Invocation::Compare(compare)),
-        Err(shown)
-            if matches!(shown.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>
-        {
-            Ok(Invocation::Show(shown.render().to_string()))
-        }
-        Err(error) => Err(CliError::from_clap(&error)),
     }
 }
 

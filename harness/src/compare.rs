@@ -9,18 +9,21 @@ use scenes::Scene;
 use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
-    checks::{check_modes, check_writable, checked, has_mode, remove_stale, served},
+    checks::{check_area_options, check_modes, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CliError, CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
-    drift::unsteady,
+    cli::{CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
+    drift::note_drift,
     error::HarnessError,
     errors::ImagePair,
     machine::machine,
-    measure::{Contest, Plan, Timetable, unbounded_image},
+    measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
+    messages::{say, say_error},
+    out_folder::{OutFolder, leave_all},
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
-    report,
-    results::{BASELINE, Clock, Machine, Record, RejectedLight, Results, Truth},
+    report::{self, significant},
+    results::{BASELINE, Machine, RejectedLight, Results, Truth, Untested},
+    sight::untested,
     stage::Stage,
 };
 
@@ -44,7 +47,7 @@ pub struct Bench {
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // What is wrong with the words shows before a device is opened.
     check_modes(args, &choices(args)?)?;
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (results, pictures) = bench.compare(args, command)?;
     write(&results, &pictures, &args.out)
@@ -73,7 +76,7 @@ impl Bench {
         let gpu = Gpu::open(adapter)?;
         end_on_device_error(&gpu);
         let machine = machine(&gpu);
-        eprintln!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver);
+        say(format!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver));
         Ok(Self { gpu, machine, stage: None, triangles: None })
     }
 
@@ -136,7 +139,8 @@ impl Bench {
         let choices = checked(choices, &gpu)?;
         let machine = machine(&gpu);
         let stage = self.stage(&args.stage)?;
-        stage.area_model = args.area_model;
+        check_area_options(args, stage)?;
+        stage.area_model = args.area_model.unwrap_or_default();
         stage.compensation = args.compensate.map(|lights| lights as f32);
         // What a strategy cannot serve shows before anything long begins.
         let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
@@ -148,10 +152,13 @@ impl Bench {
             gpu,
             stage,
             pictures: Vec::new(),
+            untested: None,
         };
+        run.follow_path();
         run.results.warnings.extend(left_out);
         run.warn(&choices);
         remove_stale(&args.out)?;
+        run.look()?;
         run.measure_all(&choices)?;
         Ok((run.results, run.pictures))
     }
@@ -180,15 +187,47 @@ struct Run<'a> {
     gpu: Gpu,
     stage: &'a mut Stage,
     pictures: Pictures,
+    untested: Option<Untested>,
 }
 
 impl Run<'_> {
+    /// Sets the stage for the poses that are timed.
+    fn follow_path(&mut self) {
+        if self.args.path {
+            self.stage.follow_path(self.plan.timed);
+        }
+    }
+
+    /// Puts camera and lights back to what the arguments ask for.
+    fn reset(&mut self) -> Result<(), HarnessError> {
+        self.stage.set_up(&self.gpu, &self.args.stage)?;
+        self.follow_path();
+        Ok(())
+    }
+
+    /// Looks whether the run puts anything to a test, and says loudly where it does not.
+    fn look(&mut self) -> Result<(), HarnessError> {
+        let Plan { timed, checks, .. } = self.plan;
+        let poses = if self.args.path { checked_poses(timed, checks) } else { Vec::new() };
+        self.untested = untested(&self.gpu, self.stage, &poses, timed)?;
+        if self.args.path {
+            self.reset()?;
+        }
+        let lights = u64::from(self.stage.lights.count());
+        if let Some(why) = self.untested.map(|why| why.words(lights, self.args.path)) {
+            let warning = format!("NOTHING WAS TESTED: {why}, so nothing here is exact or ranked");
+            say(format!("warning  {warning}"));
+            self.results.warnings.insert(0, warning);
+        }
+        Ok(())
+    }
+
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self, choices: &[Choice]) {
         note_faults(&mut self.results, self.stage);
         if let Some(vpls) = &self.stage.vpls {
             let words = vpls.summary();
-            eprintln!("vpls     {words}");
+            say(format!("vpls     {words}"));
             if vpls.kept == 0 {
                 let none = "no virtual point light is left: every image is black";
                 self.results.warnings.push(format!("{words}: {none}"));
@@ -299,36 +338,21 @@ impl Run<'_> {
                 times,
             );
             note_drift(&mut record);
+            record.untested = self.untested;
             self.results.records.push(record);
         }
         if self.args.path {
-            self.stage.set_up(&self.gpu, &self.args.stage)?;
+            self.reset()?;
         }
         Ok(())
     }
 }
 
-/// Notes on a record that its times drifted while it was measured. A GPU's clock only, and a still
-/// camera only: along a path poses differ in their work, and a software adapter has no clock to raise.
-fn note_drift(record: &mut Record) {
-    if record.along_path || record.clock != Clock::GpuTimestamps {
-        return;
-    }
-    let Some(why) = unsteady(&record.frames_ms()) else { return };
-    let drift = format!(
-        "{} in {}: its times are not steady, measure it again: {why}",
-        record.strategy,
-        record.mode.name()
-    );
-    record.note = Some(match record.note.take() {
-        Some(note) => format!("{note}; {drift}"),
-        None => drift,
-    });
-}
-
 /// Notes what was wrong with the scene and its lights.
 pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
     results.warnings.extend(stage.scene.warnings.iter().cloned());
+    results.warnings.extend(stage.notes.iter().cloned());
+    results.warnings.extend(stage.open_lights.map(|open| open.note()));
     let rejected = stage.lights.rejected().iter();
     results.rejected_lights = rejected
         .map(|rejected| RejectedLight {
@@ -348,7 +372,8 @@ fn progress_bar(total: u64) -> ProgressBar {
 /// An error that no call returned is the device's: one line, exit code 1, no panic.
 fn end_on_device_error(gpu: &Gpu) {
     gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
-        eprintln!("lightbench: device: {}", CliError::new(error.to_string()));
+        say_error(format!("device: {error}"));
+        leave_all();
         std::process::exit(1);
     }));
 }
@@ -357,24 +382,36 @@ fn end_on_device_error(gpu: &Gpu) {
 const MOST_REJECTED_SHOWN: usize = 20;
 
 fn describe(stage: &Stage) {
-    eprintln!(
-        "scene    {}: {} triangles, {} models, {} lights",
+    say(format!(
+        "scene    {}: {} triangles, {} models, {} lights{}",
         stage.scene.name,
         stage.scene.triangle_count(),
         stage.scene.models.len(),
-        stage.lights.count()
-    );
-    if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
-        eprintln!("lights   scattered with a mean radius of {:.3} m", stage.radius_scale);
+        stage.lights.count(),
+        match stage.suns.as_slice().len() {
+            0 => String::new(),
+            1 => ", 1 sun".to_owned(),
+            count => format!(", {count} suns"),
+        }
+    ));
+    if let Some(open) = &stage.open_lights {
+        say(format!("lights   {}", open.note()));
     }
-    for warning in &stage.scene.warnings {
-        eprintln!("warning  {warning}");
+    if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
+        say(format!(
+            "lights   scattered with a mean radius of {} m",
+            significant(stage.radius_scale)
+        ));
+    }
+    for warning in stage.scene.warnings.iter().chain(&stage.notes) {
+        say(format!("warning  {warning}"));
     }
     let rejected = stage.lights.rejected();
     for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
-        eprintln!("warning  light {} left out: {}", rejected.index, rejected.fault);
+        say(format!("warning  light {} left out: {}", rejected.index, rejected.fault));
     }
     if rejected.len() > MOST_REJECTED_SHOWN {
-        eprintln!("warning  and {} more lights", rejected.len() - MOST_REJECTED_SHOWN);
+        let more = rejected.len() - MOST_REJECTED_SHOWN;
+        say(format!("warning  and {more} more lights left out"));
     }
 }

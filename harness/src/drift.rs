@@ -8,7 +8,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::results::median;
+use crate::results::{Clock, Record, median};
 
 /// Times of one window of a warm-up.
 const WINDOW: usize = 8;
@@ -136,6 +136,24 @@ fn is_level(times_ms: &[f64]) -> bool {
     let least = medians().fold(f64::INFINITY, f64::min);
     let most = medians().fold(0.0, f64::max);
     apart(least, most) <= STEADY || most - least <= TICK_MS
+}
+
+/// Notes on a record that its times drifted while it was measured. A GPU's clock only, and a still
+/// camera only: along a path poses differ in their work, and a software adapter has no clock to raise.
+pub fn note_drift(record: &mut Record) {
+    if record.along_path || record.clock != Clock::GpuTimestamps {
+        return;
+    }
+    let Some(why) = unsteady(&record.frames_ms()) else { return };
+    let drift = format!(
+        "{} in {}: its times are not steady, measure it again: {why}",
+        record.strategy,
+        record.mode.name()
+    );
+    record.note = Some(match record.note.take() {
+        Some(note) => format!("{note}; {drift}"),
+        None => drift,
+    });
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Everything that ends a run, with its exit code.
 
+use std::io::ErrorKind;
+
 use assign::AssignError;
 use scenes::SceneError;
 use shading::ShadingError;
@@ -34,15 +36,54 @@ pub enum HarnessError {
 }
 
 impl HarnessError {
-    /// 2 where the input is at fault, else 1: the device failed.
+    /// 2 where the input is at fault, else 1: the machine lacks something, or failed.
     pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Output(_)
-            | Self::Assign(AssignError::Device(_) | AssignError::Shader { .. })
-            | Self::Shading(ShadingError::Assign(
-                AssignError::Device(_) | AssignError::Shader { .. },
-            )) => 1,
-            _ => BAD_INPUT,
-        }
+        let is_machines = match self {
+            Self::Output(_) => true,
+            Self::Assign(error) | Self::Shading(ShadingError::Assign(error)) => is_machines(error),
+            Self::Results(ResultsError::Write { source, .. }) => is_full(source.kind()),
+            _ => false,
+        };
+        if is_machines { 1 } else { BAD_INPUT }
+    }
+}
+
+/// Whether no other input would have helped.
+fn is_machines(error: &AssignError) -> bool {
+    matches!(
+        error,
+        AssignError::NoAdapter { .. }
+            | AssignError::NoDevice { .. }
+            | AssignError::OutOfMemory { .. }
+            | AssignError::Shader { .. }
+            | AssignError::Device(_)
+    )
+}
+
+/// Whether there is no room left.
+fn is_full(kind: ErrorKind) -> bool {
+    use ErrorKind::{FileTooLarge, OutOfMemory, QuotaExceeded, StorageFull, WriteZero};
+    matches!(kind, StorageFull | QuotaExceeded | FileTooLarge | OutOfMemory | WriteZero)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_machine_lacks_is_not_the_inputs_fault() {
+        let written = |kind: ErrorKind| {
+            let error = ResultsError::Write { path: "x".into(), source: kind.into() };
+            HarnessError::from(error).exit_code()
+        };
+        assert_eq!(written(ErrorKind::StorageFull), 1);
+        assert_eq!(written(ErrorKind::QuotaExceeded), 1);
+        assert_eq!(written(ErrorKind::NotADirectory), 2);
+        assert_eq!(written(ErrorKind::PermissionDenied), 2);
+        let none = || AssignError::NoAdapter { looked_for: String::new() };
+        assert_eq!(HarnessError::from(none()).exit_code(), 1);
+        assert_eq!(HarnessError::from(ShadingError::from(none())).exit_code(), 1);
+        let unknown = AssignError::UnknownAdapter { name: "x".into(), known: "y".into() };
+        assert_eq!(HarnessError::from(unknown).exit_code(), 2);
     }
 }

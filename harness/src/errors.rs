@@ -90,6 +90,22 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
         value: |sums, _| share(sums.off, sums.reference),
     },
     ErrorMetric {
+        id: "log_error",
+        head: "log error",
+        unit: "",
+        about: "Mean over channels of |log2((a + e) / (b + e))|, with a what is and b what should be, and e a \
+                hundredth of the mean: 1 is off by a factor of two, whichever way.",
+        value: |sums, pair| log_error(sums, pair.image.pixels.iter().zip(&pair.reference.pixels)),
+    },
+    ErrorMetric {
+        id: "highlights",
+        head: "highlights",
+        unit: "",
+        about: "The log error over the hundredth of the pixels that are brightest in either image: highlights \
+                that lack, and those that should not be.",
+        value: |sums, pair| log_error(sums, brightest(pair)),
+    },
+    ErrorMetric {
         id: "flip",
         head: "FLIP",
         unit: "",
@@ -166,6 +182,41 @@ fn rel_mse(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
     sum / (3.0 * sums.pixels.max(1.0))
 }
 
+/// The floor of [`log_error`], as a share of the mean luminance there should be.
+const LOG_FLOOR: f64 = 0.01;
+
+/// The mean over channels of how many doublings they are off.
+fn log_error<'a>(sums: &Sums, pixels: impl Iterator<Item = (&'a [f32; 3], &'a [f32; 3])>) -> f64 {
+    let floor = (LOG_FLOOR * sums.mean()).max(f64::MIN_POSITIVE);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (a, b) in pixels {
+        for (a, b) in a.iter().zip(b) {
+            let [a, b] = [a, b].map(|value| f64::from(*value).max(0.0) + floor);
+            sum += (a / b).log2().abs();
+            count += 1.0;
+        }
+        // A comparison with what is no number loses it.
+        if !a.iter().chain(b).all(|value| value.is_finite()) {
+            return f64::NAN;
+        }
+    }
+    sum / f64::max(count, 1.0)
+}
+
+/// The hundredth of the pixels, at least one, whose luminance is greatest in either image.
+fn brightest<'a>(
+    pair: &ImagePair<'a>,
+) -> impl Iterator<Item = (&'a [f32; 3], &'a [f32; 3])> + use<'a> {
+    let mut pixels: Vec<_> = pair.image.pixels.iter().zip(&pair.reference.pixels).collect();
+    let kept = pixels.len().div_ceil(100);
+    if kept < pixels.len() {
+        let brightness = |(a, b): &(&[f32; 3], &[f32; 3])| luminance(a).max(luminance(b));
+        pixels.select_nth_unstable_by(kept, |a, b| brightness(b).total_cmp(&brightness(a)));
+        pixels.truncate(kept);
+    }
+    pixels.into_iter()
+}
+
 fn worst_tile(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
     let worst = tiles(pair).into_iter().map(f64::abs).fold(0.0, f64::max);
     share(worst, sums.mean())
@@ -234,7 +285,8 @@ mod tests {
         // One bit is enough for the sums to be taken.
         let mut other = grey.clone();
         other.pixels[77][0] += 1e-3;
-        for metric in ERROR_METRICS.iter().filter(|m| m.id != "pixels_off") {
+        let sees = |id: &str| !["pixels_off", "highlights"].contains(&id);
+        for metric in ERROR_METRICS.iter().filter(|m| sees(m.id)) {
             let error = of(&other, &grey, metric.id);
             let is_brighter = metric.id == "missing_energy";
             assert!((error > 0.0) != is_brighter && error < 1e-2, "{}: {error}", metric.id);
@@ -262,6 +314,24 @@ mod tests {
         let tile = image(|ix| if ix % 64 / 16 == 2 && ix / 64 / 16 == 1 { 0.0 } else { 1.0 });
         let pair = ImagePair { image: &tile, reference: &reference, exposure: 1.0 };
         assert_eq!(worst_tile_at(&pair), Some([32, 16]));
+    }
+
+    #[test]
+    fn a_highlight_that_lacks_or_is_twice_as_bright_shows() {
+        // Five bright pixels of 2,048, a hundred times as bright as the rest.
+        let with = |bright: f32| image(|ix| if ix % 400 == 7 { bright } else { 1.0 });
+        let reference = with(100.0);
+        let highlights = |bright| of(&with(bright), &reference, "highlights");
+        // Five of the 21 brightest pixels are one doubling off, with a floor of a hundredth of the mean.
+        assert!((highlights(50.0) - 6.0 / 21.0).abs() < 0.01, "{}", highlights(50.0));
+        assert!((highlights(200.0) - highlights(50.0)).abs() < 0.01);
+        assert!(highlights(1.0) > 1.5);
+        // The metrics of means hardly see it.
+        assert!(of(&with(200.0), &reference, "log_error") < 0.004);
+        let both =
+            of(&image(|ix| if ix % 2 == 0 { 2.0 } else { 0.5 }), &image(|_| 1.0), "log_error");
+        let expected = 0.5 * ((2.01_f64 / 1.01).log2() + (1.01_f64 / 0.51).log2());
+        assert!((both - expected).abs() < 1e-9, "{both} {expected}");
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! `lightbench` as a library: its command line, its measurements, its results and its report.
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod advise;
 pub mod again;
+pub mod camera;
 pub mod cdi;
 pub mod chart;
 mod checks;
@@ -15,10 +18,14 @@ pub mod drift;
 pub mod error;
 pub mod errors;
 pub mod fit_ltc;
+pub mod interrupted;
 pub mod list_lengths;
 pub mod machine;
 pub mod measure;
+pub mod messages;
+pub mod open_lights;
 pub mod optics;
+pub mod out_folder;
 pub mod painter;
 pub mod pass_samples;
 pub mod pictures;
@@ -28,8 +35,10 @@ pub mod registry;
 pub mod report;
 pub mod results;
 pub mod schedule;
+pub mod sight;
 pub mod stage;
 pub mod stored;
 pub mod study;
 pub mod truth;
+pub mod visible;
 pub mod vpls;

@@ -4,14 +4,18 @@ use std::time::SystemTime;
 
 use assign::Gpu;
 
-use crate::results::{DeviceType, Machine};
+use crate::{
+    results::{DeviceType, Machine},
+    visible::visible,
+};
 
 /// What is known of the adapter, the host and the program.
 pub fn machine(gpu: &Gpu) -> Machine {
     let info = &gpu.info;
     Machine {
-        adapter: info.name.clone(),
-        driver: [info.driver.as_str(), info.driver_info.as_str()].join(" ").trim().to_owned(),
+        adapter: visible(&info.name).into_owned(),
+        driver: visible([info.driver.as_str(), info.driver_info.as_str()].join(" ").trim())
+            .into_owned(),
         backend: info.backend.to_string(),
         device_type: match info.device_type {
             wgpu::DeviceType::DiscreteGpu => DeviceType::DiscreteGpu,
@@ -23,9 +27,22 @@ pub fn machine(gpu: &Gpu) -> Machine {
         cpu: cpu_name(),
         os: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         commit: env!("LIGHTBENCH_COMMIT").to_owned(),
-        date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        date: now(),
         rustc: Some(env!("LIGHTBENCH_RUSTC").to_owned()),
     }
+}
+
+/// The time of day, in UTC.
+pub(crate) fn now() -> String {
+    humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
+}
+
+/// The host's name, as Linux or the environment has it.
+pub(crate) fn host_name() -> String {
+    let known = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let known = known.or_else(|| std::env::var("COMPUTERNAME").ok());
+    let known = known.or_else(|| std::env::var("HOSTNAME").ok()).unwrap_or_default();
+    if known.trim().is_empty() { "an unnamed host".to_owned() } else { known.trim().to_owned() }
 }
 
 /// The host processor's model, as Linux names it.

@@ -1,29 +1,31 @@
 //! `lightbench`: compare ways of assigning many lights to pixels.
 
-use std::{
-    io::{ErrorKind, Write},
-    process::ExitCode,
-};
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+use std::{path::Path, process::ExitCode};
 
 use harness::{
     advise::advise,
     again::again,
     cdi::cdi,
-    cli::{self, CliError, Invocation, Listing},
+    cli::{self, Invocation, Listing},
     compare::compare,
     error::HarnessError,
     fit_ltc::fit_ltc,
+    interrupted,
+    messages::{print, say_error},
     registry::{STRATEGIES, StrategyEntry},
     study::study,
     truth::truth,
 };
 
 fn main() -> ExitCode {
+    quiet_loader();
+    interrupted::watch();
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // One line, whatever a file's text put into the message.
-            eprintln!("lightbench: {}", CliError::new(error.to_string()));
+            say_error(&error);
             ExitCode::from(error.exit_code())
         }
     }
@@ -33,25 +35,62 @@ fn run() -> Result<(), HarnessError> {
     // Where the program lies on this machine says nothing to others.
     let arguments = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let command = std::iter::once("lightbench".to_owned()).chain(arguments).collect();
-    let text = match cli::parse(std::env::args_os())? {
+    let asked = cli::parse(std::env::args_os())?;
+    say_how_to_go_on(&asked);
+    let text = match asked {
         Invocation::Show(text) => text,
         Invocation::List(Listing::Strategies) => strategies(),
         Invocation::List(Listing::Scenes) => scenes(),
         Invocation::List(Listing::Adapters) => adapters()?,
         Invocation::Compare(args) => compare(&args, command)?,
-        Invocation::Study(args) => study(&args)?,
+        Invocation::Study(args) => study(&args, &command)?,
         Invocation::Report(args) => again(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
         Invocation::FitLtc(args) => fit_ltc(&args)?,
         Invocation::Truth(args) => truth(&args, command)?,
         Invocation::Cdi(args) => cdi(&args, command)?,
     };
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // Whoever read has read enough.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => other.map_err(HarnessError::Output),
+    print(&text)
+}
+
+/// What an interrupted run says.
+fn say_how_to_go_on(asked: &Invocation) {
+    let lost = |out: &Path| {
+        let out = out.display();
+        format!("{out} has no results of this run: the same command starts it again")
+    };
+    interrupted::when_interrupted(match asked {
+        Invocation::Study(args) => format!(
+            "jobs that are done stay in {}: the same command goes on with the others",
+            args.folder().display()
+        ),
+        Invocation::Compare(args) => lost(&args.out),
+        Invocation::Advise(args) => lost(&args.out),
+        Invocation::Truth(args) => lost(&args.out),
+        Invocation::Cdi(args) => lost(&args.out),
+        Invocation::Report(_) | Invocation::FitLtc(_) => "the same command starts again".into(),
+        Invocation::List(_) | Invocation::Show(_) => return,
+    });
+}
+
+/// Keeps the Vulkan loader quiet. One of its layers asks for a Wayland display, and the library that it
+/// asks prints an error where this variable is not set. The device itself is no folder: nothing is there.
+#[cfg(target_os = "linux")]
+fn quiet_loader() {
+    const NAME: &str = "XDG_RUNTIME_DIR";
+    let is_set = std::env::var_os(NAME).is_some_and(|folder| Path::new(&folder).is_absolute());
+    if !is_set {
+        // SAFETY: no other thread runs yet that could read the environment.
+        #[expect(unsafe_code, reason = "the loader reads the environment of this process")]
+        unsafe {
+            std::env::set_var(NAME, "/dev/null");
+        }
     }
 }
+
+/// Other systems have no such loader.
+#[cfg(not(target_os = "linux"))]
+fn quiet_loader() {}
 
 fn strategies() -> String {
     let row = |entry: &StrategyEntry| {

@@ -3,6 +3,8 @@
 
 mod laps;
 
+pub(crate) use laps::checked_poses;
+
 use assign::{
     Assignment, Counters, EncoderPasses, Everything, Gpu, Light, LightBuffer, MAX_RANGE_M,
 };

@@ -1,16 +1,23 @@
 //! How the camera of a stage sees: its lens, its near plane and its far plane.
 //!
-//! A camera of the scene's file brings all three. Where the file leaves the far plane open, or has no
-//! camera, the far plane lies just beyond the farthest corner of the scene's bounds, as seen from the
-//! eye: it follows the eye along a path and does not depend on where the camera looks. No triangle is
-//! lost to it. `--near` and `--far` replace either plane.
+//! A camera of the scene's file brings all three. `--near` and `--far` replace either plane.
+//!
+//! Where neither says anything, no triangle is lost. The near plane lies at a 500th of the scene's size,
+//! or at half the depth of the nearest surface in view, where the usual plane would cut that away: ground
+//! in front of a person in a town, a floor under the lens. Along a path one near plane serves all poses. The far
+//! plane lies just beyond the farthest corner of the scene's bounds, as seen from the eye: it follows
+//! the eye along a path and does not depend on where the camera looks.
+//!
+//! What planes cut away that an option or the file placed is stated ([`Optics::notes`]).
 
 use assign::{Projection, View};
 use glam::Vec2;
 use scenes::{Lens, Pose, Scene};
 
 use crate::{
-    cli::{Camera, CliError, FarPlane, StageArgs},
+    camera::file_camera,
+    cli::{CliError, FarPlane, StageArgs},
+    report::significant,
     results::{PlaneSource, Planes},
 };
 
@@ -20,9 +27,25 @@ const FOV_Y: f32 = 60.0 * std::f32::consts::PI / 180.0;
 /// The near plane as a share of the scene's size: 5 cm in a hall of 25 m.
 const NEAR_SHARE: f32 = 0.002;
 
+/// Surfaces nearer than this many usual near planes are about to be cut away.
+const CUT: f32 = 1.01;
+
+/// The near plane as a share of the depth of such a surface.
+const NEAR_OF_SURFACE: f64 = 0.5;
+
+/// The least near plane as a share of the usual one: an eye may touch a surface.
+const LEAST_NEAR: f32 = 1e-3;
+
 /// How much farther than the scene the far plane lies: what is drawn exactly at it cannot be told from
 /// background.
 const BEYOND: f32 = 1.001;
+
+/// What lies less than this share of a plane's depth behind it is not worth a note.
+const SLACK: f64 = 1e-4;
+
+/// Positions this share of the near plane apart leave the nearest surfaces without shape; of an
+/// orthographic view, this share of a 500th of its half height.
+const COARSE: f32 = 0.25;
 
 /// Lens, near plane and far plane of a stage's camera.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +53,8 @@ pub struct Optics {
     lens: Option<Lens>,
     near_m: f32,
     near_from: PlaneSource,
+    /// The near plane where no surface is nearer, metres.
+    usual_m: f32,
     far: Far,
 }
 
@@ -45,30 +70,31 @@ enum Far {
 }
 
 impl Optics {
-    /// What the options ask for, else what the file's first camera says, else what suits the scene.
-    /// A pose of one's own (`--camera X,Y,Z:X,Y,Z`) leaves the file's camera out.
+    /// What the options ask for, else what the file's camera says, else what suits the scene.
+    /// A pose of one's own (`--camera X,Y,Z:X,Y,Z`) leaves the file's cameras out.
     ///
     /// # Errors
     ///
     /// A [`CliError`] that names the option at fault.
     pub fn new(scene: &Scene, args: &StageArgs) -> Result<Self, CliError> {
-        let is_posed = matches!(args.camera, Some(Camera::Pose(_)));
-        let camera = scene.cameras.first().filter(|_| !is_posed);
-        let (near_m, near_from) = match (args.near, camera) {
-            (Some(near), _) => (near as f32, PlaneSource::Option),
-            (None, Some(camera)) => (camera.near_m, PlaneSource::File),
-            (None, None) => {
-                let near_m = (scene.core_bounds.diagonal() * NEAR_SHARE).max(1e-6);
-                (near_m, PlaneSource::Scene)
-            }
-        };
+        let camera = file_camera(scene, args)?;
         let far = match (args.far, camera.and_then(|camera| camera.far_m)) {
             (Some(FarPlane::At(far)), _) => Far::At(far as f32, PlaneSource::Option),
             (Some(FarPlane::Infinite), _) => Far::Infinite,
             (None, Some(far)) => Far::At(far, PlaneSource::File),
             (None, None) => Far::Bounds,
         };
-        let optics = Self { lens: camera.map(|camera| camera.lens), near_m, near_from, far };
+        let (near_m, near_from) = match (args.near, camera) {
+            (Some(near), _) => (near as f32, PlaneSource::Option),
+            (None, Some(camera)) => (camera.near_m, PlaneSource::File),
+            (None, None) => {
+                let near_m = (scene.core_bounds.diagonal() * NEAR_SHARE).max(1e-6);
+                let most_m = if let Far::At(far_m, _) = far { 0.5 * far_m } else { near_m };
+                (near_m.min(most_m), PlaneSource::Scene)
+            }
+        };
+        let lens = camera.map(|camera| camera.lens);
+        let optics = Self { lens, near_m, near_from, usual_m: near_m, far };
         optics.check()?;
         Ok(optics)
     }
@@ -97,12 +123,18 @@ impl Optics {
 
     /// The near plane in words: where it is, and what says so.
     fn near(&self) -> String {
-        let from = match self.near_from {
-            PlaneSource::Option => "of --near",
-            PlaneSource::File => "of the file's camera",
-            _ => "of the scene",
-        };
-        format!("{} m {from}", self.near_m)
+        format!("{} m {}", self.near_m, source_words(self.near_from, "of --near"))
+    }
+
+    /// Brings the near plane in front of every surface that one of the views shows, where neither an
+    /// option nor the file says where it is.
+    pub fn fit_near(&mut self, scene: &Scene, views: &[View]) {
+        if self.near_from != PlaneSource::Scene {
+            return;
+        }
+        let nearest_m = scene.nearest_shown_m(views, self.usual_m * CUT);
+        let wanted = nearest_m.map_or(self.usual_m, |depth| (depth * NEAR_OF_SURFACE) as f32);
+        self.near_m = wanted.clamp(self.usual_m * LEAST_NEAR, self.usual_m);
     }
 
     /// The view from a pose.
@@ -111,10 +143,7 @@ impl Optics {
             Some(Lens::Perspective { fov_y }) => fov_y,
             _ => FOV_Y,
         };
-        let mut view = View {
-            world_to_view: pose.world_to_view(),
-            ..View::look_at(pose.eye, pose.target, fov_y, self.near_m, size)
-        };
+        let mut view = View::looking(pose.eye, pose.forward(), pose.up, fov_y, self.near_m, size);
         if let Some(Lens::Orthographic { half_height, .. }) = self.lens {
             // The picture's own shape decides its width.
             let corner =
@@ -134,6 +163,57 @@ impl Optics {
         view
     }
 
+    /// What the planes of a view cut away, and where f32 is too coarse for what it shows: one sentence
+    /// each.
+    pub fn notes(&self, scene: &Scene, view: &View) -> Vec<String> {
+        let mut notes = Vec::new();
+        let given_far =
+            if let Far::At(far_m, from) = self.far { Some((far_m, from)) } else { None };
+        let is_least = self.near_m <= self.usual_m * LEAST_NEAR;
+        let is_given = self.near_from != PlaneSource::Scene;
+        let span = (is_given || is_least || given_far.is_some())
+            .then(|| scene.depths_shown(view))
+            .flatten();
+        let shown = |metres: f64| significant(metres);
+        if let Some(span) = span {
+            let near_m = f64::from(self.near_m);
+            if span.nearest_m < near_m * (1.0 - SLACK) {
+                notes.push(format!(
+                    "surfaces from {} m on lie in front of the near plane, {} m {}: they are cut away",
+                    shown(span.nearest_m),
+                    shown(near_m),
+                    source_words(self.near_from, "of --near"),
+                ));
+            }
+            if let Some((far_m, from)) = given_far
+                && span.farthest_m > f64::from(far_m) * (1.0 + SLACK)
+            {
+                notes.push(format!(
+                    "surfaces up to {} m away lie behind the far plane, {} m {}: they are not drawn",
+                    shown(span.farthest_m),
+                    shown(f64::from(far_m)),
+                    source_words(from, "of --far"),
+                ));
+            }
+        }
+        let off_m = view.eye().abs().max_element();
+        let step_m = off_m * f32::EPSILON;
+        // An orthographic near plane may lie at the eye.
+        let fine_m = match self.lens {
+            Some(Lens::Orthographic { half_height, .. }) => half_height * NEAR_SHARE,
+            _ => self.near_m,
+        };
+        if step_m > COARSE * fine_m {
+            notes.push(format!(
+                "the camera stands {} m from the scene's origin, where positions are up to {} m apart: \
+                 surfaces and lights are off by as much",
+                shown(f64::from(off_m)),
+                shown(f64::from(step_m)),
+            ));
+        }
+        notes
+    }
+
     /// The planes of a view that it made, for the record.
     pub fn planes(&self, view: &View) -> Planes {
         Planes {
@@ -147,101 +227,21 @@ impl Optics {
             },
         }
     }
+
+    /// The near plane, metres.
+    pub fn near_m(&self) -> f32 {
+        self.near_m
+    }
+}
+
+/// What says where a plane is, in words.
+fn source_words(from: PlaneSource, option: &'static str) -> &'static str {
+    match from {
+        PlaneSource::Option => option,
+        PlaneSource::File => "of the file's camera",
+        PlaneSource::Scene => "of the scene",
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::Vec3;
-    use scenes::Camera as SceneCamera;
-
-    use super::*;
-    use crate::cli::{Invocation, parse};
-
-    fn args(line: &str) -> StageArgs {
-        let words = ["lightbench", "compare"].into_iter().chain(line.split_whitespace());
-        let Ok(Invocation::Compare(args)) = parse(words) else { panic!("{line}") };
-        args.stage
-    }
-
-    /// The atrium, through a camera of its own where a lens is given.
-    fn scene(lens: Option<Lens>, near_m: f32, far_m: Option<f32>) -> Scene {
-        let mut scene = scenes::open("atrium").unwrap();
-        let pose = scene.path.pose(0, 1);
-        let camera = |lens| SceneCamera { name: "a".into(), pose, lens, near_m, far_m };
-        scene.cameras.extend(lens.map(camera));
-        scene
-    }
-
-    fn planes(scene: &Scene, line: &str) -> Planes {
-        let optics = Optics::new(scene, &args(line)).unwrap();
-        let view = optics.view(scene, scene.path.pose(0, 1), [64, 36]);
-        view.check().unwrap();
-        optics.planes(&view)
-    }
-
-    fn refusal(scene: &Scene, line: &str) -> String {
-        Optics::new(scene, &args(line)).map(|_| ()).unwrap_err().to_string()
-    }
-
-    const WIDE: Lens = Lens::Perspective { fov_y: 1.0 };
-    const FLAT: Lens = Lens::Orthographic { half_width: 4.0, half_height: 3.0 };
-
-    #[test]
-    fn a_scene_without_a_camera_is_seen_to_its_end_from_every_pose() {
-        let scene = scene(None, 0.0, None);
-        let optics = Optics::new(&scene, &args("")).unwrap();
-        let corner = |ix: usize| {
-            let (min, max) = (scene.bounds.min, scene.bounds.max);
-            let pick = |bit: usize, axis: usize| if ix & bit == 0 { min[axis] } else { max[axis] };
-            Vec3::new(pick(1, 0), pick(2, 1), pick(4, 2))
-        };
-        for frame in 0..12 {
-            let view = optics.view(&scene, scene.path.pose(frame, 12), [64, 36]);
-            view.check().unwrap();
-            let far_m = view.far_m.expect("the scene's bounds give one");
-            let depths = (0..8).map(|ix| -view.world_to_view.transform_point3(corner(ix)).z);
-            let deepest = depths.fold(0.0, f32::max);
-            assert!(deepest < far_m && far_m < 2.0 * scene.bounds.diagonal(), "{deepest} {far_m}");
-        }
-        let planes = planes(&scene, "");
-        let near_m = f64::from(scene.core_bounds.diagonal() * NEAR_SHARE);
-        assert_eq!((planes.near_m, planes.near_from), (near_m, PlaneSource::Scene));
-        assert_eq!(planes.far_from, PlaneSource::Scene);
-    }
-
-    #[test]
-    fn planes_come_from_the_option_else_the_file_else_the_scene() {
-        use PlaneSource::{File, Option, Scene};
-        let whole = scene(Some(WIDE), 0.25, Some(20.0));
-        let sources = |planes: &Planes| (planes.near_from, planes.far_from);
-        let file = planes(&whole, "");
-        assert_eq!((file.near_m, file.far_m, sources(&file)), (0.25, Some(20.0), (File, File)));
-        let both = planes(&whole, "--near 0.5 --far 8");
-        assert_eq!((both.near_m, both.far_m, sources(&both)), (0.5, Some(8.0), (Option, Option)));
-        let open = planes(&whole, "--far infinite");
-        assert_eq!((open.far_m, sources(&open)), (None, (File, Option)));
-        let posed = planes(&whole, "--camera 0,2,4:0,1,0");
-        assert_eq!(sources(&posed), (Scene, Scene));
-        // The file's camera leaves its far plane open: the scene's bounds give one.
-        let half = planes(&scene(Some(WIDE), 0.25, None), "");
-        assert_eq!(sources(&half), (File, Scene));
-        let flat = planes(&scene(Some(FLAT), 0.0, Some(30.0)), "");
-        assert_eq!((flat.near_m, flat.far_m), (0.0, Some(30.0)));
-    }
-
-    #[test]
-    fn planes_in_the_wrong_order_are_refused_by_the_option_at_fault() {
-        let scene_of = |lens| scene(Some(lens), 0.5, Some(20.0));
-        let far = refusal(&scene_of(WIDE), "--far 0.25");
-        assert_eq!(
-            far,
-            "--far is 0.25: it must be above the near plane, 0.5 m of the file's camera"
-        );
-        let near = refusal(&scene_of(WIDE), "--near 20");
-        assert_eq!(near, "--near is 20: it must be below the far plane of the file, 20 m");
-        let both = refusal(&scene_of(WIDE), "--near 3 --far 2");
-        assert_eq!(both, "--far is 2: it must be above the near plane, 3 m of --near");
-        let open = refusal(&scene_of(FLAT), "--far infinite");
-        assert!(open.starts_with("--far is infinite: it must be a number of metres"), "{open}");
-    }
-}
+mod tests;

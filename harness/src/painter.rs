@@ -38,6 +38,7 @@ impl<'a> Painter<'a> {
                     cut,
                     area: stage.area_model,
                     compensation: stage.compensation,
+                    suns: stage.suns,
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
                 Self::Lists { strategy: strategy.as_mut(), lighting }
@@ -101,5 +102,6 @@ impl<'a> Painter<'a> {
 
 /// Light volumes.
 pub(crate) fn raster_spheres(stage: &Stage, cut: Cut) -> Result<RasterSpheres, HarnessError> {
-    Ok(RasterSpheres::new(&stage.renderer, stage.lights.kinds(), stage.area_model, cut)?)
+    let Stage { renderer, lights, area_model, suns, .. } = stage;
+    Ok(RasterSpheres::new(renderer, lights.kinds(), *area_model, cut, *suns)?)
 }

@@ -75,7 +75,7 @@ fn keep(
     let path = out.join(name);
     write_atomically(&path, &png)?;
     if let Some(image) = raw {
-        image.write_exr(&path.with_extension("exr"))?;
+        write_atomically(&path.with_extension("exr"), &image.to_exr()?)?;
     }
     Ok((name.to_owned(), png))
 }

@@ -13,6 +13,7 @@ use crate::{
     results::{Errors, Images, Operations, Record, mean},
     schedule::rounds,
     stage::Stage,
+    visible::visible,
 };
 
 /// What was seen of a method: its lists, and how far its images are from what they should be.
@@ -84,7 +85,7 @@ pub fn record(
     let count = u64::from(stage.lights.count());
     let has_lists = lists.bytes > 0;
     let mut record = Record {
-        scene: stage.scene.name.clone(),
+        scene: visible(&stage.scene.name).into_owned(),
         scene_hash: stage.scene_hash.clone(),
         path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
         scene_scale: args.stage.scene_scale,
@@ -102,12 +103,14 @@ pub fn record(
         area_model: stage.lights.kinds().areas.then(|| stage.area_model.to_string()),
         operations: lists.operations.map(Operations::from),
         radius_scale: stage.radius_scale,
-        eye: stage.view.eye().to_array().map(f64::from),
+        eye: stage.eye().to_array(),
         forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
         planes: Some(stage.planes()),
         light_box: [stage.light_box.min, stage.light_box.max]
-            .map(|corner| corner.to_array().map(f64::from)),
+            .map(|corner| (stage.scene.origin + corner.as_dvec3()).to_array()),
         own_lights: stage.own_lights as u64,
+        open_lights: stage.open_lights.map(|open| open.count),
+        open_threshold: stage.open_lights.map(|open| open.threshold),
         width: stage.view.viewport.width,
         height: stage.view.viewport.height,
         frames: plan.timed * plan.laps.max(1),
@@ -146,6 +149,7 @@ pub fn record(
         missed_pairs: truth.map(|t| t.missed),
         checked_pairs: truth.map(|t| t.contributing),
         samples: truth.map_or(0, |t| t.samples),
+        untested: None,
         max_abs_diff: known(seen.max_abs),
         max_rel_diff: known(seen.max_rel),
         differing_channels: seen.compared.then_some(seen.differing_channels),

@@ -16,14 +16,19 @@
 mod bill;
 mod file;
 mod indirect;
+mod lack;
 mod machine;
+mod metrics;
 mod operations;
 mod passes;
 mod planes;
 mod record;
 mod renamed;
+mod seal;
+mod shown;
 mod stats;
 mod truth_image;
+mod untested;
 
 use std::collections::BTreeMap;
 
@@ -31,14 +36,17 @@ use serde::{Deserialize, Serialize};
 pub use shading::Mode;
 
 pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
+pub(crate) use file::remove_temporaries;
 pub use file::{ResultsError, write_atomically};
 pub use indirect::{CastTimes, DeepImageRun, DeepImages, RangeErrors, Vpls};
 pub use machine::{DeviceType, Machine};
 pub use operations::{EvaluatedTerms, Operations};
 pub use passes::{PassKind, PassTimes, Passes, Spans};
 pub use planes::{PlaneSource, Planes};
+pub(crate) use seal::{sealed, unsealed};
 pub use stats::{Interval, mean, median, median_interval, percentile, standard_deviation};
 pub use truth_image::TruthImage;
+pub use untested::Untested;
 
 use passes::nan_from_null;
 
@@ -159,7 +167,8 @@ pub struct Record {
     pub mode: Mode,
     /// Lights that took part.
     pub lights: u64,
-    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`, `vpl`.
+    /// Lights of each kind, by name: `point`, `spot`, `rectangle`, `polygon`, `vpl`; and `sun`, which
+    /// stands in no list and is none of [`lights`](Self::lights).
     #[serde(default)]
     pub light_kinds: BTreeMap<String, u64>,
     /// How area lights were shaded: `ltc`; absent where there was none.
@@ -186,6 +195,13 @@ pub struct Record {
     /// Lights that the scene's file holds, of [`lights`](Self::lights).
     #[serde(default)]
     pub own_lights: u64,
+    /// Lights whose file gives no range, of [`own_lights`](Self::own_lights); absent where there is none,
+    /// and in older results.
+    #[serde(default)]
+    pub open_lights: Option<u64>,
+    /// The greatest intensity over squared distance that one of them still gives at its end.
+    #[serde(default)]
+    pub open_threshold: Option<f64>,
     /// Image width, pixels.
     pub width: u32,
     /// Image height, pixels.
@@ -249,6 +265,10 @@ pub struct Record {
     pub checked_pairs: Option<u64>,
     /// View samples: pixels that show a surface; 0 where lists were not checked.
     pub samples: u64,
+    /// Why the run certifies nothing: its view shows no surface, or no light reaches what it shows.
+    /// `null` where it was tested, and in older results.
+    #[serde(default)]
+    pub untested: Option<Untested>,
     /// Largest difference of a channel to the image of no culling, linear HDR; `null` where
     /// there was no such image, or the difference is not finite.
     #[serde(default)]

@@ -1,13 +1,17 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MIN_RANGE_M, View};
-use glam::Vec3;
-use scenes::{Aabb, LightSpec, Places, Pose, Scene, primary_light, scatter_lights};
+use assign::{
+    Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns, View,
+};
+use glam::{DVec3, Vec3};
+use scenes::{Aabb, LightSpec, Places, Scene, close_ranges, primary_light, scatter_lights};
 use shading::{AreaModel, Renderer};
 
 use crate::{
-    cli::{Camera, CliError, LightBox, StageArgs},
+    camera,
+    cli::{CliError, LightBox, StageArgs},
     error::HarnessError,
+    open_lights::OpenLights,
     optics::Optics,
     results::{Planes, Vpls},
     vpls::VplMaker,
@@ -25,6 +29,10 @@ pub struct Stage {
     pub light_box: Aabb,
     /// Lights of the scene's own among all that were handed over.
     pub own_lights: usize,
+    /// Lights whose file gives no range.
+    pub open_lights: Option<OpenLights>,
+    /// Suns, which light all samples beside the lists.
+    pub suns: Suns,
     /// The lights, faulty ones left out.
     pub lights: LightBuffer,
     /// How area lights are shaded.
@@ -35,6 +43,8 @@ pub struct Stage {
     pub vpls: Option<Vpls>,
     /// The camera.
     pub view: View,
+    /// What the camera's planes cut away, and the like: one sentence each.
+    pub notes: Vec<String>,
     /// The pipeline.
     pub renderer: Renderer,
     vpl_maker: VplMaker,
@@ -47,17 +57,22 @@ pub struct Stage {
 struct Set {
     optics: Optics,
     view: View,
+    notes: Vec<String>,
     radius_scale: f64,
     lit: Lit,
 }
 
 impl Set {
     fn new(scene: &Scene, unscaled_m: f32, args: &StageArgs) -> Result<Self, HarnessError> {
-        let optics = Optics::new(scene, args)?;
-        let view = optics.view(scene, pose_of(scene, args), [args.size.width, args.size.height]);
+        let mut optics = Optics::new(scene, args)?;
+        let size = [args.size.width, args.size.height];
+        let pose = camera::pose(scene, args)?;
+        optics.fit_near(scene, &[optics.view(scene, pose, size)]);
+        let view = optics.view(scene, pose, size);
+        let notes = optics.notes(scene, &view);
         let radius_scale = args.radius_scale.unwrap_or_else(|| radius_scale_of(unscaled_m));
         let lit = Lit::new(scene, radius_scale, args)?;
-        Ok(Self { optics, view, radius_scale, lit })
+        Ok(Self { optics, view, notes, radius_scale, lit })
     }
 }
 
@@ -77,12 +92,15 @@ impl Stage {
             // What is seen is what the primary light sends, and the truth knows nothing else.
             scene = scene.without_emission();
         }
-        let Set { optics, view, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
+        let Set { optics, view, notes, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
+        scene.warnings.extend(lit.warnings.iter().map(|line| format!("--lights-from: {line}")));
         Ok(Self {
             scene_hash: scene.hash(),
             radius_scale,
             light_box: lit.bounds,
             own_lights: lit.own,
+            open_lights: lit.open,
+            suns: lit.suns,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
             area_model: AreaModel::default(),
             compensation: None,
@@ -91,6 +109,7 @@ impl Stage {
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
+            notes,
             optics,
             unscaled_m,
         })
@@ -99,12 +118,16 @@ impl Stage {
     /// The same scene under the lights and from the camera of other arguments, which must name the
     /// same scene at the same scale.
     pub fn set_up(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
-        let Set { optics, view, radius_scale, lit } = Set::new(&self.scene, self.unscaled_m, args)?;
+        let Set { optics, view, notes, radius_scale, lit } =
+            Set::new(&self.scene, self.unscaled_m, args)?;
         self.radius_scale = radius_scale;
         self.light_box = lit.bounds;
         self.own_lights = lit.own;
+        self.open_lights = lit.open;
+        self.suns = lit.suns;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
         self.view = view;
+        self.notes = notes;
         self.optics = optics;
         self.bounce(gpu, args)
     }
@@ -141,13 +164,30 @@ impl Stage {
         self.prepare()
     }
 
+    /// Brings the near plane in front of every surface that the view or a pose of the path shows, of
+    /// `count` poses, where no option and no file says where it is.
+    pub fn follow_path(&mut self, count: u32) {
+        let size = [self.view.viewport.width, self.view.viewport.height];
+        let pose = |frame| self.scene.path.pose(frame, count);
+        let mut views: Vec<View> =
+            (0..count).map(|frame| self.optics.view(&self.scene, pose(frame), size)).collect();
+        views.push(self.view);
+        self.optics.fit_near(&self.scene, &views);
+        self.view.near_m = self.optics.near_m();
+    }
+
+    /// The eye in the coordinates of the scene's file, metres.
+    pub fn eye(&self) -> DVec3 {
+        self.scene.origin + self.view.eye().as_dvec3()
+    }
+
     /// Near and far plane of the view.
     pub fn planes(&self) -> Planes {
         self.optics.planes(&self.view)
     }
 
-    /// Lights of each kind, by name.
-    pub fn light_kinds(&self) -> [(&'static str, u64); 5] {
+    /// Lights of each kind, by name, and suns.
+    pub fn light_kinds(&self) -> [(&'static str, u64); 6] {
         let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
         [
             ("point", count(LightKind::Point)),
@@ -155,6 +195,7 @@ impl Stage {
             ("rectangle", count(LightKind::Rectangle)),
             ("polygon", count(LightKind::Polygon)),
             ("vpl", count(LightKind::Vpl)),
+            ("sun", self.suns.as_slice().len() as u64),
         ]
     }
 }
@@ -162,8 +203,12 @@ impl Stage {
 /// The lights of a stage.
 struct Lit {
     lights: Vec<Light>,
+    suns: Suns,
     bounds: Aabb,
     own: usize,
+    /// What the file that other lights come from leaves out.
+    warnings: Vec<String>,
+    open: Option<OpenLights>,
 }
 
 impl Lit {
@@ -174,16 +219,36 @@ impl Lit {
             LightBox::Bounds => scene.bounds,
         };
         if args.bounce.is_on() {
-            return Ok(Self { lights: Vec::new(), bounds, own: 0 });
+            let (lights, suns) = (Vec::new(), Suns::default());
+            return Ok(Self { lights, suns, bounds, own: 0, warnings: Vec::new(), open: None });
         }
-        let mut lights = if args.no_own_lights { Vec::new() } else { scene.lights.clone() };
+        let (mut lights, mut suns, mut open) = match args.no_own_lights {
+            true => (Vec::new(), Vec::new(), Vec::new()),
+            false => (scene.lights.clone(), scene.suns.clone(), scene.open_lights.clone()),
+        };
+        let mut warnings = Vec::new();
         if let Some(file) = &args.lights_from {
-            let other = scenes::open(file)?.scaled(args.scene_scale as f32)?;
-            if other.lights.is_empty() {
+            let origin = scene.origin / args.scene_scale;
+            let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale as f32)?;
+            if other.lights.is_empty() && other.suns.is_empty() {
                 let accepted = "a file that holds lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
             }
+            // The scene that they light decides where they end.
+            for &ix in &other.open_lights {
+                other.lights[ix as usize].range_m = f32::INFINITY;
+            }
+            let first = lights.len() as u32;
+            let closed = close_ranges(&mut other.lights, scene.core_bounds.diagonal());
+            open.extend(closed.into_iter().map(|ix| first + ix));
             lights.extend(other.lights);
+            warnings = other.warnings;
+            suns.extend(other.suns);
+            if suns.len() > MAX_SUNS {
+                let value = format!("{file}: {} directional lights with the scene's", suns.len());
+                let accepted = format!("a file with which they are at most {MAX_SUNS}");
+                return Err(CliError::out_of_range("--lights-from", &value, &accepted).into());
+            }
         }
         let own = lights.len();
         let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
@@ -218,7 +283,8 @@ impl Lit {
         if let Some(least) = args.influence {
             set_influence(&mut lights, least as f32);
         }
-        Ok(Self { lights, bounds, own })
+        let open = OpenLights::new(&lights, &open);
+        Ok(Self { lights, suns: Suns::new(&suns)?, bounds, own, warnings, open })
     }
 }
 
@@ -251,15 +317,6 @@ fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
 fn radius_scale_of(diagonal_m: f32) -> f64 {
     let diagonal_m = f64::from(diagonal_m);
     (diagonal_m / diagonal_m.clamp(10.0, 60.0)).clamp(1e-6, 1e6)
-}
-
-/// The pose asked for, or the first of the scene's path.
-fn pose_of(scene: &Scene, args: &StageArgs) -> Pose {
-    match args.camera {
-        None => scene.path.pose(0, 1),
-        Some(Camera::OnPath { frame, count }) => scene.path.pose(frame, count),
-        Some(Camera::Pose(pose)) => Pose::new(Vec3::from(pose.eye), Vec3::from(pose.target)),
-    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Studies: lists of comparisons, each a job of its own, so that a study goes on where it was
 //! interrupted and can be split over machines.
 //!
-//! A job is a `lightbench compare`, `truth` or `cdi` command. Its folder, `jobs/NAME`, holds what that command writes;
-//! a job whose `results.json` is there is done. `study.json` beside `jobs` lists all jobs, those of
-//! other shards too.
+//! A job is a `lightbench compare`, `truth` or `cdi` command. Its folder, `jobs/NAME`, holds what that
+//! command writes. A job is done where its `results.json` is there, whole and with all records of its
+//! command. `study.json` beside `jobs` lists all jobs, those of other shards too.
 
 mod against_builds;
 mod against_truth;
@@ -22,10 +22,13 @@ use std::time::Instant;
 
 use crate::{
     cdi::measure,
-    checks::check_writable,
+    checks::check_modes,
+    choice::choices,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
     compare::Bench,
     error::HarnessError,
+    messages::say,
+    out_folder::OutFolder,
     report,
     results::{Results, ResultsError},
     truth::render,
@@ -45,74 +48,98 @@ pub const MODELS: &str = "models";
 /// The section whose records list area lights by their outlines and by balls around them.
 pub const BOUNDS: &str = "bounds";
 
-/// Runs a study, or a share of it, and writes its report; returns what to print.
-pub fn study(args: &StudyArgs) -> Result<String, HarnessError> {
+/// Runs a study, or a share of it, and writes its report; returns what to print. `command` is the command
+/// line, which others see who want the same folder.
+pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessError> {
     let scenes = StudyScene::all(args)?;
     let out = &args.folder();
-    check_writable(out)?;
-    let mut bench = Bench::open(args.adapter.as_deref())?;
+    let _held = OutFolder::hold(out, command)?;
     let wanted = args.identity();
-    let manifest = match Manifest::find(out)? {
-        Some(known) if known.identity == wanted => known,
-        Some(known) => {
-            let value = out.display().to_string();
-            let accepted = format!(
-                "a folder without a study, or with this one; it holds `{}`: give another --out",
-                known.identity.join(" ")
-            );
-            return Err(CliError::out_of_range("--out", &value, &accepted).into());
-        }
-        None => {
-            let mut jobs = Vec::new();
-            for scene in &scenes {
-                jobs.extend(match args.study {
-                    StudyName::Comparison => comparison::jobs(&mut bench, args, scene)?,
-                    StudyName::Culling => culling::jobs(args, scene),
-                    StudyName::Area => area::jobs(&mut bench, args, scene)?,
-                    StudyName::Endless => endless::jobs(&mut bench, args, scene)?,
-                    StudyName::Cdi => cdi::jobs(&mut bench, args, scene)?,
-                });
-            }
-            let manifest = Manifest { identity: wanted, study: args.study.name().into(), jobs };
-            manifest.write(out)?;
-            manifest
-        }
+    let known = Manifest::find(out)?;
+    if let Some(known) = known.as_ref().filter(|known| known.identity != wanted) {
+        let value = out.display().to_string();
+        let accepted = format!(
+            "a folder without a study, or with this one; it holds `{}`: give another --out",
+            known.identity.join(" ")
+        );
+        return Err(CliError::out_of_range("--out", &value, &accepted).into());
+    }
+    let mut bench = Bench::open(args.adapter.as_deref())?;
+    let is_new = known.is_none();
+    let manifest = match known {
+        Some(known) => known,
+        None => Manifest {
+            identity: wanted,
+            study: args.study.name().into(),
+            jobs: jobs_of(&mut bench, args, &scenes)?,
+        },
     };
-    run(&mut bench, args, &manifest)?;
+    // What is wrong with a job shows before the first is run, and before anything is written.
+    manifest.jobs.iter().try_for_each(Job::check)?;
+    let mine = share(args, &manifest)?;
+    if is_new {
+        manifest.write(out)?;
+    }
+    run(&mut bench, out, &mine)?;
     let mut done = Done::read(std::slice::from_ref(out))?;
     compare_with_truth(&mut done)?;
     compare_builds(&mut done)?;
-    done.write()?;
+    done.write_metrics()?;
     report::write_study(&done, out)
 }
 
-/// Runs the jobs of this shard that are not done.
-fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), HarnessError> {
-    let began = Instant::now();
-    let mine: Vec<&Job> = manifest
-        .jobs
-        .iter()
-        .filter(|job| args.wants(&job.name))
-        .enumerate()
-        .filter(|(ix, _)| args.shard.holds(*ix))
-        .map(|(_, job)| job)
-        .collect();
-    if mine.is_empty() && !args.only.is_empty() {
-        let accepted = "words that names of jobs hold; study.json lists them";
-        return Err(CliError::out_of_range("--only", &args.only.join(","), accepted).into());
+/// The jobs of all scenes of a study.
+fn jobs_of(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scenes: &[StudyScene],
+) -> Result<Vec<Job>, HarnessError> {
+    let mut jobs = Vec::new();
+    for scene in scenes {
+        jobs.extend(match args.study {
+            StudyName::Comparison => comparison::jobs(bench, args, scene)?,
+            StudyName::Culling => culling::jobs(args, scene),
+            StudyName::Area => area::jobs(bench, args, scene)?,
+            StudyName::Endless => endless::jobs(bench, args, scene)?,
+            StudyName::Cdi => cdi::jobs(bench, args, scene)?,
+        });
     }
+    Ok(jobs)
+}
+
+/// The jobs that are chosen, those of this shard.
+fn share<'a>(args: &StudyArgs, manifest: &'a Manifest) -> Result<Vec<&'a Job>, CliError> {
+    let chosen: Vec<&Job> = manifest.jobs.iter().filter(|job| args.wants(&job.name)).collect();
+    if chosen.is_empty() && !args.only.is_empty() {
+        let (known, others) = manifest.jobs.split_at(manifest.jobs.len().min(NAMED));
+        let known: Vec<&str> = known.iter().map(|job| job.name.as_str()).collect();
+        let more =
+            if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+        let accepted = format!("words that names of jobs hold, such as {}{more}", known.join(", "));
+        return Err(CliError::out_of_range("--only", &args.only.join(","), &accepted));
+    }
+    let jobs = chosen.into_iter().enumerate();
+    Ok(jobs.filter(|(ix, _)| args.shard.holds(*ix)).map(|(_, job)| job).collect())
+}
+
+/// Names of jobs that a message lists.
+const NAMED: usize = 6;
+
+/// Runs the jobs that are not done.
+fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError> {
+    let began = Instant::now();
+    // What stands in the way of the last job shows before the first is run.
+    let mut open = Vec::new();
     for (ix, job) in mine.iter().enumerate() {
-        let folder = job.folder(&args.folder());
-        if is_done(bench, job, &folder)? {
-            continue;
+        if !is_done(bench, job, &job.folder(out))? {
+            open.push((ix, job));
         }
-        eprintln!(
-            "job      {} of {}, {} s so far: {}",
-            ix + 1,
-            mine.len(),
-            began.elapsed().as_secs(),
-            job.name
-        );
+    }
+    for (ix, job) in open {
+        let folder = job.folder(out);
+        let seconds = began.elapsed().as_secs();
+        let (at, of) = (ix + 1, mine.len());
+        say(format!("job      {at} of {of}, {seconds} s so far: {}", job.name));
         let asked = job.asked(&folder)?;
         // What an interrupted run left there is not this one's.
         if folder.is_dir() {
@@ -129,26 +156,41 @@ fn run(bench: &mut Bench, args: &StudyArgs, manifest: &Manifest) -> Result<(), H
     Ok(())
 }
 
-/// Whether a job was done, by this commit on this adapter: an error where by another.
+/// Whether a job was done, by this commit on this adapter: an error where by another. Results that are
+/// damaged or incomplete are none, and the job runs again.
 fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError> {
     let path = folder.join("results.json");
     if !path.is_file() {
         return Ok(false);
     }
-    let results = Results::read(&path)?;
+    let again = |why: &dyn std::fmt::Display| {
+        say(format!("warning  job {} runs again: {why}", job.name));
+        Ok(false)
+    };
+    let (results, lack) = match Results::read_checked(&path) {
+        Ok(read) => read,
+        Err(error @ ResultsError::Version { .. }) => return Err(error.into()),
+        Err(error) => return again(&error),
+    };
     let (then, now) = (&results.machine, bench.machine());
-    if then.identity() == now.identity() {
-        return Ok(results.command == job.command);
+    if then.identity() != now.identity() {
+        return Err(CliError::new(format!(
+            "{}: measured on {} by commit {}, this is {} and commit {}: --out must be another folder",
+            path.display(),
+            then.adapter,
+            then.commit,
+            now.adapter,
+            now.commit,
+        ))
+        .into());
     }
-    Err(CliError::new(format!(
-        "{}: measured on {} by commit {}, this is {} and commit {}: --out must be another folder",
-        path.display(),
-        then.adapter,
-        then.commit,
-        now.adapter,
-        now.commit,
-    ))
-    .into())
+    if results.command != job.command {
+        return again(&format!("{} is of another command", path.display()));
+    }
+    match lack {
+        Some(lack) => again(&format!("{}: {lack}", path.display())),
+        None => Ok(true),
+    }
 }
 
 /// What a job asks for.
@@ -166,6 +208,15 @@ impl Job {
     /// The job's folder in that of its study.
     pub fn folder(&self, out: &Path) -> PathBuf {
         out.join("jobs").join(&self.name)
+    }
+
+    /// Whether its command would be understood.
+    fn check(&self) -> Result<(), CliError> {
+        let checked = self.asked(Path::new("")).and_then(|asked| match asked {
+            Asked::Compare(args) => check_modes(&args, &choices(&args)?),
+            Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
+        });
+        checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))
     }
 
     /// What it asks for, written to `folder`.

@@ -1,21 +1,29 @@
-//! `lightbench truth`: what a view should look like, rendered on the CPU from the surfaces that the
-//! GPU drew.
+//! `lightbench truth`: what a view should look like, rendered on the CPU from the triangles themselves.
+//!
+//! Without shadows it is what the shading pipeline approaches. There the same light on the surfaces of the
+//! G-buffer tells what its formats cost.
 
 use std::path::Path;
 use std::time::Instant;
 
 use assign::{EncoderPasses, Gpu};
 use indicatif::{ProgressBar, ProgressStyle};
-use shading::traced::{self, GBufferSamples, TracedScene, Transport, TruthSettings, truth_image};
+use shading::traced::{
+    self, GBufferSamples, Paths, SurfaceSample, TracedScene, Transport, TruthSettings, truth_image,
+};
 use shading::{EDGE, HdrImage, luminance};
 
 use crate::{
-    checks::{check_writable, remove_stale},
+    checks::remove_stale,
     cli::{CliError, TruthArgs},
     compare::{Bench, note_faults},
     error::HarnessError,
+    errors::{ImagePair, errors, stored},
     machine::machine,
-    results::{Results, Truth, TruthImage, TruthLevel, write_atomically},
+    messages::say,
+    out_folder::OutFolder,
+    results::{Errors, Results, Truth, TruthImage, TruthLevel, write_atomically},
+    sight::untested,
     stage::Stage,
 };
 
@@ -26,18 +34,21 @@ const WHITE: f64 = 0.01;
 const RAW: &str = "truth.exr";
 const IMAGE: &str = "truth.png";
 const ERROR_IMAGE: &str = "error.png";
+const RAW_ERROR: &str = "error.exr";
 
 /// Renders a truth image into its folder; returns what to print. `command` is the command line, for
 /// provenance.
 pub fn truth(args: &TruthArgs, command: Vec<String>) -> Result<String, HarnessError> {
     check(args)?;
-    check_writable(&args.out)?;
+    let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let results = render(&mut bench, args, command)?;
     let data = args.out.join("results.json");
     results.write(&data)?;
     let summary = results.truth_image.as_ref().map(summary).unwrap_or_default();
-    Ok(format!("{summary}data     {}\n", data.display()))
+    let notes: String =
+        results.truth.notes.iter().map(|note| format!("note     {note}\n")).collect();
+    Ok(format!("{summary}{notes}data     {}\n", data.display()))
 }
 
 /// What is wrong with the words shows before a device is opened.
@@ -47,8 +58,12 @@ fn check(args: &TruthArgs) -> Result<(), CliError> {
         return Err(CliError::out_of_range("--bounces", &args.bounces.to_string(), accepted));
     }
     if args.indirect && args.bounces == 0 {
-        let accepted = "given with --bounces 1: nothing else would be left";
+        let accepted = "given with --bounces: nothing else would be left";
         return Err(CliError::new(format!("--indirect: it must be {accepted}")));
+    }
+    if args.matte_bounces && !(args.bounces == 1 && args.stage.bounce.primary) {
+        let accepted = "given with --primary and --bounces 1: it is what --vpls approaches";
+        return Err(CliError::new(format!("--matte-bounces: it must be {accepted}")));
     }
     Ok(())
 }
@@ -56,13 +71,14 @@ fn check(args: &TruthArgs) -> Result<(), CliError> {
 /// `truth    atrium, 3 lights, 640x360, no shadows, 0 bounces: standard error 0 % of the mean, 12.3 s`.
 fn summary(image: &TruthImage) -> String {
     format!(
-        "truth    {}, {} lights, {}x{}, {}, {} bounces{}: standard error {:.3} % of the mean, {:.1} s\n",
+        "truth    {}, {} lights, {}x{}, {}, {} {}{}: standard error {:.3} % of the mean, {:.1} s\n",
         image.scene,
         image.lights,
         image.width,
         image.height,
         if image.shadows { "shadows" } else { "no shadows" },
         image.bounces,
+        if image.bounces == 1 { "bounce" } else { "bounces" },
         if image.is_indirect { ", indirect light alone" } else { "" },
         image.standard_error * 100.0,
         image.seconds
@@ -79,13 +95,25 @@ pub fn render(
     let gpu = bench.gpu().clone();
     let stage = bench.stage(&args.stage)?;
     remove_stale(&args.out)?;
-    let samples = surfaces(&gpu, stage)?;
     let began = Instant::now();
-    let image = trace(stage, &samples, args)?;
-    let truth = keep(stage, args, &image, began.elapsed().as_secs_f64())?;
-    let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes: Vec::new() };
+    let scene = TracedScene::new(&stage.scene);
+    let image = trace(stage, &scene, args)?;
+    let seconds = began.elapsed().as_secs_f64();
+    let notes = notes(scene.emissive_count(), args);
+    drop(scene);
+    let mut truth = keep(stage, args, &image, seconds)?;
+    if !args.shadows {
+        truth.gbuffer_errors = gbuffer_errors(&gpu, stage, args, &image)?;
+    }
+    let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes };
     let mut results = Results::new(machine(&gpu), command, level);
     note_faults(&mut results, stage);
+    if let Some(why) = untested(&gpu, stage, &[], 0)? {
+        let why = why.words(u64::from(stage.lights.count()), false);
+        let warning = format!("NOTHING IS LIT directly: {why}");
+        say(format!("warning  {warning}"));
+        results.warnings.insert(0, warning);
+    }
     results.truth_image = Some(truth);
     Ok(results)
 }
@@ -101,41 +129,82 @@ fn surfaces(gpu: &Gpu, stage: &mut Stage) -> Result<GBufferSamples, HarnessError
     Ok(GBufferSamples::read(&stage.renderer, &stage.view)?)
 }
 
-/// Direct light, and one bounce where it is asked for.
+/// What a reader of the image must know.
+fn notes(emissive_triangles: usize, args: &TruthArgs) -> Vec<String> {
+    let is_dark = emissive_triangles > 0 && args.bounces == 0;
+    let note = "surfaces that emit light no others: --shadows --bounces 1 adds their light";
+    is_dark.then(|| note.to_owned()).into_iter().collect()
+}
+
+/// What the rounding of depth and G-buffer costs: the same light on their surfaces, against the truth.
+fn gbuffer_errors(
+    gpu: &Gpu,
+    stage: &mut Stage,
+    args: &TruthArgs,
+    truth: &traced::TruthImage,
+) -> Result<Errors, HarnessError> {
+    let samples = surfaces(gpu, stage)?;
+    let scene = TracedScene::new(&stage.scene);
+    let sample_of = |pixel| samples.sample(pixel, &scene);
+    let settings = settings(stage, args, Transport::Unshadowed);
+    let image = lit(stage, &scene, sample_of, settings, "through the G-buffer");
+    let exposure = truth.radiance.auto_exposure();
+    let pair = ImagePair { image: &image.radiance, reference: &truth.radiance, exposure };
+    Ok(stored(errors(&pair)))
+}
+
+/// Direct light, and bounces where they are asked for.
 fn trace(
     stage: &Stage,
-    samples: &GBufferSamples,
+    scene: &TracedScene<'_>,
     args: &TruthArgs,
 ) -> Result<traced::TruthImage, HarnessError> {
-    let scene = TracedScene::new(&stage.scene);
-    let size = [samples.width, samples.height];
-    let render = |transport, message| {
-        let settings = TruthSettings {
-            bounce_samples: args.samples,
-            area_samples: args.samples,
-            // Other numbers for each: their errors are independent.
-            seed: if transport == Transport::Bounce { 2 } else { 1 },
-            ..TruthSettings::new(transport)
-        };
-        let bar = progress_bar(u64::from(samples.height));
-        bar.set_message(message);
-        let progress = |done: u32, _| bar.set_position(u64::from(done));
-        let lights = stage.lights.lights();
-        let sample_of = |pixel| samples.sample(pixel, &scene);
-        let image = truth_image(&scene, lights, size, sample_of, settings, &progress);
-        bar.finish_and_clear();
-        image
-    };
-    let direct = if args.shadows { Transport::Direct } else { Transport::Unshadowed };
-    let bounce = || render(Transport::Bounce, "one bounce");
+    let width = stage.view.viewport.width as usize;
+    let sample_of =
+        |pixel| scene.primary(&stage.view, [(pixel % width) as u32, (pixel / width) as u32]);
+    let bounce =
+        || lit(stage, scene, sample_of, settings(stage, args, Transport::Bounce), "bounces");
     if args.indirect {
         return Ok(bounce());
     }
-    let image = render(direct, "direct light");
+    let direct = if args.shadows { Transport::Direct } else { Transport::Unshadowed };
+    let image = lit(stage, scene, sample_of, settings(stage, args, direct), "direct light");
     match args.bounces {
         0 => Ok(image),
         _ => Ok(image.plus(&bounce())?),
     }
+}
+
+fn settings(stage: &Stage, args: &TruthArgs, transport: Transport) -> TruthSettings {
+    // Other numbers for each transport: their errors are independent.
+    let of_transport = if transport == Transport::Bounce { 2 } else { 1 };
+    let seed = args.sample_seed.unwrap_or(args.stage.seed);
+    TruthSettings {
+        paths: Paths { count: args.samples, bounces: args.bounces, is_matte: args.matte_bounces },
+        area_samples: args.samples,
+        suns: stage.suns,
+        seed: seed.wrapping_mul(2).wrapping_add(of_transport),
+        ..TruthSettings::new(transport)
+    }
+}
+
+/// The stage's lights on samples, with a bar of progress.
+fn lit(
+    stage: &Stage,
+    scene: &TracedScene<'_>,
+    sample_of: impl Fn(usize) -> Option<SurfaceSample> + Sync,
+    settings: TruthSettings,
+    message: &'static str,
+) -> traced::TruthImage {
+    let viewport = stage.view.viewport;
+    let bar = progress_bar(u64::from(viewport.height));
+    bar.set_message(message);
+    let progress = |done: u32, _| bar.set_position(u64::from(done));
+    let lights = stage.lights.lights();
+    let size = [viewport.width, viewport.height];
+    let image = truth_image(scene, lights, size, sample_of, settings, &progress);
+    bar.finish_and_clear();
+    image
 }
 
 fn progress_bar(rows: u64) -> ProgressBar {
@@ -161,7 +230,8 @@ fn keep(
     let black = HdrImage { pixels: vec![[0.0; 3]; radiance.pixels.len()], ..*standard_error };
     let gain = ((over_mean(1.0) / WHITE) as f32).min(f32::MAX);
     write_atomically(&out.join(ERROR_IMAGE), &standard_error.difference_png(&black, gain)?)?;
-    radiance.write_exr(&out.join(RAW))?;
+    write_atomically(&out.join(RAW), &radiance.to_exr()?)?;
+    write_atomically(&out.join(RAW_ERROR), &standard_error.to_exr()?)?;
     Ok(TruthImage {
         scene: stage.scene.name.clone(),
         scene_hash: stage.scene_hash.clone(),
@@ -171,12 +241,16 @@ fn keep(
         raw: RAW.to_owned(),
         image: IMAGE.to_owned(),
         error_image: ERROR_IMAGE.to_owned(),
+        raw_error: Some(RAW_ERROR.to_owned()),
         exposure: f64::from(exposure),
         standard_error: over_mean(error),
         shadows: args.shadows,
         bounces: args.bounces,
         is_indirect: args.indirect,
+        is_matte: args.matte_bounces,
         samples: args.samples,
+        sample_seed: Some(args.sample_seed.unwrap_or(args.stage.seed)),
+        gbuffer_errors: Errors::new(),
         seconds,
     })
 }

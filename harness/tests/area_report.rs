@@ -66,12 +66,16 @@ fn truth() -> TruthImage {
         raw: "truth.exr".into(),
         image: "truth.png".into(),
         error_image: "error.png".into(),
+        raw_error: Some("error.exr".into()),
         exposure: 1.0,
         standard_error: 0.0004,
         shadows: false,
         bounces: 0,
         is_indirect: false,
+        is_matte: false,
         samples: 64,
+        sample_seed: Some(1),
+        gbuffer_errors: [("rel_mse".to_owned(), Some(3.25e-5))].into(),
         seconds: 2.5,
     }
 }
@@ -142,6 +146,7 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
         let name = format!("atrium-{chart}.svg");
         assert!(charts.contains(&name), "{name} of {charts:?}");
     }
+    assert!(page.contains("rounding of the G-buffer"), "what the G-buffer costs has a row");
     assert!(text.contains("Without noise, ltc is nearest to the truth in atrium"), "{text}");
     assert!(
         text.contains("no model is both faster and nearer to the truth by FLIP than"),

@@ -78,18 +78,62 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
 
     // Killed once two jobs are done, in the midst of a third.
     let cut = at("cut");
-    let mut child = start(&study(&cut, &[]));
+    let child = start(&study(&cut, &[]));
     let began = Instant::now();
     while results_in(&cut) < 2 {
         assert!(began.elapsed() < Duration::from_secs(300), "no job ends");
         std::thread::sleep(Duration::from_millis(20));
     }
-    child.kill().expect("is killed");
-    child.wait().expect("ends");
+    // Another process that wants the folder is told who has it.
+    let second = start(&study(&cut, &[])).wait_with_output().expect("ends");
+    let stderr = String::from_utf8_lossy(&second.stderr);
+    assert_eq!(second.status.code(), Some(2), "{stderr}");
+    let pid = child.id().to_string();
+    assert!(stderr.contains(&format!("process {pid} ")) && stderr.contains("--out"), "{stderr}");
+    // Interrupted, it says how to go on, and lets go.
+    let sent = Command::new("kill").args(["-INT", &pid]).status().expect("kill");
+    assert!(sent.success());
+    let ended = child.wait_with_output().expect("ends");
+    let stderr = String::from_utf8_lossy(&ended.stderr);
+    assert!(!ended.status.success(), "{stderr}");
+    assert!(stderr.contains("interrupted: ") && stderr.contains("goes on"), "{stderr}");
+    assert!(!cut.join("lightbench.lock").exists());
     let before = results_in(&cut);
-    assert!((2..6).contains(&before), "{before} jobs before it was killed");
+    assert!((2..6).contains(&before), "{before} jobs before it was interrupted");
+    // What a killed run leaves half written goes.
+    let half = cut.join("jobs/results.json.123.tmp");
+    std::fs::write(&half, "{").expect("writes");
     run(&study(&cut, &[]));
     assert_eq!(records(std::slice::from_ref(&cut)), expected);
+    assert!(!half.exists());
+
+    // Damaged and incomplete results are no results: `report` says so, and the study runs them again.
+    let jobs = Manifest::find(&cut).expect("reads").expect("is there").jobs;
+    let files: Vec<PathBuf> =
+        jobs.iter().map(|job| job.folder(&cut).join("results.json")).collect();
+    let texts: Vec<String> =
+        files.iter().map(|file| std::fs::read_to_string(file).expect("reads")).collect();
+    std::fs::write(&files[0], &texts[0][..texts[0].len() / 2]).expect("writes");
+    std::fs::write(&files[1], texts[1].replacen("\"seed\": 1", "\"seed\": 2", 1)).expect("writes");
+    let mut short = Results::read(&files[2]).expect("results");
+    short.records.pop();
+    short.write(&files[2]).expect("writes");
+    let left = Done::read(std::slice::from_ref(&cut)).expect("a study");
+    assert_eq!(left.missing(), jobs[..3].iter().map(|job| job.name.as_str()).collect::<Vec<_>>());
+    let output = start(&study(&cut, &[])).wait_with_output().expect("ends");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+    for (job, why) in jobs.iter().zip(["cut short", "checksum", "is missing"]) {
+        let warning = format!("warning  job {} runs again: ", job.name);
+        let line = stderr.lines().find(|line| line.starts_with(&warning));
+        assert!(line.is_some_and(|line| line.contains(why)), "{}: {stderr}", job.name);
+    }
+    assert_eq!(records(std::slice::from_ref(&cut)), expected);
+    // What was sound is not written again, by the study or by its report.
+    run(&["report", cut.to_str().expect("UTF-8")]);
+    for (file, text) in files.iter().zip(&texts).skip(3) {
+        assert_eq!(&std::fs::read_to_string(file).expect("reads"), text);
+    }
 
     // Another study does not go into its folder, nor the same under another seed.
     let output = start(&study(&cut, &["--seed", "2"])).wait_with_output().expect("ends");
@@ -119,6 +163,10 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
     let mut other = sound.clone();
     other.machine.adapter = "another".into();
     assert!(refused(&other).contains("machine.adapter"));
+    // One scene, one commit: its times stand side by side.
+    let mut other = sound.clone();
+    other.machine.commit = "another".into();
+    assert!(refused(&other).contains("machine.commit"));
     let mut other = sound.clone();
     other.command.push("--spots".into());
     assert!(refused(&other).contains("--spots"));
@@ -180,8 +228,17 @@ fn metrics_are_computed_again_from_the_stored_images() {
     // As if they had never been computed.
     results.records[1].errors.clear();
     results.write(&path).expect("writes");
+    let raw = std::fs::read(&path).expect("reads");
     run(&["report", out]);
     assert_eq!(Results::read(&path).expect("results").records[1].errors, errors);
+    // They lie beside the raw results, which no report writes, into whatever folder it goes.
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).expect("a folder");
+    std::fs::write(other.join("results.json"), "raw").expect("writes");
+    run(&["report", out, "--out", other.to_str().expect("UTF-8")]);
+    assert_eq!(std::fs::read(&path).expect("reads"), raw);
+    assert_eq!(std::fs::read(other.join("results.json")).expect("reads"), b"raw");
+    assert!(other.join("index.html").is_file());
     // An image of another size is named.
     let small = shading::HdrImage { width: 2, height: 1, pixels: vec![[1.0; 3]; 2] };
     small.write_exr(&folder.path().join("deferred-None.exr")).expect("writes");

@@ -162,6 +162,55 @@ fn odd_records_do_no_harm() {
     assert!(html_tag(&dom).contains("data-ready=\"1\"") && !html_tag(&dom).contains("data-error"));
 }
 
+/// A foreign file may hold anything in its names: pages show it and run none of it.
+#[test]
+fn names_of_foreign_results_are_text() {
+    const ODD: &str = "<img src=x onerror=alert(1)>\"'\u{1b}[2J\u{202e}";
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for kind in ["comparison", "culling", "area", "endless", "cdi"] {
+        let mut done = study("", folder.path());
+        done.manifest.study = kind.into();
+        for (ix, job) in done.manifest.jobs.iter_mut().enumerate() {
+            job.scene = format!("atrium{ODD}");
+            // The sections of the other studies.
+            job.section = match (kind, ix % 5) {
+                ("comparison", _) => job.section.clone(),
+                ("culling", 0) => "deferred".into(),
+                ("endless", 0) => "a".into(),
+                ("area" | "cdi", 0) => "models".into(),
+                ("area", 1) => "cost".into(),
+                ("cdi", 1) => "steps".into(),
+                ("cdi", 2) => "strategies".into(),
+                _ => format!("{}{ODD}", job.section),
+            };
+        }
+        for results in done.results.values_mut() {
+            results.machine.adapter = ODD.into();
+            results.machine.commit += ODD;
+            results.command.push(ODD.into());
+            results.warnings.push(ODD.into());
+            for (ix, record) in results.records.iter_mut().enumerate() {
+                record.scene = ODD.into();
+                record.strategy = match ix % 3 {
+                    0 => format!("{}/{ODD}", record.strategy),
+                    1 => format!("{ODD}/{}", record.strategy),
+                    _ => record.strategy.clone(),
+                };
+                let odd = || Some(ODD.to_owned());
+                (record.radii, record.cut, record.area_model) = (odd(), odd(), odd());
+                record.truth_errors = record.errors.clone();
+                record.strategy_parameters.insert("tests".into(), ODD.into());
+                record.light_kinds.insert(ODD.into(), 1);
+            }
+        }
+        let page = write(&done).page;
+        assert!(page.contains("&lt;img src=x onerror"), "{kind}: it is shown");
+        assert!(!page.contains("<img src=x"), "{kind}: it is markup");
+        let escape = ["\u{1b}", "\u{202e}"].map(|odd| page.contains(odd));
+        assert!(!escape[0], "{kind}: a terminal's escape");
+    }
+}
+
 /// From where a chart of errors begins.
 fn caps(dom: &str) -> &str {
     let start = dom.find("data-errors=\"caps\"").expect("the chart of caps");

@@ -6,7 +6,8 @@ use std::{
 };
 
 use harness::{
-    results::{Results, TruthImage},
+    errors::{ImagePair, errors, stored},
+    results::{Errors, Results, TruthImage},
     study::Manifest,
 };
 use shading::HdrImage;
@@ -34,6 +35,10 @@ fn truth(out: &Path, more: &[&str]) -> (TruthImage, HdrImage) {
     for name in [&truth.image, &truth.error_image] {
         assert!(out.join(name).is_file(), "{name}");
     }
+    let errors = truth.raw_error.as_ref().expect("an image of errors");
+    let errors = HdrImage::read_exr(&out.join(errors)).expect("an image");
+    let is_exact = errors.pixels.iter().flatten().all(|error| *error == 0.0);
+    assert_eq!(is_exact, truth.standard_error == 0.0, "{}", truth.standard_error);
     let image = HdrImage::read_exr(&out.join(&truth.raw)).expect("an image");
     (truth, image)
 }
@@ -50,8 +55,14 @@ fn points_are_as_shading_has_them_and_shadows_take_light_away() {
     let timed = ["--strategies", "None", "--frames", "1", "--warmup", "0", "--truth", "none"];
     run(&[&view[..], &timed, &["--out", out]].concat());
     let shaded = HdrImage::read_exr(&compared.join("deferred-None.exr")).expect("an image");
-    let difference = shaded.difference(&image).expect("the same size");
-    assert!(difference.max_rel < 1e-2, "{difference:?}");
+    let pair = ImagePair { image: &shaded, reference: &image, exposure: 1.0 };
+    let shading: Errors = stored(errors(&pair));
+    let error = |errors: &Errors, id: &str| errors[id].expect("finite");
+    assert!(error(&shading, "log_error") < 0.02, "{shading:?}");
+    // Shading reads the G-buffer: its rounding is about all that the image is off.
+    let rounding = &exact.gbuffer_errors;
+    let share = error(rounding, "log_error") / error(&shading, "log_error");
+    assert!((0.5..1.5).contains(&share), "{rounding:?} of {shading:?}");
 
     let sum = |image: &HdrImage| image.pixels.iter().flatten().map(|v| f64::from(*v)).sum::<f64>();
     let (_, dark) = truth(&folder.path().join("shadows"), &["--shadows"]);
@@ -60,6 +71,11 @@ fn points_are_as_shading_has_them_and_shadows_take_light_away() {
     let (noisy, lit) = truth(&folder.path().join("bounce"), &bounce);
     assert!(sum(&lit) > 1.01 * sum(&dark), "{} of {}", sum(&lit), sum(&dark));
     assert!(noisy.standard_error > 0.0 && noisy.bounces == 1);
+    assert!(noisy.gbuffer_errors.is_empty(), "shading has no shadows to compare");
+    // Two bounces are brighter, and other samples give other noise.
+    let bounces = ["--shadows", "--bounces", "2", "--samples", "4", "--sample-seed", "9"];
+    let (other, brighter) = truth(&folder.path().join("bounces"), &bounces);
+    assert!(sum(&brighter) > sum(&lit) && other.sample_seed == Some(9));
 }
 
 #[test]
@@ -71,9 +87,43 @@ fn what_makes_no_truth_is_refused() {
         assert!(stderr.contains(wanted) && stderr.lines().count() == 1, "{stderr}");
     };
     refused(&["--bounces", "1"], "--bounces is 1: it must be 0, or given with --shadows");
-    refused(&["--bounces", "2", "--shadows"], "--bounces is 2: it must be 0 or 1");
+    refused(
+        &["--bounces", "17", "--shadows"],
+        "--bounces is 17: it must be a whole number from 0 to 16",
+    );
+    refused(
+        &["--bounces", "1", "--shadows", "--matte-bounces"],
+        "--matte-bounces: it must be given with --primary and --bounces 1",
+    );
     refused(&["--samples", "0"], "--samples is 0: it must be a whole number from 1 to 65,536");
     refused(&["--strategies", "None"], "--strategies");
+}
+
+#[test]
+fn whoever_leaves_out_emitted_light_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("lamp.gltf");
+    // A triangle that emits.
+    let data = "AACAvwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAwD8AAAAA";
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
+        "nodes": [{{"mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0}}]}}],
+        "materials": [{{"emissiveFactor": [1, 1, 1], "doubleSided": true}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [-1, 0, 0], "max": [1, 1.5, 0]}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+        "buffers": [{{"byteLength": 36, "uri": "data:application/octet-stream;base64,{data}"}}]}}"#
+    );
+    std::fs::write(&file, text).expect("writes");
+    let file = file.to_str().expect("UTF-8");
+    let out = folder.path().join("out");
+    let out = out.to_str().expect("UTF-8");
+    let lamp = ["truth", "--scene", file, "--lights", "0", "--size", "8x8", "--out", out];
+    let printed = |more: &[&str]| run(&[&lamp[..], more].concat());
+    let note = "surfaces that emit light no others";
+    assert!(printed(&[]).contains(note));
+    assert!(!printed(&["--shadows", "--bounces", "1", "--samples", "1"]).contains(note));
 }
 
 /// The folders of a study's jobs that are done, by the names of the jobs.

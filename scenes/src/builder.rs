@@ -28,7 +28,14 @@ impl Builder {
     /// The finished mesh.
     pub(crate) fn mesh(self, name: &str, material: u32) -> Mesh {
         let bounds = Aabb::from_points(self.vertices.iter().map(|v| Vec3::from(v.position)));
-        Mesh { name: name.into(), vertices: self.vertices, indices: self.indices, material, bounds }
+        Mesh {
+            name: name.into(),
+            vertices: self.vertices,
+            indices: self.indices,
+            colors: Vec::new(),
+            material,
+            bounds,
+        }
     }
 
     fn vertex(&mut self, position: Vec3, normal: Vec3, along_u: Vec3, uv: Vec2) {

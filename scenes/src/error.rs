@@ -61,7 +61,7 @@ pub enum SceneError {
     },
     /// An image does not decode.
     #[error(
-        "{}: {} does not decode as PNG or JPEG: {}",
+        "{}: {} does not decode as PNG, JPEG or WebP: {}",
         one_line(file.display()), quoted(image), quoted(reason)
     )]
     Image {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::{Aabb, CameraPath, Pose, Scene, bvh::TriangleBvh, tour::Room};
 
 /// What a scene looks at before its path is fitted.
-pub(crate) const ORIGIN: Pose = Pose { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y };
+pub(crate) const ORIGIN: Pose = Pose::looking(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y);
 
 /// Shares of the triangles cut off at both ends of an axis that has a backdrop.
 const CORE_SHARE: f64 = 0.02;

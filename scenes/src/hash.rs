@@ -4,7 +4,7 @@ use assign::LightShape;
 use blake3::Hasher;
 use glam::Vec3;
 
-use crate::{Encoding, Lens, Pose, Scene, TextureRef};
+use crate::{Dielectric, Encoding, Lens, Pose, Scene, TextureRef};
 
 /// Changes whenever what goes into the hash, or its order, changes.
 const VERSION: u32 = 1;
@@ -33,8 +33,9 @@ impl Feed {
         }
     }
 
-    fn pose(&mut self, pose: &Pose) {
-        for v in [pose.eye, pose.target, pose.up] {
+    /// The eye, a point looked at, and what is up.
+    fn pose(&mut self, marks: [Vec3; 3]) {
+        for v in marks {
             self.floats(&v.to_array());
         }
     }
@@ -60,7 +61,7 @@ impl Feed {
 }
 
 impl Scene {
-    /// BLAKE3 over geometry, transforms, materials, images, lights and cameras, as 64 hexadecimal
+    /// BLAKE3 over geometry, transforms, materials, images, lights, suns and cameras, as 64 hexadecimal
     /// digits. Names, the path ([`path_hash`](Self::path_hash)) and the warnings do not enter.
     /// Procedural scenes may differ in the last bit between platforms whose `sin` and `cos` do.
     pub fn hash(&self) -> String {
@@ -70,6 +71,7 @@ impl Scene {
         self.hash_materials(&mut feed);
         self.hash_lights(&mut feed);
         self.hash_cameras(&mut feed);
+        self.hash_additions(&mut feed);
         feed.0.finalize().to_hex().to_string()
     }
 
@@ -79,7 +81,7 @@ impl Scene {
         let mut feed = Feed(Hasher::new());
         feed.int(u64::from(VERSION));
         for frame in 0..PATH_POSES {
-            feed.pose(&self.path.pose(frame, PATH_POSES));
+            feed.pose(self.path.marks(frame, PATH_POSES));
         }
         feed.0.finalize().to_hex().to_string()
     }
@@ -147,10 +149,37 @@ impl Scene {
         }
     }
 
+    /// What most scenes have none of: without it they keep the hash that they always had.
+    fn hash_additions(&self, feed: &mut Feed) {
+        if self.meshes.iter().any(|mesh| !mesh.colors.is_empty()) {
+            feed.int(COLORS);
+            for mesh in &self.meshes {
+                feed.bytes(bytemuck::cast_slice(&mesh.colors));
+            }
+        }
+        let plain = Dielectric::default();
+        if self.materials.iter().any(|m| m.unlit || m.dielectric != plain) {
+            feed.int(REFLECTANCES);
+            for material in &self.materials {
+                feed.int(u64::from(material.unlit));
+                feed.floats(&material.dielectric.f0.to_array());
+                feed.floats(&[material.dielectric.f90]);
+            }
+        }
+        if !self.suns.is_empty() {
+            feed.int(SUNS);
+        }
+        for sun in &self.suns {
+            feed.floats(&sun.direction.to_array());
+            feed.floats(&sun.irradiance.to_array());
+        }
+    }
+
     fn hash_cameras(&self, feed: &mut Feed) {
         feed.int(self.cameras.len() as u64);
         for camera in &self.cameras {
-            feed.pose(&camera.pose);
+            let Pose { eye, up, .. } = camera.pose;
+            feed.pose([eye, eye + camera.pose.forward(), up]);
             feed.floats(&match camera.lens {
                 Lens::Perspective { fov_y } => [0.0, fov_y, 0.0],
                 Lens::Orthographic { half_width, half_height } => [1.0, half_width, half_height],
@@ -160,9 +189,14 @@ impl Scene {
     }
 }
 
+/// Marks the start of what scenes may have beside the rest.
+const COLORS: u64 = 0x636f_6c6f_7273;
+const SUNS: u64 = 0x7375_6e73;
+const REFLECTANCES: u64 = 0x0066_3066_3930;
+
 #[cfg(test)]
 mod tests {
-    use crate::{CameraPath, Pose, atrium};
+    use crate::{CameraPath, atrium};
 
     /// The first pose, where every path of a scene starts, does not tell paths apart.
     #[test]
@@ -170,7 +204,7 @@ mod tests {
         let scene = atrium(1);
         let mut other = scene.clone();
         let first = scene.path.pose(0, 1);
-        other.path = CameraPath::still(Pose::new(first.eye, first.target));
+        other.path = CameraPath::still(first);
         assert_eq!(other.path.pose(0, 1).eye, first.eye);
         assert_eq!(scene.hash(), other.hash());
         assert_ne!(scene.path_hash(), other.path_hash());

@@ -30,6 +30,32 @@ pub struct Material {
     pub normal_texture: Option<TextureRef>,
     /// Emission, sRGB.
     pub emissive_texture: Option<TextureRef>,
+    /// What its dielectric share reflects (KHR_materials_ior, KHR_materials_specular).
+    pub dielectric: Dielectric,
+    /// Whether its colour is shown as it is (KHR_materials_unlit): `emissive` holds it then, and
+    /// nothing is reflected. Colours of vertices multiply the emission.
+    pub unlit: bool,
+}
+
+/// Reflectance of a dielectric: Schlick's curve between two ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// At normal incidence, linear RGB.
+    pub f0: Vec3,
+    /// At grazing incidence.
+    pub f90: f32,
+}
+
+impl Default for Dielectric {
+    /// glTF's: an index of refraction of 1.5.
+    fn default() -> Self {
+        Self { f0: Vec3::splat(0.04), f90: 1.0 }
+    }
+}
+
+impl Dielectric {
+    /// A surface that reflects nothing.
+    pub const BLACK: Self = Self { f0: Vec3::ZERO, f90: 0.0 };
 }
 
 impl Default for Material {
@@ -48,6 +74,8 @@ impl Default for Material {
             metallic_roughness_texture: None,
             normal_texture: None,
             emissive_texture: None,
+            dielectric: Dielectric::default(),
+            unlit: false,
         }
     }
 }

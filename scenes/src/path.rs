@@ -4,38 +4,49 @@ use glam::{Mat4, Vec3};
 
 use crate::gltf_import::AnimatedNode;
 
-/// Where a camera is and where it looks.
+/// Where a camera is and where it looks. It keeps a direction, because a point that it looks at would
+/// lose its bits far from the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The camera's position, world space, metres.
     pub eye: Vec3,
-    /// A point that it looks at, not the eye.
-    pub target: Vec3,
+    /// The unit view direction.
+    forward: Vec3,
     /// Which way is up in the image; not along the view direction.
     pub up: Vec3,
 }
 
 impl Pose {
-    /// A pose with +Y up, or +Z up where it looks straight up or down.
+    /// At `eye`, looking at `target`, with +Y up, or +Z up where it looks straight up or down.
     pub fn new(eye: Vec3, target: Vec3) -> Self {
-        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+        Self::level(eye, (target - eye).normalize_or(Vec3::NEG_Z))
+    }
+
+    /// At `eye`, looking along the unit vector `forward`, with +Y up, or +Z up where it looks straight
+    /// up or down.
+    pub fn level(eye: Vec3, forward: Vec3) -> Self {
         let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
-        Self { eye, target, up }
+        Self { eye, forward, up }
+    }
+
+    /// At `eye`, looking along the unit vector `forward`, with `up` upwards in the image.
+    pub const fn looking(eye: Vec3, forward: Vec3, up: Vec3) -> Self {
+        Self { eye, forward, up }
     }
 
     /// The unit view direction.
     pub fn forward(&self) -> Vec3 {
-        (self.target - self.eye).normalize_or(Vec3::NEG_Z)
+        self.forward
     }
 
     /// World to view space: +X right, +Y up, looking down -Z.
     pub fn world_to_view(&self) -> Mat4 {
-        glam::camera::rh::view::look_to_mat4(self.eye, self.forward(), self.up)
+        glam::camera::rh::view::look_to_mat4(self.eye, self.forward, self.up)
     }
 
     /// Scaled about the origin.
     pub fn scaled(self, factor: f32) -> Self {
-        Self { eye: self.eye * factor, target: self.target * factor, up: self.up }
+        Self { eye: self.eye * factor, ..self }
     }
 }
 
@@ -100,6 +111,20 @@ impl CameraPath {
         }
     }
 
+    /// What tells the pose of a frame from others: its eye, a point that it looks at, its up. On a loop
+    /// that point is the spline's, so that hashes of earlier versions hold.
+    pub(crate) fn marks(&self, frame: u32, frame_count: u32) -> [Vec3; 3] {
+        let pose = self.pose(frame, frame_count);
+        let target = match &self.0 {
+            Way::Loop(knots) => {
+                let count = frame_count.max(1);
+                loop_points(knots, f64::from(frame % count) / f64::from(count)).1
+            }
+            _ => pose.eye + pose.forward,
+        };
+        [pose.eye, target, pose.up]
+    }
+
     /// Scaled about the origin.
     pub fn scaled(self, factor: f32) -> Self {
         Self(match self.0 {
@@ -118,13 +143,19 @@ impl CameraPath {
 
 /// The pose at `turn` (0..1) of the closed spline through `knots`.
 fn loop_pose(knots: &[(Vec3, Vec3)], turn: f64) -> Pose {
+    let (eye, target) = loop_points(knots, turn);
+    Pose::new(eye, target)
+}
+
+/// Eye and target at `turn` (0..1) of the closed spline through `knots`.
+fn loop_points(knots: &[(Vec3, Vec3)], turn: f64) -> (Vec3, Vec3) {
     let n = knots.len();
     let at = turn.rem_euclid(1.0) * n as f64;
     let segment = (at as usize).min(n - 1);
     let t = (at - segment as f64) as f32;
     let knot = |offset: usize| knots[(segment + n + offset - 1) % n];
     let (p, q, r, s) = (knot(0), knot(1), knot(2), knot(3));
-    Pose::new(catmull_rom(p.0, q.0, r.0, s.0, t), catmull_rom(p.1, q.1, r.1, s.1, t))
+    (catmull_rom(p.0, q.0, r.0, s.0, t), catmull_rom(p.1, q.1, r.1, s.1, t))
 }
 
 /// Uniform Catmull-Rom from `q` (t = 0) to `r` (t = 1).

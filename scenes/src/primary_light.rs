@@ -26,33 +26,38 @@ const SUN_IRRADIANCE: f32 = PI;
 /// Range of the sun in distances to the farthest point: the window is above 0.9997 there.
 const SUN_RANGE: f32 = 10.0;
 
-/// What a spot's fall-off divides by at least, `cos inner - cos outer`
-/// ([`LightShape::Spot`]): a narrower ramp would dim the whole cone.
-const MIN_RAMP: f32 = 1e-3;
+/// How far the cosine falls from the sun's inner cone to its outer one.
+const RAMP: f32 = 1.01 * 1e-3;
 
-/// The scene's primary light: the brightest of its own spots, else a sun.
+/// The scene's primary light: the brightest of its own suns, else of its own spots, else a sun.
 ///
-/// The sun is a white spot some fifty scene radii from the middle of [`Scene::core_bounds`], 60
-/// degrees above the horizon. The cone of its full intensity just holds the core; its range is so
-/// long that the window dims nothing. A white wall in the middle that faces it has radiance 1.
+/// A shadow map is drawn from a point, so the sun is a spot some fifty scene radii from the middle of
+/// [`Scene::core_bounds`]. The cone of its full intensity just holds the core; its range is so long
+/// that the window dims nothing. In the middle it gives what the scene's own sun gives. Where the scene
+/// has none, it is white, 60 degrees above the horizon, and a white wall that faces it has radiance 1.
 pub fn primary_light(scene: &Scene) -> Light {
+    const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+    let suns = scene.suns.iter().filter(|sun| sun.check().is_ok());
+    let brightest =
+        suns.max_by(|a, b| a.irradiance.dot(LUMINANCE).total_cmp(&b.irradiance.dot(LUMINANCE)));
+    if let Some(sun) = brightest {
+        let to_sun = -sun.direction.normalize();
+        return distant_spot(scene.core_bounds, scene.bounds, to_sun, sun.irradiance);
+    }
     let spots = scene
         .lights
         .iter()
         .filter(|light| matches!(light.shape, LightShape::Spot { .. }) && light.check().is_ok());
-    let brightness = |light: &Light| light.intensity.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+    let brightness = |light: &Light| light.intensity.dot(LUMINANCE);
     spots
         .max_by(|a, b| brightness(a).total_cmp(&brightness(b)))
         .copied()
         .unwrap_or_else(|| sun(scene.core_bounds, scene.bounds))
 }
 
-/// A sun for a scene whose `core` is lit in full and whose `whole` is in range.
+/// A sun for a scene that has none of its own.
 fn sun(core: Aabb, whole: Aabb) -> Light {
-    let (core, whole) = (sound(core), sound(whole));
-    let middle = core.center();
-    let radius = (0.5 * core.diagonal()).clamp(1e-3, FARTHEST_SUN_M / SUN_DISTANCE);
-    let distance = SUN_DISTANCE * radius;
+    let core = sound(core);
     let (rise, level) = ELEVATION_DEG.to_radians().sin_cos();
     let (across, along) = AZIMUTH_DEG.to_radians().sin_cos();
     let to_sun = if core.size().x >= core.size().z {
@@ -60,19 +65,28 @@ fn sun(core: Aabb, whole: Aabb) -> Light {
     } else {
         Vec3::new(-across * level, rise, along * level)
     };
-    let position = middle + distance * to_sun;
+    distant_spot(core, whole, to_sun, Vec3::splat(SUN_IRRADIANCE))
+}
+
+/// A sun as a spot that lights a scene's `core` in full, with an irradiance in its middle, and has its
+/// `whole` in range.
+fn distant_spot(core: Aabb, whole: Aabb, to_sun: Vec3, irradiance: Vec3) -> Light {
+    let (core, whole) = (sound(core), sound(whole));
+    let radius = (0.5 * core.diagonal()).clamp(1e-3, FARTHEST_SUN_M / SUN_DISTANCE);
+    let distance = SUN_DISTANCE * radius;
+    let position = core.center() + distance * to_sun;
     let direction = -to_sun.normalize();
     let angle = |corner: Vec3| direction.angle_between(corner - position);
     let widest = core.corners().map(angle).into_iter().fold(0.0, f32::max);
     // A hundredth wider, so that rounding leaves the corners inside.
     let inner_angle = (1.01 * widest).min(1.0);
-    let outer_angle = (inner_angle.cos() - 1.01 * MIN_RAMP).acos();
+    let outer_angle = (inner_angle.cos() - RAMP).acos();
     let farthest =
         whole.corners().map(|corner| corner.distance(position)).into_iter().fold(0.0, f32::max);
     Light {
         position,
         range_m: (SUN_RANGE * farthest).min(MAX_RANGE_M),
-        intensity: Vec3::splat(SUN_IRRADIANCE * distance * distance),
+        intensity: irradiance * distance * distance,
         shape: LightShape::Spot { direction, inner_angle, outer_angle },
     }
 }
@@ -88,6 +102,8 @@ fn sound(bounds: Aabb) -> Aabb {
 
 #[cfg(test)]
 mod tests {
+    use assign::{SpotRamp, Sun};
+
     use super::*;
     use crate::{TownSize, atrium, town};
 
@@ -101,9 +117,8 @@ mod tests {
         let ratio_2 = distance_2 / (light.range_m * light.range_m);
         let window = (1.0 - ratio_2 * ratio_2).max(0.0).powi(2);
         assert!(window > 0.999, "window {window}");
-        let scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
-        let cos = direction.dot(to_point) / distance_2.sqrt();
-        let ramp = ((cos - outer_angle.cos()) * scale).clamp(0.0, 1.0).powi(2);
+        let chord = to_point / distance_2.sqrt() - direction;
+        let ramp = SpotRamp::new(inner_angle, outer_angle).at(chord.length_squared());
         light.intensity.x * window * ramp / distance_2
     }
 
@@ -122,6 +137,20 @@ mod tests {
                 assert!((ratio - 1.0).abs() < 1e-3, "{} x {factor}: {ratio}", scene.name);
             }
         }
+    }
+
+    #[test]
+    fn the_brightest_own_sun_comes_first() {
+        let mut scene = atrium(1);
+        let sun =
+            |x: f32, irradiance| Sun { direction: Vec3::new(x, -1.0, 0.2).normalize(), irradiance };
+        scene.suns = vec![sun(0.1, Vec3::splat(2.0)), sun(-0.5, Vec3::new(3.0, 6.0, 1.0))];
+        let light = primary_light(&scene);
+        assert_eq!(light.check(), Ok(()));
+        let LightShape::Spot { direction, .. } = light.shape else { panic!("not a spot") };
+        assert!(direction.distance(scene.suns[1].direction) < 1e-6);
+        let ratio = irradiance(&light, scene.core_bounds.center()) / 3.0;
+        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
     }
 
     #[test]

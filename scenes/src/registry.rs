@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use crate::{Scene, SceneError, TownSize, atrium, load_gltf, town};
+use glam::DVec3;
+
+use crate::{Scene, SceneError, TownSize, atrium, gltf_import::load_gltf_lights, load_gltf, town};
 
 /// A procedural scene.
 #[derive(Clone, Copy, Debug)]
@@ -50,14 +52,36 @@ pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
     if let Some(entry) = ENTRIES.iter().find(|entry| entry.id == name_or_path) {
         return Ok((entry.make)());
     }
-    let path = Path::new(name_or_path);
-    let is_gltf = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"));
-    if is_gltf {
-        return load_gltf(path);
+    match gltf_path(name_or_path) {
+        Some(path) => load_gltf(path),
+        None => Err(unknown(name_or_path)),
     }
-    Err(unknown(name_or_path))
+}
+
+/// Opens the lights of a procedural scene or of a glTF file: a scene whose lights are all there
+/// is to use. The file may hold nothing but lights. World space
+/// begins at `origin` of the file.
+///
+/// # Errors
+///
+/// As [`open`], but for scenes without triangles.
+pub fn open_lights(name_or_path: &str, origin: DVec3) -> Result<Scene, SceneError> {
+    if let Some(path) = gltf_path(name_or_path) {
+        return load_gltf_lights(path, origin);
+    }
+    let mut scene = open(name_or_path)?;
+    for light in &mut scene.lights {
+        light.position = (light.position.as_dvec3() - origin).as_vec3();
+    }
+    Ok(scene)
+}
+
+/// The path where a name is that of a glTF file.
+fn gltf_path(name_or_path: &str) -> Option<&Path> {
+    let path = Path::new(name_or_path);
+    let is_one =
+        |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb");
+    path.extension().is_some_and(is_one).then_some(path)
 }
 
 /// How alike a name must be to be offered, by Jaro-Winkler.

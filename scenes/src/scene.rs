@@ -1,8 +1,8 @@
 //! A scene in main memory: indexed meshes, placed by models, with materials, lights and cameras.
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Sun};
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 
 use crate::{Aabb, CameraPath, Image, Material, Pose, SceneError};
 
@@ -25,8 +25,18 @@ pub struct Scene {
     /// The scene's own lights; may be empty. Faulty ones are among them: they are quarantined
     /// and reported where lights are uploaded.
     pub lights: Vec<Light>,
+    /// Indices of those lights whose file gives no range; [`close_ranges`](crate::close_ranges) chose it.
+    pub open_lights: Vec<u32>,
+    /// The scene's own suns, at most [`MAX_SUNS`](assign::MAX_SUNS), without faults.
+    pub suns: Vec<Sun>,
     /// The scene's own cameras; may be empty.
     pub cameras: Vec<Camera>,
+    /// The camera whose lens and planes the scene is seen through where none is asked for: the one that
+    /// the path animates, else the first. Beyond the end where there are none.
+    pub view_camera: usize,
+    /// Where world space begins in the coordinates of the scene's file, metres: 0 but for files whose
+    /// scene stands far from their origin.
+    pub origin: DVec3,
     /// A camera's way through the scene; frame 0 shows a lot of it.
     pub path: CameraPath,
     /// Box around all triangles, world space.
@@ -62,6 +72,8 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Three per triangle, counter-clockwise seen from the front; each below `vertices.len()`.
     pub indices: Vec<u32>,
+    /// Factors on the base colour, linear RGB and opacity, 0..=1: one per vertex, or none at all.
+    pub colors: Vec<[f32; 4]>,
     /// Index into [`Scene::materials`].
     pub material: u32,
     /// Box around the vertices, object space.
@@ -113,7 +125,8 @@ pub struct Model {
 impl Model {
     /// Whether it turns counter-clockwise triangles clockwise.
     pub fn is_mirrored(&self) -> bool {
-        self.object_to_world.determinant() < 0.0
+        // In f64: tiny determinants are 0 in f32.
+        self.object_to_world.as_dmat4().determinant() < 0.0
     }
 }
 
@@ -194,7 +207,7 @@ impl Scene {
     }
 
     /// The scene `side` x `side` times beside itself, along X and Z: the first where it was, its
-    /// lights with it. Camera, path and [`Scene::core_bounds`] stay those of the first.
+    /// lights with it; its suns shine on all. Camera, path and [`Scene::core_bounds`] stay those of the first.
     ///
     /// # Errors
     ///
@@ -213,7 +226,7 @@ impl Scene {
         }
         let size = self.bounds.max - self.bounds.min;
         let (models, instances) = (self.models.clone(), self.instances.clone());
-        let lights = self.lights.clone();
+        let (lights, open_lights) = (self.lights.clone(), self.open_lights.clone());
         for (x, z) in (0..side).flat_map(|x| (0..side).map(move |z| (x, z))).skip(1) {
             let by = Vec3::new(x as f32 * size.x, 0.0, z as f32 * size.z);
             let first = self.models.len() as u32;
@@ -223,6 +236,8 @@ impl Scene {
             }));
             let moved = |i: &Instance| Instance { model: first + i.model, ..*i };
             self.instances.extend(instances.iter().map(moved));
+            let first_light = self.lights.len() as u32;
+            self.open_lights.extend(open_lights.iter().map(|ix| first_light + ix));
             self.lights.extend(lights.iter().map(|l| Light { position: l.position + by, ..*l }));
         }
         let last = (side - 1) as f32;
@@ -244,7 +259,7 @@ impl Scene {
     ///
     /// Geometry, boxes, cameras, the path and the positions of the scene's own lights scale by
     /// `factor`; those lights' ranges scale by `factor` and their intensities by its square, so
-    /// that the lit image stays the same.
+    /// that the lit image stays the same. Suns give what they gave.
     ///
     /// # Errors
     ///
@@ -282,6 +297,7 @@ impl Scene {
             }
         }
         self.path = self.path.scaled(factor);
+        self.origin *= f64::from(factor);
         for bounds in [&mut self.bounds, &mut self.core_bounds] {
             *bounds = Aabb::new(bounds.min * factor, bounds.max * factor);
         }

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{
     ltc,
-    reference::{Surface, f0_of, window},
+    reference::{Surface, f0_of, f90_of, window},
 };
 
 /// Relative error at which the quadrature of the truth stops.
@@ -21,6 +21,7 @@ pub(crate) struct SeenArea {
     specular: DVec3,
     albedo: DVec3,
     f0: DVec3,
+    f90: f64,
     roughness: f64,
 }
 
@@ -49,6 +50,7 @@ impl SeenArea {
             specular: radiance * window(light.range_m),
             albedo: (1.0 - surface.metallic) * surface.base_color,
             f0: f0_of(surface),
+            f90: f90_of(surface),
             roughness: surface.roughness,
         })
     }
@@ -61,8 +63,12 @@ impl SeenArea {
         let found = ltc::integrate(&self.vertices, self.to_eye, self.roughness, TOLERANCE).value;
         let channel = |c: usize| {
             let (albedo, f0) = (self.albedo[c], self.f0[c]);
-            self.diffuse[c] * found.diffuse_reflected(albedo, f0)
-                + self.specular[c] * found.specular_reflected(f0)
+            // Less is reflected at grazing incidence than the integrals have, and more is kept.
+            let less = 1.0 - self.f90;
+            let diffuse =
+                found.diffuse_reflected(albedo, f0) + less * albedo * found.diffuse_fresnel;
+            let specular = found.specular_reflected(f0) - less * found.specular_fresnel;
+            self.diffuse[c] * diffuse + self.specular[c] * specular
         };
         DVec3::new(channel(0), channel(1), channel(2))
     }
@@ -74,8 +80,10 @@ impl SeenArea {
         let kept = 1.0 - ltc::diffuse_fresnel(self.to_eye.z.abs());
         let channel = |c: usize| {
             let f0 = self.f0[c];
-            self.diffuse[c] * self.albedo[c] * (1.0 - f0) * kept * cosine
-                + self.specular[c] * entry.specular_albedo(f0) * lobe
+            let less = 1.0 - self.f90;
+            let diffuse = self.albedo[c] * ((1.0 - f0) * kept + less * (1.0 - kept));
+            let specular = entry.specular_albedo(f0) - less * entry.specular_albedo(0.0);
+            self.diffuse[c] * diffuse * cosine + self.specular[c] * specular * lobe
         };
         DVec3::new(channel(0), channel(1), channel(2))
     }

@@ -8,7 +8,7 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     ShadingError,
-    lighting_inputs::LightingInputs,
+    lighting_inputs::{Bound, LightingInputs},
     materials::{MaterialKey, Materials},
 };
 
@@ -56,10 +56,12 @@ pub(crate) struct DrawKey {
 pub struct SceneGpu {
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
+    /// Colours of all vertices, where any mesh has some.
+    colors: Option<wgpu::Buffer>,
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
-    /// Of bind group 2: without and with the table of linearly transformed cosines.
-    layouts: [wgpu::BindGroupLayout; 2],
+    /// Of bind group 2, for each of [`Bound::ALL`].
+    layouts: [wgpu::BindGroupLayout; 4],
     pub(crate) instances: wgpu::Buffer,
 }
 
@@ -77,27 +79,31 @@ impl SceneGpu {
         };
         let vertices = buffer("vertices", &vertex_bytes, wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("indices", &index_bytes, wgpu::BufferUsages::INDEX)?;
+        let colors = colors(scene);
+        let colors = (!colors.is_empty())
+            .then(|| buffer("vertex colours", cast_slice(&colors), wgpu::BufferUsages::VERTEX))
+            .transpose()?;
         let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
-        let layout = |table| {
+        let layout = |bound| {
             let stages = wgpu::ShaderStages::FRAGMENT;
             let own = [
                 storage_entry(0, wgpu::ShaderStages::VERTEX, true),
                 storage_entry(1, stages, true),
             ];
             let entries: Vec<_> =
-                own.into_iter().chain(LightingInputs::layout(table, stages)).collect();
+                own.into_iter().chain(LightingInputs::layout(bound, stages)).collect();
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("scene"),
                 entries: &entries,
             })
         };
-        let layouts = [layout(false), layout(true)];
-        Ok(Self { vertices, indices, draws, materials, layouts, instances })
+        let layouts = Bound::ALL.map(layout);
+        Ok(Self { vertices, indices, colors, draws, materials, layouts, instances })
     }
 
     /// Layout of bind group 2.
-    pub(crate) fn layout(&self, reads_table: bool) -> &wgpu::BindGroupLayout {
-        &self.layouts[usize::from(reads_table)]
+    pub(crate) fn layout(&self, bound: Bound) -> &wgpu::BindGroupLayout {
+        &self.layouts[bound.index()]
     }
 
     /// Bind group 2, with what lighting reads.
@@ -106,7 +112,7 @@ impl SceneGpu {
         let entries: Vec<_> = own.into_iter().chain(inputs.entries()).collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
-            layout: self.layout(inputs.has_table()),
+            layout: self.layout(inputs.bound()),
             entries: &entries,
         })
     }
@@ -114,6 +120,11 @@ impl SceneGpu {
     /// Whether any material emits.
     pub fn has_emissive(&self) -> bool {
         self.materials.has_emissive
+    }
+
+    /// Whether any material reflects other than glTF's plain dielectric does.
+    pub(crate) fn has_dielectrics(&self) -> bool {
+        self.materials.has_dielectrics
     }
 
     /// Whether any material has an alpha mask.
@@ -137,6 +148,9 @@ impl SceneGpu {
         pipeline: impl Fn(DrawKey) -> Option<&'a wgpu::RenderPipeline>,
     ) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
+        if let Some(colors) = &self.colors {
+            pass.set_vertex_buffer(1, colors.slice(..));
+        }
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut bound = (None, None);
         for draw in &self.draws {
@@ -209,6 +223,20 @@ fn concatenate(scene: &Scene) -> (Vec<MeshRange>, Vec<u8>, Vec<u8>) {
     (ranges, vertices, indices)
 }
 
+/// The colours of all meshes' vertices behind each other, white where a mesh has none; nothing
+/// where no mesh has any.
+fn colors(scene: &Scene) -> Vec<[f32; 4]> {
+    if scene.meshes.iter().all(|mesh| mesh.colors.is_empty()) {
+        return Vec::new();
+    }
+    let of_mesh = |mesh: &scenes::Mesh| {
+        let mut colors = mesh.colors.clone();
+        colors.resize(mesh.vertices.len(), [1.0; 4]);
+        colors
+    };
+    scene.meshes.iter().flat_map(of_mesh).collect()
+}
+
 /// Instances sorted by pipeline, material and mesh, and one draw for each run of one mesh.
 fn plan(
     scene: &Scene,
@@ -219,9 +247,11 @@ fn plan(
         .instances
         .iter()
         .map(|instance| {
-            let material = scene.meshes[instance.mesh as usize].material;
+            let mesh = &scene.meshes[instance.mesh as usize];
+            let material = mesh.material;
+            let vertex_colors = !mesh.colors.is_empty();
             let key = DrawKey {
-                material: materials.key(material),
+                material: MaterialKey { vertex_colors, ..materials.key(material) },
                 mirrored: scene.models[instance.model as usize].is_mirrored(),
             };
             (key, material, instance)

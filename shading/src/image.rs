@@ -148,6 +148,23 @@ impl HdrImage {
         Ok(Self { width: size.width() as u32, height: size.height() as u32, pixels })
     }
 
+    /// Linear radiance as an OpenEXR file, single precision.
+    pub fn to_exr(&self) -> Result<Vec<u8>, ShadingError> {
+        use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+
+        let (width, height) = (self.width as usize, self.height as usize);
+        let channels = SpecificChannels::rgb(|Vec2(x, y)| {
+            let [r, g, b] = self.pixels[y * width + x];
+            (r, g, b)
+        });
+        let mut file = std::io::Cursor::new(Vec::new());
+        Image::from_channels((width, height), channels)
+            .write()
+            .to_buffered(&mut file)
+            .map_err(|e| ShadingError::Write { path: "image.exr".into(), reason: e.to_string() })?;
+        Ok(file.into_inner())
+    }
+
     /// Writes linear radiance as OpenEXR, single precision.
     pub fn write_exr(&self, path: &Path) -> Result<(), ShadingError> {
         let width = self.width as usize;
@@ -223,6 +240,8 @@ mod tests {
         let path = folder.path().join("a.exr");
         grey(0.123_456_79).write_exr(&path).unwrap();
         assert_eq!(HdrImage::read_exr(&path).unwrap(), grey(0.123_456_79));
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(grey(0.123_456_79).to_exr().unwrap(), bytes);
         assert!(HdrImage::read_exr(Path::new("/nowhere/a.exr")).is_err());
         assert!(grey(1.0).write_exr(Path::new("/nowhere/a.exr")).is_err());
     }

@@ -49,7 +49,7 @@ pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};
 pub use image::{HdrImage, ImageDifference, luminance};
 pub use lighting::{Cut, Lighting, LightingOptions};
-pub use lighting_inputs::LightingRecord;
+pub use lighting_inputs::{LightingRecord, SunRecord, SunsRecord};
 pub use materials::MaterialRecord;
 pub use operations::{Operations, Terms, count_operations};
 pub use probe::{Samples, probe, record_for_probe};

@@ -1,11 +1,11 @@
 //! Lighting with one strategy's lists, in one mode.
 
-use assign::{AssignError, Assignment, Gpu, LightKinds, Passes, Shader, View};
+use assign::{AssignError, Assignment, Gpu, LightKinds, Passes, Shader, Suns, View};
 use serde::{Deserialize, Serialize};
 
 use crate::{
     AreaModel, Mode, Renderer, ShadingError,
-    lighting_inputs::LightingInputs,
+    lighting_inputs::{Bound, LightingInputs},
     raster::{LISTS_GROUP, Lists, RasterPass, RasterPipelines},
     shaders,
 };
@@ -37,6 +37,9 @@ pub struct LightingOptions {
     /// where virtual point lights lie thick or thin, and is no light that anything sends: `None`,
     /// which changes no bit, wherever errors are measured.
     pub compensation: Option<f32>,
+    /// Suns, which light every sample beside its list; without any, nothing of them is compiled or
+    /// bound.
+    pub suns: Suns,
 }
 
 /// How a light's fall-off ends at its range.
@@ -69,7 +72,8 @@ impl LightingOptions {
         let shader = shader
             .light_kinds(self.kinds)
             .flag("hard_cut", self.cut == Cut::Hard)
-            .flag("compensation", self.compensation.is_some());
+            .flag("compensation", self.compensation.is_some())
+            .flag("suns", !self.suns.is_empty());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))
     }
@@ -186,17 +190,19 @@ impl Deferred {
     ) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         let emissive = renderer.scene.has_emissive();
-        let layout = deferred_layout(gpu, emissive, model_ids, inputs.has_table());
+        let dielectrics = renderer.scene.has_dielectrics();
+        let layout = deferred_layout(gpu, [emissive, model_ids, dielectrics], inputs.bound());
         let shader = lists
             .options
             .set_flags(shaders::lighting(LISTS_GROUP))
             .module("package::strategy", lists.lookup.module.source())
             .flag("model_ids", model_ids)
+            .flag("dielectrics", dielectrics)
             .flag("emissive", emissive);
-        // SAFETY: its one loop counts up to the length of a list, which is a `u32` read once.
-        // The strategy's author vouches for its look-up.
-        #[allow(unsafe_code, reason = "its loop ends")]
-        let module = unsafe { shader.create_uncounted(&gpu.device, "package::deferred") }?;
+        // SAFETY: its loops count up to the number of suns and to the length of a list, which is a
+        // `u32` read once. The strategy's author vouches for its look-up.
+        #[allow(unsafe_code, reason = "its loops end")]
+        let module = unsafe { shader.create_uncounted(gpu, "package::deferred") }?;
         let pipeline = compute_pipeline(
             gpu,
             &[renderer.frame.layout(), lists.lookup.layout, &layout],
@@ -222,6 +228,8 @@ impl Deferred {
         ];
         entries.extend(self.inputs.entries());
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
+        let dielectric = targets.dielectric.as_ref();
+        entries.extend(dielectric.map(|view| texture(DIELECTRIC_BINDING, view)));
         if self.model_ids {
             entries.push(texture(MODEL_BINDING, &targets.model_ids));
         }
@@ -252,19 +260,7 @@ pub(crate) fn compute_pipeline(
     entry_point: &str,
 ) -> wgpu::ComputePipeline {
     let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(|l| Some(*l)).collect();
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(entry_point),
-        bind_group_layouts: &layouts,
-        immediate_size: 0,
-    });
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(&layout),
-        module,
-        entry_point: Some(entry_point),
-        compilation_options: Default::default(),
-        cache: None,
-    })
+    gpu.compute_pipeline(module, entry_point, &layouts, true)
 }
 
 /// A bind group entry of an image.
@@ -296,11 +292,13 @@ pub(crate) const TEXELS: wgpu::TextureSampleType =
 /// Where deferred lighting and the probe bind model ids.
 pub(crate) const MODEL_BINDING: u32 = 5;
 
+/// Where deferred lighting binds what dielectrics reflect.
+const DIELECTRIC_BINDING: u32 = 11;
+
 fn deferred_layout(
     gpu: &Gpu,
-    emissive: bool,
-    model_ids: bool,
-    table: bool,
+    [emissive, model_ids, dielectrics]: [bool; 3],
+    bound: Bound,
 ) -> wgpu::BindGroupLayout {
     let mut entries = vec![
         texture_entry(0, wgpu::TextureSampleType::Depth),
@@ -317,15 +315,15 @@ fn deferred_layout(
             count: None,
         },
     ];
-    entries.extend(LightingInputs::layout(table, wgpu::ShaderStages::COMPUTE));
+    entries.extend(LightingInputs::layout(bound, wgpu::ShaderStages::COMPUTE));
     if emissive {
         entries.push(texture_entry(3, TEXELS));
+    }
+    if dielectrics {
+        entries.push(texture_entry(DIELECTRIC_BINDING, TEXELS));
     }
     if model_ids {
         entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
     }
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shade"),
-        entries: &entries,
-    })
+    gpu.bind_group_layout("shade", &entries)
 }

@@ -1,7 +1,7 @@
-//! What lighting reads beside surfaces, lights and lists: its numbers, and the table of linearly
-//! transformed cosines where a model of area lights looks it up.
+//! What lighting reads beside surfaces, lights and lists: its numbers, the suns where there are any,
+//! and the table of linearly transformed cosines where a model of area lights looks it up.
 
-use assign::{Gpu, entry, storage_entry, uniform_entry};
+use assign::{Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
 
 use crate::{LightingOptions, ShadingError, ltc};
@@ -24,11 +24,70 @@ pub struct LightingRecord {
     pub applicable_lights: f32,
 }
 
+/// Where `Suns` is bound in group 2.
+pub(crate) const SUNS_BINDING: u32 = 10;
+
+/// `suns.wesl`, `struct Sun`. 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SunRecord {
+    /// Unit vector to the sun, world space, and padding.
+    pub to_sun: [f32; 4],
+    /// Linear RGB of a surface that faces it, and padding.
+    pub irradiance: [f32; 4],
+}
+
+/// `suns.wesl`, `struct Suns`. 272 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SunsRecord {
+    /// The suns, those beyond the count unused.
+    pub suns: [SunRecord; MAX_SUNS],
+    /// How many there are.
+    pub count: u32,
+    /// Pads to 16 bytes.
+    pub padding: [u32; 3],
+}
+
+impl From<&Suns> for SunsRecord {
+    fn from(suns: &Suns) -> Self {
+        let mut record = Self { count: suns.as_slice().len() as u32, ..Self::default() };
+        for (slot, Sun { direction, irradiance }) in record.suns.iter_mut().zip(suns.as_slice()) {
+            slot.to_sun = (-direction.normalize()).extend(0.0).to_array();
+            slot.irradiance = irradiance.extend(0.0).to_array();
+        }
+        record
+    }
+}
+
+/// Which resources a set of options binds beside its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Bound {
+    pub(crate) table: bool,
+    pub(crate) suns: bool,
+}
+
+impl Bound {
+    /// Every combination, each at its [`index`](Self::index).
+    pub(crate) const ALL: [Self; 4] = [
+        Self { table: false, suns: false },
+        Self { table: true, suns: false },
+        Self { table: false, suns: true },
+        Self { table: true, suns: true },
+    ];
+
+    /// Its place in [`ALL`](Self::ALL).
+    pub(crate) fn index(self) -> usize {
+        usize::from(self.table) + 2 * usize::from(self.suns)
+    }
+}
+
 /// The resources of one set of options.
 #[derive(Debug)]
 pub(crate) struct LightingInputs {
     uniform: wgpu::Buffer,
     table: Option<wgpu::Buffer>,
+    suns: Option<wgpu::Buffer>,
 }
 
 impl LightingInputs {
@@ -53,33 +112,42 @@ impl LightingInputs {
                 Some(buffer)
             }
         };
-        Ok(Self { uniform, table })
+        let suns = (!options.suns.is_empty()).then(|| {
+            let record = SunsRecord::from(&options.suns);
+            let buffer = gpu.uniform("suns", size_of::<SunsRecord>() as u64);
+            gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&record));
+            buffer
+        });
+        Ok(Self { uniform, table, suns })
     }
 
     /// Layout entries of group 2, for the stages that light.
     pub(crate) fn layout(
-        reads_table: bool,
+        bound: Bound,
         stages: wgpu::ShaderStages,
     ) -> impl Iterator<Item = wgpu::BindGroupLayoutEntry> {
-        let table = reads_table.then(|| storage_entry(LTC_BINDING, stages, true));
-        [uniform_entry(LIGHTING_BINDING, stages)].into_iter().chain(table)
+        let table = bound.table.then(|| storage_entry(LTC_BINDING, stages, true));
+        let suns = bound.suns.then(|| uniform_entry(SUNS_BINDING, stages));
+        [uniform_entry(LIGHTING_BINDING, stages)].into_iter().chain(table).chain(suns)
     }
 
     /// Bind group entries of group 2.
     pub(crate) fn entries(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
         let table = self.table.as_ref().map(|table| entry(LTC_BINDING, table));
-        [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table)
+        let suns = self.suns.as_ref().map(|suns| entry(SUNS_BINDING, suns));
+        [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns)
     }
 
-    /// Whether the table is among them.
-    pub(crate) fn has_table(&self) -> bool {
-        self.table.is_some()
+    /// Which of them there are.
+    pub(crate) fn bound(&self) -> Bound {
+        Bound { table: self.table.is_some(), suns: self.suns.is_some() }
     }
 }
 
 impl LightingOptions {
-    /// Whether shading looks the table up.
-    pub(crate) fn reads_table(&self) -> bool {
-        self.kinds.areas && self.area.table().is_some()
+    /// What their shader binds.
+    pub(crate) fn bound(&self) -> Bound {
+        let table = self.kinds.areas && self.area.table().is_some();
+        Bound { table, suns: !self.suns.is_empty() }
     }
 }

@@ -55,7 +55,7 @@ impl LightTotals {
 
     /// Whether an adapter lights a sample by all of them: a list may be all lights at any time.
     pub(crate) fn check(&self, gpu: &Gpu, options: LightingOptions) -> Result<(), ShadingError> {
-        self.check_rounds(gpu, self.rounds(options.area))
+        self.check_rounds(gpu, self.rounds(options.area) + rounds_of_suns(options))
     }
 
     /// The same where light operations are counted, which walks the vertices twice more: for the closest
@@ -65,7 +65,8 @@ impl LightTotals {
         gpu: &Gpu,
         options: LightingOptions,
     ) -> Result<(), ShadingError> {
-        self.check_rounds(gpu, self.rounds(options.area) + 2 * (self.vertices + self.areas))
+        let walks = 2 * (self.vertices + self.areas);
+        self.check_rounds(gpu, self.rounds(options.area) + rounds_of_suns(options) + walks)
     }
 
     fn check_rounds(&self, gpu: &Gpu, rounds: u64) -> Result<(), ShadingError> {
@@ -82,6 +83,14 @@ impl LightTotals {
             .into()),
             _ => Ok(()),
         }
+    }
+}
+
+/// A round for each sun, and one to end, where there are suns.
+fn rounds_of_suns(options: LightingOptions) -> u64 {
+    match options.suns.as_slice().len() as u64 {
+        0 => 0,
+        count => count + 1,
     }
 }
 

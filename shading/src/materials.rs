@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use assign::Gpu;
 use bytemuck::{Pod, Zeroable, cast_slice};
-use scenes::{Encoding, Filter, Image, Material, Sampler, Scene, TextureRef, Wrap};
+use scenes::{Dielectric, Encoding, Filter, Image, Material, Sampler, Scene, TextureRef, Wrap};
 use wgpu::util::DeviceExt;
 
 use crate::{ShadingError, mips::mip_chain};
 
-/// `scene.wesl`, `struct Material`. 176 bytes.
+/// `scene.wesl`, `struct Material`. 192 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct MaterialRecord {
@@ -27,6 +27,8 @@ pub struct MaterialRecord {
     pub alpha_cutoff: f32,
     /// Pads to 16 bytes.
     pub unused: f32,
+    /// What the dielectric share reflects at normal incidence, and at grazing incidence.
+    pub dielectric: [f32; 4],
     /// Rows of each texture's uv transform.
     pub uv_transforms: [[f32; 4]; 8],
 }
@@ -39,6 +41,9 @@ pub(crate) struct MaterialKey {
     pub(crate) uv_transforms: bool,
     pub(crate) mask: bool,
     pub(crate) double_sided: bool,
+    pub(crate) unlit: bool,
+    /// Whether the mesh that is drawn has colours.
+    pub(crate) vertex_colors: bool,
 }
 
 /// The flags of the four textures, in binding order: slot i has bindings 2i and 2i + 1.
@@ -54,6 +59,8 @@ impl MaterialKey {
             uv_transforms: textures.iter().flatten().any(moved),
             mask: material.alpha_cutoff.is_some(),
             double_sided: material.double_sided,
+            unlit: material.unlit,
+            vertex_colors: false,
         }
     }
 }
@@ -66,6 +73,8 @@ pub(crate) struct Materials {
     layouts: HashMap<[bool; 4], wgpu::BindGroupLayout>,
     pub(crate) factors: wgpu::Buffer,
     pub(crate) has_emissive: bool,
+    /// Whether any reflects other than glTF's plain dielectric does.
+    pub(crate) has_dielectrics: bool,
 }
 
 impl Materials {
@@ -100,6 +109,7 @@ impl Materials {
             layouts,
             factors,
             has_emissive: scene.materials.iter().any(|m| m.emissive != glam::Vec3::ZERO),
+            has_dielectrics: scene.materials.iter().any(|m| m.dielectric != Dielectric::default()),
         })
     }
 
@@ -132,6 +142,7 @@ fn record(material: &Material) -> MaterialRecord {
         normal_scale: material.normal_scale,
         alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
         unused: 0.0,
+        dielectric: material.dielectric.f0.extend(material.dielectric.f90).to_array(),
         uv_transforms,
     }
 }

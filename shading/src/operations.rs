@@ -102,23 +102,20 @@ pub fn count_operations(
         entry(EXPOSURE_BINDING, &shown),
     ];
     let inputs = LightingInputs::new(gpu, options)?;
-    entries.extend(LightingInputs::layout(inputs.has_table(), stages));
+    entries.extend(LightingInputs::layout(inputs.bound(), stages));
     resources.extend(inputs.entries());
     let model_ids = strategy.needs().models;
     if model_ids {
         entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
         resources.push(texture(MODEL_BINDING, &targets.model_ids));
     }
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("operations"),
-        entries: &entries,
-    });
+    let layout = gpu.bind_group_layout("operations", &entries);
     let lookup = strategy.lookup();
     let module = options
         .set_flags(shaders::lighting(LISTS_GROUP))
         .module("package::strategy", lookup.module.source())
         .flag("model_ids", model_ids)
-        .create(&gpu.device, "package::operations")?;
+        .create(gpu, "package::operations")?;
     let layouts = [renderer.frame.layout(), lookup.layout, &layout];
     let pipeline = compute_pipeline(gpu, &layouts, &module, "count_operations");
     let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

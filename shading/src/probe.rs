@@ -68,15 +68,12 @@ pub fn probe(
         entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
         resources.push(texture(MODEL_BINDING, &renderer.targets.model_ids));
     }
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("probe"),
-        entries: &entries,
-    });
+    let layout = gpu.bind_group_layout("probe", &entries);
     let lookup = strategy.lookup();
     let module = shaders::lighting(LISTS_GROUP)
         .module("package::strategy", lookup.module.source())
         .flag("model_ids", model_ids)
-        .create(&gpu.device, "package::probe")?;
+        .create(gpu, "package::probe")?;
     let pipeline =
         compute_pipeline(gpu, &[renderer.frame.layout(), lookup.layout, &layout], &module, "probe");
     let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -8,11 +8,12 @@ use crate::{
     ShadingError,
     geometry::{DrawKey, SceneGpu},
     lighting::LightingOptions,
+    lighting_inputs::Bound,
     materials::TEXTURE_FLAGS,
     shaders,
     targets::{
-        BASE_COLOR_FORMAT, DEPTH_FORMAT, EMISSIVE_FORMAT, MODEL_FORMAT, NORMAL_FORMAT,
-        RADIANCE_FORMAT,
+        BASE_COLOR_FORMAT, DEPTH_FORMAT, DIELECTRIC_FORMAT, EMISSIVE_FORMAT, MODEL_FORMAT,
+        NORMAL_FORMAT, RADIANCE_FORMAT,
     },
 };
 
@@ -83,8 +84,21 @@ impl RasterPipelines {
     }
 }
 
+/// What a scene's surfaces have beside colour, normal and roughness.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown {
+    emissive: bool,
+    dielectrics: bool,
+}
+
+impl Shown {
+    fn of(scene: &SceneGpu) -> Self {
+        Self { emissive: scene.has_emissive(), dielectrics: scene.has_dielectrics() }
+    }
+}
+
 /// The WESL of one pass for one material, and the module that is its root.
-pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> Shader<'a> {
+pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Shader<'a> {
     let material = key.material;
     let is = |wanted: &str| match pass {
         RasterPass::Depth => wanted == "depth",
@@ -102,7 +116,10 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, emissive: bool) -> 
         .flag("mask", is("depth") && material.mask)
         .flag("forward_mask", pass.writes_depth() && is("forward") && material.mask)
         .flag("gbuffer_ids", matches!(pass, RasterPass::GBuffer { ids: true }))
-        .flag("emissive", emissive && shades)
+        .flag("emissive", shown.emissive && shades)
+        .flag("dielectrics", shown.dielectrics && shades)
+        .flag("unlit", material.unlit)
+        .flag("vertex_colors", material.vertex_colors)
         .flag("uv_transforms", material.uv_transforms);
     for (slot, flag) in TEXTURE_FLAGS.into_iter().enumerate() {
         shader = shader.flag(flag, material.textures[slot]);
@@ -124,25 +141,27 @@ fn pipeline(
     pass: RasterPass<'_>,
     key: DrawKey,
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
-    let shader = shader(pass, key, scene.has_emissive());
-    // SAFETY: forward lighting's one loop counts up to the length of a list, which is a `u32` read
-    // once; the strategy's author vouches for its look-up. The other passes have no loop.
-    #[allow(unsafe_code, reason = "its loop ends")]
-    let module = unsafe { shader.create_uncounted(&gpu.device, "package::geometry") }?;
-    let (vertex, fragment, formats) = entry_points(pass, key, scene.has_emissive());
-    let (lists, reads_table) = match pass {
-        RasterPass::Forward { lists, .. } => {
-            (Some(lists.lookup.layout), lists.options.reads_table())
-        }
-        _ => (None, false),
+    let shown = Shown::of(scene);
+    let shader = shader(pass, key, shown);
+    // SAFETY: forward lighting's loops count up to the number of suns and to the length of a list,
+    // which is a `u32` read once; the strategy's author vouches for its look-up. The other passes have
+    // no loop.
+    #[allow(unsafe_code, reason = "its loops end")]
+    let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;
+    let (vertex, fragment, formats) = entry_points(pass, key, shown);
+    let (lists, bound) = match pass {
+        RasterPass::Forward { lists, .. } => (Some(lists.lookup.layout), lists.options.bound()),
+        _ => (None, Bound { table: false, suns: false }),
     };
-    let scene_layout = scene.layout(reads_table);
+    let scene_layout = scene.layout(bound);
     let textures = fragment.and_then(|_| scene.materials.layout(key.material));
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
         bind_group_layouts: &[Some(frame.layout()), lists, Some(scene_layout), textures],
         immediate_size: 0,
     });
+    let without_colors = [Some(vertex_layout())];
+    let with_colors = [Some(vertex_layout()), Some(color_layout())];
     let is_depth = pass.writes_depth();
     let nearer = match depth {
         DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
@@ -157,7 +176,7 @@ fn pipeline(
             module: &module,
             entry_point: Some(vertex),
             compilation_options: Default::default(),
-            buffers: &[Some(vertex_layout())],
+            buffers: if key.material.vertex_colors { &with_colors } else { &without_colors },
         },
         primitive: wgpu::PrimitiveState {
             front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
@@ -187,15 +206,16 @@ fn pipeline(
 fn entry_points(
     pass: RasterPass<'_>,
     key: DrawKey,
-    emissive: bool,
+    shown: Shown,
 ) -> (&'static str, Option<&'static str>, Vec<Option<wgpu::TextureFormat>>) {
     match pass {
         RasterPass::Depth if key.material.mask => ("vertex_surface", Some("fragment_mask"), vec![]),
         RasterPass::Depth => ("vertex_depth", None, vec![]),
         RasterPass::GBuffer { ids } => {
-            let emissive = emissive.then_some(EMISSIVE_FORMAT);
+            let emissive = shown.emissive.then_some(EMISSIVE_FORMAT);
             let ids = ids.then_some(MODEL_FORMAT);
-            let formats = vec![Some(BASE_COLOR_FORMAT), Some(NORMAL_FORMAT), emissive, ids];
+            let mut formats = vec![Some(BASE_COLOR_FORMAT), Some(NORMAL_FORMAT), emissive, ids];
+            formats.extend(shown.dielectrics.then_some(Some(DIELECTRIC_FORMAT)));
             ("vertex_surface", Some("fragment_gbuffer"), formats)
         }
         RasterPass::Forward { .. } => {
@@ -205,6 +225,15 @@ fn entry_points(
             ("vertex_surface", Some("fragment_model_ids"), vec![Some(MODEL_FORMAT)])
         }
         RasterPass::Clay => ("vertex_surface", Some("fragment_clay"), vec![Some(RADIANCE_FORMAT)]),
+    }
+}
+
+fn color_layout() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![4 => Float32x4];
+    wgpu::VertexBufferLayout {
+        array_stride: 16,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &ATTRIBUTES,
     }
 }
 

@@ -4,7 +4,7 @@
 //! around each light are drawn where they lie behind the surface, every fragment adds one light to
 //! one pixel, and blending sums. A pixel is read and written once per volume that covers it.
 
-use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, View};
+use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, Suns, View};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
@@ -27,7 +27,8 @@ pub const RASTER_SPHERE_TOLERANCE: f64 = 1e-3;
 #[derive(Debug)]
 pub struct RasterSpheres {
     volumes: wgpu::RenderPipeline,
-    emission: Option<wgpu::RenderPipeline>,
+    /// Emission and suns, where there are any.
+    first: Option<wgpu::RenderPipeline>,
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
     vertex_count: u32,
@@ -45,8 +46,9 @@ impl RasterSpheres {
         kinds: LightKinds,
         area: AreaModel,
         cut: Cut,
+        suns: Suns,
     ) -> Result<Self, ShadingError> {
-        let options = LightingOptions { kinds, area, cut, ..LightingOptions::default() };
+        let options = LightingOptions { kinds, area, cut, suns, ..LightingOptions::default() };
         let gpu = &renderer.gpu;
         if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
             return Err(AssignError::Unsupported {
@@ -63,20 +65,16 @@ impl RasterSpheres {
             texture_entry(2, TEXELS),
         ];
         entries.extend(emissive.then(|| texture_entry(3, TEXELS)));
+        let dielectrics = renderer.scene.has_dielectrics();
+        entries.extend(dielectrics.then(|| texture_entry(4, TEXELS)));
         for entry in &mut entries {
             entry.visibility = wgpu::ShaderStages::FRAGMENT;
         }
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("raster spheres"),
-            entries: &entries,
-        });
+        let layout = gpu.bind_group_layout("raster spheres", &entries);
         let inputs = LightingInputs::new(gpu, options)?;
         let stages = wgpu::ShaderStages::FRAGMENT;
-        let entries: Vec<_> = LightingInputs::layout(inputs.has_table(), stages).collect();
-        let inputs_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("raster spheres"),
-            entries: &entries,
-        });
+        let entries: Vec<_> = LightingInputs::layout(inputs.bound(), stages).collect();
+        let inputs_layout = gpu.bind_group_layout("raster spheres", &entries);
         let entries: Vec<_> = inputs.entries().collect();
         let inputs = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("raster spheres"),
@@ -86,14 +84,16 @@ impl RasterSpheres {
         let module = options
             .set_flags(shaders::lighting(LISTS_GROUP))
             .flag("emissive", emissive)
-            .create(&gpu.device, "package::raster_spheres")?;
+            .flag("dielectrics", dielectrics)
+            .create(gpu, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
             pipeline(renderer, [&layout, &inputs_layout], &module, [vertex, fragment], volumes)
         };
         let triangles = sphere();
         Ok(Self {
             volumes: pipeline("vertex_volume", "fragment_volume", true),
-            emission: emissive.then(|| pipeline("vertex_all", "fragment_emission", false)),
+            first: (emissive || !suns.is_empty())
+                .then(|| pipeline("vertex_all", "fragment_first", false)),
             vertex_count: triangles.len() as u32,
             triangles: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("sphere"),
@@ -129,6 +129,7 @@ impl RasterSpheres {
             texture(2, &targets.normal),
         ];
         entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
+        entries.extend(targets.dielectric.as_ref().map(|view| texture(4, view)));
         let images = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("raster spheres"),
             layout: &self.layout,
@@ -159,8 +160,8 @@ impl RasterSpheres {
             pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
             pass.set_bind_group(1, &images, &[]);
             pass.set_bind_group(2, &self.inputs, &[]);
-            if let Some(emission) = &self.emission {
-                pass.set_pipeline(emission);
+            if let Some(first) = &self.first {
+                pass.set_pipeline(first);
                 pass.draw(0..3, 0..1);
             }
             pass.set_pipeline(&self.volumes);

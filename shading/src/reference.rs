@@ -1,7 +1,8 @@
 //! The lighting function in f64 on the CPU: what the shaders are tested against.
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Sun};
 use glam::DVec3;
+use scenes::Dielectric;
 
 use crate::{area_reference::SeenArea, ltc};
 
@@ -16,6 +17,32 @@ pub struct Surface {
     pub normal: DVec3,
     /// Perceptual roughness.
     pub roughness: f64,
+    /// What its dielectric share reflects.
+    pub dielectric: Reflectance,
+}
+
+/// What a dielectric reflects at normal and at grazing incidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflectance {
+    /// At normal incidence, linear RGB.
+    pub f0: DVec3,
+    /// At grazing incidence.
+    pub f90: f64,
+}
+
+impl Default for Reflectance {
+    fn default() -> Self {
+        Self { f0: DVec3::splat(DIELECTRIC_F0), f90: 1.0 }
+    }
+}
+
+impl From<Dielectric> for Reflectance {
+    fn from(dielectric: Dielectric) -> Self {
+        if dielectric == Dielectric::default() {
+            return Self::default();
+        }
+        Self { f0: dielectric.f0.as_dvec3(), f90: f64::from(dielectric.f90) }
+    }
 }
 
 /// Below this perceptual roughness GGX's peak overflows single precision: `brdf.wesl`.
@@ -43,7 +70,12 @@ pub fn reflect_light(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> DVec3
 
 /// Reflectance at normal incidence.
 pub(crate) fn f0_of(surface: &Surface) -> DVec3 {
-    DVec3::splat(DIELECTRIC_F0).lerp(surface.base_color, surface.metallic)
+    surface.dielectric.f0.lerp(surface.base_color, surface.metallic)
+}
+
+/// Reflectance at grazing incidence.
+pub(crate) fn f90_of(surface: &Surface) -> f64 {
+    surface.dielectric.f90 + (1.0 - surface.dielectric.f90) * surface.metallic
 }
 
 /// The BRDF for light from a direction.
@@ -51,18 +83,28 @@ pub(crate) fn lobes_of(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> Lob
     let cos_l = surface.normal.dot(to_light).max(0.0);
     let cos_v = surface.normal.dot(to_eye).abs().max(MIN_COS_VIEW);
     let half_way = (to_eye + to_light).normalize_or_zero();
-    let cos_h = surface.normal.dot(half_way).clamp(0.0, 1.0);
     let cos_vh = to_eye.dot(half_way).clamp(0.0, 1.0);
     let alpha_2 = surface.roughness.max(MIN_ROUGHNESS).powi(4);
-    let peak = cos_h * cos_h * (alpha_2 - 1.0) + 1.0;
-    let distribution = alpha_2 / (std::f64::consts::PI * peak * peak);
+    let distribution = ggx(alpha_2, surface.normal, half_way);
     let smith = |a: f64, b: f64| a * (b * b * (1.0 - alpha_2) + alpha_2).sqrt();
     let visibility = 0.5 / (smith(cos_l, cos_v) + smith(cos_v, cos_l)).max(1e-6);
     let f0 = f0_of(surface);
-    let fresnel = f0 + (DVec3::ONE - f0) * (1.0 - cos_vh).powi(5);
+    let f90 = DVec3::splat(f90_of(surface));
+    let fresnel = f0 + (f90 - f0) * (1.0 - cos_vh).powi(5);
     let diffuse = (DVec3::ONE - fresnel) * (1.0 - surface.metallic) * surface.base_color
         / std::f64::consts::PI;
     Lobes { diffuse, specular: distribution * visibility * fresnel }
+}
+
+/// GGX's distribution of half vectors (Walter et al. 2007, equation 33), for alpha squared and unit
+/// vectors. Its denominator is `cos^2 (alpha^2 - 1) + 1`, which loses its digits where the cosine is nearly
+/// 1 and alpha is small: highlights. So the squared sine comes from the distance q of the two vectors'
+/// ends, `sin^2 = q^2 (1 - q^2 / 4)`. A half vector below the horizon counts as one on it.
+pub(crate) fn ggx(alpha_2: f64, normal: DVec3, half_way: DVec3) -> f64 {
+    let q_2 = normal.distance_squared(half_way).min(2.0);
+    let sin_2 = q_2 * (1.0 - 0.25 * q_2);
+    let peak = sin_2 * (1.0 - alpha_2) + alpha_2;
+    alpha_2 / (std::f64::consts::PI * peak * peak)
 }
 
 /// The window `(1 - (d / range)^4)^2`, clamped at 0.
@@ -96,6 +138,12 @@ pub fn light_contribution(
     point_contribution(light, position, surface, to_eye)
 }
 
+/// Radiance that a sun adds to a surface.
+pub fn sun_contribution(sun: &Sun, surface: &Surface, to_eye: DVec3) -> DVec3 {
+    let to_sun = -sun.direction.as_dvec3().normalize();
+    sun.irradiance.as_dvec3() * reflect_light(surface, to_eye, to_sun)
+}
+
 /// What linearly transformed cosines make of an area light at `position`; of other lights
 /// [`light_contribution`].
 pub fn ltc_contribution(
@@ -115,12 +163,30 @@ pub fn ltc_contribution(
 
 /// A point, a spot or a VPL; an area light counts as a point at its middle that faces all ways.
 fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye: DVec3) -> DVec3 {
+    let (arriving, to_light) = arriving(light, position);
+    arriving * reflect_light(surface, to_eye, to_light)
+}
+
+/// Radiance that a surface sends out alike in all directions where it reflects as a virtual point light
+/// emits: diffusely, what is left of Fresnel's term being its mean over these directions. An area light
+/// counts as a point.
+pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surface) -> DVec3 {
+    let (arriving, to_light) = arriving(light, position);
+    let cos = surface.normal.dot(to_light).clamp(0.0, 1.0);
+    let kept = (DVec3::ONE - f0_of(surface)) * (1.0 - ltc::diffuse_fresnel(cos));
+    let albedo = (1.0 - surface.metallic) * surface.base_color * kept;
+    arriving * albedo * cos / std::f64::consts::PI
+}
+
+/// Irradiance across the way from a light to a position, and the unit vector to the light.
+fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
     let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));
     if let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape {
         let cos_outer = f64::from(outer_angle).cos();
-        let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-3);
+        // Equal angles end the light at once.
+        let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-30);
         let cos = direction.as_dvec3().normalize().dot(-to_light);
         weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);
     }
@@ -129,7 +195,7 @@ fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye:
         weight = fall_off_beyond(distance_2, f64::from(light.range_m), min_m)
             * normal.as_dvec3().normalize().dot(-to_light).max(0.0);
     }
-    light.intensity.as_dvec3() * weight * reflect_light(surface, to_eye, to_light)
+    (light.intensity.as_dvec3() * weight, to_light)
 }
 
 #[cfg(test)]
@@ -139,7 +205,8 @@ mod tests {
     /// White metal, or a black dielectric: the specular term alone.
     fn surface(roughness: f64, metallic: f64) -> Surface {
         let base_color = DVec3::splat(metallic);
-        Surface { base_color, metallic, normal: DVec3::Z, roughness }
+        let dielectric = Reflectance::default();
+        Surface { base_color, metallic, normal: DVec3::Z, roughness, dielectric }
     }
 
     /// Light reflected over the hemisphere for unit irradiance, by the midpoint rule.

@@ -102,7 +102,7 @@ impl Renderer {
         };
         let models = scene.models.iter().map(model_box).collect();
         let scene = SceneGpu::new(gpu, scene)?;
-        let targets = Targets::new(gpu, view, scene.has_emissive())?;
+        let targets = Targets::new(gpu, view, &scene)?;
         let inputs = LightingInputs::new(gpu, LightingOptions::default())?;
         let pipelines = |pass| RasterPipelines::new(gpu, &frame, &scene, view.depth, pass);
         Ok(Self {
@@ -128,7 +128,7 @@ impl Renderer {
     pub fn beside(&self, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(&self.gpu);
-        let targets = Targets::new(&self.gpu, view, self.scene.has_emissive())?;
+        let targets = Targets::new(&self.gpu, view, &self.scene)?;
         let depth = if view.depth == self.depth_mapping {
             self.depth.clone()
         } else {
@@ -184,7 +184,7 @@ impl Renderer {
         let fits = viewport.x.saturating_add(viewport.width) <= width
             && viewport.y.saturating_add(viewport.height) <= height;
         if !fits || view.depth != self.depth_mapping {
-            self.targets = Targets::new(&self.gpu, view, self.scene.has_emissive())?;
+            self.targets = Targets::new(&self.gpu, view, &self.scene)?;
             let remade = view.depth != self.depth_mapping;
             self.depth_mapping = view.depth;
             if remade {
@@ -223,6 +223,7 @@ impl Renderer {
         let mut colors = vec![Some(cleared(&targets.base_color)), Some(cleared(&targets.normal))];
         colors.push(targets.emissive.as_ref().map(cleared));
         colors.push(ids.then(|| cleared(&targets.model_ids)));
+        colors.extend(targets.dielectric.as_ref().map(|view| Some(cleared(view))));
         let pipelines = if ids { &self.gbuffer_ids } else { &self.gbuffer };
         let descriptor = wgpu::RenderPassDescriptor {
             color_attachments: &colors,

@@ -18,6 +18,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "model_ids",
         "hard_cut",
         "compensation",
+        "suns",
         "area_point",
         "area_mrp",
         "area_mrp_published",
@@ -31,6 +32,9 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         "forward_mask",
         "gbuffer_ids",
         "emissive",
+        "dielectrics",
+        "unlit",
+        "vertex_colors",
         "uv_transforms",
         "base_color_texture",
         "metallic_roughness_texture",
@@ -51,6 +55,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::area_ltc", include_str!("shaders/area_ltc.wesl"))
         .module("package::ltc_table", include_str!("shaders/ltc_table.wesl"))
         .module("package::ltc_polynomial", crate::ltc::LTC_POLYNOMIAL_WESL)
+        .module("package::suns", include_str!("shaders/suns.wesl"))
         .module("package::lighting", include_str!("shaders/lighting.wesl"))
         .module("package::scene", include_str!("shaders/scene.wesl"))
         .module("package::material", include_str!("shaders/material.wesl"))

@@ -2,7 +2,7 @@
 
 use assign::{AssignError, Gpu, Needs, View};
 
-use crate::{Mode, ShadingError};
+use crate::{Mode, ShadingError, geometry::SceneGpu};
 
 /// Depth format of all passes.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -12,6 +12,8 @@ pub(crate) const BASE_COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R
 pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Emitted radiance.
 pub(crate) const EMISSIVE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// What the dielectric share reflects at normal and at grazing incidence.
+pub(crate) const DIELECTRIC_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Lit radiance: single precision, so that images compare bit for bit.
 pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Index of the model.
@@ -30,6 +32,9 @@ pub struct Targets {
     pub normal: wgpu::TextureView,
     /// Emitted radiance, where the scene emits.
     pub emissive: Option<wgpu::TextureView>,
+    /// What the dielectric share reflects at normal incidence and, in alpha, at grazing incidence,
+    /// where the scene has other than glTF's plain dielectrics.
+    pub dielectric: Option<wgpu::TextureView>,
     /// Index of each pixel's model, where a strategy asked for it.
     pub model_ids: wgpu::TextureView,
     /// The lit image, linear RGB.
@@ -40,7 +45,7 @@ pub struct Targets {
 
 impl Targets {
     /// Makes targets that hold the view's viewport.
-    pub fn new(gpu: &Gpu, view: &View, emissive: bool) -> Result<Self, ShadingError> {
+    pub(crate) fn new(gpu: &Gpu, view: &View, scene: &SceneGpu) -> Result<Self, ShadingError> {
         let viewport = view.viewport;
         let width = viewport.x.saturating_add(viewport.width);
         let height = viewport.y.saturating_add(viewport.height);
@@ -48,7 +53,14 @@ impl Targets {
         if width == 0 || height == 0 || width.max(height) > limit {
             return Err(ShadingError::Size { width, height, limit });
         }
-        // Depth 4, base colour 4, normal 8, emissive 8, model 4, radiance 16 bytes a pixel; the largest
+        let (needed, offered) = (36, gpu.device.limits().max_color_attachment_bytes_per_sample);
+        if scene.has_emissive() && scene.has_dielectrics() && offered < needed {
+            let what = "a pixel of the G-buffer with emission and reflectances".into();
+            let (bytes, limit) = (needed.into(), offered.into());
+            return Err(AssignError::TooLarge { what, bytes, limit }.into());
+        }
+        // Depth 4, base colour 4, normal 8, emissive 8, model 4, radiance 16 bytes a pixel, and 8 of
+        // reflectances where they differ; the largest
         // must be read back through one buffer.
         let pixels = u64::from(width) * u64::from(height);
         let readable = gpu.device.limits().max_buffer_size;
@@ -57,7 +69,8 @@ impl Targets {
             return Err(AssignError::TooLarge { what, bytes: pixels * 16, limit: readable }.into());
         }
         let what = format!("images of {width}x{height}");
-        Ok(gpu.allocate(&what, pixels * 44, || Self::make(gpu, [width, height], emissive))?)
+        let texel = if scene.has_dielectrics() { 52 } else { 44 };
+        Ok(gpu.allocate(&what, pixels * texel, || Self::make(gpu, [width, height], scene))?)
     }
 
     /// Bytes of the images that are drawn in a mode only for a strategy that needs this: the models of
@@ -70,13 +83,14 @@ impl Targets {
         if mode.is_forward() && mode.has_gbuffer(needs) {
             formats.extend([BASE_COLOR_FORMAT, NORMAL_FORMAT]);
             formats.extend(self.emissive.as_ref().map(|_| EMISSIVE_FORMAT));
+            formats.extend(self.dielectric.as_ref().map(|_| DIELECTRIC_FORMAT));
         }
         let texel = |format: wgpu::TextureFormat| format.block_copy_size(None).unwrap_or(0);
         let texels: u32 = formats.into_iter().map(texel).sum();
         self.size.map(u64::from).iter().product::<u64>() * u64::from(texels)
     }
 
-    fn make(gpu: &Gpu, size: [u32; 2], emissive: bool) -> Self {
+    fn make(gpu: &Gpu, size: [u32; 2], scene: &SceneGpu) -> Self {
         let [width, height] = size;
         let texture = |label, format, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -102,7 +116,12 @@ impl Targets {
             depth: view_of(&texture("depth", DEPTH_FORMAT, sampled)),
             base_color: view_of(&texture("base colour", BASE_COLOR_FORMAT, sampled)),
             normal: view_of(&texture("normal", NORMAL_FORMAT, sampled)),
-            emissive: emissive.then(|| view_of(&texture("emissive", EMISSIVE_FORMAT, sampled))),
+            emissive: scene
+                .has_emissive()
+                .then(|| view_of(&texture("emissive", EMISSIVE_FORMAT, sampled))),
+            dielectric: scene
+                .has_dielectrics()
+                .then(|| view_of(&texture("dielectric", DIELECTRIC_FORMAT, sampled))),
             model_ids: view_of(&texture("model ids", MODEL_FORMAT, sampled)),
             radiance: view_of(&radiance_texture),
             radiance_texture,

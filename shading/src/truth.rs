@@ -1,6 +1,6 @@
 //! The truth about lists, on the CPU in f64: which lights reach which sample.
 
-use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot};
+use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot, Sun, Suns};
 use glam::{DVec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use rayon::prelude::*;
@@ -16,6 +16,7 @@ pub const EDGE: f64 = 1e-6;
 pub struct LightBvh<'a> {
     lights: &'a [Light],
     bvh: Bvh2,
+    suns: Suns,
 }
 
 /// What the truth says of one strategy's lists in one frame.
@@ -65,7 +66,19 @@ impl<'a> LightBvh<'a> {
                 Aabb::new((light.position - reach).into(), (light.position + reach).into())
             })
             .collect();
-        Self { lights, bvh: build_hierarchy(&boxes, BuildEffort::Thorough) }
+        let bvh = build_hierarchy(&boxes, BuildEffort::Thorough);
+        Self { lights, bvh, suns: Suns::default() }
+    }
+
+    /// The same with suns, which reach every sample and stand in no list.
+    #[must_use]
+    pub fn with_suns(self, suns: Suns) -> Self {
+        Self { suns, ..self }
+    }
+
+    /// The suns.
+    pub fn suns(&self) -> &[Sun] {
+        self.suns.as_slice()
     }
 
     /// The lights it was built over.

@@ -167,7 +167,7 @@ fn the_two_weights_of_the_most_representative_point_err_in_different_terms() {
     let [derived, published, point, ltc] =
         [AreaModel::Mrp, AreaModel::MrpPublished, AreaModel::Point, AreaModel::LtcTable].map(of);
     // METHODOLOGY's table of biases by term.
-    let stated = [[0.15, 0.96], [0.47, 40.8], [1.05, 0.51], [-0.001, -0.085]];
+    let stated = [[0.15, 0.96], [0.47, 40.8], [1.05, 0.51], [-0.001, -0.009]];
     for (found, stated) in [derived, published, point, ltc].iter().zip(stated) {
         for (found, stated) in found.iter().zip(stated) {
             let near = 0.01 + 0.02 * f64::abs(stated);

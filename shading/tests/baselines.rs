@@ -8,7 +8,7 @@ use std::f32::consts::FRAC_PI_4;
 
 use assign::{
     Assignment, CullSettings, DepthMapping, EncoderPasses, Everything, Gpu, Light, LightBuffer,
-    LightShape, Projection, View,
+    LightShape, Projection, Suns, View,
 };
 use assign_model::PerModel;
 use glam::{Vec2, Vec3};
@@ -152,15 +152,18 @@ fn raster_spheres_show_the_image_of_no_culling() {
         let all = lights(&view);
         let lights = LightBuffer::new(&gpu, &all).unwrap();
         let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+        // Once with suns: they are drawn in a pass of their own.
+        let suns = if name == "orthographic" { common::suns() } else { Suns::default() };
         let options = LightingOptions {
             kinds: lights.kinds(),
             exit_weight: EVALUATE_ALL,
             cut,
+            suns,
             ..LightingOptions::default()
         };
         let reference = image_of(&gpu, &mut renderer, &view, &lights, Mode::Deferred, options);
         let spheres =
-            RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default(), cut).unwrap();
+            RasterSpheres::new(&renderer, lights.kinds(), AreaModel::default(), cut, suns).unwrap();
         let draw = |lights: &LightBuffer| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let mut passes = EncoderPasses { encoder: &mut encoder };
@@ -177,6 +180,42 @@ fn raster_spheres_show_the_image_of_no_culling() {
         let fewer = LightBuffer::new(&gpu, &all[..60]).unwrap();
         let difference = draw(&fewer).difference(&reference).unwrap();
         assert!(difference.max_rel > 10.0 * RASTER_SPHERE_TOLERANCE, "{name}: {difference:?}");
+    }
+}
+
+/// Suns are added once to every sample, in every mode, and make no difference to what lists hold.
+#[test]
+fn suns_shine_in_every_mode_and_whatever_the_list() {
+    let gpu = common::gpu();
+    let view = common::view([48, 32]);
+    let lights = LightBuffer::new(&gpu, &common::lights(20)).unwrap();
+    let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
+    for mode in Mode::ALL {
+        let mut image = |lights: &LightBuffer, exit_weight, suns| {
+            let options =
+                LightingOptions { kinds: lights.kinds(), exit_weight, suns, ..Default::default() };
+            image_of(&gpu, &mut renderer, &view, lights, mode, options)
+        };
+        let both = image(&lights, EVALUATE_ALL, common::suns());
+        let exits = image(&lights, 0.0, common::suns()).difference(&both).unwrap();
+        assert_eq!(exits.differing_channels, 0, "{mode:?}: {exits:?}");
+        let none = LightBuffer::new(&gpu, &[]).unwrap();
+        let apart = [
+            image(&lights, 0.0, Suns::default()),
+            image(&none, 0.0, common::suns()),
+            image(&none, 0.0, Suns::default()),
+        ];
+        let (mut sunlit, mut pixels) = (0, 0);
+        for (ix, sum) in both.pixels.iter().enumerate() {
+            for channel in 0..3 {
+                let [lamps, suns, emitted] = [0, 1, 2].map(|i| apart[i].pixels[ix][channel]);
+                let expected = lamps + suns - emitted;
+                assert!((sum[channel] - expected).abs() <= 1e-5 * expected + 1e-6, "{mode:?}");
+                sunlit += usize::from(suns > emitted);
+                pixels += 1;
+            }
+        }
+        assert!(sunlit > pixels / 3, "{mode:?}: {sunlit} of {pixels}");
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::mem::offset_of;
 
-use shading::{InstanceRecord, LightingRecord, MaterialRecord};
+use shading::{InstanceRecord, LightingRecord, MaterialRecord, SunRecord, SunsRecord};
 
 /// Name and offset of every field of a Rust struct, in its order.
 macro_rules! fields {
@@ -20,10 +20,13 @@ fn geometry() -> naga::Module {
     naga::front::wgsl::parse_str(&shader.link("package::geometry").unwrap()).unwrap()
 }
 
-/// A shader that lights by samples.
+/// A shader that lights by samples, and by suns.
 fn lighting() -> naga::Module {
     let look_up = include_str!("../../assign/src/shaders/everything.wesl");
-    let shader = shading::lighting_shader().flag("areas", true).flag("area_monte_carlo", true);
+    let shader = shading::lighting_shader()
+        .flag("areas", true)
+        .flag("area_monte_carlo", true)
+        .flag("suns", true);
     let shader = shader.module("package::strategy", look_up);
     naga::front::wgsl::parse_str(&shader.link("package::deferred").unwrap()).unwrap()
 }
@@ -77,7 +80,7 @@ fn instance() {
 #[test]
 fn material() {
     let fields = fields!(MaterialRecord: base_color, emissive, metallic, roughness, normal_scale,
-        alpha_cutoff, unused, uv_transforms);
+        alpha_cutoff, unused, dielectric, uv_transforms);
     check_element("Material", size_of::<MaterialRecord>(), &fields);
 }
 
@@ -85,4 +88,12 @@ fn material() {
 fn lighting_uniform() {
     let fields = fields!(LightingRecord: exit_weight, area_samples, applicable_lights);
     check(&lighting(), "LightingUniform", size_of::<LightingRecord>(), &fields);
+}
+
+#[test]
+fn suns() {
+    let fields = fields!(SunsRecord: suns, count);
+    check(&lighting(), "Suns", size_of::<SunsRecord>(), &fields);
+    let fields = fields!(SunRecord: to_sun, irradiance);
+    check(&lighting(), "Sun", size_of::<SunRecord>(), &fields);
 }

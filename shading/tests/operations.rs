@@ -109,7 +109,8 @@ fn white_terms(
     let radiance = |base_color: f64, metallic: f64| {
         let roughness = f64::from(ROUGHNESS);
         let base_color = DVec3::splat(base_color);
-        let surface = Surface { base_color, metallic, normal, roughness };
+        let dielectric = Default::default();
+        let surface = Surface { base_color, metallic, normal, roughness, dielectric };
         ltc_contribution(table, &white, position, &surface, (eye - position).normalize()).x
     };
     // A metal that reflects as much as a dielectric has the specular term alone.

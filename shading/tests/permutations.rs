@@ -40,6 +40,15 @@ fn area_models() -> Vec<&'static [&'static str]> {
     sets
 }
 
+/// Each set as it is, and the smallest and the largest with suns: no other flag shares a line with theirs.
+fn with_suns(mut sets: Vec<Flags>) -> Vec<Flags> {
+    let ends = [sets.iter().min_by_key(|set| set.len()), sets.iter().max_by_key(|set| set.len())];
+    let sunny = |set: &Flags| set.iter().copied().chain(["suns"]).collect();
+    let sunny: Vec<Flags> = ends.into_iter().flatten().map(sunny).collect();
+    sets.extend(sunny);
+    sets
+}
+
 /// Each set as it is, and with area lights of each model.
 fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
     let models = area_models();
@@ -126,13 +135,16 @@ fn model_ids() {
 
 #[test]
 fn raster_spheres() {
-    for flags in with_areas(subsets(&["emissive", "spots"])) {
+    for flags in with_areas(subsets(&["emissive", "spots", "suns"])) {
         let linked = link("package::raster_spheres", &flags, None);
         let emissive = flags.contains("emissive");
+        let has_suns = flags.contains("suns");
         let expected = if emissive { vec![0, 1, 2, 3] } else { vec![0, 1, 2] };
         let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
         assert_eq!(images, expected, "{flags:?}");
-        assert_eq!(linked.entry_points.len(), if emissive { 4 } else { 2 }, "{flags:?}");
+        let entry_points = if emissive || has_suns { 4 } else { 2 };
+        assert_eq!(linked.entry_points.len(), entry_points, "{flags:?}");
+        assert_eq!(linked.bindings.contains(&(2, 10)), has_suns, "{flags:?}");
     }
 }
 
@@ -158,7 +170,8 @@ fn clay() {
 #[test]
 fn forward() {
     for look_up in LOOK_UPS {
-        let sets = material_flags(Some("forward"), &["emissive", "spots", "forward_mask"]);
+        let sets =
+            with_suns(material_flags(Some("forward"), &["emissive", "spots", "forward_mask"]));
         // Area lights read no texture: one material with all of them will do.
         let areas =
             with_areas(sets.iter().max_by_key(|set| set.len()).into_iter().cloned().collect());
@@ -185,6 +198,7 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
     assert_eq!(of_group(1), lists, "{root} {flags:?} {}", look_up.0);
     let mut images = images.to_vec();
     images.extend(flags.contains("area_ltc_table").then_some(7));
+    images.extend((root == "deferred" && flags.contains("suns")).then_some(10));
     images.sort_unstable();
     assert_eq!(of_group(2), images, "{root} {flags:?} {}", look_up.0);
 }
@@ -192,9 +206,8 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
 #[test]
 fn deferred() {
     for look_up in LOOK_UPS {
-        for flags in
-            with_areas(subsets(&["emissive", "spots", "model_ids", "hard_cut", "compensation"]))
-        {
+        let flags = ["emissive", "spots", "model_ids", "hard_cut", "compensation"];
+        for flags in with_suns(with_areas(subsets(&flags))) {
             let mut images = vec![0, 1, 2, 4, 6];
             images.extend(flags.contains("emissive").then_some(3));
             images.extend(flags.contains("model_ids").then_some(5));
@@ -207,7 +220,7 @@ fn deferred() {
 #[test]
 fn operations() {
     for look_up in LOOK_UPS {
-        for flags in with_areas(subsets(&["spots", "model_ids"])) {
+        for flags in with_suns(with_areas(subsets(&["spots", "model_ids"]))) {
             let mut images = vec![0, 1, 2, 6, 8, 9];
             images.extend(flags.contains("model_ids").then_some(5));
             images.sort_unstable();
@@ -258,6 +271,18 @@ fn flags_change_the_shader() {
     assert!(spots.bindings.contains(&shapes) && !forward.bindings.contains(&shapes));
 }
 
+/// A scene without suns compiles nothing of them and binds nothing for them.
+#[test]
+fn without_suns_the_shader_knows_none() {
+    let source = |flags: &[&'static str]| {
+        let flags = flags.iter().copied().collect();
+        link("package::deferred", &flags, Some(LOOK_UPS[0]))
+    };
+    let (with, without) = (source(&["suns"]), source(&[]));
+    assert!(with.source.contains("sun_light") && with.bindings.contains(&(2, 10)));
+    assert!(!without.source.contains("sun") && !without.bindings.contains(&(2, 10)));
+}
+
 /// A scene without area lights compiles nothing of them and binds nothing for them, whatever the model.
 #[test]
 fn without_area_lights_no_model_changes_the_shader() {
@@ -277,4 +302,30 @@ fn without_area_lights_no_model_changes_the_shader() {
         assert!(!sources.contains(&with.source), "{model:?} compiles as another does");
         sources.push(with.source);
     }
+}
+
+/// Flags of materials that few scenes have, beside each that they touch.
+#[test]
+fn flags_of_rare_materials() {
+    let base = ["base_color_texture", "emissive"];
+    for rare in subsets(&["vertex_colors", "unlit", "dielectrics"]) {
+        let with = |more: &[&'static str]| -> Flags {
+            rare.iter().chain(&base).chain(more).copied().collect()
+        };
+        check_geometry(&with(&["gbuffer", "gbuffer_ids"]), None, Some("fragment_gbuffer"), &[0]);
+        check_geometry(&with(&["mask"]), None, Some("fragment_mask"), &[0]);
+        check_geometry(&with(&["forward"]), Some(LOOK_UPS[0]), Some("fragment_forward"), &[0]);
+        let plain = with(&["gbuffer"]).difference(&rare).copied().collect();
+        let changes = rare.contains("vertex_colors") || rare.contains("dielectrics");
+        let [a, b] =
+            [with(&["gbuffer"]), plain].map(|f| link("package::geometry", &f, None).source);
+        assert_eq!(a != b, changes, "{rare:?}");
+    }
+    for flags in with_areas(vec![["dielectrics"].into()]) {
+        check_compute("deferred", &flags, LOOK_UPS[0], LOOK_UPS[0].2, &[0, 1, 2, 4, 6, 10]);
+        let spheres = link("package::raster_spheres", &flags, None);
+        assert!(spheres.bindings.contains(&(1, 4)), "{flags:?}");
+    }
+    let surfaces = link("package::surfaces", &["dielectrics"].into(), None);
+    assert!(surfaces.bindings.contains(&(1, 8)) && surfaces.bindings.contains(&(1, 9)));
 }

@@ -144,7 +144,8 @@ fn reflected(scene: &TracedScene<'_>, light: &Light, view: &View) -> DVec3 {
 /// out over the hemisphere.
 fn diffuse_albedo(base_color: DVec3, metallic: f64, cos: f64) -> DVec3 {
     let to_light = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let all = Surface { base_color, metallic, normal: DVec3::Z, roughness: 1.0 };
+    let dielectric = Default::default();
+    let all = Surface { base_color, metallic, normal: DVec3::Z, roughness: 1.0, dielectric };
     // A metal that reflects as much at normal incidence has the specular term only.
     let f0 = DVec3::splat(0.04).lerp(base_color, metallic);
     let specular = Surface { base_color: f0, metallic: 1.0, ..all };

@@ -1,6 +1,6 @@
 //! The reflective shadow map that VPLs come from.
 
-use assign::{AssignError, Light, LightShape, Projection, View};
+use assign::{AssignError, Light, LightShape, Projection, SpotRamp, View};
 use bytemuck::{Pod, Zeroable};
 
 /// The most texels of a map's side: one index a thread of 65,535 workgroups.
@@ -35,11 +35,11 @@ pub struct RsmUniform {
     pub range_m: f32,
     /// Unit vector along the cone's axis.
     pub direction: [f32; 3],
-    /// Cosine of the cone's half angle.
-    pub cos_outer: f32,
+    /// Squared chord of the cone's half angle: [`SpotRamp`].
+    pub outer_chord_2: f32,
     /// The light, world space, metres.
     pub light_world: [f32; 3],
-    /// 1 over the ramp's width in cosines.
+    /// 1 over the ramp's width in squared chords.
     pub ramp_scale: f32,
     /// Texels of a row, and rows.
     pub size: [u32; 2],
@@ -81,17 +81,16 @@ impl Rsm<'_> {
         let LightShape::Spot { direction, inner_angle, outer_angle } = self.light.shape else {
             return refuse("light of the RSM", format!("{:?}", self.light.kind()), "a spot");
         };
-        let cos_outer = outer_angle.cos();
+        let ramp = SpotRamp::new(inner_angle, outer_angle);
         let side = size[0].max(size[1]).next_power_of_two();
         let (levels, level_count) = levels(size);
         Ok(RsmUniform {
             intensity: self.light.intensity.to_array(),
             range_m: self.light.range_m,
             direction: direction.normalize().to_array(),
-            cos_outer,
+            outer_chord_2: ramp.outer_chord_2,
             light_world: self.light.position.to_array(),
-            // As `Light`'s record has it.
-            ramp_scale: 1.0 / (inner_angle.cos() - cos_outer).max(1e-3),
+            ramp_scale: ramp.scale,
             size,
             level_count,
             index_count: side * side,

@@ -30,7 +30,7 @@ pub(crate) fn cast_with(gpu: &Gpu, images: &DeepImages, rays: &[Ray], ray_cast: 
     let shader = DeepImages::mount(images.settings(), Shader::new(3), 0)
         .module("package::ray_cast", ray_cast.to_owned())
         .module("package::cast", include_str!("cast.wesl"));
-    let module = shader.create(&gpu.device, "package::cast").unwrap();
+    let module = shader.create(gpu, "package::cast").unwrap();
     let stages = wgpu::ShaderStages::COMPUTE;
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,

@@ -73,7 +73,7 @@ pub const CASES: &[Case] = &[
         still(r, &default_view(), 600, at_horizon)
     }),
     case("light-at-tile-corner", "large lights that barely reach one sample", grazing),
-    case("spots-near-0", "spots of half angles of a degree and less", |r| spots(r, 0.003, 0.02)),
+    case("spots-near-0", "spots of half angles of a degree and less", |r| spots(r, 0.0008, 0.02)),
     case("spots-45", "spots of half angle 45 degrees", |r| spots(r, 0.785, 0.786)),
     case("spots-90", "spots of half angle 90 degrees", |r| spots(r, 1.570, 1.571)),
     case("spots-135", "spots of half angle 135 degrees", |r| spots(r, 2.356, 2.357)),

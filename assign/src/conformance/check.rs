@@ -1,20 +1,17 @@
 //! The promises, checked on the CPU: pairs in f64, lists and counters bit by bit.
 
-use std::{collections::HashSet, thread};
+use std::collections::HashSet;
 
 use glam::DVec3;
 
 use super::{
+    reaching::{LightBits, Reaching},
     rig::Probe,
     violation::{Breach, Findings, Place, SamplePlace},
 };
 use crate::{
-    ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, LightShape,
-    ListsSnapshot,
+    ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, ListsSnapshot,
 };
-
-/// A pair closer to the edge of the light's support than this share of it does not count.
-const EDGE: f64 = 1e-6;
 
 /// What no pass writes: records are filled with it before the first frame.
 pub(super) const UNWRITTEN: LightList = LightList { first: u32::MAX, count: u32::MAX };
@@ -193,102 +190,68 @@ fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings
 
 /// Checks that every light which reaches a sample is in the list of the sample's group.
 pub(super) fn pairs(seen: &Seen, lights: &[Light], findings: &mut Findings) -> Pairs {
-    let mut order: Vec<&Probe> = seen.probes.iter().collect();
+    let reaching = Reaching::of(findings.case, &seen.probes, lights, seen.knows_normals);
+    let mut order: Vec<(&Probe, &LightBits)> =
+        seen.probes.iter().zip(&reaching.by_sample).collect();
     // Neighbours share a list.
-    order.sort_by_key(|p| p.group);
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let share = order.len().div_ceil(workers).max(1);
-    let found = thread::scope(|scope| {
-        let running: Vec<_> = order
-            .chunks(share)
-            .map(|probes| scope.spawn(|| pairs_of(seen, lights, probes)))
-            .collect();
-        let joined = running.into_iter().map(thread::ScopedJoinHandle::join);
-        joined.collect::<Result<Vec<_>, _>>()
-    });
-    let found = found.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    let mut sum = Pairs::default();
-    for (pairs, missed) in found {
-        sum.reaching += pairs.reaching;
-        sum.listed += pairs.listed;
-        for (place, detail) in missed {
-            findings.add(Breach::MissedPair, place, detail);
-        }
-    }
-    sum
-}
-
-fn pairs_of(seen: &Seen, lights: &[Light], probes: &[&Probe]) -> (Pairs, Vec<(Place, String)>) {
+    order.sort_by_key(|(probe, _)| probe.group);
     let mut pairs = Pairs::default();
-    let mut missed = Vec::new();
-    let mut listed = vec![0_u32; lights.len()];
-    let radii: Vec<f64> = lights.iter().map(outer_radius).collect();
-    for of_group in probes.chunk_by(|a, b| a.group == b.group) {
-        let group = of_group[0].group;
-        let entries = seen.entries(group);
-        listed.fill(0);
+    let mut listed = LightBits::none(lights.len());
+    for of_group in order.chunk_by(|(a, _), (b, _)| a.group == b.group) {
+        let entries = seen.entries(of_group[0].0.group);
+        listed.clear();
         for entry in entries {
-            if let Some(terms) = listed.get_mut((entry & ENTRY_LIGHT) as usize) {
-                *terms = entry & !ENTRY_LIGHT;
-            }
+            let (specular, diffuse) = (entry & ENTRY_SPECULAR > 0, entry & ENTRY_DIFFUSE > 0);
+            listed.set(entry & ENTRY_LIGHT, specular, diffuse);
         }
         pairs.listed += (entries.len() * of_group.len()) as u64;
-        for probe in of_group {
-            let point = DVec3::from_array(probe.position_world.map(f64::from));
-            let normal = DVec3::from_array(probe.normal_world.map(f64::from)).normalize_or_zero();
-            for (light_ix, (light, radius)) in lights.iter().zip(&radii).enumerate() {
-                let far = point.distance_squared(light.position.as_dvec3()) > radius * radius;
-                // A position that is no number must not pass for one out of reach.
-                if far && point.is_finite() {
-                    continue;
-                }
-                let reach = light.reach(point);
-                if reach <= EDGE {
-                    continue;
-                }
-                if seen.knows_normals && light.above_horizon(point, normal) <= EDGE {
-                    continue;
-                }
-                pairs.reaching += 1;
-                let diffuse = light.diffuse_reach(point) > EDGE;
-                let needed = ENTRY_SPECULAR | if diffuse { ENTRY_DIFFUSE } else { 0 };
-                let missing = needed & !listed[light_ix];
-                if missing == 0 {
-                    continue;
-                }
-                let place = Place {
-                    group: Some(group),
-                    light: Some(light_ix as u32),
-                    sample: Some(sample_place(probe)),
-                };
-                missed.push((place, describe(light, reach, missing, entries.len())));
-            }
+        for (probe, reaching) in of_group {
+            pairs.reaching += reaching.count();
+            missed(probe, reaching, &listed, lights, entries.len(), findings);
         }
     }
-    (pairs, missed)
+    pairs
 }
 
-/// The distance from a light's position beyond which it reaches nothing, in f64. The range counts
-/// from the closest point of the emitter, so an emitter adds its farthest vertex.
-fn outer_radius(light: &Light) -> f64 {
-    let extent = match &light.shape {
-        LightShape::Area(emitter) => {
-            let vertices = emitter.vertices().iter().map(|v| v.as_dvec3().length());
-            vertices.fold(0.0, f64::max)
+/// Reports the lights that reach a sample and that its list, or a term's flag there, lacks.
+fn missed(
+    probe: &Probe,
+    reaching: &LightBits,
+    listed: &LightBits,
+    lights: &[Light],
+    entries: usize,
+    findings: &mut Findings,
+) {
+    let missing = |needed: &[u32], listed: &[u32], word: usize| needed[word] & !listed[word];
+    for word in 0..reaching.specular.len() {
+        let specular = missing(&reaching.specular, &listed.specular, word);
+        let diffuse = missing(&reaching.diffuse, &listed.diffuse, word);
+        let mut left = specular | diffuse;
+        while left > 0 {
+            let bit = left & left.wrapping_neg();
+            left ^= bit;
+            let light_ix = 32 * word as u32 + bit.trailing_zeros();
+            let place = Place {
+                group: Some(probe.group),
+                light: Some(light_ix),
+                sample: Some(sample_place(probe)),
+            };
+            findings.add_with(Breach::MissedPair, place, || {
+                let terms = match (specular & bit > 0, diffuse & bit > 0) {
+                    (true, true) => "light",
+                    (true, false) => "specular term",
+                    _ => "diffuse term",
+                };
+                describe(&lights[light_ix as usize], probe, terms, entries)
+            });
         }
-        LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => 0.0,
-    };
-    f64::from(light.range_m) + extent
+    }
 }
 
-fn describe(light: &Light, reach: f64, missing: u32, listed: usize) -> String {
+fn describe(light: &Light, probe: &Probe, terms: &str, listed: usize) -> String {
     let Light { position, range_m, .. } = light;
     let kind = light.kind();
-    let terms = match missing {
-        ENTRY_DIFFUSE => "diffuse term",
-        ENTRY_SPECULAR => "specular term",
-        _ => "light",
-    };
+    let reach = light.reach(DVec3::from_array(probe.position_world.map(f64::from)));
     format!(
         "{kind:?} light at {position} of range {range_m} m reaches the sample by {reach:.2e} of its support: the list of {listed} lacks the {terms}"
     )
@@ -332,7 +295,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::{Counters, Emitter};
+    use crate::{Counters, Emitter, LightShape};
 
     /// One sample at `point` whose list is empty.
     fn empty_list_at(point: Vec3) -> Seen {

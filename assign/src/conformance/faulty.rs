@@ -198,6 +198,7 @@ pub struct Faulty {
     altered: LightBuffer,
     uniform: wgpu::Buffer,
     plant: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
     bind_group: Option<wgpu::BindGroup>,
     record_count: u32,
     /// The lights of the first frame.
@@ -209,13 +210,15 @@ pub struct Faulty {
 impl Faulty {
     /// Plants `fault` in `inner`.
     pub fn new(gpu: &Gpu, inner: Box<dyn Assignment>, fault: Fault) -> Result<Self, AssignError> {
+        let (plant, layout) = plant_pipeline(gpu)?;
         Ok(Self {
             inner,
             fault,
             frame: 0,
             altered: LightBuffer::new(gpu, &[])?,
             uniform: gpu.uniform("fault", 16),
-            plant: plant_pipeline(gpu)?,
+            plant,
+            layout,
             bind_group: None,
             record_count: 0,
             first_lights: None,
@@ -271,10 +274,9 @@ impl Faulty {
         ];
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&parameters));
         self.record_count = groups + 1 - first_record;
-        let layout = self.plant.get_bind_group_layout(0);
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("fault"),
-            layout: &layout,
+            layout: &self.layout,
             entries: &[
                 entry(0, lists.lists()),
                 entry(1, lists.entries()),
@@ -369,32 +371,20 @@ impl Assignment for Faulty {
     }
 }
 
-fn plant_pipeline(gpu: &Gpu) -> Result<wgpu::ComputePipeline, AssignError> {
-    let device = &gpu.device;
+/// The pipeline that spoils lists, and the layout of what it reads and writes.
+fn plant_pipeline(
+    gpu: &Gpu,
+) -> Result<(wgpu::ComputePipeline, wgpu::BindGroupLayout), AssignError> {
     let module = Shader::new(0)
         .module("package::fault", include_str!("fault.wesl"))
-        .create(device, "package::fault")?;
+        .create(gpu, "package::fault")?;
     let stages = wgpu::ShaderStages::COMPUTE;
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("fault"),
-        entries: &[
-            storage_entry(0, stages, false),
-            storage_entry(1, stages, false),
-            storage_entry(2, stages, false),
-            uniform_entry(3, stages),
-        ],
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("fault"),
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("fault"),
-        layout: Some(&layout),
-        module: &module,
-        entry_point: Some("plant"),
-        compilation_options: Default::default(),
-        cache: None,
-    }))
+    let entries = [
+        storage_entry(0, stages, false),
+        storage_entry(1, stages, false),
+        storage_entry(2, stages, false),
+        uniform_entry(3, stages),
+    ];
+    let layout = gpu.bind_group_layout("fault", &entries);
+    Ok((gpu.compute_pipeline(&module, "plant", &[Some(&layout)], true), layout))
 }

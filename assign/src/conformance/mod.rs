@@ -49,6 +49,7 @@ mod check;
 pub mod faulty;
 mod flat_depth;
 mod lights;
+mod reaching;
 mod rig;
 mod session;
 mod stage;
@@ -82,11 +83,10 @@ pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, Confor
     if let Some(name) = unserved.iter().find(|name| find(name).is_err()) {
         return Err(ConformanceError::NoCase((*name).to_owned()));
     }
-    let gpu = gpu()?;
-    let rig = Rig::new(gpu);
-    let mut report = Report { strategy: make(gpu).map_err(setup)?.id(), cases: Vec::new() };
+    let rig = rig()?;
+    let mut report = Report { strategy: make(&rig.gpu).map_err(setup)?.id(), cases: Vec::new() };
     for case in CASES {
-        report.cases.push(one(&rig, case, make)?);
+        report.cases.push(one(rig, case, make)?);
     }
     let may = |case: &CaseReport| match case.outcome {
         Outcome::Passed(_) => true,
@@ -99,11 +99,11 @@ pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, Confor
 /// Runs one case of [`CASES`]. Violations are an error; a refusal is an outcome.
 pub fn run_case(name: &str, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
     let case = find(name)?;
-    let gpu = gpu()?;
-    let done = one(&Rig::new(gpu), case, make)?;
+    let rig = rig()?;
+    let done = one(rig, case, make)?;
     if let Outcome::Failed(_) = done.outcome {
         return Err(ConformanceError::Rejected(Report {
-            strategy: make(gpu).map_err(setup)?.id(),
+            strategy: make(&rig.gpu).map_err(setup)?.id(),
             cases: vec![done],
         }));
     }
@@ -113,11 +113,10 @@ pub fn run_case(name: &str, make: &Make<'_>) -> Result<CaseReport, ConformanceEr
 /// Plants every fault that applies to the strategy and demands that the suite rejects it as what
 /// it is. Returns the faults that were planted.
 pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
-    let gpu = gpu()?;
+    let rig = rig()?;
     let plain = find("33-lights")?;
-    let has_groups =
-        session::has_groups(&Rig::new(gpu), plain, make).map_err(|e| failed(plain, e))?;
-    let normals = make(gpu).map_err(setup)?.needs().normals;
+    let has_groups = session::has_groups(rig, plain, make).map_err(|e| failed(plain, e))?;
+    let normals = make(&rig.gpu).map_err(setup)?.needs().normals;
     let mut planted = Vec::new();
     for fault in Fault::ALL {
         let applies = (has_groups || !fault.needs_groups()) && (normals || !fault.needs_normals());
@@ -132,14 +131,12 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
 
 /// Plants one fault and demands that the suite rejects it as what it is.
 pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceError> {
-    let gpu = gpu()?;
     let (name, breach) = fault.shows_in();
     let case = find(name)?;
     let faulty = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Faulty::new(gpu, make(gpu)?, fault)?))
     };
-    // A fault may change the look-up, which a rig compiles once.
-    let outcome = one(&Rig::new(gpu), case, &faulty)?.outcome;
+    let outcome = one(rig()?, case, &faulty)?.outcome;
     let is_named = match &outcome {
         Outcome::Failed(violations) => {
             let is_early = |v: &Violation| v.stage < fault.shows_from_stage();
@@ -158,9 +155,9 @@ pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceErr
 }
 
 /// One device for all tests of a process.
-fn gpu() -> Result<&'static Gpu, ConformanceError> {
-    static GPU: OnceLock<Result<Gpu, AssignError>> = OnceLock::new();
-    let opened = GPU.get_or_init(|| Gpu::open(None));
+fn rig() -> Result<&'static Rig, ConformanceError> {
+    static RIG: OnceLock<Result<Rig, AssignError>> = OnceLock::new();
+    let opened = RIG.get_or_init(|| Gpu::open(None).map(Rig::new));
     opened.as_ref().map_err(|error| setup(error.clone()))
 }
 
@@ -169,7 +166,7 @@ fn find(name: &str) -> Result<&'static Case, ConformanceError> {
     found.ok_or_else(|| ConformanceError::NoCase(name.to_owned()))
 }
 
-fn one(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
+fn one(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
     let outcome = session::run(rig, case, make).map_err(|error| failed(case, error))?;
     Ok(CaseReport { case: case.name, outcome })
 }
@@ -190,8 +187,8 @@ mod tests {
     #[test]
     fn a_case_that_asks_nothing_fails() {
         let case = Case { has_pairs: true, ..*find("no-lights").unwrap() };
-        let rig = Rig::new(gpu().unwrap());
-        let outcome = session::run(&rig, &case, &|gpu| Ok(Box::new(Everything::new(gpu)?)));
+        let outcome =
+            session::run(rig().unwrap(), &case, &|gpu| Ok(Box::new(Everything::new(gpu)?)));
         let Ok(Outcome::Failed(violations)) = outcome else {
             panic!("{outcome:?}");
         };

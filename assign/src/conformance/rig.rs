@@ -1,7 +1,5 @@
 //! The GPU's side of the suite: surfaces into a depth buffer, and the probe that looks lists up.
 
-use std::cell::OnceCell;
-
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
 
 use super::stage::Stage;
@@ -42,17 +40,15 @@ pub(super) struct Surfaces {
     count: u32,
 }
 
-/// Pipelines of one run, for one strategy.
-pub(super) struct Rig<'a> {
-    pub(super) gpu: &'a Gpu,
+/// The device, and what draws the surfaces: one for all strategies of a process.
+pub(super) struct Rig {
+    pub(super) gpu: Gpu,
     draw: wgpu::RenderPipeline,
     probe_layout: wgpu::BindGroupLayout,
-    /// Look-ups are constant over a strategy's life, so one pipeline serves all its instances.
-    probe: OnceCell<wgpu::ComputePipeline>,
 }
 
-impl<'a> Rig<'a> {
-    pub(super) fn new(gpu: &'a Gpu) -> Self {
+impl Rig {
+    pub(super) fn new(gpu: Gpu) -> Self {
         let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -63,15 +59,13 @@ impl<'a> Rig<'a> {
             },
             count: None,
         };
-        let probe_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("probe"),
-            entries: &[
-                storage_entry(0, wgpu::ShaderStages::COMPUTE, false),
-                texture(1, wgpu::TextureSampleType::Depth),
-                texture(2, wgpu::TextureSampleType::Float { filterable: true }),
-            ],
-        });
-        Self { gpu, draw: draw_pipeline(gpu), probe_layout, probe: OnceCell::new() }
+        let entries = [
+            storage_entry(0, wgpu::ShaderStages::COMPUTE, false),
+            texture(1, wgpu::TextureSampleType::Depth),
+            texture(2, wgpu::TextureSampleType::Float { filterable: true }),
+        ];
+        let probe_layout = gpu.bind_group_layout("probe", &entries);
+        Self { draw: draw_pipeline(&gpu), gpu, probe_layout }
     }
 
     /// Uploads the samples, opaque surfaces only or all, and draws the surfaces.
@@ -120,7 +114,7 @@ impl<'a> Rig<'a> {
         depth: &wgpu::TextureView,
         normals: &wgpu::TextureView,
     ) -> Result<(), AssignError> {
-        let gpu = self.gpu;
+        let gpu = &self.gpu;
         let texels = gpu.storage("texels", size_of_val(&stage.texels[..]) as u64)?;
         gpu.queue.write_buffer(&texels, 0, cast_slice(&stage.texels));
         let width = gpu.uniform("width", 16);
@@ -166,34 +160,14 @@ impl<'a> Rig<'a> {
         &self,
         strategy: &dyn Assignment,
         frame: &FrameBindings,
-    ) -> Result<&wgpu::ComputePipeline, AssignError> {
-        if let Some(known) = self.probe.get() {
-            return Ok(known);
-        }
-        let device = &self.gpu.device;
+    ) -> Result<wgpu::ComputePipeline, AssignError> {
         let lookup = strategy.lookup();
         let module = Shader::new(LISTS_GROUP)
             .module("package::probe", include_str!("probe.wesl"))
             .module("package::strategy", lookup.module.source())
-            .create(device, "package::probe")?;
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("probe"),
-            bind_group_layouts: &[
-                Some(frame.layout()),
-                Some(lookup.layout),
-                Some(&self.probe_layout),
-            ],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("probe"),
-            layout: Some(&layout),
-            module: &module,
-            entry_point: Some("look_up"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Ok(self.probe.get_or_init(|| pipeline))
+            .create(&self.gpu, "package::probe")?;
+        let layouts = [Some(frame.layout()), Some(lookup.layout), Some(&self.probe_layout)];
+        Ok(self.gpu.compute_pipeline(&module, "look_up", &layouts, true))
     }
 
     /// Records the look-up of every sample.
@@ -210,7 +184,7 @@ impl<'a> Rig<'a> {
         }
         let pipeline = self.probe_pipeline(strategy, frame)?;
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, frame.bind_group(), &[]);
         pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
         pass.set_bind_group(PROBE_GROUP, &surfaces.bind_group, &[]);

@@ -20,7 +20,7 @@ const FRAMES_TO_GROW: u32 = 6;
 const TINY_POOL: u32 = 64;
 
 /// Runs one case. Violations are an outcome; an error is a failure outside the promises.
-pub(super) fn run(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<Outcome, AssignError> {
+pub(super) fn run(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<Outcome, AssignError> {
     let seed =
         case.name.bytes().fold(7, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
     let mut findings = Findings::new(case.name);
@@ -53,7 +53,7 @@ pub(super) fn run(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<Outcome
 }
 
 /// Whether the strategy cuts the samples of a plain view into groups at all.
-pub(super) fn has_groups(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<bool, AssignError> {
+pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool, AssignError> {
     let Plan::Still(lit) = (case.build)(&mut Rng::new(1)) else {
         return Ok(true);
     };
@@ -63,14 +63,14 @@ pub(super) fn has_groups(rig: &Rig<'_>, case: &Case, make: &Make<'_>) -> Result<
 }
 
 /// A case under way.
-struct Run<'r, 'g> {
-    rig: &'r Rig<'g>,
+struct Run<'r> {
+    rig: &'r Rig,
     make: &'r Make<'r>,
     findings: &'r mut Findings,
     figures: &'r mut Figures,
 }
 
-impl Run<'_, '_> {
+impl Run<'_> {
     /// Draws stage after stage with one instance. The last frame is drawn twice.
     fn sequence(&mut self, stages: &[Lit]) -> Result<(), AssignError> {
         let mut session = Session::new(self.rig, self.make)?;
@@ -181,19 +181,19 @@ struct Session {
 }
 
 impl Session {
-    fn new(rig: &Rig<'_>, make: &Make<'_>) -> Result<Self, AssignError> {
+    fn new(rig: &Rig, make: &Make<'_>) -> Result<Self, AssignError> {
         Ok(Self {
-            strategy: make(rig.gpu)?,
-            frame: FrameBindings::new(rig.gpu),
-            lights: LightBuffer::new(rig.gpu, &[])?,
+            strategy: make(&rig.gpu)?,
+            frame: FrameBindings::new(&rig.gpu),
+            lights: LightBuffer::new(&rig.gpu, &[])?,
             surfaces: None,
             domain: SampleDomain::AnyDepth,
         })
     }
 
     /// Uploads a stage.
-    fn set_up(&mut self, rig: &Rig<'_>, lit: &Lit) -> Result<(), AssignError> {
-        self.lights.update(rig.gpu, &lit.lights)?;
+    fn set_up(&mut self, rig: &Rig, lit: &Lit) -> Result<(), AssignError> {
+        self.lights.update(&rig.gpu, &lit.lights)?;
         if lit.opaque_only {
             self.domain = SampleDomain::OpaqueSurfaces;
         }
@@ -204,23 +204,23 @@ impl Session {
 
     /// Prepares a frame: with look-ups at any depth where the strategy serves them, else with
     /// those on opaque surfaces.
-    fn prepare(&mut self, rig: &Rig<'_>, lit: &Lit) -> Result<(), AssignError> {
+    fn prepare(&mut self, rig: &Rig, lit: &Lit) -> Result<(), AssignError> {
         let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
-        self.frame.update(rig.gpu, &frame)?;
-        match self.strategy.prepare(rig.gpu, &frame) {
+        self.frame.update(&rig.gpu, &frame)?;
+        match self.strategy.prepare(&rig.gpu, &frame) {
             Err(AssignError::Unsupported { .. }) if self.domain == SampleDomain::AnyDepth => {
                 self.domain = SampleDomain::OpaqueSurfaces;
                 self.set_up(rig, lit)?;
                 let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
-                self.strategy.prepare(rig.gpu, &frame)
+                self.strategy.prepare(&rig.gpu, &frame)
             }
             other => other,
         }
     }
 
     /// Draws one frame; `wipe` first fills all records with what no pass writes.
-    fn draw(&mut self, rig: &Rig<'_>, lit: &Lit, wipe: bool) -> Result<Seen, AssignError> {
-        let gpu = rig.gpu;
+    fn draw(&mut self, rig: &Rig, lit: &Lit, wipe: bool) -> Result<Seen, AssignError> {
+        let gpu = &rig.gpu;
         self.prepare(rig, lit)?;
         let group_count = self.strategy.lists().group_count();
         if wipe {

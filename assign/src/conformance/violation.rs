@@ -260,6 +260,16 @@ impl Findings {
     }
 
     pub(super) fn add(&mut self, breach: Breach, place: Place, detail: String) {
+        self.add_with(breach, place, || detail);
+    }
+
+    /// As [`add`](Self::add); only the first of a frame is described.
+    pub(super) fn add_with(
+        &mut self,
+        breach: Breach,
+        place: Place,
+        detail: impl FnOnce() -> String,
+    ) {
         let same = |v: &&mut Violation| v.frame == self.frame && v.breach == breach;
         if let Some(known) = self.violations.iter_mut().find(same) {
             known.count += 1;
@@ -271,7 +281,7 @@ impl Findings {
             frame: self.frame,
             breach,
             place,
-            detail,
+            detail: detail(),
             count: 1,
         });
     }

@@ -47,7 +47,7 @@
 //! 2. The test's own distances are off by as much per metre of the light's range, and, where the
 //!    group has no far end that would bound its samples, of the light's distance from the origin:
 //!    `slack_per_m`.
-//! 3. Shading compares cosines to find a cone's edge, which for a narrow cone moves the edge
+//! 3. Shading compares squared chords to find a cone's edge, which for a narrow cone moves the edge
 //!    by more than any position is off: [`LightVolume`] widens the cone by that angle.
 //!
 //! # How loose

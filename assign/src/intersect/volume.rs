@@ -57,9 +57,9 @@ impl From<&Light> for LightVolume {
     }
 }
 
-/// Shading finds a cone's edge by comparing two cosines in f32, each a dot product of normalised
-/// vectors, good to 4 units in the last place: 5e-7. The edge moves outwards with them, by an
-/// angle of 5e-7 over its sine, or twice that where the cone is almost a ball.
+/// Shading finds a cone's edge by comparing squared chords in f32, `2 - 2 cos`, of normalised
+/// vectors. They are as good as cosines of 4 units in the last place, 5e-7: the edge moves outwards by
+/// at most an angle of 5e-7 over its sine, or twice that where the cone is almost a ball.
 const CONE_ERROR: f32 = 1e-6;
 
 /// Sine below which the angle stops growing: `sqrt(2 * 5e-7)`, the edge's angle for the narrowest

@@ -186,7 +186,7 @@ fn wesl(view: &View, pairs: &[Pair]) -> Vec<(bool, bool, f32)> {
         .module("package::gloss", include_str!("../../src/shaders/gloss.wesl"))
         .module("package::reflected", include_str!("../../src/shaders/reflected.wesl"))
         .light_kinds(LightKinds { spots: false, areas: true })
-        .create(&gpu.device, "package::driver")
+        .create(&gpu, "package::driver")
         .unwrap();
     let lights: Vec<Light> = pairs.iter().map(|pair| pair.light).collect();
     let lights = LightBuffer::new(&gpu, &lights).unwrap();

@@ -3,7 +3,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use assign::{FrustumTests, Light, LightShape, Projection, View};
+use assign::{FrustumTests, Light, LightShape, Projection, SpotRamp, View};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use proptest::prelude::*;
 
@@ -20,8 +20,9 @@ fn is_lit(light: &Light, sample: Vec3) -> bool {
     let ratio_2 = distance_2 / (light.range_m * light.range_m);
     let in_cone = match light.shape {
         LightShape::Point | LightShape::Area(_) => true,
-        LightShape::Spot { direction, outer_angle, .. } => {
-            direction.normalize().dot(-to_light) > outer_angle.cos()
+        LightShape::Spot { direction, inner_angle, outer_angle } => {
+            let chord = direction.normalize() + to_light;
+            SpotRamp::new(inner_angle, outer_angle).at(chord.dot(chord)) > 0.0
         }
         LightShape::Vpl { normal, .. } => normal.normalize().dot(-to_light) > 0.0,
     };
@@ -72,8 +73,7 @@ fn spot(position: Vec3, range_m: f32, direction: Vec3, outer_angle: f32) -> Ligh
 proptest! {
     #![proptest_config(deterministic(60_000))]
 
-    /// Shading tells a narrow cone's edge from a cosine, whose rounding moves the edge outwards by
-    /// far more than that of a position.
+    /// Shading tells a cone's edge from a squared chord, whose rounding moves the edge outwards.
     #[test]
     fn a_sample_on_the_edge_that_shading_lights_is_reached(
         sample in prop::array::uniform3(-1.0_f32..1.0),

@@ -109,7 +109,7 @@ impl Tester {
             .flag("sat_p", tests.sat_p)
             .flag("sat_v", tests.sat_v)
             .light_kinds(kinds)
-            .create(&gpu.device, "package::driver")
+            .create(gpu, "package::driver")
             .unwrap();
         let stages = wgpu::ShaderStages::COMPUTE;
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

@@ -11,6 +11,9 @@ use crate::{
 
 /// What to use, what it costs, what comes next, and why.
 pub fn answer(results: &Results, error_budget: f64) -> String {
+    if let Some(why) = untested(results) {
+        return format!("{why}\n");
+    }
     let Some(verdict) = verdict(results, error_budget) else {
         return format!("Nothing stayed within the error budget: relMSE {error_budget}.\n");
     };
@@ -45,6 +48,12 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
         let _ = writeln!(text, "A software adapter took these times: a GPU may rank otherwise.");
     }
     text
+}
+
+/// That nothing can be said, and why; `None` where the methods were put to a test.
+fn untested(results: &Results) -> Option<String> {
+    let why = results.records.iter().find_map(Record::untested_words)?;
+    Some(format!("Nothing can be said: {why}, so no method was put to a test."))
 }
 
 /// `Use ID (what it is): its time and parts. What its image is. What its lights must be.`

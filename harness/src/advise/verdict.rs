@@ -42,12 +42,13 @@ pub fn error_of(record: &Record) -> Option<f64> {
     }
 }
 
-/// What to use within an error budget; `None` where nothing stays within it.
+/// What to use within an error budget; `None` where nothing stays within it, or nothing was tested.
 pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
     let mut within: Vec<&Record> = results
         .records
         .iter()
-        .filter(|record| !record.is_control() && record.assign_and_shade_ms().is_finite())
+        .filter(|record| !record.is_control() && record.untested.is_none())
+        .filter(|record| record.assign_and_shade_ms().is_finite())
         .filter(|record| error_of(record).is_some_and(|error| error <= error_budget))
         .collect();
     within.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));

@@ -34,7 +34,8 @@ impl Choice {
             is_named: true,
             id: id.to_owned(),
         };
-        let mut has_parameters = false;
+        // The segment that set the parameters.
+        let mut parameters: Option<String> = None;
         // The axes set so far, each with the segment that set it.
         let mut set: Vec<(Axis, String)> = Vec::new();
         for segment in segments {
@@ -49,11 +50,21 @@ impl Choice {
                     choice.set(axis, &segment)?;
                     set.push((axis, segment));
                 }
-                None if !entry.parameters.is_empty() && !has_parameters && !segment.is_empty() => {
-                    choice.spec.parameters = segment;
-                    has_parameters = true;
+                None if entry.parameters.is_empty() || segment.is_empty() => {
+                    return Err(choice.refuse(&segment));
                 }
-                None => return Err(choice.refuse(&segment)),
+                None => match &parameters {
+                    Some(earlier) if segment.starts_with(|c: char| c.is_ascii_digit()) => {
+                        let what = entry.parameters.join(" x ");
+                        let reason = format!("only one segment may be {what}");
+                        return Err(choice.refuse_pair(earlier, &segment, &reason));
+                    }
+                    Some(_) => return Err(choice.refuse(&segment)),
+                    None => {
+                        choice.spec.parameters.clone_from(&segment);
+                        parameters = Some(segment);
+                    }
+                },
             }
         }
         let normals = set.iter().find(|(axis, _)| *axis == Axis::Normals);
@@ -128,6 +139,13 @@ impl Choice {
 
     /// Two segments that cannot stand in one id.
     fn refuse_pair(&self, first: &str, second: &str, reason: &str) -> CliError {
+        if first == second {
+            let once = "it must be given once";
+            return CliError::new(format!(
+                "strategy {}: {first:?} is given twice: {once}",
+                self.id
+            ));
+        }
         CliError::new(format!(
             "strategy {}: {first:?} and {second:?} contradict each other: {reason}",
             self.id

@@ -4,6 +4,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use thiserror::Error;
 
 use super::names::did_you_mean;
+use crate::visible::visible;
 
 /// The exit code of bad input.
 pub const BAD_INPUT: u8 = 2;
@@ -18,15 +19,7 @@ pub struct CliError {
 impl CliError {
     /// An error of one line: line breaks and other control characters are escaped.
     pub fn new(message: impl AsRef<str>) -> Self {
-        let mut line = String::new();
-        for c in message.as_ref().chars() {
-            if c.is_control() {
-                line.extend(c.escape_default());
-            } else {
-                line.push(c);
-            }
-        }
-        Self { message: line }
+        Self { message: visible(message.as_ref()).into_owned() }
     }
 
     /// `option is value: it must be accepted`.
@@ -47,7 +40,7 @@ impl CliError {
         BAD_INPUT
     }
 
-    pub(super) fn from_clap(error: &clap::Error) -> Self {
+    pub(super) fn from_clap(error: &clap::Error, program: &clap::Command) -> Self {
         let text = |kind| match error.get(kind) {
             Some(ContextValue::String(text)) => Some(text.clone()),
             Some(ContextValue::Strings(texts)) if !texts.is_empty() => Some(texts.join(", ")),
@@ -81,11 +74,8 @@ impl CliError {
             )),
             ErrorKind::InvalidSubcommand => {
                 let name = text(ContextKind::InvalidSubcommand).unwrap_or_default();
-                Self::unknown(
-                    "command",
-                    &name,
-                    &["compare", "study", "report", "advise", "fit-ltc", "truth", "cdi", "list"],
-                )
+                let known: Vec<&str> = program.get_subcommands().map(|c| c.get_name()).collect();
+                Self::unknown("command", &name, &known)
             }
             ErrorKind::MissingRequiredArgument => Self::new(match option {
                 "--vpls" => "options of virtual point lights need some: give --vpls",
@@ -95,7 +85,7 @@ impl CliError {
                 "<STUDY>" => "study needs which one: comparison, culling, area, endless or cdi",
                 _ => "list needs what to list: strategies, scenes or adapters",
             }),
-            ErrorKind::ArgumentConflict => Self::new(conflict(error, option)),
+            ErrorKind::ArgumentConflict => Self::new(conflict(error, option, program)),
             ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues => {
                 Self::new(format!("{option} takes one value"))
             }
@@ -112,18 +102,45 @@ fn one_of(valid: &Option<String>) -> String {
     valid.as_ref().map(|valid| format!(": one of {valid}")).unwrap_or_default()
 }
 
-fn conflict(error: &clap::Error, option: &str) -> String {
-    let other = match error.get(ContextKind::PriorArg) {
-        Some(ContextValue::String(other)) => other.split(' ').next().unwrap_or_default(),
-        _ => "",
+/// What contradicts what: an option and another, or an option and the command that stands after it.
+fn conflict(error: &clap::Error, option: &str, program: &clap::Command) -> String {
+    let bare = |text: &String| text.split([' ', '=']).next().unwrap_or_default().to_owned();
+    let others: Vec<String> = match error.get(ContextKind::PriorArg) {
+        Some(ContextValue::String(other)) => vec![bare(other)],
+        Some(ContextValue::Strings(others)) => others.iter().map(bare).collect(),
+        _ => Vec::new(),
     };
-    if other == option {
-        format!("{option} is given twice: it must be given once")
-    } else if other.is_empty() {
-        format!("{option} must come after the command, or without one")
-    } else {
-        format!("{option} and {other} do not go together")
+    if let Some(ContextValue::String(command)) = error.get(ContextKind::InvalidSubcommand) {
+        return before_command(&others, command, program);
     }
+    if others.iter().any(|other| other == option) {
+        return format!("{option} is given twice: it must be given once");
+    }
+    match others.split_last() {
+        None => format!("{option} does not go together with the other options"),
+        Some((last, [])) => format!("{option} and {last} do not go together"),
+        Some((last, first)) => {
+            format!("{option} goes together neither with {} nor with {last}", first.join(", "))
+        }
+    }
+}
+
+/// Options that stand before a command: it may have them, or not know them.
+fn before_command(options: &[String], command: &str, program: &clap::Command) -> String {
+    let known = program.find_subcommand(command);
+    let has = |option: &&String| {
+        let name = option.trim_start_matches('-');
+        known.is_some_and(|known| known.get_arguments().any(|arg| arg.get_long() == Some(name)))
+    };
+    if let Some(unknown) = options.iter().find(|option| !has(option)) {
+        return format!(
+            "the command {command} has no option {unknown}: `lightbench help {command}` lists its options"
+        );
+    }
+    let options = options.join(" ");
+    format!(
+        "{options}: options stand after the command, as in `lightbench {command} {options} ...`"
+    )
 }
 
 fn shown(value: &str) -> &str {

@@ -5,7 +5,8 @@ use clap::{Args, ValueEnum};
 use scenes::{Outlines, Radii};
 
 use super::{
-    values::{self, Camera, FarPlane, Size},
+    camera::Camera,
+    values::{self, FarPlane, Size},
     vpl::VplArgs,
 };
 
@@ -66,8 +67,9 @@ pub struct StageArgs {
     #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
     pub diffuse_share: f64,
 
-    /// Give every light the range at which its intensity over squared distance falls to this,
-    /// 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02]
+    /// Give every light the range at which its intensity over squared distance (candela: lux) falls
+    /// to this, 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02, lights whose
+    /// file gives no range 0.02 or less, so that dim ones are seen]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
     pub threshold: Option<f64>,
 
@@ -84,13 +86,16 @@ pub struct StageArgs {
     #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
     pub size: Size,
 
-    /// Where the camera is and a point that it looks at, in metres, or path:F/N for frame F of N
-    /// along the scene's path; else the scene's own view
-    #[arg(long, value_name = "X,Y,Z:X,Y,Z", allow_hyphen_values = true)]
+    /// Where the camera is and a point that it looks at, in metres; or path:F/N for frame F of N along
+    /// the scene's path; or a camera of the scene's file by its name, or by its place among them as
+    /// '#0', '#1', ...
+    /// [default: the file's first camera, else the start of the scene's path]
+    #[arg(long, value_name = "X,Y,Z:X,Y,Z|path:F/N|NAME|#N", allow_hyphen_values = true)]
     pub camera: Option<Camera>,
 
     /// View depth of the near plane in metres, 1e-6 to 1e6
-    /// [default: that of the file's camera, else a 500th of the size of the scene]
+    /// [default: that of the file's camera, else a 500th of the size of the scene, or half the depth
+    /// of the nearest surface in view where that would be cut away]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = values::scale)]
     pub near: Option<f64>,
 

@@ -162,7 +162,7 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
     assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, fit-ltc, truth, cdi, list";
+    let known = "known are compare, study, report, advise, fit-ltc, truth, cdi, list, help";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
     assert_eq!(
         refusal("study"),
@@ -179,8 +179,73 @@ fn unknown_names_come_with_the_nearest() {
 #[test]
 fn an_option_given_twice_or_before_a_command_is_refused() {
     assert_eq!(refusal("--seed 1 --seed 2"), "--seed is given twice: it must be given once");
-    let before = refusal("--seed 1 list scenes");
-    assert!(before.contains("--seed") || before.contains("list"), "{before}");
+    let before = "the command list has no option --seed: `lightbench help list` lists its options";
+    assert_eq!(refusal("--seed 1 list scenes"), before);
+    let before = refusal("--seed 1 --lights 3 truth --shadows");
+    assert!(before.contains("stand after the command") && before.contains("--lights"), "{before}");
+    let before = refusal("--frames 3 study culling");
+    assert!(before.starts_with("the command study has no option --frames"), "{before}");
+    assert_eq!(refusal("--path --camera path:0/2"), "--path and --camera do not go together");
+    let several = refusal("--vpls 64 --lights 3 --spots 0.5");
+    assert!(several.contains("--vpls") && several.contains("--lights"), "{several}");
+    assert!(!several.contains("after the command"), "{several}");
+}
+
+#[test]
+fn options_that_would_change_nothing_are_refused() {
+    for (line, option, with) in [
+        ("--directions 8x8", "--directions", "--vpls"),
+        ("truth --spread squares", "--spread", "--vpls"),
+        ("advise --deep-size 32", "--deep-size", "--vpls"),
+        ("--oversampling 2", "--oversampling", "--vpls"),
+        ("--build fragment", "--build", "--vpls"),
+        ("--vpls 0 --ranges random", "--ranges", "--vpls"),
+        ("--vpls 0 --vpl-clamp 1", "--vpl-clamp", "--vpls"),
+        ("--vpls 64 --ranges random --directions 8x8", "--directions", "--ranges"),
+        ("--vpls 64 --ranges infinite --rays 3", "--rays", "--ranges"),
+        ("--vpls 64 --ranges random --range-scale 3", "--range-scale", "--ranges"),
+        ("--vpls 64 --ranges infinite --correct-rays", "--correct-rays", "--ranges"),
+        ("--vpls 64 --random-ranges 0,3", "--random-ranges", "random"),
+        ("--vpls 64 --radii equal", "--radii", "scattered"),
+        ("truth --primary --light-box bounds", "--light-box", "scattered"),
+        ("--outlines polygons", "--outlines", "--areas"),
+        ("--areas 0 --diffuse-share 0.5", "--diffuse-share", "--areas"),
+        ("--strategies None,T-E/hs --test hs+sat-p", "--test", "tests"),
+        ("--strategies None,HG,T-E/bvh --source linear", "--source", "source"),
+        ("--strategies None,Sphere --operations", "--operations", "lists"),
+        ("cdi --casts none --compared 0 --rays 3", "--rays", "--compared"),
+    ] {
+        let message = refusal(line);
+        let expected = format!("{option} would change nothing: it must be given with ");
+        assert!(message.starts_with(&expected) && message.contains(with), "{line}: {message}");
+        // Results of versions that took them are still reported.
+        let words = std::iter::once("lightbench").chain(line.split_whitespace());
+        assert!(parse_stored(words).is_ok(), "{line}");
+    }
+    for line in [
+        "--vpls 64 --directions 8x8 --rays 3 --range-scale 3",
+        "--vpls 64 --ranges constant-discard --directions 8x8",
+        "--areas 0.5 --outlines polygons --diffuse-share 0.5",
+        "--lights 0 --radii equal",
+        "--strategies None,T-E --test hs --source both --operations",
+        "cdi --directions 8x8 --rays 3",
+    ] {
+        parse_line(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+    }
+}
+
+#[test]
+fn help_is_a_command_too() {
+    for (line, part) in
+        [("help", "Examples:"), ("help study", "--shard"), ("help truth", "--shadows")]
+    {
+        let shown = parse_line(line);
+        assert!(
+            matches!(&shown, Ok(Invocation::Show(text)) if text.contains(part)),
+            "{line}: {shown:?}"
+        );
+    }
+    assert_eq!(refusal("help stdy"), "no command called stdy: did you mean study?");
 }
 
 #[test]

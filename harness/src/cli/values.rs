@@ -15,6 +15,7 @@ const MAX_FRAMES: u32 = 100_000;
 pub(crate) const MAX_CHECKS: u32 = 8;
 const MAX_LAPS: u32 = 1_000;
 const MAX_SAMPLES: u32 = 65_536;
+const MAX_BOUNCES: u32 = shading::traced::MAX_BOUNCES;
 /// The largest side of a reflective shadow map, pixels.
 const MAX_RSM: u32 = 2048;
 const SCALES: (f64, f64) = (1e-6, 1e6);
@@ -39,70 +40,6 @@ impl FromStr for Size {
         text.split_once(['x', 'X'])
             .and_then(|(width, height)| Some(Self { width: side(width)?, height: side(height)? }))
             .ok_or_else(|| "WIDTHxHEIGHT in pixels, each from 1 to 16,384".to_owned())
-    }
-}
-
-/// Where a camera is and what it looks at: `0,2,10:0,1,0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraPose {
-    /// The camera's position, world space, metres.
-    pub eye: [f32; 3],
-    /// A point that it looks at, not the eye.
-    pub target: [f32; 3],
-}
-
-impl FromStr for CameraPose {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let point = |text: &str| {
-            let mut numbers = text.split(',').map(|number| {
-                number.trim().parse::<f32>().ok().filter(|number| number.is_finite())
-            });
-            let point = [numbers.next()??, numbers.next()??, numbers.next()??];
-            numbers.next().is_none().then_some(point)
-        };
-        text.split_once(':')
-            .and_then(|(eye, target)| Some(Self { eye: point(eye)?, target: point(target)? }))
-            .filter(|pose| pose.eye != pose.target)
-            .ok_or_else(|| {
-                "eye and target as x,y,z:x,y,z, six finite numbers in metres, two different points"
-                    .to_owned()
-            })
-    }
-}
-
-/// Where the camera stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Camera {
-    /// At a pose of one's own: `0,2,10:0,1,0`.
-    Pose(CameraPose),
-    /// At a frame of the scene's path: `path:300/1200`.
-    OnPath {
-        /// The frame, from 0.
-        frame: u32,
-        /// Frames of the whole path.
-        count: u32,
-    },
-}
-
-impl FromStr for Camera {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let Some(place) = text.strip_prefix("path:") else {
-            return text
-                .parse()
-                .map(Self::Pose)
-                .map_err(|accepted: String| format!("{accepted}, or path:FRAME/COUNT"));
-        };
-        let frame = |text: &str| text.parse::<u32>().ok();
-        place
-            .split_once('/')
-            .and_then(|(at, count)| Some((frame(at)?, frame(count)?)))
-            .filter(|(at, count)| at < count && *count <= MAX_FRAMES)
-            .map(|(frame, count)| Self::OnPath { frame, count })
-            .ok_or_else(|| "path:FRAME/COUNT, the frame below the count of at most 100,000".into())
     }
 }
 
@@ -292,7 +229,7 @@ pub(super) fn checks(text: &str) -> Result<u32, String> {
 }
 
 pub(super) fn bounces(text: &str) -> Result<u32, String> {
-    whole(text, 0, 1).ok_or_else(|| "0 or 1".to_owned())
+    whole(text, 0, MAX_BOUNCES).ok_or_else(|| format!("a whole number from 0 to {MAX_BOUNCES}"))
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {

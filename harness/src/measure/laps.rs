@@ -100,7 +100,7 @@ impl Contest<'_> {
 
 /// The poses at which images are compared: an odd number of poses apart, so that lists used for 2, 4
 /// or 8 frames are seen at every age.
-fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
+pub(crate) fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
     let step = (poses / MAX_CHECKS).saturating_sub(1).max(1) | 1;
     (0..poses).step_by(step as usize).take(checks as usize).collect()
 }

@@ -3,10 +3,10 @@
 use super::comparison::{Comparison, comparisons};
 use super::format::{factor, number, short_adapter, significant};
 use super::lead::{Lead, span};
-use super::loss::loss;
+use super::loss::{loss, range_loss};
 use super::rank::{is_timed, tie};
 use super::raster;
-use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
+use crate::results::{Clock, DeviceType, Record, Results, TruthLevel, Untested};
 
 /// Ratios nearer to 1 are called equal: no more is known from a handful of samples.
 const EQUAL: f64 = 0.03;
@@ -49,6 +49,9 @@ fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
 
 fn sentence(comparison: &Comparison<'_>) -> String {
     let first = comparison.first();
+    if let Some(why) = first.untested_words().filter(|_| !is_dark(first)) {
+        return format!("nothing can be said: {why}, so no method was put to a test");
+    }
     let Some(fastest) = comparison.fastest().filter(|record| is_timed(record)) else {
         if !is_timed(first) {
             return match first.is_baseline() {
@@ -77,6 +80,11 @@ fn sentence(comparison: &Comparison<'_>) -> String {
         false => image(fastest),
     };
     speed(comparison, &subject) + &image + &lead.doubt()
+}
+
+/// Whether surfaces are there, and no light at all: the times are then those of an empty frame.
+fn is_dark(record: &Record) -> bool {
+    record.lights == 0 && record.untested == Some(Untested::NoLight)
 }
 
 /// Who a sentence speaks of: one method, or several that tie.
@@ -168,6 +176,7 @@ const SAME_IMAGE: &str = " and shows the same image, bit for bit";
 fn image(record: &Record) -> String {
     match loss(record) {
         Some(loss) => format!(", but {loss}"),
+        None if record.untested.is_some() => ", which puts no method to a test".to_owned(),
         None if record.differing_channels == Some(0) && record.checked_pairs != Some(0) => {
             SAME_IMAGE.to_owned()
         }
@@ -203,7 +212,7 @@ pub fn notices(results: &Results) -> Vec<String> {
         }
     }
     for record in &results.records {
-        if record.checked_pairs == Some(0) && record.lights > 0 {
+        if record.checked_pairs == Some(0) && record.lights > 0 && record.untested.is_none() {
             notices.push(format!(
                 "{}, {}, {}: no light reaches any of the {} samples, so nothing was checked.",
                 record.scene,
@@ -225,6 +234,15 @@ pub fn notices(results: &Results) -> Vec<String> {
     }
     if results.truth.level == TruthLevel::None && !results.records.is_empty() {
         notices.push("The lists were not checked for missed lights (--truth none).".to_owned());
+    }
+    // Methods that lose nothing else say the same: the first of each scene and mode stands for all.
+    let mut told = Vec::new();
+    for record in &results.records {
+        let case = (&record.scene, record.mode);
+        if let Some(loss) = range_loss(record).filter(|_| !told.contains(&case)) {
+            notices.push(loss);
+            told.push(case);
+        }
     }
     if let Some(first) = results.rejected_lights.first() {
         let count = lights(results.rejected_lights.len() as u64);

@@ -59,22 +59,6 @@ pub(super) fn short_adapter(adapter: &str) -> &str {
     if short.is_empty() { "an unnamed adapter" } else { short }
 }
 
-/// Text for HTML, between tags or in a quoted attribute.
-pub(super) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            c => escaped.push(c),
-        }
-    }
-    escaped
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,10 +98,5 @@ mod tests {
         assert_eq!(difference(1.19e-7), "1.2e-7");
         assert_eq!(difference(0.031_26), "0.0313");
         assert_eq!(difference(f64::INFINITY), "not finite");
-    }
-
-    #[test]
-    fn markup_in_names_is_text() {
-        assert_eq!(escape("<b a='\"&\">"), "&lt;b a=&#39;&quot;&amp;&quot;&gt;");
     }
 }

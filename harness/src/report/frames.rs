@@ -1,9 +1,8 @@
 //! The same methods in each kind of frame that a renderer may draw: forward shading without a depth
 //! pre-pass and with one, and deferred shading without and with models in the G-buffer.
 
-use std::fmt::Write;
-
-use super::format::{escape, number, significant};
+use super::format::{number, significant};
+use super::markup::{Html, html};
 use super::page::with_names_whole;
 use super::raster::{self, MARK};
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
@@ -56,8 +55,8 @@ fn modes(records: &[&Record]) -> usize {
     modes.len()
 }
 
-fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> String {
-    let Some(bill) = Bill::of(kind, own) else { return super::format::ABSENT.to_owned() };
+fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
+    let Some(bill) = Bill::of(kind, own) else { return super::format::ABSENT.into() };
     let measured = own.iter().find(|record| record.mode == kind.mode());
     let is_marked = match measured {
         Some(record) => raster::is_marked(machine, record),
@@ -66,50 +65,49 @@ fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> String {
     let mark = if is_marked { format!(" {MARK}") } else { String::new() };
     let span = bill.span_ms.map_or_else(String::new, |ms| format!("; span {}", significant(ms)));
     let derived = if bill.is_derived { "; derived" } else { "" };
-    format!(
-        "{}{mark}<br><small>{} + {}; frame {}{span}{derived}</small>",
+    html!(
+        "{}{}<br><small>{} + {}; frame {}{}{}</small>",
         significant(bill.both_ms()),
+        mark,
         significant(bill.assign_ms),
         significant(bill.shade_ms),
         significant(bill.frame_ms),
+        span,
+        derived
     )
 }
 
 /// A table of methods and kinds of frame; empty where nothing is known of two kinds.
-fn table(caption: &str, records: &[&Record], machine: &Machine) -> String {
+fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
     let methods = methods(records);
     let kinds = kinds(&methods);
     if kinds.len() < 2 {
-        return String::new();
+        return Html::default();
     }
-    let heads: String = kinds
-        .iter()
-        .map(|kind| {
-            let (head, about) = words(*kind);
-            format!(
-                "<th scope=\"col\" title=\"{}\">{head} <span class=\"unit\">ms</span></th>",
-                escape(about)
-            )
-        })
-        .collect();
-    let mut rows = String::new();
+    let head = |kind: &FrameKind| {
+        let (head, about) = words(*kind);
+        html!("<th scope=\"col\" title=\"{}\">{} <span class=\"unit\">ms</span></th>", about, head)
+    };
+    let heads: Html = kinds.iter().map(head).collect();
+    let mut rows = Html::default();
     for (name, own) in &methods {
-        let cells: String =
-            kinds.iter().map(|kind| format!("<td>{}</td>", cell(*kind, own, machine))).collect();
-        let _ = writeln!(rows, "<tr><th scope=\"row\">{}</th>{cells}</tr>", with_names_whole(name));
+        let cell = |kind: &FrameKind| html!("<td>{}</td>", cell(*kind, own, machine));
+        let cells: Html = kinds.iter().map(cell).collect();
+        rows += html!("<tr><th scope=\"row\">{}</th>{}</tr>\n", with_names_whole(name), cells);
     }
-    let explained: String = kinds
-        .iter()
-        .map(|kind| {
-            let (head, about) = words(*kind);
-            format!("<dt>{head}</dt><dd>{about}</dd>\n")
-        })
-        .collect();
-    format!(
+    let explain = |kind: &FrameKind| {
+        let (head, about) = words(*kind);
+        html!("<dt>{}</dt><dd>{}</dd>\n", head, about)
+    };
+    let explained: Html = kinds.iter().map(explain).collect();
+    html!(
         "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\">\n\
          <table class=\"figures frames\"><caption>{0}</caption>\n<thead><tr><th scope=\"col\">strategy</th>\
-         {heads}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n<dl class=\"columns\">{explained}</dl>\n",
-        escape(caption)
+         {1}</tr></thead>\n<tbody>\n{2}</tbody></table></div>\n<dl class=\"columns\">{3}</dl>\n",
+        caption,
+        heads,
+        rows,
+        explained
     )
 }
 
@@ -120,7 +118,7 @@ const READING: &str = "In each kind of frame: assign + shade; below it the two, 
     M\u{2019}s ids is left out.";
 
 /// A section for each set of lights that was measured in several modes; empty where there is none.
-pub(super) fn sections(results: &Results) -> String {
+pub(super) fn sections(results: &Results) -> Html {
     let key = |record: &Record| {
         let size = (record.width, record.height, record.lights, record.seed);
         (record.scene.clone(), record.scene_hash.clone(), size)
@@ -137,10 +135,13 @@ pub(super) fn sections(results: &Results) -> String {
         let caption = format!("{}, {} lights", first.scene, number(first.lights as f64));
         let table = table(&format!("Kinds of frame: {caption}"), group, &results.machine);
         (!table.is_empty()).then(|| {
-            format!(
-                "<section class=\"frames\" aria-labelledby=\"frames{ix}\"><h2 id=\"frames{ix}\">Kinds of frame: \
-                 {}</h2>\n<p class=\"meta\">{READING}</p>\n{table}</section>\n",
-                escape(&caption)
+            html!(
+                "<section class=\"frames\" aria-labelledby=\"frames{0}\"><h2 id=\"frames{0}\">Kinds of frame: \
+                 {1}</h2>\n<p class=\"meta\">{2}</p>\n{3}</section>\n",
+                ix,
+                caption,
+                READING,
+                table
             )
         })
     };
@@ -149,24 +150,17 @@ pub(super) fn sections(results: &Results) -> String {
 
 /// The part of a study's page: from jobs in several modes (`frames`), else what the main
 /// comparison lets derive.
-pub(super) fn part_of_study(done: &Done, scene: &str) -> String {
+pub(super) fn part_of_study(done: &Done, scene: &str) -> Html {
     let of = |section| -> Vec<(&Machine, Vec<&Record>)> {
         let jobs = done.of(scene, section);
         jobs.map(|(_, results)| (&results.machine, results.records.iter().collect())).collect()
     };
     let jobs = Some(of("frames")).filter(|jobs| !jobs.is_empty()).unwrap_or_else(|| of("main"));
-    let mut tables = String::new();
+    let mut tables = Html::default();
     for (machine, records) in jobs.iter().rev() {
         let Some(first) = records.first() else { continue };
         let caption = format!("{scene}, {} lights", number(first.lights as f64));
-        tables += &table(&format!("Kinds of frame: {caption}"), records, machine);
+        tables += table(&format!("Kinds of frame: {caption}"), records, machine);
     }
-    if tables.is_empty() {
-        return String::new();
-    }
-    format!(
-        "<div class=\"part\" id=\"{0}-frames\" data-part=\"frames\"><h3>Kinds of frame</h3>\n\
-         <p class=\"note\">{READING}</p>\n{tables}</div>\n",
-        escape(scene)
-    )
+    super::study::part(scene, "frames", "Kinds of frame", READING, &tables)
 }

@@ -7,7 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
 use super::comparison::comparisons;
-use super::format::{escape, number, short_adapter};
+use super::format::{number, short_adapter};
+use super::markup::Html;
 use super::page;
 use super::{finding, frames, notices};
 use crate::results::{Results, ResultsError, write_atomically};
@@ -45,26 +46,26 @@ pub fn write_html(
 pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
     let findings = finding(results);
     let (headline, others) =
-        findings.split_first().map_or((String::new(), String::new()), |(first, others)| {
+        findings.split_first().map_or_else(Default::default, |(first, others)| {
             (page::with_names_whole(first), page::paragraphs("finding", others))
         });
     fill(
         PAGE,
         &[
-            ("title", &escape(&title(results))),
-            ("style", STYLE),
-            ("headline", &headline),
-            ("findings", &others),
-            ("notices", &page::notices(&notices(results))),
-            ("comparisons", &(page::comparisons_html(results) + &frames::sections(results))),
-            ("columns", &page::columns()),
-            ("reading", ""),
-            ("file", "results.json"),
-            ("link", "#from"),
-            ("provenance", &page::provenance(results)),
-            ("data", &in_script(&results.to_json())),
-            ("view", &in_script(&view(results, images).to_string())),
-            ("script", &SCRIPTS.join("\n")),
+            ("title", title(results).into()),
+            ("style", Html::trusted(STYLE)),
+            ("headline", headline),
+            ("findings", others),
+            ("notices", page::notices(&notices(results))),
+            ("comparisons", page::comparisons_html(results) + frames::sections(results)),
+            ("columns", page::columns()),
+            ("reading", Html::default()),
+            ("file", "results.json".into()),
+            ("link", "#from".into()),
+            ("provenance", page::provenance(results)),
+            ("data", in_script(&results.to_json())),
+            ("view", in_script(&view(results, images).to_string())),
+            ("script", Html::trusted(SCRIPTS.join("\n"))),
         ],
     )
 }
@@ -114,12 +115,12 @@ fn view(results: &Results, images: &[(String, Vec<u8>)]) -> serde_json::Value {
 }
 
 /// JSON that no HTML parser takes for the end of its script element. `<` stands only in strings.
-pub(super) fn in_script(json: &str) -> String {
-    json.replace('<', "\\u003c")
+pub(super) fn in_script(json: &str) -> Html {
+    Html::trusted(json.replace('<', "\\u003c"))
 }
 
 /// Replaces each `{{name}}` of a template; what is put in is not looked at again.
-pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
+pub(super) fn fill(template: &str, values: &[(&str, Html)]) -> String {
     let mut filled = String::new();
     let mut parts = template.split("{{");
     filled.push_str(parts.next().unwrap_or_default());
@@ -127,7 +128,7 @@ pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
         let (name, rest) = part.split_once("}}").unwrap_or((part, ""));
         let value = values.iter().find(|(known, _)| *known == name);
         debug_assert!(value.is_some(), "the template names {name}");
-        filled.push_str(value.map_or("", |(_, value)| value));
+        filled.push_str(value.map_or("", |(_, value)| value.as_str()));
         filled.push_str(rest);
     }
     filled
@@ -139,15 +140,16 @@ mod tests {
 
     #[test]
     fn what_is_put_in_is_not_looked_at_again() {
-        assert_eq!(fill("a {{x}} {{y}} b", &[("x", "{{y}}"), ("y", "1")]), "a {{y}} 1 b");
+        let values = [("x", Html::from("{{y}}")), ("y", "1".into())];
+        assert_eq!(fill("a {{x}} {{y}} b", &values), "a {{y}} 1 b");
     }
 
     #[test]
     fn data_cannot_end_its_script() {
         let json = serde_json::to_string("</script><!--").expect("JSON");
         let safe = in_script(&json);
-        assert!(!safe.contains('<'));
-        let back: String = serde_json::from_str(&safe).expect("JSON");
+        assert!(!safe.as_str().contains('<'));
+        let back: String = serde_json::from_str(safe.as_str()).expect("JSON");
         assert_eq!(back, "</script><!--");
     }
 

@@ -54,7 +54,7 @@ fn error(record: &Record, id: &str) -> Option<f64> {
 
 /// Whether a method may lose light, or is known to have lost some.
 fn is_lossy(record: &Record) -> bool {
-    !record.is_control() && !record.is_exact()
+    !record.is_control() && !record.shows_no_loss()
 }
 
 /// The columns of a comparison: those of all, and errors where a method may lose light.
@@ -112,6 +112,19 @@ pub(super) fn loss(record: &Record) -> Option<String> {
     let errors = error_words(record);
     let errors = if errors.is_empty() { errors } else { format!(" ({errors})") };
     Some(parts.join(" and ") + &errors)
+}
+
+/// What the ends of lights lose in a record, whatever its method; `None` where it was not measured.
+pub(super) fn range_loss(record: &Record) -> Option<String> {
+    let error = |id| record.unbounded_errors.get(id).copied().flatten();
+    Some(format!(
+        "{}, {}: against lights without an end the image of {} has {} % missing energy and relMSE {}.",
+        record.scene,
+        record.mode.name(),
+        record.strategy,
+        percent(error("missing_energy")?),
+        difference(error("rel_mse")?)
+    ))
 }
 
 fn checked(record: &Record) -> String {

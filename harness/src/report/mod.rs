@@ -12,6 +12,7 @@ mod html;
 mod lead;
 mod loss;
 mod markdown;
+mod markup;
 mod metrics;
 mod page;
 mod rank;

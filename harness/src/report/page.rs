@@ -1,11 +1,11 @@
 //! The parts of the page that are text: tables, notices, provenance.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use super::comparison::{Comparison, comparisons};
-use super::format::{escape, number, significant};
+use super::format::{number, significant};
 use super::loss::{ERROR_COLUMNS, columns as columns_of};
+use super::markup::{Html, html};
 use super::metrics::{Better, METRICS, Metric};
 use super::rank::{ALIKE, Ranked, competes};
 use crate::results::{Clock, DeviceType, PassKind, Record, Results, TruthLevel};
@@ -55,62 +55,60 @@ pub(super) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
 const UNBROKEN: usize = 24;
 
 /// Text as HTML in which no name such as `DC-I/64x64x24` is broken at its hyphen.
-pub(super) fn with_names_whole(text: &str) -> String {
-    let word = |word: &str| {
-        let html = escape(word);
+pub(super) fn with_names_whole(text: &str) -> Html {
+    let word = |(ix, word): (usize, &str)| {
+        let space = if ix == 0 { "" } else { " " };
         let is_name = word.contains('-') && word.chars().count() <= UNBROKEN;
-        if is_name { format!("<span class=\"whole\">{html}</span>") } else { html }
+        match is_name {
+            true => html!("{}<span class=\"whole\">{}</span>", space, word),
+            false => html!("{}{}", space, word),
+        }
     };
-    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+    text.split(' ').enumerate().map(word).collect()
 }
 
-pub(super) fn paragraphs(class: &str, texts: &[String]) -> String {
-    texts
-        .iter()
-        .map(|text| {
-            format!(
-                "<p class=\"{class}\">{}</p>
-",
-                with_names_whole(text)
-            )
-        })
-        .collect()
+pub(super) fn paragraphs(class: &str, texts: &[String]) -> Html {
+    let paragraph =
+        |text: &String| html!("<p class=\"{}\">{}</p>\n", class, with_names_whole(text));
+    texts.iter().map(paragraph).collect()
 }
 
-pub(super) fn notices(texts: &[String]) -> String {
+pub(super) fn notices(texts: &[String]) -> Html {
     if texts.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let items: String = texts.iter().map(|text| format!("<li>{}</li>", escape(text))).collect();
-    format!("<ul class=\"notices\" aria-label=\"Before you trust a figure\">{items}</ul>")
+    let items: Html = texts.iter().map(|text| html!("<li>{}</li>", text)).collect();
+    html!("<ul class=\"notices\" aria-label=\"Before you trust a figure\">{}</ul>", items)
 }
 
 /// One section per comparison: the table, and places for the charts.
-pub(super) fn comparisons_html(results: &Results) -> String {
+pub(super) fn comparisons_html(results: &Results) -> Html {
     let classes = strategy_classes(results);
-    let mut html = String::new();
-    for (ix, comparison) in comparisons(results).iter().enumerate() {
+    let section = |(ix, comparison): (usize, &Comparison<'_>)| {
         let first = comparison.first();
         let heading = format!("{}, {}", first.scene, first.mode.name());
-        let _ = write!(
-            html,
-            "<section class=\"comparison\" data-comparison=\"{ix}\" aria-labelledby=\"c{ix}\">\n\
-             <h2 id=\"c{ix}\">{}</h2>\n<p class=\"meta\">{}</p>\n{}\
+        html!(
+            "<section class=\"comparison\" data-comparison=\"{0}\" aria-labelledby=\"c{0}\">\n\
+             <h2 id=\"c{0}\">{1}</h2>\n<p class=\"meta\">{2}</p>\n{3}\
              <figure class=\"bars\"></figure>\n<div class=\"pictures\"></div>\n\
              <figure class=\"samples\"></figure>\n</section>\n",
-            escape(&heading),
-            escape(&setting(first)),
+            ix,
+            heading,
+            setting(first),
             table(&heading, comparison, &classes),
-        );
-    }
-    html
+        )
+    };
+    comparisons(results).iter().enumerate().map(section).collect()
 }
+
+/// The kind of light that stands in no list.
+const SUN: &str = "sun";
 
 pub(super) fn setting(record: &Record) -> String {
     let kinds: Vec<_> = record
         .light_kinds
         .iter()
-        .filter(|(_, count)| **count > 0)
+        .filter(|(kind, count)| **count > 0 && *kind != SUN)
         .map(|(kind, count)| format!("{} {kind}", number(*count as f64)))
         .collect();
     let mut parts = vec![if kinds.is_empty() {
@@ -118,6 +116,11 @@ pub(super) fn setting(record: &Record) -> String {
     } else {
         format!("{} lights ({})", number(record.lights as f64), kinds.join(", "))
     }];
+    match record.light_kinds.get(SUN).copied().unwrap_or(0) {
+        0 => {}
+        1 => parts.push("1 sun".to_owned()),
+        count => parts.push(format!("{count} suns")),
+    }
     parts.push(format!("{}\u{a0}\u{d7}\u{a0}{} pixels", record.width, record.height));
     parts.push(format!("{} triangles", number(record.triangles as f64)));
     if record.scene_scale != 1.0 {
@@ -134,61 +137,62 @@ pub(super) fn table(
     caption: &str,
     comparison: &Comparison<'_>,
     classes: &BTreeMap<&str, String>,
-) -> String {
-    let mut heads = String::new();
-    for metric in columns_of(comparison) {
-        let _ = write!(
-            heads,
+) -> Html {
+    let head = |metric: &Metric| {
+        html!(
             "<th scope=\"col\" title=\"{}\"><button type=\"button\">{} <span class=\"unit\">{}</span></button></th>",
-            escape(metric.about),
-            escape(metric.head),
-            escape(metric.unit),
-        );
-    }
-    let mut rows = String::new();
+            metric.about,
+            metric.head,
+            metric.unit,
+        )
+    };
+    let heads: Html = columns_of(comparison).map(head).collect();
+    let mut rows = Html::default();
     for (_, record) in &comparison.records {
-        let cells: String =
+        let cells: Html =
             columns_of(comparison).map(|metric| cell(metric, comparison, record)).collect();
-        let _ = writeln!(
-            rows,
-            "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{cells}</tr>",
+        rows += html!(
+            "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{}</tr>\n",
             classes.get(record.strategy.as_str()).map_or("", String::as_str),
             with_names_whole(&comparison.name(record)),
+            cells
         );
     }
-    format!(
+    html!(
         "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Results: {0}\">\n\
          <table class=\"results\"><caption>Results: {0}. A heading sorts by its column.</caption>\n\
-         <thead><tr><th scope=\"col\"><button type=\"button\">strategy</button></th>{heads}</tr></thead>\n\
-         <tbody>\n{rows}</tbody></table></div>\n",
-        escape(caption)
+         <thead><tr><th scope=\"col\"><button type=\"button\">strategy</button></th>{1}</tr></thead>\n\
+         <tbody>\n{2}</tbody></table></div>\n",
+        caption,
+        heads,
+        rows
     )
 }
 
-fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> String {
+fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> Html {
     let value = (metric.value)(comparison, record);
     let class = match (metric.better, value) {
-        (Better::Zero, Some(value)) if value != 0.0 => " class=\"fault\"",
-        (Better::Zero, Some(_)) => " class=\"good\"",
+        (Better::Zero, Some(value)) if value != 0.0 => html!(" class=\"fault\""),
+        (Better::Zero, Some(_)) if record.untested.is_none() => html!(" class=\"good\""),
         (Better::Less | Better::More, Some(value))
             if competes(record) && is_best(metric, comparison, record, value) =>
         {
-            " class=\"best\""
+            html!(" class=\"best\"")
         }
-        _ => "",
+        _ => Html::default(),
     };
     let sort = value.map_or_else(String::new, |value| value.to_string());
-    let mut text = metric.text(comparison, record);
+    let mut text = Html::from(metric.text(comparison, record));
     if metric.id == "both_ms" {
-        text += &interval(record);
+        text += interval(record);
     }
-    format!("<td data-metric=\"{}\" data-value=\"{sort}\"{class}>{text}</td>", metric.id)
+    html!("<td data-metric=\"{}\" data-value=\"{}\"{}>{}</td>", metric.id, sort, class, text)
 }
 
 /// Where the median of assigning and shading lies, in small; its tip says how surely.
-pub(super) fn interval(record: &Record) -> String {
-    record.interval_ms().map_or_else(String::new, |interval| {
-        format!(
+pub(super) fn interval(record: &Record) -> Html {
+    record.interval_ms().map_or_else(Html::default, |interval| {
+        html!(
             "<small class=\"interval\" title=\"{} % of such intervals hold the median\">\
              {}\u{2013}{}</small>",
             significant(interval.coverage * 100.0),
@@ -219,20 +223,20 @@ fn is_best(metric: &Metric, comparison: &Comparison<'_>, record: &Record, value:
 }
 
 /// What each column means.
-pub(super) fn columns() -> String {
-    METRICS
-        .iter()
-        .chain(&ERROR_COLUMNS)
-        .map(|metric| {
-            let (head, unit, about) =
-                (escape(metric.head), escape(metric.unit), escape(metric.about));
-            format!("<dt>{head} <span class=\"unit\">{unit}</span></dt><dd>{about}</dd>\n")
-        })
-        .collect()
+pub(super) fn columns() -> Html {
+    let column = |metric: &Metric| {
+        html!(
+            "<dt>{} <span class=\"unit\">{}</span></dt><dd>{}</dd>\n",
+            metric.head,
+            metric.unit,
+            metric.about
+        )
+    };
+    METRICS.iter().chain(&ERROR_COLUMNS).map(column).collect()
 }
 
 /// Where, when and from what the figures came.
-pub(super) fn provenance(results: &Results) -> String {
+pub(super) fn provenance(results: &Results) -> Html {
     let machine = &results.machine;
     let mut rows: Vec<(&str, String)> = vec![
         ("Adapter", machine.adapter.clone()),
@@ -254,13 +258,13 @@ pub(super) fn provenance(results: &Results) -> String {
         ("Schema", format!("results.json version {}", results.schema_version)),
     ];
     rows.retain(|(_, value)| !value.trim().is_empty());
-    let rows: String = rows
-        .iter()
-        .map(|(name, value)| format!("<div><dt>{name}</dt><dd>{}</dd></div>\n", escape(value)))
-        .collect();
-    let command = escape(&shell_words(&results.command));
-    format!(
-        "<dl class=\"provenance\">\n{rows}</dl>\n<pre class=\"command\"><code>{command}</code></pre>"
+    let row =
+        |(name, value): &(&str, String)| html!("<div><dt>{}</dt><dd>{}</dd></div>\n", name, value);
+    let rows: Html = rows.iter().map(row).collect();
+    html!(
+        "<dl class=\"provenance\">\n{}</dl>\n<pre class=\"command\"><code>{}</code></pre>",
+        rows,
+        shell_words(&results.command)
     )
 }
 

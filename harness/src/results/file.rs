@@ -6,7 +6,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::{Record, Results, SCHEMA_VERSION};
+use super::{
+    Record, Results, SCHEMA_VERSION,
+    lack::lack,
+    seal::{sealed, unsealed},
+};
 
 /// Why results cannot be written or read; one line each.
 #[derive(Debug, Error)]
@@ -35,6 +39,14 @@ pub enum ResultsError {
         /// What is wrong and where.
         reason: String,
     },
+    /// A `study.json` cannot be used.
+    #[error("{}: not the list of a study's jobs: {reason}", path.display())]
+    Study {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and where.
+        reason: String,
+    },
     /// A file of a version that this program does not know.
     #[error("{}: schema_version is {found}: it must be {SCHEMA_VERSION}", path.display())]
     Version {
@@ -46,44 +58,71 @@ pub enum ResultsError {
 }
 
 impl Results {
-    /// The text of `results.json`.
+    /// The results as JSON, without a checksum.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("keys are strings and values are plain data")
     }
 
-    /// Writes `results.json` whole or not at all; the folder is made where it is missing.
+    /// Writes `results.json` with its checksum, whole or not at all; the folder is made where it is
+    /// missing.
     ///
     /// # Errors
     ///
     /// [`ResultsError::Write`] names the path that refused.
     pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
-        write_atomically(path, (self.to_json() + "\n").as_bytes())
+        let text = sealed(self).map_err(|error| ResultsError::Parse {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })?;
+        write_atomically(path, text.as_bytes())
     }
 
-    /// Reads a `results.json` of [`SCHEMA_VERSION`].
+    /// Reads a `results.json` of [`SCHEMA_VERSION`], with the errors that lie beside it.
     ///
     /// # Errors
     ///
     /// [`ResultsError::Read`], [`ResultsError::Parse`] or [`ResultsError::Version`].
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
-        let parse_error = |error: serde_json::Error| ResultsError::Parse {
-            path: path.to_owned(),
-            reason: error.to_string(),
-        };
-        let text = fs::read_to_string(path)
+        Self::read_checked(path).map(|(results, _)| results)
+    }
+
+    /// The same, and what the results lack of what their command asks for.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read).
+    pub fn read_checked(path: &Path) -> Result<(Self, Option<String>), ResultsError> {
+        let (mut results, checksum) = Self::read_raw(path)?;
+        // Under the names that the command knows.
+        let lack = lack(&results);
+        results.name_as_today();
+        results.take_metrics(path, &checksum);
+        Ok((results, lack))
+    }
+
+    /// Reads what a file holds, under the names of its time, and its checksum.
+    pub(super) fn read_raw(path: &Path) -> Result<(Self, String), ResultsError> {
+        let fail = |reason| ResultsError::Parse { path: path.to_owned(), reason };
+        let bytes = fs::read(path)
             .map_err(|source| ResultsError::Read { path: path.to_owned(), source })?;
-        let value: serde_json::Value = serde_json::from_str(&text).map_err(parse_error)?;
+        let (value, checksum) = unsealed(&bytes).map_err(fail)?;
         match value.get("schema_version").and_then(serde_json::Value::as_u64) {
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
                 Err(ResultsError::Version { path: path.to_owned(), found })
             }
             _ => {
-                let mut results: Self = serde_json::from_str(&text).map_err(parse_error)?;
-                results.rename_records();
-                results.records.iter_mut().for_each(Record::bill_again);
-                Ok(results)
+                // From the text: the order of passes counts.
+                let results = serde_json::from_slice(&bytes).map_err(|e| fail(e.to_string()))?;
+                Ok((results, checksum))
             }
         }
+    }
+
+    /// Gives records of earlier versions the names and the bills of today, and shows what names hide.
+    pub(super) fn name_as_today(&mut self) {
+        self.show_hidden();
+        self.rename_records();
+        self.records.iter_mut().for_each(Record::bill_again);
     }
 }
 
@@ -99,7 +138,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
         fs::create_dir_all(folder).map_err(|source| fail(folder, source))?;
     }
     let mut temporary = path.as_os_str().to_owned();
-    temporary.push(format!(".{}.tmp", std::process::id()));
+    temporary.push(format!(".{}{TEMPORARY}", std::process::id()));
     let temporary = PathBuf::from(temporary);
     let written = fs::File::create(&temporary)
         .and_then(|mut file| {
@@ -112,6 +151,42 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
         let _ = fs::remove_file(&temporary);
         fail(path, source)
     })
+}
+
+/// How names of temporary files end, behind the number of their process.
+const TEMPORARY: &str = ".tmp";
+
+/// Removes the temporary files that killed runs left in an output folder, among its charts and its jobs.
+/// The folder must be held: files of a run that is still writing would go too.
+pub(crate) fn remove_temporaries(folder: &Path) {
+    let jobs = folder.join("jobs");
+    let each_job = entries(&jobs).filter(|(kind, _)| kind.is_dir()).map(|(_, path)| path);
+    let folders = [folder.to_owned(), folder.join("charts"), jobs.clone()];
+    for folder in folders.into_iter().chain(each_job) {
+        // Links are neither followed nor removed.
+        for (_, path) in entries(&folder).filter(|(kind, _)| kind.is_file()) {
+            if path.file_name().is_some_and(|name| is_temporary(&name.to_string_lossy())) {
+                // One that cannot be removed stands in nobody's way.
+                let _ = fs::remove_file(path);
+            }
+        }
+    }
+}
+
+/// What lies in a folder; nothing where it cannot be read.
+fn entries(folder: &Path) -> impl Iterator<Item = (fs::FileType, PathBuf)> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter_map(|entry| Some((entry.file_type().ok()?, entry.path())))
+}
+
+/// Whether a name is one that [`write_atomically`] gives: `results.json.4711.tmp`.
+fn is_temporary(name: &str) -> bool {
+    const WRITTEN: [&str; 5] = [".json", ".html", ".svg", ".png", ".exr"];
+    name.strip_suffix(TEMPORARY).and_then(|rest| rest.rsplit_once('.')).is_some_and(
+        |(file, process)| {
+            process.parse::<u32>().is_ok() && WRITTEN.iter().any(|end| file.ends_with(end))
+        },
+    )
 }
 
 #[cfg(test)]

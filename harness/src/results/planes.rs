@@ -24,6 +24,7 @@ pub enum PlaneSource {
     Option,
     /// The camera of the scene's file.
     File,
-    /// The size of the scene; of the far plane, its bounds as seen from the eye.
+    /// The size of the scene, or the nearest surface in view where that is nearer; of the far plane, the
+    /// scene's bounds as seen from the eye.
     Scene,
 }

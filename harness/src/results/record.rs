@@ -109,8 +109,14 @@ impl Record {
         !self.is_baseline() && !self.is_control() && self.strategy != EARLY_EXIT
     }
 
-    /// Whether it may be called exact: no knob loses light, and nothing is known to be lost.
+    /// Whether it may be called exact: no knob loses light, nothing is known to be lost, and the run
+    /// put it to a test.
     pub fn is_exact(&self) -> bool {
+        self.shows_no_loss() && self.untested.is_none()
+    }
+
+    /// Whether no knob loses light and nothing is known to be lost, tested or not.
+    pub fn shows_no_loss(&self) -> bool {
         !self.is_lossy && self.is_lossless()
     }
 

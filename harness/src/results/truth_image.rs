@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Errors;
+
 /// What a view should look like, rendered on the CPU.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TruthImage {
@@ -22,19 +24,33 @@ pub struct TruthImage {
     /// The standard error of each channel over the mean luminance of the image: black at none, white
     /// from a hundredth on.
     pub error_image: String,
+    /// The standard error of each channel, an EXR file like `raw`; `None` in older results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub raw_error: Option<String>,
     /// The factor before the tone curve.
     pub exposure: f64,
     /// Root mean square of the pixels' standard errors of luminance, over the mean luminance.
     pub standard_error: f64,
     /// Whether surfaces cast shadows.
     pub shadows: bool,
-    /// Times that light is reflected between surfaces before it is seen.
+    /// Surfaces that light may meet before the one that is seen.
     pub bounces: u32,
     /// Whether what comes straight from lights is left out.
     #[serde(default)]
     pub is_indirect: bool,
+    /// Whether the surfaces of bounces reflect as virtual point lights emit, without a specular term.
+    #[serde(default)]
+    pub is_matte: bool,
     /// Samples of each pixel, where samples were drawn.
     pub samples: u32,
+    /// Seed of the samples; `None` in older results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample_seed: Option<u64>,
+    /// What the rounding of depth and G-buffer costs, by metric: the same light on the surfaces of the
+    /// G-buffer against this truth. Empty with shadows, and in older results, whose truths were lit from
+    /// the G-buffer.
+    #[serde(default, skip_serializing_if = "Errors::is_empty")]
+    pub gbuffer_errors: Errors,
     /// How long the CPU took, seconds.
     pub seconds: f64,
 }

@@ -121,10 +121,13 @@ pub(super) fn jobs(
     let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let [core, _] = scene.boxes(bench)?;
-    let range = |share: f32| format!("{:.3}", (core.diagonal() * share).clamp(1e-3, 1e5));
-    let shaped = [&drawn[..], &["--outlines", "rectangles", "--radii", "equal"]].concat();
+    // Every digit: in a scene of millimetres a rounded range would be another one.
+    let range = |share: f32| (core.diagonal() * share).clamp(1e-6, 1e6).to_string();
+    let alike = [&drawn[..], &["--radii", "equal"]].concat();
     let far = range(RANGE_SHARE);
-    let common = [&shaped[..], &["--radius-scale", &far]].concat();
+    let scaled = [&alike[..], &["--radius-scale", &far]].concat();
+    let outlines = ["--outlines", "rectangles"];
+    let common = [&scaled[..], &outlines].concat();
     let frames = ["--frames", extent.frames, "--warmup", extent.warmup, "--truth", "none"];
     let timed = [&["--strategies", BASELINE], &frames[..]].concat();
     let view = [&common[..], &["--lights", FEW, "--areas", "1"]].concat();
@@ -136,14 +139,14 @@ pub(super) fn jobs(
     }
     for (count, models) in extent.costs {
         let count = count.to_string();
-        let mut cost = |what: &str, options: &[&str]| {
-            let words = [&["compare"], &common[..], &timed, &["--lights", &count], options];
+        let mut cost = |what: &str, drawn: &[&str], options: &[&str]| {
+            let words = [&["compare"], drawn, &timed, &["--lights", &count], options];
             let words = [&words.concat()[..], &["--pictures", "none"]].concat();
             jobs.push(Job::new(scene, "cost", &format!("{count}-{what}"), &words));
         };
-        cost("spots", &["--spots", "1"]);
+        cost("spots", &scaled, &["--spots", "1"]);
         for model in *models {
-            cost(&plain(model), &["--areas", "1", "--area-model", model]);
+            cost(&plain(model), &common, &["--areas", "1", "--area-model", model]);
         }
     }
     let ids: Vec<String> =
@@ -152,7 +155,7 @@ pub(super) fn jobs(
     let near = range(CULLED_RANGE_SHARE);
     let culled = ["--lights", extent.culled, "--areas", "1", "--radius-scale", &near];
     let own = ["--strategies", &ids, "--pictures", "none"];
-    let words = [&["compare"], &shaped[..], &culled, &frames, &own].concat();
+    let words = [&["compare"], &alike[..], &outlines, &culled, &frames, &own].concat();
     jobs.push(Job::new(scene, BOUNDS, extent.culled, &words));
     Ok(jobs)
 }

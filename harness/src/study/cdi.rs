@@ -168,7 +168,7 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
         }
     }
     let random: Vec<String> =
-        extent.random.iter().map(|share| format!("0,{:.4}", share * diagonal_m)).collect();
+        extent.random.iter().map(|share| format!("0,{}", share * diagonal_m)).collect();
     let random_words = |span| ["--ranges", "random", "--random-ranges", span];
     for (share, span) in extent.random.iter().zip(&random) {
         add(&format!("random-{share}"), extent.rsm, &random_words(span));
@@ -176,7 +176,7 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
         let deep = extent.deep(None, None);
         let words = ["--ranges", "random-discard", "--random-ranges", span];
         add(&format!("random-discard-{share}"), extent.rsm, &[&deep[..], &words].concat());
-        let range_m = format!("{:.4}", 0.5 * share * diagonal_m);
+        let range_m = (0.5 * share * diagonal_m).to_string();
         let words = ["--ranges", "constant-discard", "--constant-range", &range_m];
         add(&format!("constant-discard-{share}"), extent.rsm, &[&deep[..], &words].concat());
     }

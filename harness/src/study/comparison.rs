@@ -178,7 +178,7 @@ impl Plan<'_> {
         let options: Vec<&str> = options.iter().map(String::as_str).collect();
         for &count in self.extent.many {
             let factor = (f64::from(count) / f64::from(self.extent.most)).cbrt();
-            let scale = format!("{:.4}", self.scene.scale * factor);
+            let scale = (self.scene.scale * factor).to_string();
             self.add_scaled("constant", &count.to_string(), count, &scale, &options);
             if count <= 100_000 {
                 self.add("growing", &count.to_string(), count, &options);

@@ -88,7 +88,7 @@ pub(super) fn jobs(
     let drawn = scene.options(size, args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let [core, all] = scene.boxes(bench)?;
-    let range = format!("{:.3}", range_m(core));
+    let range = range_m(core).to_string();
     let lit = ["--lights", LIGHTS, "--areas", "1"];
     let shaped = ["--outlines", "polygons", "--diffuse-share", DIFFUSE_SHARE, "--radii", "equal"];
     // Images say whether anything was lost; pairs in f64 would take minutes a job.
@@ -156,7 +156,7 @@ fn published(extent: &Extent, size: Size) -> Vec<String> {
 /// The range of the lights, metres.
 fn range_m(core: Aabb) -> f32 {
     let size = core.size();
-    ((size.x * size.y * size.z).cbrt() * RANGE_SHARE).clamp(1e-3, 1e5)
+    ((size.x * size.y * size.z).cbrt() * RANGE_SHARE).clamp(1e-6, 1e6)
 }
 
 /// A camera that overlooks all copies: above a corner of the ground, looking down at its middle.
@@ -165,10 +165,9 @@ fn afar(one: Aabb, side: u32) -> String {
     let ground = Vec3::new(size.x, 0.0, size.z) * side as f32;
     let middle = one.min + 0.5 * ground;
     let eye = one.min + 0.05 * ground + Vec3::Y * (size.y + 0.2 * ground.length());
-    format!(
-        "{:.3},{:.3},{:.3}:{:.3},{:.3},{:.3}",
-        eye.x, eye.y, eye.z, middle.x, middle.y, middle.z
-    )
+    // Every digit, so that small scenes have views of their own; no negative zero.
+    let point = |point: Vec3| point.to_array().map(|x| (x + 0.0).to_string()).join(",");
+    format!("{}:{}", point(eye), point(middle))
 }
 
 #[cfg(test)]
@@ -182,10 +181,32 @@ mod tests {
             let Ok(pose) = afar(one, side).parse::<crate::cli::CameraPose>() else {
                 panic!("{} is a pose", afar(one, side));
             };
-            assert!(pose.eye[1] > one.max.y && pose.eye[0] < 0.0 && pose.eye[2] < 0.0, "{pose:?}");
+            assert!(
+                pose.eye[1] > f64::from(one.max.y) && pose.eye[0] < 0.0 && pose.eye[2] < 0.0,
+                "{pose:?}"
+            );
             let middle = [side as f32 * 15.0 - 15.0, 0.0, side as f32 * 7.0 - 7.0];
-            assert_eq!(pose.target, middle);
+            assert_eq!(pose.target, middle.map(f64::from));
         }
+    }
+
+    #[test]
+    fn small_and_large_scenes_have_cameras_and_ranges_of_their_own() {
+        for size in [1e-4_f32, 0.01, 3.3, 1e5] {
+            let one =
+                Aabb::new(Vec3::new(-0.5, 0.0, -0.25) * size, Vec3::new(0.5, 0.4, 0.25) * size);
+            let text = afar(one, 3);
+            let pose: crate::cli::CameraPose =
+                text.parse().unwrap_or_else(|e| panic!("{text}: {e}"));
+            let ground = Vec3::new(3.0 * size, 0.0, 1.5 * size);
+            let eye = one.min + 0.05 * ground + Vec3::Y * (0.4 * size + 0.2 * ground.length());
+            assert_eq!(glam::DVec3::from(pose.eye).as_vec3(), eye, "{text}");
+            let range: f32 = range_m(one).to_string().parse().unwrap();
+            assert_eq!(range, range_m(one));
+            assert!(range > 0.1 * size && range < size, "{range}");
+        }
+        let flat = Aabb::new(Vec3::ZERO, Vec3::new(2.0, 0.0, -0.0));
+        assert!(!afar(flat, 1).contains("-0"), "{}", afar(flat, 1));
     }
 
     #[test]

@@ -6,7 +6,11 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::StudyScene;
-use crate::results::{Results, ResultsError, write_atomically};
+use crate::{
+    messages::say,
+    results::{Results, ResultsError, sealed, unsealed, write_atomically},
+    visible::visible,
+};
 
 /// The file that lists a study's jobs.
 const FILE: &str = "study.json";
@@ -58,17 +62,31 @@ impl Manifest {
         if !path.is_file() {
             return Ok(None);
         }
-        let text = std::fs::read_to_string(&path)
+        let bytes = std::fs::read(&path)
             .map_err(|source| ResultsError::Read { path: path.clone(), source })?;
-        let fail = |reason: String| ResultsError::Parse { path: path.clone(), reason };
-        let manifest: Self =
-            serde_json::from_str(&text).map_err(|error| fail(error.to_string()))?;
-        manifest.check().map_err(fail)?;
+        let manifest = || {
+            unsealed(&bytes)?;
+            let manifest: Self = serde_json::from_slice(&bytes).map_err(|e| e.to_string())?;
+            manifest.check().map(|()| manifest)
+        };
+        let manifest = manifest().map_err(|reason| {
+            let help = "remove it, and the study lists its jobs again; those that are done stay";
+            ResultsError::Study { path: path.clone(), reason: format!("{reason}: {help}") }
+        })?;
         Ok(Some(manifest))
     }
 
     /// Names of jobs are names of folders: the file may come from anywhere.
     fn check(&self) -> Result<(), String> {
+        if self.jobs.is_empty() {
+            return Err("jobs is empty: it must list at least one".to_owned());
+        }
+        if let Some(job) = self.jobs.iter().find(|job| visible(&job.scene) != job.scene) {
+            return Err(format!(
+                "jobs.scene is {:?}: it must hold no control characters",
+                job.scene
+            ));
+        }
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         for (ix, job) in self.jobs.iter().enumerate() {
             let name = &job.name;
@@ -85,8 +103,12 @@ impl Manifest {
 
     /// Writes it into a folder.
     pub fn write(&self, folder: &Path) -> Result<(), ResultsError> {
-        let text = serde_json::to_string_pretty(self).unwrap_or_default() + "\n";
-        write_atomically(&folder.join(FILE), text.as_bytes())
+        let path = folder.join(FILE);
+        let text = sealed(self).map_err(|error| {
+            let reason = error.to_string();
+            ResultsError::Study { path: path.clone(), reason }
+        })?;
+        write_atomically(&path, text.as_bytes())
     }
 }
 
@@ -112,7 +134,7 @@ impl Done {
         for folder in folders {
             let path = folder.join(FILE);
             let fail =
-                |reason: &str| ResultsError::Parse { path: path.clone(), reason: reason.into() };
+                |reason: &str| ResultsError::Study { path: path.clone(), reason: reason.into() };
             let manifest = Manifest::find(folder)?.ok_or_else(|| fail("no study is there"))?;
             let done = done.get_or_insert_with(|| Self {
                 manifest: manifest.clone(),
@@ -125,7 +147,7 @@ impl Done {
             for job in &manifest.jobs {
                 let path = job.folder(folder).join("results.json");
                 if path.is_file() && !done.results.contains_key(&job.name) {
-                    let results = Results::read(&path)?;
+                    let Some(results) = read_job(job, &path)? else { continue };
                     done.check(job, &results)
                         .map_err(|reason| ResultsError::Parse { path, reason })?;
                     done.results.insert(job.name.clone(), results);
@@ -136,11 +158,11 @@ impl Done {
         done.ok_or_else(|| ResultsError::Parse { path: PathBuf::new(), reason: "no folder".into() })
     }
 
-    /// Writes the results of all jobs to their folders.
-    pub fn write(&self) -> Result<(), ResultsError> {
+    /// Writes errors that were computed anew beside the raw results of their jobs.
+    pub fn write_metrics(&self) -> Result<(), ResultsError> {
         for (job, results) in &self.results {
             if let Some(folder) = self.folders.get(job) {
-                results.write(&folder.join("results.json"))?;
+                results.write_metrics(&folder.join("results.json"))?;
             }
         }
         Ok(())
@@ -155,28 +177,32 @@ impl Done {
                 job.command.join(" ")
             ));
         }
-        let Some(first) = self.results.values().next() else { return Ok(()) };
-        let machines = first.machine.identity().into_iter().zip(results.machine.identity());
-        for ((field, known), (_, own)) in machines {
-            if known != own {
-                return Err(format!(
-                    "machine.{field} is {own}: it must be that of the other jobs, {known}"
-                ));
-            }
-        }
+        let is_same_scene = |known: &Job| known.scene == job.scene && scaled(known).eq(scaled(job));
         let hash = |results: &Results| {
             let record = results.records.first().map(|record| record.scene_hash.clone());
             record.or_else(|| results.truth_image.as_ref().map(|truth| truth.scene_hash.clone()))
         };
-        let same = |known: &&Job| known.scene == job.scene && scaled(known).eq(scaled(job));
-        let other = self.manifest.jobs.iter().filter(same);
-        let known = other.filter_map(|known| hash(self.results.get(&known.name)?)).next();
-        match (known, hash(results)) {
-            (Some(known), Some(own)) if known != own => Err(format!(
-                "scene_hash is {own}: it must be that of the scene in the other jobs, {known}"
-            )),
-            _ => Ok(()),
+        for known_job in &self.manifest.jobs {
+            let Some(known) = self.results.get(&known_job.name) else { continue };
+            let same_scene = is_same_scene(known_job);
+            let machines = known.machine.identity().into_iter().zip(results.machine.identity());
+            for ((field, known), (_, own)) in machines {
+                // Times of two scenes are not put side by side: a later commit may add a scene.
+                if known != own && (same_scene || field != "commit") {
+                    return Err(format!(
+                        "machine.{field} is {own}: it must be that of the other jobs, {known}"
+                    ));
+                }
+            }
+            if let (true, Some(known), Some(own)) = (same_scene, hash(known), hash(results))
+                && known != own
+            {
+                return Err(format!(
+                    "scene_hash is {own}: it must be that of the scene in the other jobs, {known}"
+                ));
+            }
         }
+        Ok(())
     }
 
     /// Names of the jobs that are not done.
@@ -207,6 +233,27 @@ impl Done {
             }
         }
         scenes
+    }
+}
+
+/// The results of a job; `None`, with a warning that names the job, where they are damaged or incomplete:
+/// it counts as not done.
+fn read_job(job: &Job, path: &Path) -> Result<Option<Results>, ResultsError> {
+    let not_done = |why: String| {
+        let folder = path.parent().unwrap_or(path).display();
+        say(format!(
+            "warning  job {} counts as not done: {why}: run the study again, or remove {folder}",
+            job.name
+        ));
+        Ok(None)
+    };
+    match Results::read_checked(path) {
+        Ok((results, None)) => Ok(Some(results)),
+        // Another command's results are refused as such.
+        Ok((results, Some(_))) if results.command != job.command => Ok(Some(results)),
+        Ok((_, Some(lack))) => not_done(format!("{}: {lack}", path.display())),
+        Err(error @ ResultsError::Version { .. }) => Err(error),
+        Err(error) => not_done(error.to_string()),
     }
 }
 

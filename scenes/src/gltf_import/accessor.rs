@@ -77,7 +77,8 @@ impl File {
             1 => Type::Scalar,
             2 => Type::Vec2,
             3 => Type::Vec3,
-            _ => Type::Vec4,
+            4 => Type::Vec4,
+            _ => Type::Mat4,
         };
         if kind != accepted {
             let name = |t: Type| format!("{t:?}").to_uppercase();
@@ -191,15 +192,30 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> u32 {
     }
 }
 
+/// What stands for 1 in normalised integers of a type; `None` for floats.
+pub(super) fn largest(component: ComponentType) -> Option<f32> {
+    match component {
+        ComponentType::F32 => None,
+        ComponentType::U8 => Some(255.0),
+        ComponentType::I8 => Some(127.0),
+        ComponentType::U16 => Some(65_535.0),
+        ComponentType::I16 => Some(32_767.0),
+        ComponentType::U32 => Some(u32::MAX as f32),
+    }
+}
+
 /// One component as a float; normalised integers by glTF's equations (3.11).
 fn float(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
-    let (value, max) = match component {
-        ComponentType::F32 => return f32::from_le_bytes(head(bytes)),
-        ComponentType::U8 => (f32::from(bytes[0]), 255.0),
-        ComponentType::I8 => (f32::from(i8::from_le_bytes(head(bytes))), 127.0),
-        ComponentType::U16 => (f32::from(u16::from_le_bytes(head(bytes))), 65_535.0),
-        ComponentType::I16 => (f32::from(i16::from_le_bytes(head(bytes))), 32_767.0),
-        ComponentType::U32 => (u32::from_le_bytes(head(bytes)) as f32, u32::MAX as f32),
+    let value = match component {
+        ComponentType::F32 => f32::from_le_bytes(head(bytes)),
+        ComponentType::U8 => f32::from(bytes[0]),
+        ComponentType::I8 => f32::from(i8::from_le_bytes(head(bytes))),
+        ComponentType::U16 => f32::from(u16::from_le_bytes(head(bytes))),
+        ComponentType::I16 => f32::from(i16::from_le_bytes(head(bytes))),
+        ComponentType::U32 => u32::from_le_bytes(head(bytes)) as f32,
     };
-    if normalized { (value / max).max(-1.0) } else { value }
+    match largest(component).filter(|_| normalized) {
+        Some(max) => (value / max).max(-1.0),
+        None => value,
+    }
 }

@@ -1,17 +1,18 @@
 //! Animated cameras: the tracks of the nodes from the root to the camera, evaluated exactly.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
-use glam::{Mat4, Quat, Vec4, Vec4Swizzles};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec4, Vec4Swizzles};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
     validation::Checked,
 };
 
 use super::{
-    Warnings,
+    Warnings, area_lights,
+    cameras::pose,
     file::File,
-    nodes::{Local, pose},
+    nodes::{Local, Walk},
 };
 use crate::{Pose, SceneError};
 
@@ -20,6 +21,8 @@ use crate::{Pose, SceneError};
 pub(crate) struct AnimatedNode {
     /// From the root to the camera.
     chain: Vec<Part>,
+    /// Where world space begins, in the file's.
+    origin: DVec3,
     start_s: f32,
     end_s: f32,
 }
@@ -53,6 +56,7 @@ pub(super) fn targets(file: &File) -> HashSet<usize> {
 pub(super) fn load(
     file: &File,
     chain: &[usize],
+    origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<AnimatedNode>, SceneError> {
     let moves = |channel: &&Channel| chain.contains(&channel.target.node.value());
@@ -101,7 +105,46 @@ pub(super) fn load(
     let ends = |t: &Track| (t.times[0], t.times[t.times.len() - 1]);
     let start_s = tracks().map(|t| ends(t).0).fold(f32::INFINITY, f32::min);
     let end_s = tracks().map(|t| ends(t).1).fold(f32::NEG_INFINITY, f32::max);
-    Ok(Some(AnimatedNode { chain: parts, start_s, end_s }))
+    Ok(Some(AnimatedNode { chain: parts, origin, start_s, end_s }))
+}
+
+/// Says which animations are not played: those that move meshes, lights or joints.
+pub(super) fn note_unplayed(file: &File, walk: &Walk, warnings: &mut Warnings) {
+    let nodes = &file.root.nodes;
+    let joints = file.root.skins.iter().flat_map(|skin| &skin.joints);
+    let joints: HashSet<usize> = joints.map(|joint| joint.value()).collect();
+    // Whether a node, or one below it, would take something drawn along.
+    let mut carries = vec![false; nodes.len()];
+    for visit in walk.visits.iter().rev() {
+        let node = &nodes[visit.ix];
+        let extensions = node.extensions.as_ref();
+        let is_light = extensions.is_some_and(|e| {
+            e.khr_lights_punctual.is_some() || e.others.contains_key("EXT_lights_area")
+        });
+        carries[visit.ix] |= node.mesh.is_some()
+            || is_light
+            || node.extras.as_ref().is_some_and(|e| e.get().contains(area_lights::KEY))
+            || joints.contains(&visit.ix);
+        if carries[visit.ix]
+            && let Some(parent) = walk.parents[visit.ix]
+        {
+            carries[parent] = true;
+        }
+    }
+    let channels = file.root.animations.iter().flat_map(|animation| &animation.channels);
+    let moved: BTreeSet<usize> = channels
+        .map(|channel| channel.target.node.value())
+        .filter(|ix| carries.get(*ix) == Some(&true))
+        .collect();
+    let Some(first) = moved.first() else {
+        return;
+    };
+    let name = nodes[*first].name.clone().unwrap_or_else(|| format!("node {first}"));
+    warnings.add(format!(
+        "animations of meshes and lights are not played: {} animated nodes stay at rest, \
+         {name:?} the first",
+        moved.len()
+    ));
 }
 
 fn track(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, SceneError> {
@@ -138,8 +181,9 @@ impl AnimatedNode {
     /// The pose at `t` (0..1) of the animation.
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
-        let world = self.chain.iter().fold(Mat4::IDENTITY, |world, part| world * part.matrix(time));
-        pose(&world)
+        let root = DMat4::from_translation(-self.origin);
+        let parts = self.chain.iter().map(|part| part.matrix(time).as_dmat4());
+        pose(&parts.fold(root, |world, part| world * part))
     }
 }
 

@@ -16,23 +16,28 @@
 //! | `vertices` | of a polygon, `[x, y, z]` in node space, metres: 3 to 10, plane, convex, counter-clockwise seen from the front | refused |
 //! | `color` | linear RGB | white |
 //! | `intensity` | along the normal, as of a punctual light: radiance times area | 1 |
-//! | `range` | metres from the closest point of the emitter | where an unbounded light would have faded to [`THRESHOLD`] |
+//! | `range` | metres from the closest point of the emitter | as of a punctual light without one ([`close_ranges`](crate::close_ranges)) |
 //! | `two_sided` | whether it emits from its back too | `false` |
 //! | `diffuse_share` | where diffuse light ends, as a share of the range, above 0 and at most 1 | 1 |
 //!
 //! A rectangle emits along the node's -Z, as cameras look and spots shine. Scale acts on its size,
 //! not on its intensity.
+//!
+//! The other form is EXT_lights_area. Its rectangles and discs emit along -Z too, and their
+//! `intensity` is the luminance: scale acts on their size, and so on the light they give.
 
-use assign::{Emitter, Light};
+use std::f32::consts::TAU;
+
+use assign::{Emitter, Light, MAX_VERTICES};
 use glam::{Mat4, Vec3};
 use gltf::json::scene::Node;
 use serde::Deserialize;
 
-use super::file::File;
+use super::{Warnings, file::File};
 use crate::{SceneError, lights::THRESHOLD};
 
 /// The key in a node's `extras`.
-const KEY: &str = "lightbench_area_light";
+pub(super) const KEY: &str = "lightbench_area_light";
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -67,9 +72,20 @@ fn one() -> f32 {
     1.0
 }
 
-/// The area light that node `ix` carries. Faulty ones are converted too, to be reported where
+/// The area lights that node `ix` carries. Faulty ones are converted too, to be reported where
 /// lights are uploaded.
 pub(super) fn of_node(
+    file: &File,
+    ix: usize,
+    node: &Node,
+    to_world: Mat4,
+    warnings: &mut Warnings,
+) -> Result<impl Iterator<Item = Light>, SceneError> {
+    let extension = of_extension(file, ix, node, to_world, warnings)?;
+    Ok(of_extras(file, ix, node, to_world)?.into_iter().chain(extension))
+}
+
+fn of_extras(
     file: &File,
     ix: usize,
     node: &Node,
@@ -117,8 +133,6 @@ pub(super) fn of_node(
     let emitter = if json.two_sided { emitter.two_sided() } else { emitter };
     let emitter = emitter.with_diffuse_share(json.diffuse_share);
     let intensity = Vec3::from(json.color) * json.intensity;
-    let unbounded = Light::range_from_threshold(intensity, THRESHOLD);
-    // Of a faulty intensity follows no range: the fault to report is the intensity's.
-    let unbounded = if unbounded > 0.0 && unbounded.is_finite() { unbounded } else { 1.0 };
-    Ok(Some(Light::area(emitter, position, json.range.unwrap_or(unbounded), intensity)))
+    use super::{Warnings, file::File};
+    use crate::SceneError;
 }

@@ -1,11 +1,15 @@
 //! The container: JSON, binary chunk, buffers and URIs, every range checked.
 
 use std::{
+    collections::HashMap,
     path::{Path, PathBuf},
     sync::Mutex,
 };
 
-use base64::Engine;
+use base64::{
+    Engine,
+    engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
+};
 use gltf::json::{
     Root,
     mesh::Semantic,
@@ -13,32 +17,22 @@ use gltf::json::{
 };
 
 use super::{
-    Warnings, limits,
+    Warnings, adapt, compressed_views, extensions,
+    json_path::as_in_file,
+    limits,
     parts::{is_absolute, read_part, read_regular},
 };
 use crate::SceneError;
-
-/// Extensions that a file may require. Those of materials beyond metallic-roughness are read as
-/// far as the material model goes, with a warning.
-pub(super) const SUPPORTED: &[&str] = &[
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_variants",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
 
 /// A parsed and validated file with its buffers.
 pub(super) struct File {
     pub(super) path: PathBuf,
     pub(super) root: Root,
     buffers: Vec<Vec<u8>>,
-    /// What was noted while parts were read, which images do in parallel.
+    /// The bytes of compressed buffer views.
+    decoded: HashMap<usize, Vec<u8>>,
+    /// What was left out while the JSON was read, and noted while parts were, which images do in
+    /// parallel.
     notes: Mutex<Warnings>,
 }
 
@@ -47,9 +41,11 @@ impl File {
     pub(super) fn open(path: &Path) -> Result<Self, SceneError> {
         let bytes = read(path)?;
         let (json, binary) = split(path, &bytes)?;
-        let root = parse(path, json)?;
-        let mut file =
-            Self { path: path.into(), root, buffers: Vec::new(), notes: Mutex::default() };
+        let mut warnings = Warnings::default();
+        let root = parse(path, json, &mut warnings)?;
+        let (buffers, decoded) = (Vec::new(), HashMap::new());
+        let notes = Mutex::new(warnings);
+        let mut file = Self { path: path.into(), root, buffers, decoded, notes };
         let (mut together, most) = (0_u64, limits::budget_bytes());
         for (ix, buffer) in file.root.buffers.iter().enumerate() {
             let field = format!("buffers[{ix}]");
@@ -62,6 +58,11 @@ impl File {
                 (None, Some(binary)) if ix == 0 => binary
                     [..binary.len().min(usize::try_from(wanted).unwrap_or(usize::MAX))]
                     .to_vec(),
+                // Nothing reads it but views that are compressed elsewhere.
+                (None, _) if compressed_views::is_fallback(buffer) => {
+                    file.buffers.push(Vec::new());
+                    continue;
+                }
                 (None, _) => {
                     return Err(file.invalid(field, "without uri", "a uri or the GLB's BIN chunk"));
                 }
@@ -78,6 +79,7 @@ impl File {
             data.truncate(wanted as usize);
             file.buffers.push(data);
         }
+        file.decoded = compressed_views::decode(&file)?;
         Ok(file)
     }
 
@@ -103,26 +105,37 @@ impl File {
         invalid(&self.path, field, value, accepted)
     }
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view, decoded where they are compressed.
     pub(super) fn view(&self, ix: usize) -> Result<&[u8], SceneError> {
-        let field = || format!("bufferViews[{ix}]");
+        if let Some(bytes) = self.decoded.get(&ix) {
+            return Ok(bytes);
+        }
         let views = &self.root.buffer_views;
         let view = views
             .get(ix)
             .ok_or_else(|| self.invalid("bufferView", ix, format!("below {}", views.len())))?;
-        let buffer = self.buffers.get(view.buffer.value()).ok_or_else(|| {
-            let accepted = format!("below {}", self.buffers.len());
-            self.invalid(format!("{}.buffer", field()), view.buffer, accepted)
-        })?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let end = start.checked_add(view.byte_length.0);
-        end.and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
+        let field = format!("bufferViews[{ix}]");
+        self.part(&field, view.buffer.value(), start, view.byte_length.0)
+    }
+
+    /// Some bytes of a buffer.
+    pub(super) fn part(
+        &self,
+        field: &str,
+        buffer: usize,
+        start: u64,
+        length: u64,
+    ) -> Result<&[u8], SceneError> {
+        let bytes = self.buffers.get(buffer).ok_or_else(|| {
+            let accepted = format!("below {}", self.buffers.len());
+            self.invalid(format!("{field}.buffer"), buffer, accepted)
+        })?;
+        let end = start.checked_add(length);
+        end.and_then(|end| bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
             .ok_or_else(|| {
-                self.invalid(
-                    field(),
-                    format!("{} bytes from {start}", view.byte_length.0),
-                    format!("inside its buffer of {} bytes", buffer.len()),
-                )
+                let accepted = format!("inside its buffer of {} bytes", bytes.len());
+                self.invalid(field, format!("{length} bytes from {start}"), accepted)
             })
     }
 
@@ -133,13 +146,13 @@ impl File {
             let (head, body) = data.split_once(',').ok_or_else(|| {
                 self.invalid(field, &shown, "a data URI with a comma before its data")
             })?;
+            let bytes: Vec<u8> = percent_encoding::percent_decode_str(body).collect();
             if head.ends_with(";base64") {
-                let base64 = base64::engine::general_purpose::STANDARD;
-                return base64
-                    .decode(body)
+                return BASE64
+                    .decode(bytes)
                     .map_err(|_| self.invalid(field, &shown, "valid base64"));
             }
-            return Ok(percent_encoding::percent_decode_str(body).collect());
+            return Ok(bytes);
         }
         if uri.is_empty() || uri.contains("://") {
             let shown = format!("{shown:?}");
@@ -166,6 +179,14 @@ impl File {
         Ok(part.bytes)
     }
 }
+
+/// Data URIs may leave out the padding at their end.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &base64::alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
 
 fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     read_regular(path, limits::MAX_FILE_BYTES)
@@ -207,52 +228,59 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
         return Err(invalid(path, "GLB length", length, accepted));
     }
     let mut rest = &bytes[12..length];
-    let mut chunk = |kind: &[u8; 4], field: &str| -> Result<&'a [u8], SceneError> {
+    let mut chunk = |field: &str| -> Result<([u8; 4], &'a [u8]), SceneError> {
         let size = number(rest, 0).ok_or_else(|| truncated(field))? as usize;
-        let found = rest.get(4..8).ok_or_else(|| truncated(field))?;
-        if found != kind {
-            let found = String::from_utf8_lossy(found).into_owned();
-            let accepted = String::from_utf8_lossy(kind).into_owned();
-            return Err(invalid(path, format!("{field} type"), format!("{found:?}"), accepted));
-        }
+        let kind = rest.get(4..8).and_then(|kind| kind.try_into().ok());
+        let kind: [u8; 4] = kind.ok_or_else(|| truncated(field))?;
         let accepted = || format!("at most {}, the bytes left", rest.len() - 8);
         let data = rest
             .get(8..8usize.saturating_add(size))
             .ok_or_else(|| invalid(path, format!("{field} length"), size, accepted()))?;
         rest = &rest[8 + size..];
-        Ok(data)
+        Ok((kind, data))
     };
-    let json = chunk(b"JSON", "GLB chunk 0")?;
-    let binary =
-        if length > 20 + json.len() { Some(chunk(b"BIN\0", "GLB chunk 1")?) } else { None };
+    let (kind, json) = chunk("GLB chunk 0")?;
+    if kind != *b"JSON" {
+        let kind = format!("{:?}", String::from_utf8_lossy(&kind));
+        return Err(invalid(path, "GLB chunk 0 type", kind, "JSON"));
+    }
+    // Chunks of other types are an extension's: glTF wants them passed over.
+    let (mut at, mut binary) = (20 + json.len(), None);
+    for ix in 1_u64.. {
+        if at >= length {
+            break;
+        }
+        let (kind, data) = chunk(&format!("GLB chunk {ix}"))?;
+        at += 8 + data.len();
+        if kind == *b"BIN\0" && binary.is_none() {
+            binary = Some(data);
+        }
+    }
     Ok((json, binary))
 }
 
 /// Parses and validates the JSON, so that indices between its parts are in range.
-fn parse(path: &Path, json: &[u8]) -> Result<Root, SceneError> {
+fn parse(path: &Path, json: &[u8], warnings: &mut Warnings) -> Result<Root, SceneError> {
     limits::check_counts(path, json)?;
-    let root: Root = gltf::json::deserialize::from_slice(json).map_err(|e| {
+    let malformed = |e| invalid(path, "JSON", format!("malformed ({e})"), "glTF 2.0");
+    let mut json: serde_json::Value = serde_json::from_slice(json).map_err(malformed)?;
+    let asset = json.get("asset").cloned();
+    adapt::adapt(&mut json, warnings);
+    let known = extensions::check(path, &json, warnings);
+    let root: Root = serde_json::from_value(json).map_err(|e| {
         // Other versions look different: better to name the version than what differs.
-        let other: Option<serde_json::Value> = serde_json::from_slice(json).ok();
-        let wrong = other.and_then(|json| check_version_of(path, json.get("asset")?).err());
-        wrong.unwrap_or_else(|| invalid(path, "JSON", format!("malformed ({e})"), "glTF 2.0"))
+        let wrong = asset.and_then(|asset| check_version_of(path, &asset).err());
+        wrong.unwrap_or_else(|| malformed(e))
     })?;
     check_version(path, &root.asset.version, root.asset.min_version.as_deref())?;
-    if let Some(name) =
-        root.extensions_required.iter().find(|name| !SUPPORTED.contains(&name.as_str()))
-    {
-        return Err(SceneError::Extension {
-            file: path.into(),
-            extension: name.clone(),
-            supported: SUPPORTED.join(", "),
-        });
-    }
+    known?;
     check_positions(path, &root)?;
     let mut fault = None;
     root.validate(&root, gltf::json::Path::new, &mut |at, error| {
         // Required extensions are checked above, against a longer list.
         if error != Fault::Unsupported && fault.is_none() {
-            fault = Some((at().to_string(), error));
+            let field = as_in_file(&at().to_string());
+            fault = (!adapt::is_tolerated(&field, error)).then_some((field, error));
         }
     });
     match fault {

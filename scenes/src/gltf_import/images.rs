@@ -210,8 +210,8 @@ fn reader<'a>(
     let reader = ImageReader::new(Cursor::new(&source.bytes[..]))
         .with_guessed_format()
         .map_err(|e| fail(file, source, e.to_string()))?;
-    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
-        return Err(fail(file, source, "its first bytes are those of neither".into()));
+    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) {
+        return Err(fail(file, source, "its first bytes are those of none of them".into()));
     }
     Ok(reader)
 }

@@ -9,11 +9,45 @@ use gltf::json::{
     validation::Checked,
 };
 
+use serde::Deserialize;
+
 use super::{Warnings, file::File, images::ImageTable, warnings::kept_name};
-use crate::{Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
+use crate::{Dielectric, Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
 
 /// The cutoff of masks that name none, and of blended materials.
 const DEFAULT_CUTOFF: f32 = 0.5;
+
+/// The index of refraction of a material that names none.
+const DEFAULT_IOR: f32 = 1.5;
+
+/// The extension that older exporters describe materials by.
+const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// The roughness of its materials whose glossiness is in a texture.
+const GLOSSY_ROUGHNESS: f32 = 0.5;
+
+/// What that extension says.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+struct Glossy {
+    diffuse_factor: [f32; 4],
+    diffuse_texture: Option<Info>,
+    specular_factor: [f32; 3],
+    glossiness_factor: f32,
+    specular_glossiness_texture: Option<serde_json::Value>,
+}
+
+impl Default for Glossy {
+    fn default() -> Self {
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
+    }
+}
 
 /// The file's materials, the default one after them, and what each needs from its meshes.
 pub(super) struct Materials {
@@ -63,8 +97,7 @@ impl Reader<'_> {
             .as_ref()
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |s| s.emissive_strength.0);
-        self.note_extensions(json);
-        let material = Material {
+        let mut material = Material {
             base_color: Vec4::from(pbr.base_color_factor.0).clamp(Vec4::ZERO, Vec4::ONE),
             metallic: pbr.metallic_factor.0.clamp(0.0, 1.0),
             roughness: pbr.roughness_factor.0.clamp(0.0, 1.0),
@@ -74,7 +107,7 @@ impl Reader<'_> {
             double_sided: json.double_sided,
             base_color_texture: self.info(pbr.base_color_texture.as_ref(), Srgb),
             metallic_roughness_texture: self.info(pbr.metallic_roughness_texture.as_ref(), Linear),
-            normal_texture: json.normal_texture.as_ref().map(|t| {
+            normal_texture: json.normal_texture.as_ref().and_then(|t| {
                 let transform = t.extensions.as_ref().and_then(|e| {
                     let value = e.others.get("KHR_texture_transform")?;
                     serde_json::from_value(value.clone()).ok()
@@ -82,8 +115,16 @@ impl Reader<'_> {
                 self.texture(t.index, t.tex_coord, transform.as_ref(), Linear)
             }),
             emissive_texture: self.info(json.emissive_texture.as_ref(), Srgb),
+            dielectric: self.dielectric(ix, json)?,
+            unlit: false,
             name,
         };
+        if let Some(value) = json.extensions.as_ref().and_then(|e| e.others.get(GLOSSINESS)) {
+            self.make_glossy(ix, value, &mut material)?;
+        }
+        if json.extensions.as_ref().is_some_and(|e| e.unlit.is_some()) {
+            make_unlit(&mut material);
+        }
         let emissive = material.emissive;
         if !(emissive.is_finite() && emissive.min_element() >= 0.0) {
             let field = format!("materials[{ix}].emissiveFactor");
@@ -94,6 +135,90 @@ impl Reader<'_> {
             return Err(self.file.invalid(field, material.normal_scale, "finite"));
         }
         Ok(material)
+    }
+
+    /// KHR_materials_ior and KHR_materials_specular, whose textures are left out.
+    fn dielectric(&mut self, ix: usize, json: &Json) -> Result<Dielectric, SceneError> {
+        let extensions = json.extensions.as_ref();
+        let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(DEFAULT_IOR, |ior| ior.ior.0);
+        let specular = extensions.and_then(|e| e.specular.as_ref());
+        let factor = specular.map_or(1.0, |s| s.specular_factor.0);
+        let color = specular.map_or(Vec3::ONE, |s| Vec3::from(s.specular_color_factor.0));
+        let fail = |name: &str, value: String, accepted: &str| {
+            Err(self.file.invalid(format!("materials[{ix}].extensions.{name}"), value, accepted))
+        };
+        // 0 stands for an infinite index of refraction (KHR_materials_ior).
+        if !(ior == 0.0 || ior >= 1.0 && ior.is_finite()) {
+            return fail("KHR_materials_ior.ior", ior.to_string(), "0, or finite and at least 1");
+        }
+        if !(0.0..=1.0).contains(&factor) {
+            let field = "KHR_materials_specular.specularFactor";
+            return fail(field, factor.to_string(), "between 0 and 1");
+        }
+        if !(color.is_finite() && color.min_element() >= 0.0) {
+            let field = "KHR_materials_specular.specularColorFactor";
+            return fail(field, color.to_string(), "finite and at least 0");
+        }
+        let textures = specular.map(|s| {
+            [
+                ("specularTexture", s.specular_texture.is_some()),
+                ("specularColorTexture", s.specular_color_texture.is_some()),
+            ]
+        });
+        for (texture, _) in textures.into_iter().flatten().filter(|(_, is_used)| *is_used) {
+            self.warnings.add(format!(
+                "material {:?}: KHR_materials_specular's {texture} is left out, its factors count",
+                self.name
+            ));
+        }
+        let normal = if ior == DEFAULT_IOR {
+            Dielectric::default().f0
+        } else if ior == 0.0 {
+            Vec3::ONE
+        } else {
+            Vec3::splat(((ior - 1.0) / (ior + 1.0)).powi(2))
+        };
+        Ok(Dielectric { f0: (normal * color).min(Vec3::ONE) * factor, f90: factor })
+    }
+
+    /// The older model: a diffuse and a specular colour. A dielectric of that reflectance is the
+    /// same, but for its texture of specular colour and glossiness, which is left out.
+    fn make_glossy(
+        &mut self,
+        ix: usize,
+        value: &serde_json::Value,
+        material: &mut Material,
+    ) -> Result<(), SceneError> {
+        let fail = |accepted: String| {
+            let field = format!("materials[{ix}].extensions.{GLOSSINESS}");
+            self.file.invalid(field, value, accepted)
+        };
+        let glossy: Glossy = serde_json::from_value(value.clone())
+            .map_err(|error| fail(format!("diffuse, specular and glossiness, but: {error}")))?;
+        let factors = [&glossy.diffuse_factor[..], &glossy.specular_factor].concat();
+        if !factors.iter().chain([&glossy.glossiness_factor]).all(|x| (0.0..=1.0).contains(x)) {
+            return Err(fail("factors between 0 and 1".into()));
+        }
+        let textures = self.file.root.textures.len();
+        if glossy.diffuse_texture.as_ref().is_some_and(|t| t.index.value() >= textures) {
+            return Err(fail(format!("a diffuseTexture with an index below {textures}")));
+        }
+        material.base_color = Vec4::from(glossy.diffuse_factor);
+        material.base_color_texture = self.info(glossy.diffuse_texture.as_ref(), Encoding::Srgb);
+        (material.metallic, material.metallic_roughness_texture) = (0.0, None);
+        material.roughness = 1.0 - glossy.glossiness_factor;
+        material.dielectric.f0 = Vec3::from(glossy.specular_factor);
+        if glossy.specular_glossiness_texture.is_some() {
+            // Factors alone would make a mirror of it.
+            material.dielectric = Dielectric::default();
+            material.roughness = GLOSSY_ROUGHNESS;
+            self.warnings.add(format!(
+                "material {:?}: specularGlossinessTexture is left out: drawn with roughness \
+                 {GLOSSY_ROUGHNESS} and glTF's plain reflectance",
+                self.name
+            ));
+        }
+        Ok(())
     }
 
     fn alpha(&mut self, json: &Json) -> Option<f32> {
@@ -112,30 +237,11 @@ impl Reader<'_> {
         }
     }
 
-    /// Extensions that change the look and are not modelled.
-    fn note_extensions(&mut self, json: &Json) {
-        let Some(extensions) = &json.extensions else {
-            return;
-        };
-        let known = [
-            ("KHR_materials_unlit", extensions.unlit.is_some()),
-            ("KHR_materials_transmission", extensions.transmission.is_some()),
-            ("KHR_materials_volume", extensions.volume.is_some()),
-            ("KHR_materials_specular", extensions.specular.is_some()),
-            ("KHR_materials_ior", extensions.ior.is_some()),
-        ];
-        let others = extensions.others.keys().map(String::as_str);
-        let known = known.iter().filter(|(_, used)| *used).map(|(name, _)| *name);
-        for extension in known.chain(others) {
-            self.warnings.add(format!("material {:?}: {extension} is ignored", self.name));
-        }
-    }
-
     fn info(&mut self, info: Option<&Info>, encoding: Encoding) -> Option<TextureRef> {
         let info = info?;
         let extensions = info.extensions.as_ref();
         let transform = extensions.and_then(|e| e.texture_transform.as_ref());
-        Some(self.texture(info.index, info.tex_coord, transform, encoding))
+        self.texture(info.index, info.tex_coord, transform, encoding)
     }
 
     fn texture(
@@ -144,9 +250,21 @@ impl Reader<'_> {
         tex_coord: u32,
         transform: Option<&TextureTransform>,
         encoding: Encoding,
-    ) -> TextureRef {
+    ) -> Option<TextureRef> {
         // Indices are validated with the JSON; see `file::parse`.
         let texture = &self.file.root.textures[index.value()];
+        if texture.source.value() == u32::MAX as usize {
+            let extensions = texture.extensions.iter().flat_map(|e| e.others.keys());
+            let mut extensions: Vec<_> = extensions.map(String::as_str).collect();
+            if extensions.is_empty() {
+                extensions.push("none");
+            }
+            self.warnings.add(format!(
+                "texture {index} has no image that is read ({}): materials lose it",
+                extensions.join(", ")
+            ));
+            return None;
+        }
         let set = transform.and_then(|t| t.tex_coord).unwrap_or(tex_coord);
         if *self.uv_set.get_or_insert(set) != set {
             self.warnings.add(format!(
@@ -155,12 +273,23 @@ impl Reader<'_> {
             ));
         }
         let sampler = texture.sampler.and_then(|ix| self.file.root.get(ix));
-        TextureRef {
+        Some(TextureRef {
             image: self.table.number(texture.source.value(), encoding),
             sampler: sampler.map_or_else(Sampler::default, convert_sampler),
             uv_transform: transform.map_or(Affine2::IDENTITY, uv_transform),
-        }
+        })
     }
+}
+
+/// Turns a material's colour into emission that nothing adds to. Holes of its mask stay.
+fn make_unlit(material: &mut Material) {
+    material.emissive = material.base_color.truncate();
+    material.emissive_texture = material.base_color_texture;
+    material.base_color = Vec4::new(0.0, 0.0, 0.0, material.base_color.w);
+    (material.metallic, material.metallic_roughness_texture) = (0.0, None);
+    (material.normal_texture, material.normal_scale) = (None, 1.0);
+    material.dielectric = Dielectric::BLACK;
+    material.unlit = true;
 }
 
 /// Translation * rotation * scale, the rotation counter-clockwise in an image whose v points

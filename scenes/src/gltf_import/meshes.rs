@@ -1,16 +1,19 @@
 //! Primitives: attributes read, checked and completed.
 
+use std::collections::HashMap;
+
 use glam::Vec3;
 use gltf::json::{
     Index,
-    accessor::Accessor,
+    accessor::{Accessor, Type},
     mesh::{Mode, Primitive, Semantic},
     validation::Checked,
 };
 use rayon::prelude::*;
 
 use super::{
-    Warnings, file::File, limits, materials::Materials, repeats, tangents, warnings::kept_name,
+    Warnings, draco::DracoMesh, file::File, limits, materials::Materials, repeats,
+    skins::Influence, tangents, warnings::kept_name,
 };
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
@@ -18,6 +21,8 @@ use crate::{Aabb, Mesh, SceneError, Vertex};
 pub(super) struct Meshes {
     pub(super) meshes: Vec<Mesh>,
     pub(super) ranges: Vec<std::ops::Range<u32>>,
+    /// For each mesh that a skin can pose, what moves its vertices.
+    pub(super) influences: HashMap<usize, Vec<Influence>>,
 }
 
 /// Converts every mesh of the file, primitives in parallel.
@@ -34,15 +39,19 @@ pub(super) fn load(
         .par_iter()
         .map(|&(mesh, ix)| {
             let mut warnings = Warnings::default();
-            let job = Job::new(file, materials, mesh, ix);
+            let mut job = Job::new(file, materials, mesh, ix);
             Ok((mesh, job.convert(&mut warnings)?, warnings))
         })
         .collect();
     let mut meshes = Vec::new();
     let mut ranges = vec![0..0; file.root.meshes.len()];
-    for (source, mesh, noted) in done? {
+    let mut influences = HashMap::new();
+    for (source, converted, noted) in done? {
         warnings.append(noted);
-        let Some(mesh) = mesh else { continue };
+        let Some((mesh, moved_by)) = converted else { continue };
+        if !moved_by.is_empty() {
+            influences.insert(meshes.len(), moved_by);
+        }
         let range = &mut ranges[source];
         if range.start == range.end {
             *range = meshes.len() as u32..meshes.len() as u32;
@@ -50,7 +59,7 @@ pub(super) fn load(
         range.end += 1;
         meshes.push(mesh);
     }
-    Ok(Meshes { meshes, ranges })
+    Ok(Meshes { meshes, ranges, influences })
 }
 
 /// One primitive on its way.
@@ -62,6 +71,8 @@ struct Job<'a> {
     material: usize,
     uv_set: u32,
     needs_tangents: bool,
+    /// What it holds compressed.
+    draco: Option<DracoMesh>,
 }
 
 impl<'a> Job<'a> {
@@ -79,11 +90,15 @@ impl<'a> Job<'a> {
             material,
             uv_set: materials.uv_sets[material],
             needs_tangents: materials.materials[material].normal_texture.is_some(),
+            draco: None,
         }
     }
 
-    /// The mesh; `None` where there is nothing to draw.
-    fn convert(&self, warnings: &mut Warnings) -> Result<Option<Mesh>, SceneError> {
+    /// The mesh and what moves its vertices; `None` where there is nothing to draw.
+    fn convert(
+        &mut self,
+        warnings: &mut Warnings,
+    ) -> Result<Option<(Mesh, Vec<Influence>)>, SceneError> {
         let Checked::Valid(mode) = self.primitive.mode else {
             return Ok(None);
         };
@@ -92,7 +107,14 @@ impl<'a> Job<'a> {
             warnings.add(format!("mesh {:?}: {mode:?} are not drawn", self.name));
             return Ok(None);
         }
+        if self.attribute(Semantic::Positions).is_none() {
+            warnings.add(format!("mesh {:?}: has no POSITION, not drawn", self.name));
+            return Ok(None);
+        }
         self.note_ignored(warnings);
+        let promised = self.attribute(Semantic::Positions).and_then(|ix| self.file.root.get(ix));
+        let promised = promised.map_or(0, |accessor| accessor.count.0);
+        self.draco = DracoMesh::decode(self.file, self.primitive, &self.field, promised)?;
         let positions = self.positions()?;
         let indices = self.indices(mode, positions.len())?;
         if indices.is_empty() {
@@ -100,24 +122,31 @@ impl<'a> Job<'a> {
             return Ok(None);
         }
         let mut mesh = self.assemble(positions, indices, warnings)?;
-        repeats::drop_repeats(&mut mesh, warnings);
+        mesh.colors = self.colors(mesh.vertices.len())?;
+        let mut influences = self.influences(mesh.vertices.len())?;
+        if influences.is_empty() {
+            repeats::drop_repeats(&mut mesh, warnings);
+        }
         if mesh.indices.is_empty() {
             return Ok(None);
         }
-        self.complete(&mut mesh, warnings)?;
+        for sources in self.complete(&mut mesh, warnings)? {
+            mesh.colors = gather(&mesh.colors, &sources);
+            influences = gather(&influences, &sources);
+        }
         mesh.bounds = Aabb::from_points(mesh.vertices.iter().map(|v| Vec3::from(v.position)));
-        Ok(Some(mesh))
+        Ok(Some((mesh, influences)))
     }
 
     fn note_ignored(&self, warnings: &mut Warnings) {
         if self.primitive.targets.as_ref().is_some_and(|t| !t.is_empty()) {
             warnings.add("morph targets are ignored".into());
         }
-        if self.attribute(Semantic::Joints(0)).is_some() {
-            warnings.add("skins are ignored: skinned meshes show their bind pose".into());
+        if self.attribute(Semantic::Joints(1)).is_some() {
+            warnings.add("skins: JOINTS_1 is ignored, four joints move a vertex".into());
         }
-        if self.attribute(Semantic::Colors(0)).is_some() {
-            warnings.add("vertex colours (COLOR_0) are ignored".into());
+        if self.attribute(Semantic::Colors(1)).is_some() {
+            warnings.add("vertex colours: COLOR_1 is ignored".into());
         }
     }
 
@@ -125,12 +154,26 @@ impl<'a> Job<'a> {
         self.primitive.attributes.get(&Checked::Valid(semantic)).copied()
     }
 
+    /// An attribute's values, from the compressed mesh where they are there.
+    fn floats<const N: usize>(
+        &self,
+        semantic: &Semantic,
+        accessor: Index<Accessor>,
+    ) -> Result<Vec<[f32; N]>, SceneError> {
+        let name = semantic.to_string();
+        let compressed = self.draco.as_ref().zip(self.file.root.get(accessor));
+        match compressed.and_then(|(draco, accessor)| draco.floats(&name, accessor)) {
+            Some(values) => Ok(values),
+            None => self.file.floats::<N>(accessor),
+        }
+    }
+
     fn positions(&self) -> Result<Vec<[f32; 3]>, SceneError> {
         let field = format!("{}.attributes.POSITION", self.field);
         let Some(accessor) = self.attribute(Semantic::Positions) else {
             return Err(self.file.invalid(field, "missing", "an accessor"));
         };
-        let positions = self.file.floats::<3>(accessor)?;
+        let positions = self.floats::<3>(&Semantic::Positions, accessor)?;
         for (ix, position) in positions.iter().enumerate() {
             if let Some(value) = position.iter().find(|x| !x.is_finite()) {
                 let field = format!("{field} (accessors[{accessor}]) element {ix}");
@@ -142,14 +185,17 @@ impl<'a> Job<'a> {
 
     /// The indices as a triangle list.
     fn indices(&self, mode: Mode, vertices: usize) -> Result<Vec<u32>, SceneError> {
-        let indices = match self.primitive.indices {
-            Some(accessor) => self.file.indices(accessor)?,
-            None => (0..vertices as u32).collect(),
+        let indices = match (&self.draco, self.primitive.indices) {
+            (Some(draco), _) => draco.indices(),
+            (None, Some(accessor)) => self.file.indices(accessor)?,
+            (None, None) => (0..vertices as u32).collect(),
         };
         if let Some(index) = indices.iter().find(|ix| **ix as usize >= vertices) {
             let accepted = format!("below {vertices}, the number of vertices");
             return Err(self.file.invalid(format!("{}.indices", self.field), index, accepted));
         }
+        // A compressed strip is stored as its triangles.
+        let mode = if self.draco.is_some() { Mode::Triangles } else { mode };
         Ok(match mode {
             Mode::TriangleStrip => indices
                 .windows(3)
@@ -198,6 +244,7 @@ impl<'a> Job<'a> {
             name: self.name.clone(),
             vertices,
             indices,
+            colors: Vec::new(),
             material: self.material as u32,
             bounds: Aabb::EMPTY,
         })
@@ -212,7 +259,7 @@ impl<'a> Job<'a> {
         let Some(accessor) = self.attribute(semantic.clone()) else {
             return Ok(());
         };
-        let values = self.file.floats::<N>(accessor)?;
+        let values = self.floats::<N>(&semantic, accessor)?;
         if values.len() != vertices.len() {
             return Err(self.file.invalid(
                 format!("{}.attributes ({semantic:?}) count", self.field),
@@ -226,8 +273,67 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Adds or repairs normals and tangents.
-    fn complete(&self, mesh: &mut Mesh, warnings: &mut Warnings) -> Result<(), SceneError> {
+    /// COLOR_0, one per vertex; empty where the primitive has none or all are white.
+    fn colors(&self, vertices: usize) -> Result<Vec<[f32; 4]>, SceneError> {
+        let Some(accessor) = self.attribute(Semantic::Colors(0)) else {
+            return Ok(Vec::new());
+        };
+        let kind = self.file.root.get(accessor).map(|json| json.type_);
+        let mut colors = if kind == Some(Checked::Valid(Type::Vec3)) {
+            let colors = self.floats::<3>(&Semantic::Colors(0), accessor)?.into_iter();
+            colors.map(|[r, g, b]| [r, g, b, 1.0]).collect()
+        } else {
+            self.floats::<4>(&Semantic::Colors(0), accessor)?
+        };
+        self.check_count("COLOR_0", colors.len(), vertices)?;
+        for channel in colors.as_flattened_mut() {
+            // glTF 2.0, 3.7.2.1; what is no number counts as 1.
+            *channel = if channel.is_nan() { 1.0 } else { channel.clamp(0.0, 1.0) };
+        }
+        let is_white = colors.iter().all(|color| *color == [1.0; 4]);
+        Ok(if is_white { Vec::new() } else { colors })
+    }
+
+    /// What moves each vertex under a skin; empty where no skin can.
+    fn influences(&self, vertices: usize) -> Result<Vec<Influence>, SceneError> {
+        let attributes =
+            (self.attribute(Semantic::Joints(0)), self.attribute(Semantic::Weights(0)));
+        let (Some(joints), Some(weights)) = attributes else {
+            return Ok(Vec::new());
+        };
+        if self.file.root.skins.is_empty() {
+            return Ok(Vec::new());
+        }
+        let joints = self.floats::<4>(&Semantic::Joints(0), joints)?;
+        let weights = self.floats::<4>(&Semantic::Weights(0), weights)?;
+        self.check_count("JOINTS_0", joints.len(), vertices)?;
+        self.check_count("WEIGHTS_0", weights.len(), vertices)?;
+        let influence = |(joints, weights): ([f32; 4], [f32; 4])| {
+            let sum: f32 = weights.iter().sum();
+            let is_sound = sum > 0.0 && sum.is_finite();
+            // A vertex that nothing moves follows the first joint.
+            let weights = if is_sound { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0, 0.0] };
+            Influence { joints: joints.map(|joint| joint as u32), weights }
+        };
+        Ok(joints.into_iter().zip(weights).map(influence).collect())
+    }
+
+    fn check_count(&self, name: &str, count: usize, vertices: usize) -> Result<(), SceneError> {
+        if count == vertices {
+            return Ok(());
+        }
+        let field = format!("{}.attributes.{name} count", self.field);
+        Err(self.file.invalid(field, count, format!("{vertices}, as POSITION has")))
+    }
+
+    /// Adds or repairs normals and tangents. Where that gives vertices new places, tells each time
+    /// which vertex every one comes from.
+    fn complete(
+        &self,
+        mesh: &mut Mesh,
+        warnings: &mut Warnings,
+    ) -> Result<Vec<Vec<u32>>, SceneError> {
+        let mut sources = Vec::new();
         let has_normals = self.attribute(Semantic::Normals).is_some();
         if !has_normals {
             if mesh.indices.len() > u32::MAX as usize {
@@ -235,7 +341,7 @@ impl<'a> Job<'a> {
                 let field = format!("{}.indices count", self.field);
                 return Err(self.file.invalid(field, mesh.indices.len(), accepted));
             }
-            tangents::flatten(mesh);
+            sources.push(tangents::flatten(mesh));
         }
         let repaired = tangents::repair_normals(mesh);
         if repaired > 0 && has_normals {
@@ -245,9 +351,17 @@ impl<'a> Job<'a> {
         // glTF: tangents are ignored where normals are missing.
         let has_tangents = has_normals && self.attribute(Semantic::Tangents).is_some();
         if self.needs_tangents && !has_tangents {
-            tangents::generate(mesh);
+            sources.push(tangents::generate(mesh));
         }
         tangents::repair_tangents(mesh);
-        Ok(())
+        Ok(sources)
     }
+}
+
+/// The elements that new vertices come from; none where there were none.
+fn gather<T: Copy>(values: &[T], sources: &[u32]) -> Vec<T> {
+    if values.is_empty() {
+        return Vec::new();
+    }
+    sources.iter().map(|ix| values[*ix as usize]).collect()
 }

@@ -4,16 +4,27 @@
 //! here, so that no file makes the importer panic.
 
 mod accessor;
+mod adapt;
 mod animation;
 mod area_lights;
+mod cameras;
+mod compressed_views;
+mod draco;
+mod extensions;
 mod file;
 mod images;
+mod json_path;
 mod limits;
 mod materials;
 mod meshes;
+mod meshopt;
+mod models;
 mod nodes;
+mod origin;
 mod parts;
+mod punctual;
 mod repeats;
+mod skins;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -21,19 +32,23 @@ mod warnings;
 
 use std::path::Path;
 
+use assign::{MAX_SUNS, Sun};
+use glam::DVec3;
+
 pub(crate) use animation::AnimatedNode;
 use file::File;
 use warnings::Warnings;
 
-use crate::{CameraPath, Scene, SceneError, fit};
+use crate::{CameraPath, Scene, SceneError, close_ranges, fit};
 
 /// Loads a glTF 2.0 file.
 ///
-/// Meshes used by several nodes are shared, each node becoming a model. Missing normals are
-/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Skins, morph
-/// targets, vertex colours, lines, points and directional lights are left out, and blended
-/// materials become masks; [`Scene::warnings`] says so. Lights without a range get the distance
-/// at which their illuminance falls to [`THRESHOLD`](crate::THRESHOLD). Those that
+/// Meshes used by several nodes are shared, each node becoming a model, and each instance of
+/// EXT_mesh_gpu_instancing. Skinned meshes are posed where their joints rest. Missing normals are
+/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Morph
+/// targets, lines, points and animations of anything but cameras are left
+/// out, and blended materials become masks; [`Scene::warnings`] says so, and names every
+/// extension that is not read. [`close_ranges`] gives lights without a range their end. Those that
 /// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
 /// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
 ///
@@ -47,7 +62,8 @@ use crate::{CameraPath, Scene, SceneError, fit};
 /// scene's folder is read with a warning that names it.
 ///
 /// The path is the animation of the first animated camera; else it is fitted to the scene and
-/// starts at the first camera where there is one.
+/// starts at the first camera where there is one. A scene that stands far from its file's origin is
+/// moved to its own ([`Scene::origin`]).
 ///
 /// # Errors
 ///
@@ -56,19 +72,23 @@ use crate::{CameraPath, Scene, SceneError, fit};
 /// triangles or too many.
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let file = File::open(path)?;
-    let mut warnings = Warnings::default();
+    let mut warnings = file.take_notes();
     let materials = materials::load(&file, &mut warnings)?;
     warnings.append(file.take_notes());
-    let meshes = meshes::load(&file, &materials, &mut warnings)?;
-    let placed = nodes::load(&file, &meshes, &mut warnings)?;
+    let mut meshes = meshes::load(&file, &materials, &mut warnings)?;
+    let (walk, placed, origin) = origin::place(&file, &mut meshes, &mut warnings)?;
+    check_suns(&file, &placed.suns)?;
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
+    animation::note_unplayed(&file, &walk, &mut warnings);
     let mut animated = None;
     let targets = animation::targets(&file);
-    for chain in &placed.camera_chains {
+    let mut view_camera = 0;
+    for (ix, chain) in placed.camera_chains.iter().enumerate() {
         if animated.is_none() && chain.iter().any(|node| targets.contains(node)) {
-            animated = animation::load(&file, chain, &mut warnings)?;
+            animated = animation::load(&file, chain, origin, &mut warnings)?;
+            view_camera = if animated.is_some() { ix } else { 0 };
         }
     }
     let mut scene = Scene {
@@ -79,7 +99,11 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         instances: placed.instances,
         models: placed.models,
         lights: placed.lights,
+        suns: placed.suns,
+        open_lights: Vec::new(),
         cameras: placed.cameras,
+        view_camera,
+        origin,
         path: CameraPath::still(fit::ORIGIN),
         bounds: crate::Aabb::EMPTY,
         core_bounds: crate::Aabb::EMPTY,
@@ -93,11 +117,56 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         return Err(file.invalid("scene bounds", size, "at most 1e12 across"));
     }
     scene.core_bounds = fit::core_bounds(&scene);
+    scene.open_lights = close_ranges(&mut scene.lights, scene.core_bounds.diagonal());
     scene.path = match animated {
         Some(animated) => CameraPath::animated(animated),
         None => fit::path(&scene),
     };
     Ok(scene)
+}
+
+/// Loads the lights of a glTF 2.0 file and nothing else, so that it may hold nothing else.
+///
+/// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings. World space
+/// begins at `origin` of the file. Lights without a range reach infinitely far: the scene that they light
+/// decides where they end.
+///
+/// # Errors
+///
+/// [`SceneError`] as [`load_gltf`] has them of the file's JSON, buffers, nodes and lights.
+pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, SceneError> {
+    let file = File::open(path)?;
+    let mut warnings = file.take_notes();
+    let walk = nodes::walk(&file, origin)?;
+    let (lights, suns) = nodes::lights(&file, &walk, &mut warnings)?;
+    check_suns(&file, &suns)?;
+    animation::note_unplayed(&file, &walk, &mut warnings);
+    Ok(Scene {
+        name: name(path),
+        meshes: Vec::new(),
+        materials: vec![crate::Material::default()],
+        images: Vec::new(),
+        instances: Vec::new(),
+        models: Vec::new(),
+        lights,
+        suns,
+        open_lights: Vec::new(),
+        cameras: Vec::new(),
+        view_camera: 0,
+        origin,
+        path: CameraPath::still(fit::ORIGIN),
+        bounds: crate::Aabb::EMPTY,
+        core_bounds: crate::Aabb::EMPTY,
+        warnings: warnings.into_lines(),
+    })
+}
+
+fn check_suns(file: &File, suns: &[Sun]) -> Result<(), SceneError> {
+    if suns.len() <= MAX_SUNS {
+        return Ok(());
+    }
+    let field = "number of directional lights (KHR_lights_punctual)";
+    Err(file.invalid(field, suns.len(), format!("at most {MAX_SUNS}")))
 }
 
 /// The file's stem, or its folder's name where that is just "scene".

@@ -1,26 +1,18 @@
 //! The node hierarchy: placed models, lights and cameras.
 
-use std::f32::consts::PI;
+use assign::{Light, Sun};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4};
+use gltf::json::{Index, scene::Node, validation::Checked};
 
-use assign::{Light, LightShape};
-use glam::{Mat4, Quat, Vec3};
-use gltf::json::{
-    Index,
-    camera::{Camera as JsonCamera, Type as CameraType},
-    extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType},
-    scene::Node,
-    validation::Checked,
+use super::{
+    Warnings, area_lights, cameras,
+    file::File,
+    meshes::Meshes,
+    models::{MAX_INSTANCES, MAX_TRIANGLES},
+    skins::Skins,
+    warnings::kept_name,
 };
-
-use super::{Warnings, area_lights, file::File, meshes::Meshes, warnings::kept_name};
-use crate::{Aabb, Camera, Instance, Lens, Model, Pose, SceneError, lights::THRESHOLD};
-
-/// The most triangles drawn, every node counting its mesh's. A small file can place one large
-/// mesh often, and what follows takes time and memory by that number.
-pub(super) const MAX_TRIANGLES: u64 = 200_000_000;
-
-/// The most meshes drawn, every node counting those of its own.
-const MAX_INSTANCES: usize = 1 << 23;
+use crate::{Camera, Instance, Model, SceneError};
 
 /// The most nodes between cameras and their roots, all cameras together: a deep tree can hold a
 /// camera at every node. The animation of further cameras is not looked for.
@@ -31,14 +23,34 @@ const MAX_CHAIN_NODES: usize = 1 << 16;
 pub(super) struct Placed {
     pub(super) models: Vec<Model>,
     pub(super) instances: Vec<Instance>,
+    /// Their ranges are infinite where the file gives none.
     pub(super) lights: Vec<Light>,
+    pub(super) suns: Vec<Sun>,
     pub(super) cameras: Vec<Camera>,
     /// For each camera, the nodes from the root to the one that holds it.
     pub(super) camera_chains: Vec<Vec<usize>>,
     /// How many nodes these hold together.
     chain_nodes: usize,
     /// Every node counts its mesh's; beyond [`MAX_TRIANGLES`], instances are no longer kept.
-    triangles: u64,
+    pub(super) triangles: u64,
+}
+
+/// A node of the scene that is drawn, and where.
+pub(super) struct Visit {
+    pub(super) ix: usize,
+    pub(super) to_world: Mat4,
+    /// Where the node is and which way it looks: scales of 0 are taken for 1, so that it turns directions
+    /// where `to_world` loses them.
+    placed: DMat4,
+    /// Whether neither it nor a node above it is hidden (KHR_node_visibility).
+    is_visible: bool,
+}
+
+/// The nodes of a scene, parents before their children.
+pub(super) struct Walk {
+    pub(super) visits: Vec<Visit>,
+    /// The parent of every node that is reached.
+    pub(super) parents: Vec<Option<usize>>,
 }
 
 /// A node's local transform, before any animation.
@@ -73,20 +85,50 @@ impl Local {
             }
         }
     }
+
+    /// The matrix with axes of length 0 replaced, so that it still turns what looks along them.
+    fn facing(&self) -> Mat4 {
+        match *self {
+            Self::Matrix(matrix) => with_axes(matrix),
+            Self::Parts { translation, rotation, scale } => {
+                let scale = Vec3::select(scale.cmpeq(Vec3::ZERO), Vec3::ONE, scale);
+                Mat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        }
+    }
 }
 
-/// Walks the default scene (or the first, or all nodes without a parent).
-pub(super) fn load(
-    file: &File,
-    meshes: &Meshes,
-    warnings: &mut Warnings,
-) -> Result<Placed, SceneError> {
+/// A matrix whose axes of length 0 are replaced by ones across the others.
+fn with_axes(matrix: Mat4) -> Mat4 {
+    let mut axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
+    for ix in 0..3 {
+        if axes[ix] != Vec3::ZERO {
+            continue;
+        }
+        let (next, last) = (axes[(ix + 1) % 3], axes[(ix + 2) % 3]);
+        let across = next.cross(last).try_normalize();
+        let any = || {
+            let other = if next == Vec3::ZERO { last } else { next };
+            let unit = other.try_normalize().map(|axis| axis.any_orthonormal_vector());
+            unit.unwrap_or(Vec3::AXES[ix])
+        };
+        axes[ix] = across.unwrap_or_else(any);
+    }
+    let [x, y, z] = axes.map(|axis| axis.extend(0.0));
+    Mat4::from_cols(x, y, z, matrix.w_axis)
+}
+
+/// Walks the default scene (or the first, or all nodes without a parent). World space begins at
+/// `origin` of the file: transforms are multiplied in f64, so that nothing is lost far away.
+pub(super) fn walk(file: &File, origin: DVec3) -> Result<Walk, SceneError> {
     let nodes = &file.root.nodes;
-    let mut placed = Placed::default();
     let mut parents = vec![None; nodes.len()];
     let mut seen = vec![false; nodes.len()];
-    let mut stack: Vec<_> = roots(file).into_iter().rev().map(|ix| (ix, Mat4::IDENTITY)).collect();
-    while let Some((ix, parent_to_world)) = stack.pop() {
+    let root = DMat4::from_translation(-origin);
+    let mut stack: Vec<_> =
+        roots(file).into_iter().rev().map(|ix| (ix, root, root, true)).collect();
+    let mut visits = Vec::new();
+    while let Some((ix, parent_to_world, parent_facing, shows)) = stack.pop() {
         if std::mem::replace(&mut seen[ix], true) {
             return Err(file.invalid(
                 format!("nodes[{ix}]"),
@@ -95,23 +137,47 @@ pub(super) fn load(
             ));
         }
         let node = &nodes[ix];
-        let to_world = parent_to_world * Local::of(node).matrix();
+        let local = Local::of(node);
+        let exact = parent_to_world * local.matrix().as_dmat4();
+        let to_world = exact.as_mat4();
         if !to_world.is_finite() {
             return Err(file.invalid(format!("nodes[{ix}] transform"), "not finite", "finite"));
         }
-        let name = node.name.as_deref().map_or_else(|| format!("node {ix}"), kept_name);
-        if let Some(mesh) = node.mesh {
-            placed.add_model(&name, mesh.value(), to_world, meshes, warnings);
-        }
-        placed.add_light(file, node, to_world, warnings)?;
-        placed.lights.extend(area_lights::of_node(file, ix, node, to_world)?);
-        if let Some(camera) = node.camera.and_then(|camera| file.root.get(camera)) {
-            let chain = placed.chain_within_limits(&parents, ix, warnings);
-            placed.add_camera(camera, &name, to_world, chain, warnings);
-        }
+        let facing = parent_facing * local.facing().as_dmat4();
+        let is_visible = shows && is_visible(node);
         for child in node.children.iter().flatten().rev() {
             parents[child.value()] = Some(ix);
-            stack.push((child.value(), to_world));
+            stack.push((child.value(), exact, facing, is_visible));
+        }
+        let placed = DMat4 { w_axis: exact.w_axis, ..facing };
+        visits.push(Visit { ix, to_world, placed, is_visible });
+    }
+    Ok(Walk { visits, parents })
+}
+
+/// Places what the visited nodes hold.
+pub(super) fn place(
+    file: &File,
+    walk: &Walk,
+    meshes: &mut Meshes,
+    warnings: &mut Warnings,
+) -> Result<Placed, SceneError> {
+    let mut placed = Placed::default();
+    let mut skins = Skins::new(file, walk);
+    for visit in &walk.visits {
+        let node = &file.root.nodes[visit.ix];
+        let name = node.name.as_deref().map_or_else(|| format!("node {}", visit.ix), kept_name);
+        if visit.is_visible {
+            placed.add_models(file, visit, &name, meshes, &mut skins, warnings)?;
+            placed.add_lights(file, visit, warnings)?;
+        }
+        if let Some((index, camera)) =
+            node.camera.and_then(|index| Some((index, file.root.get(index)?)))
+        {
+            let camera = cameras::placed(file, index.value(), camera, &name, &visit.placed)?;
+            placed.cameras.push(camera);
+            let chain = placed.chain_within_limits(&walk.parents, visit.ix, warnings);
+            placed.camera_chains.push(chain);
         }
     }
     if placed.triangles > MAX_TRIANGLES {
@@ -127,6 +193,26 @@ pub(super) fn load(
         return Err(file.invalid(field, "too many", accepted));
     }
     Ok(placed)
+}
+
+/// The lights and suns of the visited nodes alone.
+pub(super) fn lights(
+    file: &File,
+    walk: &Walk,
+    warnings: &mut Warnings,
+) -> Result<(Vec<Light>, Vec<Sun>), SceneError> {
+    let mut placed = Placed::default();
+    for visit in walk.visits.iter().filter(|visit| visit.is_visible) {
+        placed.add_lights(file, visit, warnings)?;
+    }
+    Ok((placed.lights, placed.suns))
+}
+
+/// KHR_node_visibility: a hidden node hides all nodes below it.
+fn is_visible(node: &Node) -> bool {
+    let extensions = node.extensions.as_ref().map(|e| &e.others);
+    let visibility = extensions.and_then(|all| all.get("KHR_node_visibility"));
+    visibility.and_then(|v| v.get("visible")?.as_bool()).unwrap_or(true)
 }
 
 fn roots(file: &File) -> Vec<usize> {
@@ -163,133 +249,16 @@ impl Placed {
         chain
     }
 
-    fn add_model(
-        &mut self,
-        name: &str,
-        mesh: usize,
-        object_to_world: Mat4,
-        meshes: &Meshes,
-        warnings: &mut Warnings,
-    ) {
-        let range = meshes.ranges[mesh].clone();
-        if range.start == range.end {
-            return;
-        }
-        if object_to_world.determinant() == 0.0 {
-            warnings.add(format!("node {name:?}: scaled to no volume, not drawn"));
-            return;
-        }
-        let parts = &meshes.meshes[range.start as usize..range.end as usize];
-        let triangles = parts.iter().map(|mesh| mesh.triangle_count() as u64).sum();
-        self.triangles = self.triangles.saturating_add(triangles);
-        if self.triangles > MAX_TRIANGLES || self.instances.len() > MAX_INSTANCES {
-            return;
-        }
-        let bounds = parts.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
-        let model = self.models.len() as u32;
-        self.models.push(Model { name: name.into(), bounds_object: bounds, object_to_world });
-        self.instances.extend(range.map(|mesh| Instance { mesh, model }));
-    }
-
-    fn add_light(
+    fn add_lights(
         &mut self,
         file: &File,
-        node: &Node,
-        to_world: Mat4,
+        visit: &Visit,
         warnings: &mut Warnings,
     ) -> Result<(), SceneError> {
-        let of_node = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let Some(reference) = of_node else {
-            return Ok(());
-        };
-        let of_root = file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let lights = of_root.map_or(&[][..], |e| &e.lights);
-        let ix = reference.light.value();
-        let json = lights.get(ix).ok_or_else(|| {
-            file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
-        })?;
-        let name = json.name.as_deref().map_or_else(|| format!("light {ix}"), kept_name);
-        let Some(light) = convert_light(json, to_world) else {
-            warnings.add(format!("light {name:?}: directional lights are left out"));
-            return Ok(());
-        };
-        self.lights.push(light);
+        let node = &file.root.nodes[visit.ix];
+        self.add_light(file, node, &visit.placed, warnings)?;
+        let area = area_lights::of_node(file, visit.ix, node, visit.to_world, warnings)?;
+        self.lights.extend(area);
         Ok(())
     }
-
-    fn add_camera(
-        &mut self,
-        json: &JsonCamera,
-        node_name: &str,
-        to_world: Mat4,
-        chain: Vec<usize>,
-        warnings: &mut Warnings,
-    ) {
-        let name = json.name.as_deref().map_or_else(|| node_name.into(), kept_name);
-        let (lens, near_m, far_m) = match (json.type_, &json.perspective, &json.orthographic) {
-            (Checked::Valid(CameraType::Perspective), Some(p), _) => {
-                (Lens::Perspective { fov_y: p.yfov }, p.znear, p.zfar)
-            }
-            (Checked::Valid(CameraType::Orthographic), _, Some(o)) => {
-                let lens =
-                    Lens::Orthographic { half_width: o.xmag.abs(), half_height: o.ymag.abs() };
-                (lens, o.znear, Some(o.zfar))
-            }
-            _ => {
-                warnings.add(format!("camera {name:?} is left out: no projection"));
-                return;
-            }
-        };
-        let (lens_ok, least_near) = match lens {
-            Lens::Perspective { fov_y } => (fov_y > 0.0 && fov_y < PI, f32::MIN_POSITIVE),
-            Lens::Orthographic { half_width, half_height } => {
-                (half_width > 0.0 && half_height > 0.0, 0.0)
-            }
-        };
-        let far_ok = far_m.is_none_or(|far| far > near_m && far.is_finite());
-        if !(lens_ok && near_m >= least_near && near_m.is_finite() && far_ok) {
-            warnings.add(format!(
-                "camera {name:?} is left out: field of view, near or far out of range"
-            ));
-            return;
-        }
-        self.camera_chains.push(chain);
-        self.cameras.push(Camera { name, pose: pose(&to_world), lens, near_m, far_m });
-    }
-}
-
-/// A glTF camera or spot looks down its node's -Z; scale does not matter.
-pub(super) fn pose(to_world: &Mat4) -> Pose {
-    let eye = to_world.w_axis.truncate();
-    let forward = (-to_world.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
-    let up = to_world.y_axis.truncate();
-    let up = (up - forward * forward.dot(up)).normalize_or(forward.any_orthonormal_vector());
-    Pose { eye, target: eye + forward, up }
-}
-
-/// Intensity is candela times colour. A light without a range gets the one at which its
-/// unoccluded illuminance falls to [`THRESHOLD`]. Faulty lights are converted too, to be reported
-/// where lights are uploaded. `None` for directional lights.
-fn convert_light(json: &JsonLight, to_world: Mat4) -> Option<Light> {
-    let pose = pose(&to_world);
-    let intensity = Vec3::from(json.color) * json.intensity;
-    let shines =
-        intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() > 0.0;
-    // Of a faulty intensity follows no range: the fault to report is the intensity's.
-    let unbounded = || if shines { Light::range_from_threshold(intensity, THRESHOLD) } else { 1.0 };
-    let shape = match (&json.type_, &json.spot) {
-        (Checked::Valid(LightType::Point), _) => LightShape::Point,
-        (Checked::Valid(LightType::Spot), Some(spot)) => LightShape::Spot {
-            direction: pose.forward(),
-            inner_angle: spot.inner_cone_angle.min(spot.outer_cone_angle),
-            outer_angle: spot.outer_cone_angle,
-        },
-        _ => return None,
-    };
-    Some(Light {
-        position: pose.eye,
-        range_m: json.range.unwrap_or_else(unbounded),
-        intensity,
-        shape,
-    })
 }

@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3, Vec4};
 
 use crate::{Mesh, Vertex};
 
-/// Gives every triangle its own vertices and flat normals.
-pub(super) fn flatten(mesh: &mut Mesh) {
+/// Gives every triangle its own vertices and flat normals. Returns which vertex each comes from.
+pub(super) fn flatten(mesh: &mut Mesh) -> Vec<u32> {
     let corner = |ix: &u32| mesh.vertices[*ix as usize];
     let mut vertices: Vec<Vertex> = mesh.indices.iter().map(corner).collect();
     for triangle in vertices.chunks_exact_mut(3) {
@@ -17,8 +17,9 @@ pub(super) fn flatten(mesh: &mut Mesh) {
             vertex.normal = normal;
         }
     }
-    mesh.indices = (0..vertices.len() as u32).collect();
     mesh.vertices = vertices;
+    let own = (0..mesh.vertices.len() as u32).collect();
+    std::mem::replace(&mut mesh.indices, own)
 }
 
 /// The unit normal of a triangle, zero where it has no area. In f64: areas of tiny triangles
@@ -72,23 +73,27 @@ pub(super) fn repair_tangents(mesh: &mut Mesh) {
     }
 }
 
-/// Computes tangents by MikkTSpace, splitting vertices whose corners disagree.
-pub(super) fn generate(mesh: &mut Mesh) {
+/// Computes tangents by MikkTSpace, splitting vertices whose corners disagree. Returns which
+/// vertex each comes from.
+pub(super) fn generate(mesh: &mut Mesh) -> Vec<u32> {
     let mut corners = Corners { tangents: vec![[0.0, 0.0, 0.0, 1.0]; mesh.indices.len()], mesh };
     // Fails only for meshes without a usable triangle, whose tangents are then repaired.
     let _ = generate_tangents(&mut corners);
     let tangents = corners.tangents;
     let mut split: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
     let mut vertices = Vec::with_capacity(mesh.vertices.len());
+    let mut sources = Vec::with_capacity(mesh.vertices.len());
     for (index, tangent) in mesh.indices.iter_mut().zip(tangents) {
         let key = (*index, tangent.map(f32::to_bits));
-        let source = mesh.vertices[*index as usize];
+        let (from, source) = (*index, mesh.vertices[*index as usize]);
         *index = *split.entry(key).or_insert_with(|| {
             vertices.push(Vertex { tangent, ..source });
+            sources.push(from);
             vertices.len() as u32 - 1
         });
     }
     mesh.vertices = vertices;
+    sources
 }
 
 /// A mesh as MikkTSpace sees it: by triangle and corner.

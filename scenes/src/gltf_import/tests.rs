@@ -1,11 +1,20 @@
+mod area_lights;
+mod cameras;
+mod compressed;
+mod materials;
+mod placing;
+mod valid;
+
 use std::path::PathBuf;
 
-use assign::{LightKind, LightShape};
+use assign::LightShape;
 use base64::Engine;
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
+
+mod lights;
 
 use super::load_gltf;
 use crate::{Encoding, Scene, SceneError};
@@ -278,35 +287,11 @@ fn missing_parts_name_the_scene_the_field_and_the_part() {
 }
 
 #[test]
-fn faulty_lights_stay_to_be_reported() {
+fn faults_in_extensions_are_named_as_in_the_file() {
     let mut sample = sample();
-    sample.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
-        {"type": "point", "intensity": 1e39}, {"type": "point", "range": -2.0},
-        {"type": "point", "intensity": 0.0}, {"type": "point", "intensity": -1.0},
-        {"type": "point", "intensity": 1e39, "color": [0.0, 1.0, 1.0]},
-        {"type": "spot", "spot": {"outerConeAngle": 9.0}}, {"type": "point"},
-        {"type": "directional", "intensity": 1e39}]);
-    let nodes = sample.json["nodes"].as_array_mut().expect("nodes");
-    nodes[2] = json!({"children": [4, 5, 6, 7, 8, 9, 10, 11]});
-    for light in 0..8 {
-        nodes.push(json!({"extensions": {"KHR_lights_punctual": {"light": light}}}));
-    }
-    // Without the camera, the path is fitted to the scene and its lights.
-    sample.json["scenes"][0]["nodes"] = json!([0]);
-    let scene = load(&sample).expect("valid but for its lights");
-    let faults = |scene: &Scene| -> Vec<_> {
-        let fault = |light: &assign::Light| light.check().err().map(|fault| fault.to_string());
-        let first = |fault: String| fault.split(" is ").next().unwrap_or_default().to_owned();
-        scene.lights.iter().map(|light| fault(light).map(first).unwrap_or_default()).collect()
-    };
-    let expected =
-        ["intensity", "range", "intensity", "intensity", "intensity", "spot outer angle", ""];
-    assert_eq!(faults(&scene), expected);
-    assert_eq!(scene.warnings, ["light \"light 7\": directional lights are left out"]);
-    let pose = scene.path.pose(0, 10);
-    assert!(pose.eye.is_finite() && pose.target.is_finite());
-    assert_eq!(scene.hash(), scene.clone().hash());
-    assert_eq!(faults(&scene.scaled(1e-6).expect("in range"))[..6], expected[..6]);
+    sample.json["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "laser".into();
+    let error = load(&sample).expect_err("no such light").to_string();
+    assert!(error.contains("extensions.KHR_lights_punctual.lights[0].type"), "{error}");
 }
 
 /// A mesh of 100,000 triangles, placed by that many nodes.
@@ -367,31 +352,21 @@ fn no_damage_makes_it_panic() {
     }
     let mut pointers = Vec::new();
     leaves(&whole.json, String::new(), &mut pointers);
-    let odd = [
-        json!(0),
-        json!(1),
-        json!(-1),
-        json!(7),
-        json!(4_000_000_000_u32),
-        json!(u64::MAX),
-        json!(1e30),
-        json!(1e300),
-        json!("x"),
-        json!(null),
-        json!([]),
-        json!({}),
-        json!(5125),
-        json!(5120),
-    ];
     for pointer in &pointers {
-        for value in &odd {
+        for value in odd_values() {
             let mut json = whole.json.clone();
-            *json.pointer_mut(pointer).expect("a leaf") = value.clone();
+            *json.pointer_mut(pointer).expect("a leaf") = value;
             let damaged = Sample { json, binary: whole.binary.clone() };
             count(load(&damaged));
         }
     }
     assert!(loaded > 20 && refused > 20, "{loaded} loaded, {refused} refused");
+}
+
+fn odd_values() -> impl Iterator<Item = Value> {
+    let numbers = [json!(0), json!(1), json!(-1), json!(7), json!(4_000_000_000_u32)];
+    let large = [json!(u64::MAX), json!(1e30), json!(1e300), json!(5125), json!(5120)];
+    numbers.into_iter().chain(large).chain([json!("x"), json!(null), json!([]), json!({})])
 }
 
 fn leaves(value: &Value, at: String, out: &mut Vec<String>) {
@@ -402,51 +377,4 @@ fn leaves(value: &Value, at: String, out: &mut Vec<String>) {
         }
         _ => out.push(at),
     }
-}
-
-/// The sample with an area light on its first node.
-fn with_area_light(light: Value) -> Result<Scene, SceneError> {
-    let mut sample = sample();
-    sample.json["nodes"][0]["extras"] = json!({ "someone": 1, "lightbench_area_light": light });
-    load(&sample)
-}
-
-#[test]
-fn extras_carry_area_lights() {
-    let rectangle = json!({
-        "shape": "rectangle", "width": 2.0, "height": 4.0, "intensity": 8.0, "range": 5.0,
-        "two_sided": true, "diffuse_share": 0.5
-    });
-    let scene = with_area_light(rectangle).expect("valid");
-    let light = scene.lights.iter().find(|l| l.kind() == LightKind::Rectangle).expect("there");
-    light.check().expect("sound");
-    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
-    assert_eq!((emitter.area(), light.range_m, light.intensity), (8.0, 5.0, Vec3::splat(8.0)));
-    assert_eq!((emitter.normal(), emitter.two_sided), (Vec3::NEG_Z, true));
-    assert_eq!(light.diffuse_range_m(), 2.5);
-    let triangle = json!({ "shape": "polygon", "vertices": [[0, 0, 1], [1, 0, 1], [0, 1, 1]] });
-    let scene = with_area_light(triangle).expect("valid");
-    let light = scene.lights.iter().find(|l| l.kind() == LightKind::Polygon).expect("there");
-    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
-    assert!((emitter.normal() - Vec3::Z).length() < 1e-6 && (emitter.area() - 0.5).abs() < 1e-6);
-    let scaled = scene.scaled(3.0).expect("in range");
-    let light = scaled.lights.iter().find(|l| l.kind() == LightKind::Polygon).expect("there");
-    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
-    assert!((emitter.area() - 4.5).abs() < 1e-5);
-}
-
-#[test]
-fn area_lights_that_are_not_understood_name_the_field() {
-    let error = |light| with_area_light(light).expect_err("faulty").to_string();
-    let missing = error(json!({ "shape": "rectangle", "width": 1.0 }));
-    assert!(missing.contains("nodes[0].extras.lightbench_area_light"), "{missing}");
-    assert!(missing.contains("width and height"), "{missing}");
-    let turned = error(json!({ "shape": "rectangle", "width": -1.0, "height": 1.0 }));
-    assert!(turned.contains("above 0"), "{turned}");
-    let misspelt = error(json!({ "shape": "rectangle", "width": 1, "height": 1, "colour": 1 }));
-    assert!(misspelt.contains("colour"), "{misspelt}");
-    let disc = error(json!({ "shape": "disc" }));
-    assert!(disc.contains("rectangle") && disc.contains("polygon"), "{disc}");
-    let line = error(json!({ "shape": "polygon", "vertices": [[0, 0, 0], [1, 0, 0]] }));
-    assert!(line.contains("vertex count is 2"), "{line}");
 }

@@ -112,7 +112,7 @@ fn level_and_still_paths_are_no_tours() {
     let first = scene.path.pose(0, 48);
     let level = |ix| {
         let pose = scene.path.pose(ix, 48);
-        (pose.eye.with_y(first.eye.y), pose.target)
+        (pose.eye.with_y(first.eye.y), pose.eye + 10.0 * pose.forward())
     };
     let knots = (0..48).map(level).collect();
     scene.path = CameraPath::closed_loop(knots, first);

@@ -108,3 +108,42 @@ fn draw_until(rng: &mut Pcg64Mcg, accepted: impl Fn(DVec3) -> bool) -> DVec3 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ltc::{Masking, Polynomial, Table, diffuse_fresnel};
+
+    /// A white furnace: what a dielectric and a metal reflect of light from everywhere.
+    #[test]
+    fn in_a_furnace_a_surface_reflects_what_its_brdf_does() {
+        let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| DVec3::new(x, y, 1e-9));
+        let (table, polynomial) = (Table::of(Masking::Correlated).unwrap(), Polynomial::ggx());
+        let mut worst = [0.0_f64; 3];
+        // On texels and between them, from below the least roughness on.
+        for roughness in [0.02, 0.05, 0.1, 0.1825, 0.2, 0.3, 0.45, 0.6, 0.7, 0.85, 1.0] {
+            for cos_view in [0.03, 0.1, 0.3, 0.55, 0.8, 0.98] {
+                let truth = integrate(&sky, to_eye(cos_view), roughness, 1e-4).value;
+                let off = |entry: &Entry, (albedo, f0): (f64, f64)| {
+                    let expected =
+                        truth.diffuse_reflected(albedo, f0) + truth.specular_reflected(f0);
+                    let specular = entry.specular_albedo(f0) * ltc_integral(&entry.inverse(), &sky);
+                    let diffuse = albedo * (1.0 - f0) * (1.0 - diffuse_fresnel(cos_view));
+                    ((specular + diffuse) / expected - 1.0).abs()
+                };
+                let [fitted, smooth] =
+                    [table.look_up(roughness, cos_view), polynomial.entry(roughness, cos_view)];
+                for (worst, off) in worst.iter_mut().zip([
+                    off(&fitted, (1.0, 0.04)),
+                    off(&fitted, (0.0, 1.0)),
+                    off(&smooth, (0.0, 1.0)),
+                ]) {
+                    *worst = worst.max(off);
+                }
+            }
+        }
+        println!("worst of a dielectric, a metal, and the metal by polynomials: {worst:?}");
+        assert!(worst[0] < 0.01 && worst[1] < 0.01, "{worst:?}");
+    }
+}

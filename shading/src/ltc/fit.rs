@@ -2,8 +2,9 @@
 //!
 //! The lobe's matrix is `M = R * [[p, 0, q], [0, s, 0], [0, 0, 1]]`, with R's z the mean direction of
 //! the light that the BRDF reflects (Heitz et al. 2016, section 3.2). Nelder and Mead look for ln p,
-//! ln s and q / p. They minimise the integral of |difference|^3, weighted by the sum over the same
-//! directions of the densities that these are drawn with: half from the BRDF, half from the lobe.
+//! ln s and q / p. They minimise the integral of |difference|^3 above the horizon, weighted by the sum over
+//! the same directions of the densities that these are drawn with: half from the BRDF, half from the lobe.
+//! The lobe is divided by its share above the horizon, as shading does.
 //! Samples lie on a fixed grid and move with the lobe, so that the objective is smooth and every run
 //! finds the same.
 
@@ -14,6 +15,7 @@ use glam::{DMat3, DVec3};
 use super::{
     lobe::{Lobe, Masking},
     nelder_mead::minimize,
+    table::share_above_horizon,
 };
 
 /// Grid of the samples of one side of the plane of incidence; the other mirrors them.
@@ -141,11 +143,17 @@ fn samples_of(lobe: &Lobe) -> Vec<Sample> {
     grid(AROUND, OUTWARDS).map(sample).filter(|sample| sample.density > 0.0).collect()
 }
 
-/// The objective: |BRDF - albedo times the lobe's density|^3 over the sum of the densities.
+/// The objective: |BRDF - albedo times the lobe's density|^3 over the sum of the densities, above the
+/// horizon.
 fn difference(lobe: &Lobe, albedo: f64, samples: &[Sample], matrix: &DMat3) -> f64 {
     let inverse = matrix.inverse();
-    let scale = inverse.determinant().abs() / PI;
+    // What lies below the horizon is not seen: the part above it stands for the whole.
+    let share = share_above_horizon(&inverse);
+    let scale = inverse.determinant().abs() / PI / share;
     let density = |to_light: DVec3| {
+        if to_light.z <= 0.0 {
+            return 0.0;
+        }
         let cosine = inverse * to_light;
         scale * cosine.z.max(0.0) / cosine.length_squared().powi(2)
     };
@@ -176,7 +184,7 @@ mod tests {
 
     /// Roughness and view of texels from smooth to rough and from the normal to grazing.
     const TEXELS: [(usize, usize); 8] =
-        [(3, 0), (8, 30), (20, 10), (20, 50), (30, 60), (40, 40), (50, 0), (63, 20)];
+        [(3, 0), (8, 30), (20, 10), (20, 50), (30, 48), (40, 40), (50, 0), (63, 20)];
 
     fn place(x: usize, y: usize) -> (f64, f64) {
         let y = y as f64 / 63.0;

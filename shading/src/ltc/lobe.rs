@@ -1,10 +1,10 @@
 //! The BRDF's specular lobe for one view, in the shading frame.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use crate::reference::{MIN_COS_VIEW, MIN_ROUGHNESS};
+use crate::reference::{MIN_COS_VIEW, MIN_ROUGHNESS, ggx};
 
 /// GGX's alpha of a perceptual roughness.
 pub(crate) fn alpha_of(roughness: f64) -> f64 {
@@ -68,12 +68,6 @@ impl Lobe {
         self.cos_view
     }
 
-    /// GGX's distribution of half vectors (Walter et al. 2007, equation 33).
-    fn distribution(&self, cos_half: f64) -> f64 {
-        let peak = cos_half * cos_half * (self.alpha_2 - 1.0) + 1.0;
-        self.alpha_2 / (PI * peak * peak)
-    }
-
     fn half_way(&self, to_light: DVec3) -> DVec3 {
         (self.to_eye + to_light).normalize_or_zero()
     }
@@ -94,15 +88,14 @@ impl Lobe {
                 product + self.alpha * (sum - product)
             }
         };
-        let lobe =
-            self.distribution(half_way.z.clamp(0.0, 1.0)) * 0.5 * cos_light / smith.max(1e-6);
+        let lobe = ggx(self.alpha_2, DVec3::Z, half_way) * 0.5 * cos_light / smith.max(1e-6);
         (lobe, (1.0 - self.to_eye.dot(half_way).clamp(0.0, 1.0)).powi(5))
     }
 
     /// Density at which [`Self::sample`] finds a direction, per steradian.
     pub(crate) fn density(&self, to_light: DVec3) -> f64 {
-        let cos_half = self.half_way(to_light).z.clamp(0.0, 1.0);
-        self.distribution(cos_half) * 0.5 / (self.cos_view + self.root_view)
+        let distribution = ggx(self.alpha_2, DVec3::Z, self.half_way(to_light));
+        distribution * 0.5 / (self.cos_view + self.root_view)
     }
 
     /// A direction to a light that mirrors the eye in a normal visible from it (Heitz 2018), perhaps
@@ -124,6 +117,8 @@ impl Lobe {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::reference::{Surface, reflect_light};
 
@@ -150,6 +145,7 @@ mod tests {
                     metallic,
                     normal: DVec3::Z,
                     roughness,
+                    dielectric: Default::default(),
                 };
                 let reflected = reflect_light(&surface(1.0, 0.3), lobe.to_eye, to_light).x;
                 let expected = specular * (0.3 * (1.0 - schlick) + schlick);

@@ -22,8 +22,12 @@
 //!
 //! | term | value |
 //! |---|---|
-//! | specular | `ltc_integral * (f0 * (A - B) + B)` |
+//! | specular | `ltc_integral * (f0 * (A - B) + B) / share` |
 //! | diffuse | `albedo * cosine_integral * (1 - f0) * (1 - C)` |
+//!
+//! A fitted lobe reaches below the surface's horizon, where [`ltc_integral`] counts nothing. So its light
+//! is divided by the share of it above the horizon ([`Entry::share_above_horizon`]): under a light all
+//! around, a surface reflects what its BRDF reflects.
 //!
 //! The BRDF is that of `brdf.wesl`. [`integrate`] is its integral without any of this, to compare.
 

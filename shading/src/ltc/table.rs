@@ -52,11 +52,16 @@ impl Entry {
         DMat3::from_cols_array(&[a, 0.0, c, 0.0, 1.0, 0.0, b, 0.0, d])
     }
 
-    /// What the specular lobe reflects of a polygon that covers all of it, for a reflectance at
-    /// normal incidence: `f0 * (A - B) + B`.
+    /// What the specular lobe reflects per share of it that a polygon covers, for a reflectance at
+    /// normal incidence: `(f0 * (A - B) + B) / share`, with the lobe's share above the horizon.
     pub fn specular_albedo(&self, f0: f64) -> f64 {
         let [a, b, ..] = self.integrals.map(f64::from);
-        f0 * (a - b) + b
+        (f0 * (a - b) + b) / self.share_above_horizon()
+    }
+
+    /// The lobe's share above the surface's horizon, 1/2 to 1.
+    pub fn share_above_horizon(&self) -> f64 {
+        share_above_horizon(&self.inverse())
     }
 
     fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
@@ -66,6 +71,15 @@ impl Entry {
             integrals: each(self.integrals, other.integrals),
         }
     }
+}
+
+/// The share of a lobe above the surface's horizon, for the inverse of its matrix M.
+///
+/// M^-1 turns the upper half-space into one around the third row of M, which is along (-c, 0, a). A
+/// half-space at an angle t to the cosine's own covers `(1 + cos t) / 2` of it.
+pub(super) fn share_above_horizon(inverse: &DMat3) -> f64 {
+    let (a, c) = (inverse.x_axis.x, inverse.x_axis.z);
+    0.5 + 0.5 * a / a.hypot(c)
 }
 
 /// Fitted lobes of all roughnesses and views.

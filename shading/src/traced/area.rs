@@ -1,16 +1,22 @@
 //! Area lights with shadows: radiance of a flat emitter, reflected at a sample.
 //!
-//! By pairs of directions: one uniform in the solid angle of the emitter's rectangle (Ureña et al.
+//! Drawn in pairs of directions: one uniform in the solid angle of the emitter's rectangle (Ureña et al.
 //! 2013), one drawn as the BRDF reflects, both weighted by the balance heuristic (Veach and Guibas 1995, equation 14): a direction counts
-//! once over the sum of both densities, whichever drew it. So neither a mirror's small highlight nor
+//! once over the sum of both densities, whichever drew it. Where the lobe is wide, both directions are drawn
+//! from the rectangle. So neither a mirror's small highlight nor
 //! a small emitter over a rough surface makes a rare, large value.
+//!
+//! How much an emitter sends without shadows is known: by quadrature. So the pairs only have to tell which
+//! share of that arrives (Heitz, Hill and McGuire 2018). The share's error is far smaller: where nothing
+//! blocks the emitter, and where all of it is blocked, there is none. A ratio of two means is off by about
+//! one over the number of pairs, so few pairs estimate the radiance itself.
 
 use assign::{Emitter, Light};
 use glam::{DVec3, Vec3};
-use rand::RngExt;
-use rand_pcg::Pcg64Mcg;
 
-use super::{Estimate, SurfaceSample, TracedScene, brdf_sampler::BrdfSampler};
+use super::{
+    Estimate, Numbers, SurfaceSample, TracedScene, brdf_sampler::BrdfSampler, numbers::Point,
+};
 use crate::{
     ltc::SphericalRectangle,
     reference::{light_contribution, lobes_of, window},
@@ -19,8 +25,13 @@ use crate::{
 /// Below this solid angle, steradians, an emitter casts the shadow of its middle: the difference of
 /// angles that the area-preserving map starts from has too few digits left.
 const SMALL: f64 = 1e-8;
-/// How far outside its edges a point is of the emitter, as a share of the range: rounding.
-const ROUNDING: f64 = 1e-9;
+/// Where the lobe's peak is no more than this many times as dense as the rectangle's directions, the latter
+/// find it well enough. Directions of the lobe would cross the emitter's edge, which is noise.
+const NARROW: f64 = 8.0;
+/// From this number of pairs on they estimate a share: its bias is then far below its error.
+const RATIO_PAIRS: u32 = 64;
+/// Coordinates of a sample's point that a pair of directions takes.
+pub(super) const PAIR_DIMENSIONS: u32 = 5;
 
 /// An emitter as a sample sees it.
 pub(super) struct SeenEmitter<'a> {
@@ -34,7 +45,6 @@ pub(super) struct SeenEmitter<'a> {
     /// Emitted radiance times the windows of diffuse and of specular light.
     diffuse: DVec3,
     specular: DVec3,
-    range_m: f64,
 }
 
 impl<'a> SeenEmitter<'a> {
@@ -49,7 +59,6 @@ impl<'a> SeenEmitter<'a> {
             return None;
         }
         let distance_2 = (emitter.closest(-center) + center).length_squared();
-        let range_m = f64::from(light.range_m);
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
         let vertices = emitter.vertices().iter().map(|v| v.as_dvec3());
         let next = vertices.clone().cycle().skip(1);
@@ -60,8 +69,7 @@ impl<'a> SeenEmitter<'a> {
             center,
             normal: vertices.zip(next).map(|(a, b)| a.cross(b)).sum(),
             diffuse: radiance * window(distance_2, f64::from(light.diffuse_range_m())),
-            specular: radiance * window(distance_2, range_m),
-            range_m,
+            specular: radiance * window(distance_2, f64::from(light.range_m)),
         };
         (seen.specular != DVec3::ZERO).then_some(seen)
     }
@@ -76,48 +84,113 @@ impl<'a> SeenEmitter<'a> {
         &self,
         scene: &TracedScene<'_>,
         pairs: u32,
-        rng: &mut Pcg64Mcg,
+        numbers: Numbers,
     ) -> Estimate {
-        let [x, y] = self.emitter.half_axes().map(Vec3::as_dvec3);
-        let rectangle = SphericalRectangle::new(self.center - x - y, 2.0 * x, 2.0 * y);
-        let Some(rectangle) = rectangle.filter(|r| r.solid_angle() > SMALL) else {
-            let middle = self.sample.position + self.center;
-            let is_seen = scene.sees(self.sample, middle);
-            let SurfaceSample { position, surface, to_eye, .. } = self.sample;
-            let radiance = light_contribution(self.light, *position, surface, *to_eye);
-            return Estimate::exact(if is_seen { radiance } else { DVec3::ZERO });
+        let Some(drawn) = Pairs::new(self) else {
+            return Estimate::exact(self.by_middle(scene));
         };
-        let brdf = BrdfSampler::new(&self.sample.surface, self.sample.to_eye);
-        let uniform = 1.0 / rectangle.solid_angle();
-        Estimate::of_samples(pairs, || {
-            let directions = [rectangle.direction(rng.random(), rng.random()), brdf.sample(rng)];
-            let value = |direction: DVec3| {
-                // Its light comes from the rectangle, so that both could have drawn it.
-                self.reflected(direction, scene) / (uniform + brdf.density(direction))
-            };
-            directions.map(value).iter().sum()
+        let both = |point: Point| drawn.radiance(scene, point.at(0));
+        if pairs < RATIO_PAIRS {
+            return Estimate::of_points(pairs, numbers, |point| both(point).shadowed);
+        }
+        let SurfaceSample { position, surface, to_eye, .. } = self.sample;
+        let whole = light_contribution(self.light, *position, surface, *to_eye);
+        Estimate::of_shares(pairs, numbers, whole, |point| {
+            let Drawn { shadowed, whole } = both(point);
+            (shadowed, whole)
         })
     }
 
+    /// The same from one pair, drawn by coordinates in 0..1.
+    pub(super) fn shadowed_once(
+        &self,
+        scene: &TracedScene<'_>,
+        coordinates: [f64; PAIR_DIMENSIONS as usize],
+    ) -> DVec3 {
+        match Pairs::new(self) {
+            Some(drawn) => drawn.radiance(scene, coordinates).shadowed,
+            None => self.by_middle(scene),
+        }
+    }
+
+    /// The whole emitter's light, where its middle is seen.
+    fn by_middle(&self, scene: &TracedScene<'_>) -> DVec3 {
+        let SurfaceSample { position, surface, to_eye, .. } = self.sample;
+        if scene.sees(self.sample, *position + self.center) {
+            light_contribution(self.light, *position, surface, *to_eye)
+        } else {
+            DVec3::ZERO
+        }
+    }
+
     /// Radiance reflected from a unit direction, per steradian.
-    fn reflected(&self, direction: DVec3, scene: &TracedScene<'_>) -> DVec3 {
+    fn reflected(&self, direction: DVec3, scene: &TracedScene<'_>) -> Drawn {
         let surface = &self.sample.surface;
         let cos = surface.normal.dot(direction);
         let Some(point) = self.point_along(direction).filter(|_| cos > 0.0) else {
-            return DVec3::ZERO;
+            return Drawn::default();
         };
-        if !scene.sees(self.sample, point) {
-            return DVec3::ZERO;
-        }
         let lobes = lobes_of(surface, self.sample.to_eye, direction);
-        (self.diffuse * lobes.diffuse + self.specular * lobes.specular) * cos
+        let whole = (self.diffuse * lobes.diffuse + self.specular * lobes.specular) * cos;
+        let is_seen = scene.sees(self.sample, point);
+        Drawn { shadowed: if is_seen { whole } else { DVec3::ZERO }, whole }
     }
 
-    /// The point of the emitter that a ray from the sample meets, world space.
+    /// The point of the emitter that a ray from the sample meets, world space. The ray passes all
+    /// edges on one side, so nothing has to be told from rounding, however large or far the emitter is.
     fn point_along(&self, direction: DVec3) -> Option<DVec3> {
+        let count = self.emitter.vertices().len();
+        let turn = |ix: usize| self.vertex(ix).cross(self.vertex((ix + 1) % count)).dot(direction);
+        let is_inside =
+            (0..count).all(|ix| turn(ix) >= 0.0) || (0..count).all(|ix| turn(ix) <= 0.0);
         let distance_m = self.normal.dot(self.vertex(0)) / self.normal.dot(direction);
-        let offset = direction * distance_m - self.center;
-        let is_inside = self.emitter.closest(offset).distance(offset) <= ROUNDING * self.range_m;
         (distance_m > 0.0 && is_inside).then(|| self.sample.position + direction * distance_m)
+    }
+}
+
+/// What drawn directions reflect: with shadows, and without.
+#[derive(Clone, Copy, Debug, Default)]
+struct Drawn {
+    shadowed: DVec3,
+    whole: DVec3,
+}
+
+/// Draws pairs of directions to an emitter.
+struct Pairs<'a> {
+    seen: &'a SeenEmitter<'a>,
+    rectangle: SphericalRectangle,
+    /// `None` where the surface's lobe is so wide that the rectangle alone serves both directions.
+    brdf: Option<BrdfSampler>,
+}
+
+impl<'a> Pairs<'a> {
+    /// `None` where the emitter is too small to draw from.
+    fn new(seen: &'a SeenEmitter<'a>) -> Option<Self> {
+        let [x, y] = seen.emitter.half_axes().map(Vec3::as_dvec3);
+        let rectangle = SphericalRectangle::new(seen.center - x - y, 2.0 * x, 2.0 * y);
+        let rectangle = rectangle.filter(|r| r.solid_angle() > SMALL)?;
+        let brdf = BrdfSampler::new(&seen.sample.surface, seen.sample.to_eye);
+        let is_narrow = rectangle.solid_angle() * brdf.peak_density() > NARROW;
+        Some(Self { seen, rectangle, brdf: is_narrow.then_some(brdf) })
+    }
+
+    /// Radiance by one pair.
+    fn radiance(&self, scene: &TracedScene<'_>, [u, v, s, t, choice]: [f64; 5]) -> Drawn {
+        let uniform = 1.0 / self.rectangle.solid_angle();
+        let second = match &self.brdf {
+            Some(brdf) => brdf.sample([s, t, choice]),
+            None => self.rectangle.direction(s, t),
+        };
+        let directions = [self.rectangle.direction(u, v), second];
+        directions.into_iter().fold(Drawn::default(), |sum, direction| {
+            // Its light comes from the rectangle, so that both could have drawn it.
+            let other = self.brdf.as_ref().map_or(uniform, |brdf| brdf.density(direction));
+            let density = uniform + other;
+            let Drawn { shadowed, whole } = self.seen.reflected(direction, scene);
+            Drawn {
+                shadowed: sum.shadowed + shadowed / density,
+                whole: sum.whole + whole / density,
+            }
+        })
     }
 }

@@ -1,11 +1,13 @@
 //! Light that comes from lights without a detour.
 
-use assign::{Light, LightShape};
+use assign::{Light, LightShape, Sun};
 use glam::DVec3;
-use rand_pcg::Pcg64Mcg;
 
-use super::{Estimate, SurfaceSample, TracedScene, area::SeenEmitter};
-use crate::{LightBvh, reference::light_contribution};
+use super::{Estimate, Numbers, SurfaceSample, TracedScene, area::SeenEmitter, numbers::Point};
+use crate::{
+    LightBvh,
+    reference::{light_contribution, matte_contribution, sun_contribution},
+};
 
 /// Pairs of directions to an area light with shadows, unless told otherwise.
 pub const AREA_SAMPLES: u32 = 64;
@@ -17,35 +19,106 @@ pub fn direct_light(
     sample: &SurfaceSample,
     visibility: Option<&TracedScene<'_>>,
     area_samples: u32,
-    rng: &mut Pcg64Mcg,
+    numbers: Numbers,
 ) -> Estimate {
     match (&light.shape, visibility) {
         (LightShape::Area(emitter), Some(scene)) => SeenEmitter::new(light, emitter, sample)
-            .map_or(Estimate::default(), |seen| seen.shadowed(scene, area_samples, rng)),
-        _ => {
-            let radiance =
-                light_contribution(light, sample.position, &sample.surface, sample.to_eye);
-            let is_seen = radiance != DVec3::ZERO
-                && visibility.is_none_or(|scene| scene.sees(sample, light.position.as_dvec3()));
-            Estimate::exact(if is_seen { radiance } else { DVec3::ZERO })
-        }
+            .map_or(Estimate::default(), |seen| seen.shadowed(scene, area_samples, numbers)),
+        _ => Estimate::exact(exact_light(light, sample, visibility)),
     }
 }
 
-/// Radiance that all lights add to a sample, summed in ascending index.
+/// Radiance that needs no samples: of a light without an emitter, or without shadows.
+fn exact_light(
+    light: &Light,
+    sample: &SurfaceSample,
+    visibility: Option<&TracedScene<'_>>,
+) -> DVec3 {
+    let radiance = light_contribution(light, sample.position, &sample.surface, sample.to_eye);
+    let is_seen = radiance != DVec3::ZERO
+        && visibility.is_none_or(|scene| scene.sees(sample, light.position.as_dvec3()));
+    if is_seen { radiance } else { DVec3::ZERO }
+}
+
+/// Radiance that a sun adds to a sample; with shadows where there is a scene to cast them.
+pub fn direct_sun(
+    sun: &Sun,
+    sample: &SurfaceSample,
+    visibility: Option<&TracedScene<'_>>,
+) -> DVec3 {
+    let radiance = sun_contribution(sun, &sample.surface, sample.to_eye);
+    let to_sun = -sun.direction.as_dvec3().normalize();
+    let is_seen =
+        radiance != DVec3::ZERO && visibility.is_none_or(|scene| scene.sees_sky(sample, to_sun));
+    if is_seen { radiance } else { DVec3::ZERO }
+}
+
+/// Radiance that all suns add to a sample.
+fn direct_suns(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    visibility: Option<&TracedScene<'_>>,
+) -> DVec3 {
+    lights.suns().iter().map(|sun| direct_sun(sun, sample, visibility)).sum()
+}
+
+/// Radiance that all suns add to a sample, and then all lights in ascending index.
 pub fn direct_radiance(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
     visibility: Option<&TracedScene<'_>>,
     area_samples: u32,
-    rng: &mut Pcg64Mcg,
+    numbers: Numbers,
 ) -> Estimate {
+    let suns = Estimate::exact(direct_suns(lights, sample, visibility));
+    reaching(lights, sample).into_iter().fold(suns, |sum, light_ix| {
+        let light = &lights.lights()[light_ix as usize];
+        sum + direct_light(light, sample, visibility, area_samples, numbers.part(light_ix.into()))
+    })
+}
+
+/// The same with shadows, each area light's by one pair of directions, drawn by a point's coordinates
+/// from `first` on.
+pub(super) fn direct_radiance_once(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    scene: &TracedScene<'_>,
+    point: Point,
+    first: u32,
+) -> DVec3 {
+    let from_light = |light_ix: u32| {
+        let light = &lights.lights()[light_ix as usize];
+        match &light.shape {
+            LightShape::Area(emitter) => SeenEmitter::new(light, emitter, sample)
+                .map(|seen| seen.shadowed_once(scene, point.scrambled(light_ix).at(first)))
+                .unwrap_or_default(),
+            _ => exact_light(light, sample, Some(scene)),
+        }
+    };
+    let suns = direct_suns(lights, sample, Some(scene));
+    reaching(lights, sample).into_iter().map(from_light).fold(suns, |sum, light| sum + light)
+}
+
+/// What a sample reflects of all lights as a virtual point light emits, with shadows.
+pub(super) fn matte_radiance(
+    lights: &LightBvh<'_>,
+    sample: &SurfaceSample,
+    scene: &TracedScene<'_>,
+) -> DVec3 {
+    let from_light = |light_ix: u32| {
+        let light = &lights.lights()[light_ix as usize];
+        let radiance = matte_contribution(light, sample.position, &sample.surface);
+        let is_seen = radiance != DVec3::ZERO && scene.sees(sample, light.position.as_dvec3());
+        if is_seen { radiance } else { DVec3::ZERO }
+    };
+    reaching(lights, sample).into_iter().map(from_light).sum()
+}
+
+/// The lights that reach a sample, ascending.
+fn reaching(lights: &LightBvh<'_>, sample: &SurfaceSample) -> Vec<u32> {
     let mut reaching = Vec::new();
     lights.lights_at(sample.position.as_vec3().to_array(), |light, _| reaching.push(light));
     // The hierarchy finds them in an order of its own.
     reaching.sort_unstable();
-    let all = lights.lights();
-    reaching.into_iter().fold(Estimate::default(), |sum, light| {
-        sum + direct_light(&all[light as usize], sample, visibility, area_samples, rng)
-    })
+    reaching
 }

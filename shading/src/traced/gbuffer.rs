@@ -1,7 +1,7 @@
-//! Primary surfaces as the rasteriser drew them: truth and image see the same samples.
+//! Primary surfaces as deferred lighting reads them: what the G-buffer's formats cost.
 //!
 //! Positions are rebuilt from depth by the shader code that deferred lighting runs, surfaces are the
-//! G-buffer's, so that an image and its truth differ by lighting alone.
+//! G-buffer's. Lit in f64, they differ from the truth by the rounding of depth and G-buffer alone.
 
 use assign::{EncoderPasses, Passes, Projection, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
@@ -12,7 +12,7 @@ use crate::{
     Renderer, ShadingError,
     lighting::{TEXELS, compute_pipeline, texture, texture_entry},
     raster::LISTS_GROUP,
-    reference::Surface,
+    reference::{Reflectance, Surface},
     shaders,
 };
 
@@ -32,6 +32,8 @@ pub struct GBufferSamples {
     normals: Vec<Vec4>,
     /// Emitted radiance; empty where the scene emits none.
     emissions: Vec<Vec4>,
+    /// What dielectrics reflect at normal and at grazing incidence; empty where all are plain.
+    dielectrics: Vec<Vec4>,
 }
 
 impl GBufferSamples {
@@ -55,19 +57,24 @@ impl GBufferSamples {
             entries.push(texture_entry(3, TEXELS));
             resources.push(texture(3, emissive));
         }
+        if let Some(dielectric) = &targets.dielectric {
+            entries.push(texture_entry(8, TEXELS));
+            resources.push(texture(8, dielectric));
+        }
         let bytes = u64::from(view.viewport.width) * u64::from(view.viewport.height) * 16;
         let mut names = vec!["positions", "base colours", "normals"];
         names.extend(targets.emissive.as_ref().map(|_| "emissions"));
+        names.extend(targets.dielectric.as_ref().map(|_| "dielectrics"));
         let buffers = names.into_iter().map(|name| gpu.storage(name, bytes));
         let buffers = buffers.collect::<Result<Vec<_>, _>>()?;
-        for (binding, buffer) in (4..).zip(&buffers) {
+        let mut bindings = vec![4, 5, 6];
+        bindings.extend(targets.emissive.as_ref().map(|_| 7));
+        bindings.extend(targets.dielectric.as_ref().map(|_| 9));
+        for (binding, buffer) in bindings.into_iter().zip(&buffers) {
             entries.push(storage_entry(binding, stages, false));
             resources.push(entry(binding, buffer));
         }
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("surfaces"),
-            entries: &entries,
-        });
+        let layout = gpu.bind_group_layout("surfaces", &entries);
         let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surfaces"),
             layout: &layout,
@@ -75,7 +82,8 @@ impl GBufferSamples {
         });
         let module = shaders::lighting(LISTS_GROUP)
             .flag("emissive", targets.emissive.is_some())
-            .create(&gpu.device, "package::surfaces")?;
+            .flag("dielectrics", targets.dielectric.is_some())
+            .create(gpu, "package::surfaces")?;
         let groups = [renderer.frame.layout(), &layout];
         let pipeline = compute_pipeline(gpu, &groups, &module, "surfaces");
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -100,7 +108,8 @@ impl GBufferSamples {
             positions: next(),
             base_colors: next(),
             normals: next(),
-            emissions: next(),
+            emissions: if targets.emissive.is_some() { next() } else { Vec::new() },
+            dielectrics: next(),
         })
     }
 
@@ -118,6 +127,9 @@ impl GBufferSamples {
             metallic: f64::from(base_color.w),
             normal: normal.truncate().as_dvec3().normalize(),
             roughness: f64::from(normal.w),
+            dielectric: self.dielectrics.get(pixel).map_or_else(Reflectance::default, |d| {
+                Reflectance { f0: d.truncate().as_dvec3(), f90: f64::from(d.w) }
+            }),
         };
         let emission = self.emissions.get(pixel).map(|e| e.truncate().as_dvec3());
         Some(SurfaceSample {

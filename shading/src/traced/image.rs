@@ -2,13 +2,14 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use assign::Light;
+use assign::{Light, Suns};
 use glam::DVec3;
-use rand::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
-use super::{AREA_SAMPLES, Estimate, SurfaceSample, TracedScene, bounced_light, direct_radiance};
+use super::{
+    AREA_SAMPLES, Estimate, Numbers, Paths, SurfaceSample, TracedScene, bounced_light,
+    direct_radiance,
+};
 use crate::{HdrImage, LightBvh, ShadingError};
 
 /// Rows that one thread renders before it reports.
@@ -22,27 +23,32 @@ pub enum Transport {
     Unshadowed,
     /// The same with shadows.
     Direct,
-    /// From lights to a surface to another to the eye, with shadows; nothing else.
+    /// From lights to a surface, and then to one or more others before the eye, with shadows; and from
+    /// surfaces that emit to another to the eye. Nothing else.
     Bounce,
 }
 
 /// How a truth image is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthSettings {
     /// The light that it shows.
     pub transport: Transport,
-    /// Directions a pixel of a bounce.
-    pub bounce_samples: u32,
+    /// Paths of each pixel, of bounces.
+    pub paths: Paths,
     /// Pairs of directions to each area light with shadows.
     pub area_samples: u32,
     /// Images of different seeds are independent.
-    pub seed: u32,
+    pub seed: u64,
+    /// Suns, in addition to the lights.
+    pub suns: Suns,
 }
 
 impl TruthSettings {
-    /// 64 samples of either kind, seed 1.
+    /// One bounce, 64 samples of either kind, seed 1.
     pub fn new(transport: Transport) -> Self {
-        Self { transport, bounce_samples: 64, area_samples: AREA_SAMPLES, seed: 1 }
+        let paths = Paths { count: 64, bounces: 1, is_matte: false };
+        let suns = Suns::default();
+        Self { transport, paths, area_samples: AREA_SAMPLES, seed: 1, suns }
     }
 }
 
@@ -83,7 +89,7 @@ fn combine(
 /// Renders the truth of an image of `size` pixels on all threads.
 ///
 /// `sample_of` gives a pixel's sample, index into the image, rows from the top: of
-/// [`GBufferSamples::sample`](super::GBufferSamples::sample), or of [`TracedScene::primary`]. Pixels
+/// [`TracedScene::primary`], or of [`GBufferSamples::sample`](super::GBufferSamples::sample). Pixels
 /// without one are black. Faulty lights are left out, as they are where lights are uploaded.
 /// `progress` is told how many rows of how many are done, from any thread.
 pub fn truth_image(
@@ -95,7 +101,7 @@ pub fn truth_image(
     progress: &(dyn Fn(u32, u32) + Sync),
 ) -> TruthImage {
     let sound: Vec<Light> = lights.iter().filter(|light| light.check().is_ok()).copied().collect();
-    let lights = LightBvh::new(&sound);
+    let lights = LightBvh::new(&sound).with_suns(settings.suns);
     let [width, height] = size;
     let mut estimates = vec![Estimate::default(); width as usize * height as usize];
     let rows_done = AtomicU32::new(0);
@@ -125,15 +131,15 @@ fn pixel_of(
     settings: TruthSettings,
     pixel: usize,
 ) -> Estimate {
-    // Random numbers of the pixel's own: threads may take pixels in any order.
-    let mut rng = Pcg64Mcg::seed_from_u64((u64::from(settings.seed) << 32) | pixel as u64);
+    // Numbers of the pixel's own: threads may take pixels in any order.
+    let numbers = Numbers::new(settings.seed).part(pixel as u64);
     let emitted = Estimate::exact(sample.emission);
     let shadows = match settings.transport {
         Transport::Unshadowed => None,
         Transport::Direct => Some(scene),
         Transport::Bounce => {
-            return bounced_light(lights, sample, scene, settings.bounce_samples, &mut rng);
+            return bounced_light(lights, sample, scene, settings.paths, numbers);
         }
     };
-    emitted + direct_radiance(lights, sample, shadows, settings.area_samples, &mut rng)
+    emitted + direct_radiance(lights, sample, shadows, settings.area_samples, numbers)
 }

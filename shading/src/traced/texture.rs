@@ -1,11 +1,10 @@
-//! Textures on the CPU: bilinear, at one level of their mip chain.
+//! Textures on the CPU, filtered as the GPU filters them: its samplers without anisotropy.
 //!
-//! The GPU blends two levels, chosen from derivatives between pixels; here the level is the caller's,
-//! rounded to a whole one. Filters that are nearest count as linear, but where a sampler has no mips
-//! the finest level is read, as there.
+//! The level of mips follows from the distance of neighbouring pixels in texels. At the finest level the
+//! filter for magnification counts, above it the one for minification.
 
-use glam::{Vec2, Vec4};
-use scenes::{Encoding, Image, TextureRef, Wrap};
+use glam::{DVec3, Vec2, Vec4};
+use scenes::{Encoding, Filter, Image, TextureRef, Wrap};
 
 use crate::mips::{TO_LINEAR, mip_chain};
 
@@ -36,30 +35,59 @@ impl Texture {
         Self { levels: levels.collect(), bytes, encoding: image.encoding }
     }
 
-    /// Texels of its finest level.
-    pub(super) fn texel_count(&self) -> f32 {
+    /// Its mean colour: that of the coarsest level.
+    pub(super) fn mean(&self) -> DVec3 {
+        self.levels.last().map_or(DVec3::ONE, |last| self.texel(last, 0, 0).truncate().as_dvec3())
+    }
+
+    /// The level of mips of a pixel whose neighbours lie these steps of uv away: 0 is the finest,
+    /// below it one texel covers several pixels.
+    pub(super) fn level(&self, texture: &TextureRef, steps: [Vec2; 2]) -> f32 {
         let [width, height] = self.levels[0].size;
-        width as f32 * height as f32
+        let texels = |step: Vec2| {
+            texture.uv_transform.transform_vector2(step) * Vec2::new(width as f32, height as f32)
+        };
+        let longest = steps.map(texels).map(Vec2::length);
+        longest[0].max(longest[1]).max(f32::MIN_POSITIVE).log2()
     }
 
     /// Its colour at a vertex's uv, `level` levels above the finest.
     pub(super) fn sample(&self, texture: &TextureRef, uv: Vec2, level: f32) -> Vec4 {
+        let sampler = texture.sampler;
         let last = (self.levels.len() - 1) as f32;
-        let level =
-            if texture.sampler.mip.is_some() { level.round().clamp(0.0, last) } else { 0.0 };
-        let level = &self.levels[level as usize];
+        let level = if sampler.mip.is_some() { level.clamp(0.0, last) } else { 0.0 };
+        let filtered = |level: f32, filter| self.filtered(texture, uv, level as usize, filter);
+        if level <= 0.0 {
+            return filtered(0.0, sampler.mag);
+        }
+        match sampler.mip {
+            Some(Filter::Linear) => {
+                let finer = level.floor();
+                let coarser = filtered((finer + 1.0).min(last), sampler.min);
+                filtered(finer, sampler.min).lerp(coarser, level - finer)
+            }
+            _ => filtered(level.round(), sampler.min),
+        }
+    }
+
+    /// Its colour at one level.
+    fn filtered(&self, texture: &TextureRef, uv: Vec2, level: usize, filter: Filter) -> Vec4 {
+        let level = &self.levels[level];
         let [width, height] = level.size;
-        // Texel centres lie at halves.
         let at = texture.uv_transform.transform_point2(uv) * Vec2::new(width as f32, height as f32);
-        let low = (at - 0.5).floor();
-        let share = at - 0.5 - low;
-        let texel = |dx: f32, dy: f32| {
-            let x = wrap(low.x + dx, width, texture.sampler.wrap_s);
-            let y = wrap(low.y + dy, height, texture.sampler.wrap_t);
+        let texel = |x: f32, y: f32| {
+            let x = wrap(x, width, texture.sampler.wrap_s);
+            let y = wrap(y, height, texture.sampler.wrap_t);
             self.texel(level, x, y)
         };
-        let upper = texel(0.0, 0.0).lerp(texel(1.0, 0.0), share.x);
-        let lower = texel(0.0, 1.0).lerp(texel(1.0, 1.0), share.x);
+        if filter == Filter::Nearest {
+            return texel(at.x.floor(), at.y.floor());
+        }
+        // Texel centres lie at halves.
+        let low = (at - 0.5).floor();
+        let share = at - 0.5 - low;
+        let upper = texel(low.x, low.y).lerp(texel(low.x + 1.0, low.y), share.x);
+        let lower = texel(low.x, low.y + 1.0).lerp(texel(low.x + 1.0, low.y + 1.0), share.x);
         upper.lerp(lower, share.y)
     }
 
@@ -125,8 +153,44 @@ mod tests {
     }
 
     #[test]
-    fn coarser_levels_average() {
+    fn coarser_levels_average_and_blend() {
         near(at(0.25, 1.0, Wrap::Repeat), 26.0 / 255.0);
         near(at(0.9, 99.0, Wrap::Repeat), 90.0 / 255.0);
+        // A quarter of the way from 0.1 to the level above.
+        near(at(0.25, 0.25, Wrap::Repeat), 0.1 + 0.25 * (26.0 / 255.0 - 0.1));
+        near(at(0.25, -3.0, Wrap::Repeat), 0.1);
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} {b}");
+        close(ramp().mean().x, 90.0 / 255.0);
+    }
+
+    #[test]
+    fn filters_are_the_sampler_s() {
+        let mut texture = TextureRef::new(0);
+        texture.sampler.mag = Filter::Nearest;
+        let at = |texture: &TextureRef, u: f32, level: f32| {
+            ramp().sample(texture, Vec2::new(u, 0.3), level).x
+        };
+        near(at(&texture, 0.26, -1.0), 0.2);
+        near(at(&texture, 0.26, 1.0), (26.0 + 0.02 * 127.0) / 255.0);
+        texture.sampler.min = Filter::Nearest;
+        near(at(&texture, 0.26, 1.0), 26.0 / 255.0);
+        texture.sampler.mip = Some(Filter::Nearest);
+        near(at(&texture, 0.26, 0.6), 26.0 / 255.0);
+        texture.sampler.mip = None;
+        near(at(&texture, 0.26, 5.0), 0.2);
+    }
+
+    #[test]
+    fn a_level_is_that_of_the_longest_step() {
+        let mut texture = TextureRef::new(0);
+        let level = |texture: &TextureRef, x: f32, y: f32| {
+            ramp().level(texture, [Vec2::new(x, 0.0), Vec2::new(0.0, y)])
+        };
+        // Four texels wide, one high.
+        near(level(&texture, 0.5, 0.5), 1.0);
+        near(level(&texture, 0.5, 8.0), 3.0);
+        texture.uv_transform.matrix2 *= 2.0;
+        near(level(&texture, 0.5, 0.5), 2.0);
+        assert!(level(&texture, 0.0, 0.0) < -100.0 && level(&texture, f32::NAN, 0.5) == 0.0);
     }
 }

@@ -74,6 +74,7 @@ pub(crate) fn asked(query: &Query) -> (DVec3, Surface, DVec3) {
         metallic: f64::from(query[2][3]),
         normal: xyz(query[2]).normalize(),
         roughness: f64::from(query[1][3]),
+        dielectric: Default::default(),
     };
     (xyz(query[0]), surface, xyz(query[1]).normalize())
 }

@@ -71,7 +71,7 @@ pub(crate) fn evaluate(
         .light_kinds(lights.kinds());
     let flags = area.flags().iter();
     let shader = flags.fold(shader, |shader, flag| shader.flag(flag, lights.kinds().areas));
-    let module = shader.create(&gpu.device, "package::evaluate").unwrap();
+    let module = shader.create(gpu, "package::evaluate").unwrap();
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &[Some(bindings.layout()), None, Some(&layout)],

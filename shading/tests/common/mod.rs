@@ -2,8 +2,9 @@
 
 pub(crate) mod areas;
 pub(crate) mod evaluate;
+pub(crate) mod quads;
 
-use assign::{Gpu, Light, LightShape, View};
+use assign::{Gpu, Light, LightShape, Sun, Suns, View};
 use glam::{Affine2, Mat4, Vec2, Vec3, Vec4};
 use scenes::{
     Aabb, CameraPath, Encoding, Image, Instance, Material, Mesh, Model, Pose, Scene, TextureRef,
@@ -27,6 +28,7 @@ fn quad(material: u32) -> Mesh {
         name: format!("quad {material}"),
         vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
+        colors: Vec::new(),
         material,
         bounds: Aabb::new(Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)),
     }
@@ -124,7 +126,11 @@ pub(crate) fn showcase() -> Scene {
             place("sheet", sheet),
         ],
         lights: Vec::new(),
+        open_lights: Vec::new(),
+        suns: Vec::new(),
         cameras: Vec::new(),
+        view_camera: 0,
+        origin: glam::DVec3::ZERO,
         path: CameraPath::still(Pose::new(Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 1.2, 0.0))),
         bounds: scene_box,
         core_bounds: scene_box,
@@ -163,4 +169,14 @@ pub(crate) fn lights(count: u32) -> Vec<Light> {
             light
         })
         .collect()
+}
+
+/// Two suns over the showcase, from before it and from the side.
+pub(crate) fn suns() -> Suns {
+    let sun = |direction: Vec3, irradiance| Sun { direction: direction.normalize(), irradiance };
+    let suns = [
+        sun(Vec3::new(-0.3, -1.0, -0.6), Vec3::new(0.9, 0.8, 0.6)),
+        sun(Vec3::new(1.0, -0.4, 0.1), Vec3::new(0.1, 0.1, 0.3)),
+    ];
+    Suns::new(&suns).expect("two sound suns")
 }

@@ -1,6 +1,7 @@
 //! Speed against accuracy: what each lossy knob gains in time and costs in error.
 
 use super::super::format::{difference, significant};
+use super::super::markup::Html;
 use super::super::rank::Ratio;
 use super::data::{class, entries, family, knob, lines};
 use super::errors_plot::{FIRST, Plot};
@@ -15,8 +16,8 @@ pub(super) fn accuracy(
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> String {
-    let mut html = String::new();
+) -> Html {
+    let mut html = Html::default();
     let label = |record: &Record| knob(&record.strategy).unwrap_or("lossless").to_owned();
     let series = |record: &Record| family(&record.strategy).to_owned();
     let caps = Plot {
@@ -41,8 +42,8 @@ pub(super) fn accuracy(
         time: "Assign + shade, mean along the path",
         ..caps
     };
-    html += &caps.html(scene, charts, shots);
-    html += &reuse.html(scene, charts, shots);
+    html += caps.html(scene, charts, shots);
+    html += reuse.html(scene, charts, shots);
     let html = part(
         scene,
         "accuracy",
@@ -70,7 +71,7 @@ pub(super) fn accuracy(
         first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
-    html + &part(
+    html + part(
         scene,
         "ranges",
         "Speed against accuracy: the lights\u{2019} range",

@@ -1,10 +1,11 @@
 //! Models of area lights against the truth: errors, times, and what each gets wrong.
 
-use super::super::format::{ABSENT, difference, escape, percent, significant};
+use super::super::format::{ABSENT, difference, percent, significant};
+use super::super::markup::Html;
 use super::super::rank::listed;
 use super::data::{Entry, entries};
 use super::errors_plot::{FIRST, Plot, frontier};
-use super::figure::{Charts, part, table};
+use super::figure::{Charts, dotted, part, table, unit, words};
 use super::shots::{Shots, Wanted};
 use crate::errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage};
@@ -104,8 +105,8 @@ pub(super) fn model(record: &Record) -> &str {
 }
 
 /// A model's name with the dot of its colour.
-pub(super) fn name(model: &str) -> String {
-    format!("<i class=\"dot {}\"></i>{}", class(model), escape(model))
+pub(super) fn name(model: &str) -> Html {
+    dotted(&class(model), model)
 }
 
 /// An error against the truth, where it is finite.
@@ -114,19 +115,19 @@ fn error(record: &Record, id: &str) -> Option<f64> {
 }
 
 /// Errors and times of all models, and what each gets wrong.
-pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> String {
+pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
         all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
     let truth = truth_of(done, scene).map(|(_, truth)| truth);
-    let mut html = String::new();
+    let mut html = Html::default();
     if let (Some(truth), false) = (truth, known.is_empty()) {
-        html += &part(
+        html += part(
             scene,
             "models",
             "Models of area lights against the truth",
-            &escape(&about(truth)),
-            &(errors_table(&known) + &words_table(&known)),
+            &about(truth),
+            &(errors_table(&known, truth) + words_table(&known)),
         );
     }
     let plot = Plot {
@@ -144,7 +145,7 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
         first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
-    html + &part(
+    html + part(
         scene,
         "model-times",
         "Speed against accuracy: models",
@@ -171,25 +172,33 @@ fn about(truth: &TruthImage) -> String {
     )
 }
 
-fn errors_table(entries: &[Entry<'_>]) -> String {
-    let mut heads = vec!["model".to_owned(), "shade <span class=\"unit\">ms</span>".to_owned()];
-    heads.extend(ERROR_METRICS.iter().map(|metric| escape(metric.head)));
-    let rows: Vec<Vec<String>> = entries
+fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> Html {
+    let mut heads: Vec<Html> = vec!["model".into(), unit("shade", "ms")];
+    heads.extend(ERROR_METRICS.iter().map(|metric| Html::from(metric.head)));
+    let cells = |of: &dyn Fn(&str) -> Option<f64>| -> Vec<Html> {
+        let cell = |id| of(id).map_or_else(|| ABSENT.to_owned(), difference);
+        ERROR_METRICS.iter().map(|metric| Html::from(cell(metric.id))).collect()
+    };
+    let mut rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
-            let mut row = vec![name(model(record)), significant(record.shade_ms)];
-            let cell = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), difference);
-            row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
+            let mut row = vec![name(model(record)), significant(record.shade_ms).into()];
+            row.extend(cells(&|id| error(record, id)));
             row
         })
         .collect();
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    // Every model reads the G-buffer: what its rounding costs is in all rows above.
+    if !truth.gbuffer_errors.is_empty() {
+        let mut row: Vec<Html> = vec!["rounding of the G-buffer".into(), ABSENT.into()];
+        row.extend(cells(&|id| truth.gbuffer_errors.get(id).copied().flatten()));
+        rows.push(row);
+    }
     table("Errors of models against the truth", &heads, &rows)
 }
 
 /// What each model leaves out, and what that comes to here.
-fn words_table(entries: &[Entry<'_>]) -> String {
-    let rows: Vec<Vec<String>> = entries
+fn words_table(entries: &[Entry<'_>]) -> Html {
+    let rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
             let known = FAMILIES.iter().find(|known| known.id == family(model(record)));
@@ -204,14 +213,13 @@ fn words_table(entries: &[Entry<'_>]) -> String {
             );
             vec![
                 name(model(record)),
-                format!("<span class=\"words\">{}</span>", known.map_or("", |known| known.about)),
-                format!("<span class=\"words\">{measured}</span>"),
+                words(known.map_or("", |known| known.about)),
+                words(&measured),
             ]
         })
         .collect();
-    let heads = ["what it leaves out", "measured"];
-    let heads = heads.map(|head| format!("<span class=\"words\">{head}</span>"));
-    table("What each model gets wrong", &["model", &heads[0], &heads[1]], &rows)
+    let heads = ["model".into(), words("what it leaves out"), words("measured")];
+    table("What each model gets wrong", &heads, &rows)
 }
 
 /// Which models lie on the frontier of time and error, and the table against its polynomials.

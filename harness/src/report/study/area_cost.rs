@@ -2,9 +2,10 @@
 
 use super::super::finding::lights;
 use super::super::format::{ABSENT, significant};
+use super::super::markup::{Html, html};
 use super::area::{SPOTS, class, model, name};
 use super::data::{Line, counts, entries};
-use super::figure::{Charts, part, table};
+use super::figure::{Charts, part, table, unit};
 use super::scaling::{fit, points};
 use crate::chart::{Axis, Marks, Scale, Series, XyChart};
 use crate::results::Record;
@@ -31,10 +32,10 @@ fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<Line<'a>> {
 }
 
 /// A chart and the times, each over those of as many spots.
-pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let lines = by_model(done, scene);
     if lines.is_empty() {
-        return String::new();
+        return Html::default();
     }
     let series = |(own, records): &Line<'_>| Series {
         name: (*own).to_owned(),
@@ -48,7 +49,7 @@ pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> String {
         series: lines.iter().map(series).collect(),
         note: String::new(),
     };
-    let body = charts.xy(&format!("{scene}-cost"), &chart) + &times(done, scene, &lines);
+    let body = charts.xy(&format!("{scene}-cost"), &chart) + times(done, scene, &lines);
     part(
         scene,
         "cost",
@@ -61,45 +62,43 @@ pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> String {
     )
 }
 
-fn times(done: &Done, scene: &str, lines: &[Line<'_>]) -> String {
+fn times(done: &Done, scene: &str, lines: &[Line<'_>]) -> Html {
     let counts = counts(&entries(done, scene, "cost"));
     let spots = lines.iter().find(|(own, _)| *own == SPOTS).map(|(_, records)| records);
     let at = |records: &[&Record], count: u64| {
         records.iter().find(|record| record.lights == count).map(|record| shade(record))
     };
     let slope = |records: &[&Record]| fit(records, shade).filter(|fit| fit.points > 2);
-    let rows: Vec<Vec<String>> = lines
+    let rows: Vec<Vec<Html>> = lines
         .iter()
         .map(|(own, records)| {
             let mut row = vec![name(own)];
             row.extend(counts.iter().map(|&count| {
-                let Some(time) = at(records, count) else { return ABSENT.to_owned() };
+                let Some(time) = at(records, count) else { return ABSENT.into() };
                 match spots.and_then(|spots| at(spots, count)).filter(|_| *own != SPOTS) {
-                    Some(spot) => format!(
+                    Some(spot) => html!(
                         "{} <span class=\"unit\">\u{d7} {}</span>",
                         significant(time),
                         significant(time / spot)
                     ),
-                    None => significant(time),
+                    None => significant(time).into(),
                 }
             }));
             let line = slope(records);
-            row.push(line.map_or_else(|| ABSENT.to_owned(), |line| significant(line.slope * 1e3)));
+            row.push(
+                line.map_or_else(|| ABSENT.into(), |line| significant(line.slope * 1e3).into()),
+            );
             let ratio = line.zip(spots.and_then(|spots| slope(spots))).filter(|_| *own != SPOTS);
             row.push(ratio.map_or_else(
-                || ABSENT.to_owned(),
-                |(line, spot)| significant(line.slope / spot.slope),
+                || ABSENT.into(),
+                |(line, spot)| significant(line.slope / spot.slope).into(),
             ));
             row
         })
         .collect();
-    let mut heads = vec!["model".to_owned()];
-    heads.extend(
-        counts.iter().map(|count| format!("{} <span class=\"unit\">ms</span>", lights(*count))),
-    );
-    heads.push("a light <span class=\"unit\">\u{b5}s</span>".to_owned());
-    heads.push("area : spot".to_owned());
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let mut heads: Vec<Html> = vec!["model".into()];
+    heads.extend(counts.iter().map(|count| unit(&lights(*count), "ms")));
+    heads.extend([unit("a light", "\u{b5}s"), "area : spot".into()]);
     table("Shading times by lights", &heads, &rows)
 }
 

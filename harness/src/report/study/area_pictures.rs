@@ -6,7 +6,8 @@ use std::rc::Rc;
 use image::{ImageFormat, RgbImage, imageops};
 use shading::HdrImage;
 
-use super::super::format::{escape, significant};
+use super::super::format::significant;
+use super::super::markup::{Html, html};
 use super::area::model;
 use super::data::{Entry, entries};
 use super::figure::{panels, part};
@@ -23,14 +24,14 @@ const CUT_PX: u32 = 4 * TILE_PX as u32;
 const LARGER: u32 = 4;
 
 /// One panel a model.
-pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
-    let Some((job, truth)) = truth_of(done, scene) else { return String::new() };
+pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html {
+    let Some((job, truth)) = truth_of(done, scene) else { return Html::default() };
     let exposure = truth.exposure;
-    let Some(reference) = linear(done, &job.name, Some(&truth.raw)) else { return String::new() };
+    let Some(reference) = linear(done, &job.name, Some(&truth.raw)) else { return Html::default() };
     let Some(truth_key) = shots.linear(&job.name, &truth.raw, exposure) else {
-        return String::new();
+        return Html::default();
     };
-    let mut shown: Vec<(String, String)> = Vec::new();
+    let mut shown: Vec<(String, Html)> = Vec::new();
     for entry in entries(done, scene, MODELS) {
         let Entry { job, record } = entry;
         let raw = record.images.raw.as_deref();
@@ -48,13 +49,13 @@ pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Strin
         let cut = shots.drawn(format!("{}:tile", job.name), || beside(&pair, corner));
         let name = model(record);
         let body = figure(Some(truth_key.clone()), "The truth", "")
-            + &figure(own, name, "")
-            + &figure(
+            + figure(own, name, "")
+            + figure(
                 difference,
                 &format!("Difference \u{d7} {}", significant(f64::from(gain))),
                 "absolute, linear; black is none",
             )
-            + &figure(
+            + figure(
                 cut,
                 "The worst tile",
                 &format!(
@@ -62,7 +63,7 @@ pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Strin
                     corner[0], corner[1]
                 ),
             );
-        shown.push((name.to_owned(), format!("<div class=\"views\">{body}</div>\n")));
+        shown.push((name.to_owned(), html!("<div class=\"views\">{}</div>\n", body)));
     }
     part(
         scene,
@@ -79,14 +80,15 @@ pub(super) fn linear(done: &Done, job: &str, name: Option<&str>) -> Option<Rc<Hd
 }
 
 /// A picture with its caption; nothing without a picture.
-pub(super) fn figure(key: Option<String>, title: &str, text: &str) -> String {
-    let Some(key) = key else { return String::new() };
-    let (title, separator) = (escape(title), if text.is_empty() { "." } else { ": " });
-    format!(
-        "<figure><img data-picture=\"{}\" alt=\"{title}\"><figcaption><b>{title}</b>{separator}{}</figcaption>\
-         </figure>\n",
-        escape(&key),
-        escape(text)
+pub(super) fn figure(key: Option<String>, title: &str, text: &str) -> Html {
+    let Some(key) = key else { return Html::default() };
+    let separator = if text.is_empty() { "." } else { ": " };
+    html!(
+        "<figure><img data-picture=\"{0}\" alt=\"{1}\"><figcaption><b>{1}</b>{2}{3}</figcaption></figure>\n",
+        key,
+        title,
+        separator,
+        text
     )
 }
 

@@ -1,13 +1,14 @@
 //! Compound deep images: the paper's three tables with ours, memory, and ranges against exact rays.
 
-use super::super::format::{ABSENT, escape, number, significant};
+use super::super::format::{ABSENT, number, significant};
+use super::super::markup::Html;
 use super::cdi_builds::builds;
 use super::cdi_light::indirect;
 use super::cdi_ranges::ranges;
 use super::cdi_times::{self, runs, shown, timed_casts};
 use super::cdi_verdicts::quietest;
 use super::data::entries;
-use super::figure::{Charts, name, part, table};
+use super::figure::{Charts, name, part, table, unit};
 use super::shots::Shots;
 use crate::results::{DeepImageRun, PassKind, Record, median};
 use crate::study::{Done, cdi};
@@ -21,7 +22,7 @@ pub(super) fn cdi_parts(
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> String {
+) -> Html {
     [
         indirect(done, scene, charts, shots),
         steps(done, scene),
@@ -30,7 +31,8 @@ pub(super) fn cdi_parts(
         ranges(done, scene, charts),
         strategies(done, scene),
     ]
-    .concat()
+    .into_iter()
+    .collect()
 }
 
 /// A step: its name, whether a pass belongs to it, and the paper's times in its atrium and its town.
@@ -55,12 +57,12 @@ const STEPS: [Step; 6] = [
 ];
 
 /// The paper's table 1 with our times.
-fn steps(done: &Done, scene: &str) -> String {
+fn steps(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, cdi::STEPS);
     let Some((record, vpls)) =
         all.first().and_then(|entry| Some((entry.record, entry.record.vpls.as_ref()?)))
     else {
-        return String::new();
+        return Html::default();
     };
     let theirs = |ms: f64| if ms.is_finite() { significant(ms) } else { ABSENT.to_owned() };
     let row = |name: &str, ms: f64, paper: [f64; 2]| {
@@ -79,20 +81,19 @@ fn steps(done: &Done, scene: &str) -> String {
     rows.push(row("apply lighting", record.shade_ms, [12.0, 6.1]));
     let total = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     rows.push(row("total", total, [20.6, 43.5]));
-    let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
-    let heads = ["step".to_owned(), unit("here"), unit("paper, Atrium"), unit("paper, Rungholt")];
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let ms = |head| unit(head, "ms");
+    let heads = ["step".into(), ms("here"), ms("paper, Atrium"), ms("paper, Rungholt")];
     let text = format!(
         "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
          paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding. A data-centre GPU \
          draws fragments on a few of its processors: what is rasterised is slow there as on no other chip.",
-        escape(&record.scene),
+        record.scene,
         record.width,
         record.height,
         number(vpls.kept as f64),
         vpls.rsm_px,
         vpls.rsm_px,
-        escape(&record.strategy)
+        record.strategy
     );
     part(scene, "steps", "Time of each step", &text, &table("Time of each step", &heads, &rows))
 }
@@ -107,10 +108,10 @@ const PAPER_CASTS: [(u32, [f64; 3]); 4] = [
 ];
 
 /// The paper's table 3 with ours.
-fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
+fn casts(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let all = runs(done, scene, cdi::CASTS);
     let of = |build: fn(&DeepImageRun) -> bool| all.iter().copied().find(|run| build(run));
-    let Some(run) = of(|run| run.deep.build != "linked-lists") else { return String::new() };
+    let Some(run) = of(|run| run.deep.build != "linked-lists") else { return Html::default() };
     let linked = of(|run| run.deep.build == "linked-lists");
     let counted = timed_casts(done, scene, run);
     let of_lists = linked.map(|run| timed_casts(done, scene, run)).unwrap_or_default();
@@ -127,32 +128,36 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         let paper = PAPER_CASTS.iter().find(|(side, _)| is_paper(*side));
         let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
         let rays = cast.lights as f64 * f64::from(cast.rays);
-        rows.push(vec![
-            format!("{0} x {0}{1}", cast.rsm_px, if cast.is_middle { ", the middle" } else { "" }),
-            number(rays),
+        let row: Vec<Html> = vec![
+            format!("{0} x {0}{1}", cast.rsm_px, if cast.is_middle { ", the middle" } else { "" })
+                .into(),
+            number(rays).into(),
             shown(ms, counts),
             shown(rays / ms / 1e6, counts),
             match cast.corrected_ms.is_empty() {
-                true => ABSENT.to_owned(),
+                true => ABSENT.into(),
                 false => shown(median(&cast.corrected_ms), counts),
             },
-            list.map_or(ABSENT.to_owned(), |list| {
-                let counts = of_lists.iter().any(|known| std::ptr::eq(*known, list));
-                shown(median(&list.cast_ms), counts)
-            }),
+            list.map_or_else(
+                || ABSENT.into(),
+                |list| {
+                    let counts = of_lists.iter().any(|known| std::ptr::eq(*known, list));
+                    shown(median(&list.cast_ms), counts)
+                },
+            ),
             shown(random, counts),
-            theirs(0),
-            theirs(1),
-            theirs(2),
-        ]);
+            theirs(0).into(),
+            theirs(1).into(),
+            theirs(2).into(),
+        ];
+        rows.push(row);
     }
     if rows.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
     let heads = [
-        "shadow map".to_owned(),
-        "rays".to_owned(),
+        "shadow map".into(),
+        "rays".into(),
         unit("cast", "ms"),
         unit("rate", "10\u{2079} rays/s"),
         unit("corrected", "ms"),
@@ -162,7 +167,6 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
         unit("paper, Rungholt", "ms"),
         unit("paper, random", "ms"),
     ];
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let drawn = super::cdi_builds::cast_chart(&counted, &of_lists);
     let chart = charts.xy(&format!("{scene}-casts"), &drawn);
     part(
@@ -179,25 +183,23 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> String {
             run.deep.size_px,
             run.deep.size_px
         ),
-        &(chart + &table("Rays from every pixel of the shadow map", &heads, &rows)),
+        &(chart + table("Rays from every pixel of the shadow map", &heads, &rows)),
     )
 }
 
 /// Every strategy under the same virtual point lights.
-fn strategies(done: &Done, scene: &str) -> String {
+fn strategies(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, cdi::STRATEGIES);
-    let rows: Vec<Vec<String>> = all.iter().map(|entry| row_of(entry.record)).collect();
-    let Some(first) = all.first() else { return String::new() };
-    let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
+    let rows: Vec<Vec<Html>> = all.iter().map(|entry| row_of(entry.record)).collect();
+    let Some(first) = all.first() else { return Html::default() };
     let heads = [
-        "strategy".to_owned(),
-        unit("assign + shade"),
-        unit("assign"),
-        unit("shade"),
-        "differing channels".to_owned(),
-        "lists <span class=\"unit\">MiB</span>".to_owned(),
+        "strategy".into(),
+        unit("assign + shade", "ms"),
+        unit("assign", "ms"),
+        unit("shade", "ms"),
+        "differing channels".into(),
+        unit("lists", "MiB"),
     ];
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let text = format!(
         "{} virtual point lights at {} x {}, in the order of their map, from the list of all: lights of this frame \
          have no hierarchy.",
@@ -209,14 +211,15 @@ fn strategies(done: &Done, scene: &str) -> String {
     part(scene, "vpl-strategies", title, &text, &table(title, &heads, &rows))
 }
 
-fn row_of(record: &Record) -> Vec<String> {
+fn row_of(record: &Record) -> Vec<Html> {
+    let differing = record.differing_channels.map(|count| number(count as f64));
     vec![
         name(&record.strategy),
-        significant(record.assign_and_shade_ms()),
-        significant(record.assign_ms),
-        significant(record.shade_ms),
-        record.differing_channels.map_or(ABSENT.to_owned(), |count| number(count as f64)),
-        super::super::format::mebibytes(record.lists_bytes as f64),
+        significant(record.assign_and_shade_ms()).into(),
+        significant(record.assign_ms).into(),
+        significant(record.shade_ms).into(),
+        differing.unwrap_or_else(|| ABSENT.to_owned()).into(),
+        super::super::format::mebibytes(record.lists_bytes as f64).into(),
     ]
 }
 

@@ -1,8 +1,9 @@
 //! Building deep images: times by directions and by build, and memory.
 
-use super::super::format::{ABSENT, escape, mebibytes, number, significant};
+use super::super::format::{ABSENT, mebibytes, number, significant};
+use super::super::markup::{Html, html};
 use super::cdi_times::{refused_build, runs, shown, timed_runs};
-use super::figure::{Charts, part, table};
+use super::figure::{Charts, part, table, unit};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::{CastTimes, DeepImageRun, median};
 use crate::study::{Done, cdi};
@@ -36,9 +37,9 @@ const BUILDS: [(&str, &str, &str); 4] = [
 ];
 
 /// Times, factors and memory.
-pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let all = runs(done, scene, cdi::BUILDS);
-    let Some(first) = all.first().copied() else { return String::new() };
+    let Some(first) = all.first().copied() else { return Html::default() };
     let plain: Vec<&DeepImageRun> =
         all.iter().copied().filter(|run| is_plain(run, first)).collect();
     let of = |build: &str, directions: u32| {
@@ -54,9 +55,9 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
     counts.dedup();
     let counts_as_time = |run: &DeepImageRun| refused_build(done, scene, run).is_none();
     let ms = |run: Option<&DeepImageRun>| {
-        run.map_or(ABSENT.to_owned(), |run| shown(run.build_ms(), counts_as_time(run)))
+        run.map_or_else(|| ABSENT.into(), |run| shown(run.build_ms(), counts_as_time(run)))
     };
-    let rows: Vec<Vec<String>> = counts
+    let rows: Vec<Vec<Html>> = counts
         .iter()
         .map(|&count| {
             let [compute, fragment, each, batched] = BUILDS.map(|(id, ..)| of(id, count));
@@ -65,11 +66,14 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
             };
             let factor = |all: Option<&DeepImageRun>| {
                 let factor = timed(compute).zip(timed(all)).map(|(one, all)| all / one);
-                factor.map_or(ABSENT.to_owned(), significant)
+                Html::from(factor.map_or(ABSENT.to_owned(), significant))
             };
             let paper = PAPER_BUILDS.iter().find(|(known, _)| *known == count);
-            let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
-            let mut row = vec![number(f64::from(count)), ms(compute), ms(fragment)];
+            let theirs = |ix: usize| {
+                let ms = paper.map(|(_, ms)| significant(ms[ix]));
+                Html::from(ms.unwrap_or_else(|| ABSENT.to_owned()))
+            };
+            let mut row = vec![number(f64::from(count)).into(), ms(compute), ms(fragment)];
             row.extend([ms(each), factor(each), ms(batched), factor(batched)]);
             row.extend([theirs(0), theirs(1)]);
             row
@@ -77,24 +81,23 @@ pub(super) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> String {
         .collect();
     let steady: Vec<&DeepImageRun> =
         plain.iter().copied().filter(|run| counts_as_time(run)).collect();
-    let unit = |head: &str| format!("{head} <span class=\"unit\">ms</span>");
+    let ms = |head| unit(head, "ms");
     let heads = [
-        "directions".to_owned(),
-        unit("one pass, compute"),
-        unit("one pass, rasterised"),
-        unit("a dispatch per direction"),
-        "factor".to_owned(),
-        unit("per direction, one dispatch"),
-        "factor".to_owned(),
-        unit("paper, Atrium"),
-        unit("paper, Rungholt"),
+        "directions".into(),
+        ms("one pass, compute"),
+        ms("one pass, rasterised"),
+        ms("a dispatch per direction"),
+        "factor".into(),
+        ms("per direction, one dispatch"),
+        "factor".into(),
+        ms("paper, Atrium"),
+        ms("paper, Rungholt"),
     ];
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let chart = charts.xy(&format!("{scene}-builds"), &build_chart(&steady));
     let body = chart
-        + &table("Build time against directions", &heads, &rows)
-        + &passes(of("compute", counts.last().copied().unwrap_or(0)))
-        + &memory(&all, counts_as_time);
+        + table("Build time against directions", &heads, &rows)
+        + passes(of("compute", counts.last().copied().unwrap_or(0)))
+        + memory(&all, counts_as_time);
     let text = format!(
         "{} triangles, {1} x {1} pixels a direction. All of a build is on the clock: sampling or drawing, \
          counting, prefix sum, filling and sorting. Brute force visits all triangles for each direction, in one \
@@ -173,62 +176,55 @@ pub(super) fn cast_chart(arrays: &[&CastTimes], linked: &[&CastTimes]) -> XyChar
 }
 
 /// The passes of a build.
-fn passes(run: Option<&DeepImageRun>) -> String {
-    let Some(run) = run else { return String::new() };
+fn passes(run: Option<&DeepImageRun>) -> Html {
+    let Some(run) = run else { return Html::default() };
     let rows: Vec<Vec<String>> = run
         .passes
         .iter()
         .map(|(pass, times)| {
-            vec![escape(pass), significant(times.median_ms), significant(times.p95_ms)]
+            vec![pass.to_owned(), significant(times.median_ms), significant(times.p95_ms)]
         })
         .collect();
     let title = format!("The passes of {} directions", run.deep.directions());
-    format!("<h4>{title}</h4>\n")
-        + &table(
-            &title,
-            &[
-                "pass",
-                "median <span class=\"unit\">ms</span>",
-                "p95 <span class=\"unit\">ms</span>",
-            ],
-            &rows,
-        )
+    html!("<h4>{}</h4>\n", title)
+        + table(&title, &["pass".into(), unit("median", "ms"), unit("p95", "ms")], &rows)
 }
 
 /// What every setting takes.
-fn memory(all: &[&DeepImageRun], counts_as_time: impl Fn(&DeepImageRun) -> bool) -> String {
-    let rows: Vec<Vec<String>> = all
+fn memory(all: &[&DeepImageRun], counts_as_time: impl Fn(&DeepImageRun) -> bool) -> Html {
+    let rows: Vec<Vec<Html>> = all
         .iter()
         .map(|run| {
             let deep = &run.deep;
+            let name = format!(
+                "{} x {}\u{b2}{}{}, {}",
+                deep.directions(),
+                deep.size_px,
+                if deep.oversampling > 1 { ", oversampled" } else { "" },
+                if deep.spread == "squares" { ", squares" } else { "" },
+                deep.build
+            );
             vec![
-                format!(
-                    "{} x {}\u{b2}{}{}, {}",
-                    deep.directions(),
-                    deep.size_px,
-                    if deep.oversampling > 1 { ", oversampled" } else { "" },
-                    if deep.spread == "squares" { ", squares" } else { "" },
-                    escape(&deep.build)
-                ),
-                significant(deep.footprint_m),
-                number(deep.samples as f64),
-                number(deep.fragments as f64),
-                number(deep.longest_list as f64),
-                mebibytes(deep.bytes as f64),
+                name.into(),
+                significant(deep.footprint_m).into(),
+                number(deep.samples as f64).into(),
+                number(deep.fragments as f64).into(),
+                number(deep.longest_list as f64).into(),
+                mebibytes(deep.bytes as f64).into(),
                 shown(run.build_ms(), counts_as_time(run)),
             ]
         })
         .collect();
     let heads = [
-        "deep images",
-        "pixel <span class=\"unit\">m</span>",
-        "samples",
-        "fragments",
-        "longest list",
-        "memory <span class=\"unit\">MiB</span>",
-        "build <span class=\"unit\">ms</span>",
+        "deep images".into(),
+        unit("pixel", "m"),
+        "samples".into(),
+        "fragments".into(),
+        "longest list".into(),
+        unit("memory", "MiB"),
+        unit("build", "ms"),
     ];
-    "<h4>Memory</h4>\n".to_owned() + &table("Memory of deep images", &heads, &rows)
+    html!("<h4>Memory</h4>\n") + table("Memory of deep images", &heads, &rows)
 }
 
 /// Times of the builds of most directions that count: the faster of the two single passes, brute force

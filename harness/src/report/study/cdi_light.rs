@@ -1,13 +1,14 @@
 //! Indirect light by virtual point lights against the path-traced image: errors by how ranges are found,
 //! and pictures. What the errors say, [`super::cdi_verdicts`] says.
 
-use super::super::format::{ABSENT, difference, escape, number, percent, significant};
+use super::super::format::{ABSENT, difference, number, percent, significant};
+use super::super::markup::{Html, html};
 use super::area_pictures::{figure, linear};
 use super::cdi_times;
 use super::cdi_verdicts::best;
 use super::data::{Entry, entries};
 use super::errors_plot::Plot;
-use super::figure::{Charts, panels, part, table};
+use super::figure::{Charts, dotted, panels, part, table, unit};
 use super::shots::{Shots, Wanted};
 use crate::errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage, Vpls};
@@ -114,15 +115,15 @@ pub(super) fn indirect(
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> String {
+) -> Html {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
         all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
-    let Some((_, truth)) = truth_of(done, scene) else { return String::new() };
+    let Some((_, truth)) = truth_of(done, scene) else { return Html::default() };
     if known.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let rows = errors_table(&known) + &super::cdi_verdicts::by_build(&known);
+    let rows = errors_table(&known) + super::cdi_verdicts::by_build(&known);
     let plot = Plot {
         slug: "indirect",
         title: "Error of indirect light against time",
@@ -144,9 +145,9 @@ pub(super) fn indirect(
         first: METRIC,
         ms: total_ms,
     };
-    let body = plot.html(scene, charts, shots) + &rows;
+    let body = plot.html(scene, charts, shots) + rows;
     part(scene, "indirect", "Indirect light against the truth", &about(truth), &body)
-        + &pictures(done, scene, shots)
+        + pictures(done, scene, shots)
 }
 
 fn about(truth: &TruthImage) -> String {
@@ -163,47 +164,47 @@ fn about(truth: &TruthImage) -> String {
     )
 }
 
-fn errors_table(entries: &[Entry<'_>]) -> String {
-    let mut heads = vec![
-        "ranges".to_owned(),
-        "mean range <span class=\"unit\">m</span>".to_owned(),
-        "lights <span class=\"unit\">ms</span>".to_owned(),
-        "assign + shade <span class=\"unit\">ms</span>".to_owned(),
+fn errors_table(entries: &[Entry<'_>]) -> Html {
+    let mut heads: Vec<Html> = vec![
+        "ranges".into(),
+        unit("mean range", "m"),
+        unit("lights", "ms"),
+        unit("assign + shade", "ms"),
     ];
-    heads.extend(ERROR_METRICS.iter().map(|metric| escape(metric.head)));
-    let rows: Vec<Vec<String>> = entries
+    heads.extend(ERROR_METRICS.iter().map(|metric| Html::from(metric.head)));
+    let rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
             let vpls = record.vpls.as_ref();
-            let of = |value: fn(&Vpls) -> f64| {
-                vpls.map_or(ABSENT.to_owned(), |vpls| significant(value(vpls)))
+            let of = |value: fn(&Vpls) -> f64| -> Html {
+                vpls.map_or_else(|| ABSENT.into(), |vpls| significant(value(vpls)).into())
             };
             let mut row = vec![
-                format!("<i class=\"dot {}\"></i>{}", class(record), escape(&title(record))),
+                dotted(&class(record), title(record)),
                 of(|vpls| vpls.mean_range_m),
-                vpls.map_or(ABSENT.to_owned(), |vpls| {
-                    cdi_times::shown(vpls.total_ms(), vpls.unsteady().is_none())
-                }),
-                significant(record.assign_and_shade_ms()),
+                vpls.map_or_else(
+                    || ABSENT.into(),
+                    |vpls| cdi_times::shown(vpls.total_ms(), vpls.unsteady().is_none()),
+                ),
+                significant(record.assign_and_shade_ms()).into(),
             ];
             let cell = |id: &str| {
                 let error = record.truth_errors.get(id).copied().flatten();
-                error.map_or_else(|| ABSENT.to_owned(), difference)
+                Html::from(error.map_or_else(|| ABSENT.to_owned(), difference))
             };
             row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
             row
         })
         .collect();
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     table("Errors of indirect light against the truth", &heads, &rows)
 }
 
 /// The best of each rule, over all that was tried, beside the truth.
-fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
-    let Some((truth_job, truth)) = truth_of(done, scene) else { return String::new() };
+fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html {
+    let Some((truth_job, truth)) = truth_of(done, scene) else { return Html::default() };
     let exposure = truth.exposure;
     let Some(reference) = linear(done, &truth_job.name, Some(&truth.raw)) else {
-        return String::new();
+        return Html::default();
     };
     let truth_key = shots.linear(&truth_job.name, &truth.raw, exposure);
     let direct = done
@@ -226,22 +227,22 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> String {
         let worse = |text: &str| format!("{text}, {}.", setting(record));
         let body =
             figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself.")
-                + &figure(
+                + figure(
                     truth_key.clone(),
                     "One bounce alone, path-traced",
                     "the truth of indirect light.",
                 )
-                + &figure(
+                + figure(
                     own,
                     &format!("One bounce by lights with {name} ranges"),
                     &format!("{}.", setting(record)),
                 )
-                + &figure(
+                + figure(
                     apart,
                     &format!("Difference \u{d7} {}", significant(f64::from(gain))),
                     &worse("absolute, linear; black is none; light behind walls is a leak"),
                 );
-        shown.push((name.to_owned(), format!("<div class=\"views\">{body}</div>\n")));
+        shown.push((name.to_owned(), html!("<div class=\"views\">{}</div>\n", body)));
     }
     let text = "Of each rule the setting of least mean error. Indirect images are under the exposure of the truth.";
     part(scene, "pictures", "What ranges look like", text, &panels("Ranges", &shown))

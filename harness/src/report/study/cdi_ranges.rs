@@ -1,8 +1,9 @@
 //! Rays through deep images against exact ones: how far off distances are, by directions and by size.
 
 use super::super::format::{number, percent, significant};
+use super::super::markup::Html;
 use super::cdi_times::runs;
-use super::figure::{Charts, part, table};
+use super::figure::{Charts, part, table, unit};
 use crate::chart::{Axis, Histogram, Marks, Point, Scale, Series, XyChart};
 use crate::results::{DeepImageRun, RangeErrors};
 use crate::study::{Done, cdi};
@@ -14,9 +15,9 @@ fn compared<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a DeepImageRun, &'a Ra
 }
 
 /// Charts and table.
-pub(super) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let all = compared(done, scene);
-    let Some((first, _)) = all.first().copied() else { return String::new() };
+    let Some((first, _)) = all.first().copied() else { return Html::default() };
     let of_size = |run: &&(&DeepImageRun, &RangeErrors)| {
         run.0.deep.size_px == first.deep.size_px && is_paper_build(run.0)
     };
@@ -38,9 +39,9 @@ pub(super) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> String {
         &format!("{scene}-range-errors"),
         "Distribution of the errors of rays",
         &histograms,
-    ) + &charts.xy(&format!("{scene}-ranges-directions"), &directions)
-        + &charts.xy(&format!("{scene}-ranges-sizes"), &sizes)
-        + &errors_table(&all);
+    ) + charts.xy(&format!("{scene}-ranges-directions"), &directions)
+        + charts.xy(&format!("{scene}-ranges-sizes"), &sizes)
+        + errors_table(&all);
     let text = "Rays from surfaces, along the normal and around it, as lights cast them; exact ones go through \
                 the same triangles in the direction that was asked for. A footprint is the side of a pixel. A ray \
                 is lost where it meets a surface and none in the deep images, invented where it is the other way \
@@ -115,7 +116,7 @@ fn histogram((run, errors): &(&DeepImageRun, &RangeErrors)) -> Histogram {
     }
 }
 
-fn errors_table(all: &[(&DeepImageRun, &RangeErrors)]) -> String {
+fn errors_table(all: &[(&DeepImageRun, &RangeErrors)]) -> Html {
     let corrected =
         all.iter().filter_map(|(run, _)| Some((*run, run.corrected_errors.as_ref()?, true)));
     let both = all.iter().map(|(run, errors)| (*run, *errors, false)).chain(corrected);
@@ -143,14 +144,14 @@ fn errors_table(all: &[(&DeepImageRun, &RangeErrors)]) -> String {
         })
         .collect();
     let heads = [
-        "deep images",
-        "median <span class=\"unit\">footprints</span>",
-        "90 % <span class=\"unit\">footprints</span>",
-        "range, median <span class=\"unit\">footprints</span>",
-        "too near <span class=\"unit\">%</span>",
-        "too far <span class=\"unit\">%</span>",
-        "lost <span class=\"unit\">%</span>",
-        "invented <span class=\"unit\">%</span>",
+        "deep images".into(),
+        unit("median", "footprints"),
+        unit("90 %", "footprints"),
+        unit("range, median", "footprints"),
+        unit("too near", "%"),
+        unit("too far", "%"),
+        unit("lost", "%"),
+        unit("invented", "%"),
     ];
     table("Ranges against exact rays", &heads, &rows)
 }

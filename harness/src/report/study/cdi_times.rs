@@ -2,6 +2,7 @@
 //! tables, struck out, and decide nothing.
 
 use super::super::format::significant;
+use super::super::markup::{Html, html};
 use crate::drift::slower_than_again;
 use crate::results::{CastTimes, DeepImageRun, DeepImages};
 use crate::study::{Done, cdi};
@@ -65,9 +66,9 @@ pub(super) fn timed_casts<'a>(
 }
 
 /// A time for a table: struck out where it does not count.
-pub(super) fn shown(ms: f64, counts: bool) -> String {
+pub(super) fn shown(ms: f64, counts: bool) -> Html {
     let text = significant(ms);
-    if counts { text } else { format!("<s>{text}</s>") }
+    if counts { text.into() } else { html!("<s>{}</s>", text) }
 }
 
 /// What a reader has to know: which times are struck out, and of which lights the errors are.

@@ -2,7 +2,8 @@
 //! of the truth or of one seed could make the difference, and whether each sweep found its least error
 //! inside.
 
-use super::super::format::{difference, escape, percent, significant};
+use super::super::format::{difference, percent, significant};
+use super::super::markup::{Html, html};
 use super::cdi_light::{METRIC, RULES, error, rule, setting, total_ms};
 use super::data::{Entry, entries};
 use super::figure::table;
@@ -303,7 +304,7 @@ pub(super) fn in_common(done: &Done) -> Option<String> {
 }
 
 /// What the build of the deep images changes in the image: nothing in the paper.
-pub(super) fn by_build(entries: &[Entry<'_>]) -> String {
+pub(super) fn by_build(entries: &[Entry<'_>]) -> Html {
     let of = |entry: &Entry<'_>| {
         let vpls = entry.record.vpls.as_ref()?;
         let errors = &vpls.build_errors;
@@ -311,19 +312,18 @@ pub(super) fn by_build(entries: &[Entry<'_>]) -> String {
             let error = errors.get(id).copied().flatten();
             error.map_or_else(|| super::super::format::ABSENT.to_owned(), difference)
         };
-        let mut row = vec![escape(vpls.deep.as_ref()?.build.as_str())];
+        let mut row = vec![vpls.deep.as_ref()?.build.clone()];
         row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
         (!errors.is_empty()).then_some(row)
     };
     let rows: Vec<Vec<String>> = entries.iter().filter_map(of).collect();
     if rows.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let mut heads = vec!["build".to_owned()];
-    heads.extend(ERROR_METRICS.iter().map(|metric| escape(metric.head)));
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let mut heads = vec!["build"];
+    heads.extend(ERROR_METRICS.iter().map(|metric| metric.head));
     let title = "Errors against the image through deep images of one pass";
-    format!("<h4>{title}</h4>\n") + &table(title, &heads, &rows)
+    html!("<h4>{}</h4>\n", title) + table(title, &heads, &rows)
 }
 
 /// How far the image through deep images of a pass a direction is from that of one pass: its mean error,

@@ -2,10 +2,11 @@
 //! claims of them is judged in `claims`.
 
 use super::super::finding::lights;
-use super::super::format::{number, significant};
+use super::super::format::{ABSENT, number, significant};
+use super::super::markup::Html;
 use super::super::rank::{ALIKE, listed};
 use super::data::{Entry, counts, entries, lines};
-use super::figure::{Charts, name, part, table};
+use super::figure::{Charts, name, part, table, unit};
 use super::scaling::{fit, points};
 use crate::chart::{Axis, Marks, Scale, XyChart};
 use crate::results::Record;
@@ -27,13 +28,13 @@ fn frame(record: &Record) -> f64 {
 }
 
 /// A chart, the fits and the times of each mode.
-pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     MODES
         .iter()
         .map(|mode| {
             let all = entries(done, scene, mode);
             if all.is_empty() {
-                return String::new();
+                return Html::default();
             }
             let chart = XyChart {
                 title: format!("Frame time against lights, {mode}"),
@@ -49,7 +50,7 @@ pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> String {
                     .collect(),
                 note: String::new(),
             };
-            let body = charts.xy(&format!("{scene}-{mode}"), &chart) + &times(&all);
+            let body = charts.xy(&format!("{scene}-{mode}"), &chart) + times(&all);
             let caution = match done.results.values().any(|r| r.machine.weak_raster().is_some()) {
                 true if *mode == "forward" => FORWARD_CAUTION,
                 true => DEFERRED_CAUTION,
@@ -65,40 +66,37 @@ pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> String {
         .collect()
 }
 
-fn times(entries: &[Entry<'_>]) -> String {
+fn times(entries: &[Entry<'_>]) -> Html {
     let counts = counts(entries);
-    let rows: Vec<Vec<String>> = lines(entries)
+    let rows: Vec<Vec<Html>> = lines(entries)
         .into_iter()
         .map(|(id, records)| {
-            let mut row = vec![name(id)];
-            row.extend(counts.iter().map(|count| {
+            let mut cells: Vec<Option<String>> = Vec::new();
+            cells.extend(counts.iter().map(|count| {
                 let found = records.iter().find(|record| record.lights == *count);
-                found.map_or_else(|| "\u{2013}".to_owned(), |record| significant(frame(record)))
+                found.map(|record| significant(frame(record)))
             }));
-            row.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
+            cells.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
                 Some(fit) => [
-                    significant(fit.slope * 1e6),
-                    significant(fit.offset),
-                    format!("{:.3}", fit.r2),
+                    Some(significant(fit.slope * 1e6)),
+                    Some(significant(fit.offset)),
+                    Some(format!("{:.3}", fit.r2)),
                 ],
-                None => ["\u{2013}"; 3].map(str::to_owned),
+                None => [None, None, None],
             });
-            row.push(
-                records.last().and_then(|r| error(r)).unwrap_or_else(|| "\u{2013}".to_owned()),
-            );
-            row
+            cells.push(records.last().and_then(|r| error(r)));
+            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| ABSENT.to_owned()));
+            std::iter::once(name(id)).chain(cells.map(Html::from)).collect()
         })
         .collect();
-    let mut heads = vec!["method".to_owned()];
-    let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
+    let mut heads: Vec<Html> = vec!["method".into()];
     heads.extend(counts.iter().map(|count| unit(&number(*count as f64), "ms")));
     heads.extend([
         unit("slope", "\u{b5}s per 1,000 lights"),
         unit("offset", "ms"),
-        "R\u{b2}".to_owned(),
-        "relMSE".to_owned(),
+        "R\u{b2}".into(),
+        "relMSE".into(),
     ]);
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     table("Frame times by lights", &heads, &rows)
 }
 
@@ -150,7 +148,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let fastest = |mode: &&str| {
             let mut records = by_time(done, scene, mode);
-            records.retain(|record| record.is_exact());
+            records.retain(|record| record.shows_no_loss());
             let first = *records.first()?;
             let alike = |record: &&&Record| record.frame_ms <= first.frame_ms * (1.0 + ALIKE);
             let names: Vec<&str> =

@@ -2,14 +2,15 @@
 //! number of lights.
 
 use super::super::finding::lights;
-use super::super::format::{ABSENT, difference, escape, number, percent, significant};
+use super::super::format::{ABSENT, difference, number, percent, significant};
+use super::super::markup::{Html, html};
 use super::super::rank::{Ratio, competes, first, listed, ranks};
 use super::data::Entry;
 use super::endless_charts::charts_of;
 use super::endless_data::{
     Case, Cut, PLACES, RULED, Setting, USUAL, cases, cases_at, lost, paper, seen, setting,
 };
-use super::figure::{Charts, panels, part, table};
+use super::figure::{Charts, panels, part, table, unit};
 use super::shots::Shots;
 use crate::results::{Operations, Record};
 use crate::study::Done;
@@ -31,35 +32,35 @@ pub(super) fn endless(
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> String {
+) -> Html {
     let places = [PLACES.as_slice(), &[RULED]].concat();
     let cases = cases_at(done, scene, &places);
-    let mut html = String::new();
+    let mut html = Html::default();
     for (place, title) in places {
-        let shown: Vec<(String, String)> = cases
+        let shown: Vec<(String, Html)> = cases
             .iter()
             .filter(|case| case.place == place)
             .map(|case| {
-                let body = view(case, shots) + &operations(case) + &charts_of(case, scene, charts);
+                let body = view(case, shots) + operations(case) + charts_of(case, scene, charts);
                 (lights(case.lights), body)
             })
             .collect();
-        html += &part(scene, place, title, NOTE, &panels("Lights", &shown));
+        html += part(scene, place, title, NOTE, &panels("Lights", &shown));
     }
     html
 }
 
 /// What the camera sees.
-fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> String {
+fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
     let key = case.entries.iter().find_map(|Entry { job, record }| {
         shots.file(&job.name, record.images.baseline.as_deref()?)
     });
-    let Some(key) = key else { return String::new() };
-    format!(
-        "<div class=\"views\"><figure><img data-picture=\"{}\" alt=\"{1}\"><figcaption><b>{1}</b>, without \
+    let Some(key) = key else { return Html::default() };
+    html!(
+        "<div class=\"views\"><figure><img data-picture=\"{0}\" alt=\"{1}\"><figcaption><b>{1}</b>, without \
          culling.</figcaption></figure></div>\n",
-        escape(&key),
-        escape(&case.name()),
+        key,
+        case.name(),
     )
 }
 
@@ -83,18 +84,17 @@ const HEADS: [(&str, &str); 15] = [
 ];
 
 /// The paper's table with ours.
-fn operations(case: &Case<'_>) -> String {
+fn operations(case: &Case<'_>) -> Html {
     let is_unbounded =
         case.entries.iter().any(|entry| entry.record.unbounded_errors.contains_key("rel_mse"));
     let columns = HEADS.len() - usize::from(!is_unbounded);
-    let head = |(head, unit): &(&str, &str)| match *unit {
-        "" => (*head).to_owned(),
-        unit => format!("{head} <span class=\"unit\">{unit}</span>"),
+    let head = |(head, of): &(&str, &str)| match *of {
+        "" => Html::from(*head),
+        in_unit => unit(head, in_unit),
     };
-    let heads: Vec<String> = HEADS.iter().take(columns).map(head).collect();
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let heads: Vec<Html> = HEADS.iter().take(columns).map(head).collect();
     let row = |entry: &Entry<'_>| row(case, entry.record).into_iter().take(columns).collect();
-    let rows: Vec<Vec<String>> = case.entries.iter().map(row).collect();
+    let rows: Vec<Vec<Html>> = case.entries.iter().map(row).collect();
     table(&format!("Light operations and times, {}", case.name()), &heads, &rows)
 }
 
@@ -115,36 +115,36 @@ fn stands_for_the_paper(case: &Case<'_>, record: &Record) -> bool {
     record.culls() && !own.grid.ends_with("x12") && !case.culled().any(is_better)
 }
 
-fn row(case: &Case<'_>, record: &Record) -> Vec<String> {
+fn row(case: &Case<'_>, record: &Record) -> Vec<Html> {
     let counted = record.operations.as_ref();
-    let count =
-        |value: Option<u64>| value.map_or_else(|| ABSENT.to_owned(), |value| number(value as f64));
+    let known = |value: Option<String>| value.unwrap_or_else(|| ABSENT.to_owned());
+    let count = |value: Option<u64>| known(value.map(|value| number(value as f64)));
     let theirs = match stands_for_the_paper(case, record) {
         true => paper(case.place, case.lights, &Setting::of(&record.strategy)),
         false => None,
     };
     let beside = |own: String, theirs: Option<String>| match theirs {
-        Some(theirs) => format!("{own} <span class=\"unit\">({theirs})</span>"),
-        None => own,
+        Some(theirs) => html!("{} <span class=\"unit\">({})</span>", own, theirs),
+        None => own.into(),
     };
     let error = |errors: &crate::results::Errors, id: &str| {
         let error = errors.get(id).copied().flatten();
-        error.map_or_else(|| ABSENT.to_owned(), difference)
+        Html::from(known(error.map(difference)))
     };
     let ms = |own: f64, paper: Option<f64>| beside(significant(own), paper.map(significant));
     let evaluated = counted.and_then(|all| all.evaluated);
     vec![
-        escape(&setting(&record.strategy)),
-        count(counted.map(|all| all.diffuse)),
-        count(counted.map(|all| all.specular)),
-        count(counted.map(|all| all.outer_specular)),
+        setting(&record.strategy).into(),
+        count(counted.map(|all| all.diffuse)).into(),
+        count(counted.map(|all| all.specular)).into(),
+        count(counted.map(|all| all.outer_specular)).into(),
         beside(
             count(counted.map(Operations::listed)),
             theirs.as_ref().and_then(|theirs| theirs.listed).map(|all| number(all as f64)),
         ),
-        count(evaluated.map(|all| all.diffuse + all.specular)),
-        count(counted.map(seen)),
-        loss(case, record).unwrap_or_else(|| ABSENT.to_owned()),
+        count(evaluated.map(|all| all.diffuse + all.specular)).into(),
+        count(counted.map(seen)).into(),
+        known(loss(case, record)).into(),
         ms(record.assign_ms, theirs.as_ref().map(|theirs| theirs.assign_ms)),
         ms(record.shade_ms, theirs.as_ref().map(|theirs| theirs.shade_ms)),
         ms(

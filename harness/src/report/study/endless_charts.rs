@@ -2,6 +2,7 @@
 //! sees, by the number of cones.
 
 use super::super::format::significant;
+use super::super::markup::Html;
 use super::data::class;
 use super::endless_data::{Case, seen, setting};
 use super::figure::Charts;
@@ -9,23 +10,23 @@ use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::{Operations, Record};
 
 /// The charts that a case has figures for.
-pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Html {
     let slug = |what: &str| format!("{scene}-{}-{}-{what}", case.place, case.lights);
     let culled: Vec<&Record> = case.culled().collect();
-    let mut html = String::new();
+    let mut html = Html::default();
     let times = BarChart {
         title: "Assign and shade by cones".to_owned(),
         axis: axis("Assign + shade", "ms"),
         rows: culled.iter().map(|record| time(record)).collect(),
         note: String::new(),
     };
-    html += &charts.bars(&slug("times"), &times);
+    html += charts.bars(&slug("times"), &times);
     let outer = case.position().and_then(|record| record.operations).map(|all| all.outer_specular);
     if let Some(all) = outer.filter(|all| *all > 0) {
         let share = |operations: &Operations| operations.outer_specular as f64 / all as f64 * 100.0;
         let title = "Outer specular operations, of those by position alone";
-        html += &counted(&culled, title, "Outer specular operations", "%", share)
-            .map_or_else(String::new, |chart| charts.bars(&slug("outer"), &chart));
+        html += counted(&culled, title, "Outer specular operations", "%", share)
+            .map_or_else(Html::default, |chart| charts.bars(&slug("outer"), &chart));
     }
     // Of what a setting lists, not of what it should.
     let waste = |operations: &Operations| match seen(operations) {
@@ -33,8 +34,8 @@ pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> St
         seen => operations.listed() as f64 / seen as f64,
     };
     let title = "Listed terms over those of them that would be seen";
-    html + &counted(&culled, title, "Listed over perceptible", "", waste)
-        .map_or_else(String::new, |chart| charts.bars(&slug("perceptible"), &chart))
+    html + counted(&culled, title, "Listed over perceptible", "", waste)
+        .map_or_else(Html::default, |chart| charts.bars(&slug("perceptible"), &chart))
 }
 
 fn axis(label: &str, unit: &str) -> Axis {

@@ -1,6 +1,7 @@
 //! Charts of errors against times, one panel a metric, with the frontier of what nothing beats in both.
 
-use super::super::format::{difference, escape, significant};
+use super::super::format::{difference, significant};
+use super::super::markup::{Html, html};
 use super::data::Entry;
 use super::figure::{Charts, panels};
 use super::shots::{Shots, Wanted};
@@ -37,7 +38,7 @@ pub(super) struct Plot<'a> {
 
 impl Plot<'_> {
     /// One panel per metric, the first that is known in front; a place for pictures below.
-    pub(super) fn html(&self, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> String {
+    pub(super) fn html(&self, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
         let mut metrics: Vec<&ErrorMetric> = ERROR_METRICS
             .iter()
             .filter(|metric| self.entries.iter().any(|e| self.error(e.record, metric).is_some()))
@@ -46,12 +47,12 @@ impl Plot<'_> {
         let keys: Vec<Option<String>> =
             self.entries.iter().map(|entry| shots.keep(*entry, self.wanted)).collect();
         let opens = keys.iter().any(Option::is_some);
-        let all: Vec<(String, String)> = metrics
+        let all: Vec<(String, Html)> = metrics
             .into_iter()
             .map(|metric| {
                 let slug = format!("{scene}-{}-{}", self.slug, metric.id);
                 let mut body = charts.xy(&slug, &self.chart(metric, &keys));
-                body += &format!("<p class=\"note\">{}</p>\n", escape(metric.about));
+                body += html!("<p class=\"note\">{}</p>\n", metric.about);
                 (metric.head.to_owned(), body)
             })
             .collect();
@@ -59,10 +60,15 @@ impl Plot<'_> {
         if body.is_empty() {
             return body;
         }
-        let viewer = if opens { "<div class=\"viewer\" hidden></div>\n" } else { "" };
-        format!(
-            "<div class=\"plot-of-errors\" data-errors=\"{}\">{body}{viewer}</div>\n",
-            self.slug
+        let viewer = match opens {
+            true => html!("<div class=\"viewer\" hidden></div>\n"),
+            false => Html::default(),
+        };
+        html!(
+            "<div class=\"plot-of-errors\" data-errors=\"{}\">{}{}</div>\n",
+            self.slug,
+            body,
+            viewer
         )
     }
 

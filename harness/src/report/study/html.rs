@@ -1,12 +1,11 @@
 //! The page of a study, put together from its parts.
 
-use std::fmt::Write;
-
 use serde_json::json;
 
 use super::super::finding::clock_notice;
-use super::super::format::{escape, short_adapter};
+use super::super::format::short_adapter;
 use super::super::html::{PAGE, STYLE, fill, in_script};
+use super::super::markup::{Html, html};
 use super::super::page;
 use super::super::rank::listed;
 use super::super::{frames, raster};
@@ -56,7 +55,7 @@ pub(super) fn page(done: &Done) -> Page {
     let mut charts = Charts::default();
     let mut shots = Shots::new(done);
     let study = done.manifest.study.as_str();
-    let mut body = String::new();
+    let mut body = Html::default();
     let scenes = done.scenes();
     let found: Vec<Vec<String>> = scenes.iter().map(|scene| findings(done, scene)).collect();
     let mut words: Vec<String> = headline(done).into_iter().collect();
@@ -67,7 +66,7 @@ pub(super) fn page(done: &Done) -> Page {
     let most = if several { 1 } else { usize::MAX };
     let others: Vec<String> =
         found.iter().flat_map(|texts| texts.iter().take(most)).cloned().collect();
-    let mut sections: Vec<String> = Vec::new();
+    let mut sections: Vec<Html> = Vec::new();
     for (scene, texts) in scenes.iter().copied().zip(&found) {
         let html = match study {
             "comparison" => [
@@ -79,30 +78,32 @@ pub(super) fn page(done: &Done) -> Page {
                 sizes::sizes(done, scene, &mut charts),
                 overview::overview(done, scene, &mut charts),
             ]
-            .concat(),
+            .into_iter()
+            .collect(),
             "area" => [
                 area::area(done, scene, &mut charts, &mut shots),
                 area_pictures::pictures(done, scene, &mut shots),
                 area_cost::cost(done, scene, &mut charts),
             ]
-            .concat(),
+            .into_iter()
+            .collect(),
             "endless" => endless::endless(done, scene, &mut charts, &mut shots),
             "cdi" => cdi::cdi_parts(done, scene, &mut charts, &mut shots),
             _ => culling::culling(done, scene, &mut charts),
         };
         if !html.is_empty() {
-            let texts = if several { page::paragraphs("said", texts) } else { String::new() };
+            let texts = if several { page::paragraphs("said", texts) } else { Html::default() };
             sections.push(section(scene, &texts, &html));
         }
     }
     if let Some(paper) = claims::paper(study).filter(|_| !done.results.is_empty()) {
         let claims = claims::claims(done, paper);
-        body += &claims::claims_html(paper, &claims, is_software(done));
+        body += claims::claims_html(paper, &claims, is_software(done));
         words.extend(claims.iter().map(claims::Claim::text));
     }
-    body += &sections.concat();
+    body += sections.into_iter().collect();
     if study == "comparison" {
-        body += &sizes::best_overall(done);
+        body += sizes::best_overall(done);
     }
     let notices = notices(done, shots.left_out);
     words.extend(notices.iter().cloned());
@@ -117,20 +118,20 @@ pub(super) fn page(done: &Done) -> Page {
     let html = fill(
         PAGE,
         &[
-            ("title", &escape(&title(done))),
-            ("style", &style),
-            ("headline", &page::with_names_whole(&headline)),
-            ("findings", &page::paragraphs("finding", &others)),
-            ("notices", &page::notices(&notices)),
-            ("comparisons", &body),
-            ("reading", READING),
-            ("file", DATA),
-            ("link", DATA),
-            ("columns", &page::columns()),
-            ("provenance", &provenance(done)),
-            ("data", &in_script(embedded)),
-            ("view", &in_script(&view)),
-            ("script", &SCRIPTS.join("\n")),
+            ("title", title(done).into()),
+            ("style", Html::trusted(style)),
+            ("headline", page::with_names_whole(&headline)),
+            ("findings", page::paragraphs("finding", &others)),
+            ("notices", page::notices(&notices)),
+            ("comparisons", body),
+            ("reading", Html::trusted(READING)),
+            ("file", DATA.into()),
+            ("link", DATA.into()),
+            ("columns", page::columns()),
+            ("provenance", provenance(done)),
+            ("data", in_script(embedded)),
+            ("view", in_script(&view)),
+            ("script", Html::trusted(SCRIPTS.join("\n"))),
         ],
     );
     Page { html, charts, data, words }
@@ -144,21 +145,25 @@ const READING: &str = "<p>Frames are drawn in rounds, every method once a round 
     model of area lights against a truth image. Every chart is a file in \
     <code>charts/</code> too.</p>";
 
-fn section(scene: &str, texts: &str, html: &str) -> String {
-    let name = escape(scene);
-    // The parts that the scene has, as links.
-    let mut links = String::new();
-    for part in html.split("<div class=\"part\" id=\"").skip(1) {
+fn section(scene: &str, texts: &Html, parts: &Html) -> Html {
+    // The parts that the scene has, as links: names and titles are HTML already.
+    let mut links = Html::default();
+    for part in parts.as_str().split("<div class=\"part\" id=\"").skip(1) {
         let id = part.split('"').next().unwrap_or_default();
         let title = part.split_once("<h3>").and_then(|(_, rest)| rest.split_once("</h3>"));
         if let Some((title, _)) = title {
-            let _ = write!(links, "<a href=\"#{id}\">{title}</a>");
+            let (id, title) = (Html::trusted(id), Html::trusted(title));
+            links += html!("<a href=\"#{}\">{}</a>", id, title);
         }
     }
-    format!(
-        "<section class=\"scene\" data-scene=\"{name}\" aria-labelledby=\"scene-{name}\">\n\
-         <h2 id=\"scene-{name}\">{name}</h2>\n{texts}<nav class=\"parts\" aria-label=\"Parts of {name}\">{links}</nav>\n\
-         {html}</section>\n"
+    html!(
+        "<section class=\"scene\" data-scene=\"{0}\" aria-labelledby=\"scene-{0}\">\n\
+         <h2 id=\"scene-{0}\">{0}</h2>\n{1}<nav class=\"parts\" aria-label=\"Parts of {0}\">{2}</nav>\n\
+         {3}</section>\n",
+        scene,
+        texts,
+        links,
+        parts
     )
 }
 
@@ -259,11 +264,11 @@ fn notices(done: &Done, pictures_left_out: usize) -> Vec<String> {
     notices
 }
 
-fn provenance(done: &Done) -> String {
+fn provenance(done: &Done) -> Html {
     let Some(results) = any(done) else {
-        return format!(
+        return html!(
             "<pre class=\"command\"><code>{}</code></pre>",
-            escape(&page::shell_words(&done.manifest.identity))
+            page::shell_words(&done.manifest.identity)
         );
     };
     // One results file that speaks for all: the machine of the first, the records of all.
@@ -273,13 +278,14 @@ fn provenance(done: &Done) -> String {
     let checked = |results: &&Results| results.truth.level == TruthLevel::Full;
     let count = done.results.values().filter(checked).count();
     let remark = if count < done.results.len() {
-        format!(
-            "<p class=\"note\">The lists of {count} of {} jobs were checked, pair by pair; of the others the \
+        html!(
+            "<p class=\"note\">The lists of {} of {} jobs were checked, pair by pair; of the others the \
              image alone, where there is one of no culling.</p>\n",
+            count,
             done.results.len()
         )
     } else {
-        String::new()
+        Html::default()
     };
-    remark + &page::provenance(&all)
+    remark + page::provenance(&all)
 }

@@ -45,6 +45,7 @@ use crate::results::write_atomically;
 use crate::study::Done;
 
 pub use claims::claims_markdown;
+pub(super) use figure::part;
 
 /// Writes the report of a study into a folder, `index.html`, `charts/*.svg` and
 /// `study-data.json`; returns what to print: what was found, what the comparison paper's claims

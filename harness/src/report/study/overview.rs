@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::super::comparison::{Comparison, comparisons};
 use super::super::format::{number, short_adapter, significant};
 use super::super::lead::{Lead, span};
+use super::super::markup::{Html, html};
 use super::super::page;
 use super::super::rank::{Ratio, first, listed, ranks, tie};
 use super::data::{Entry, class, counts, entries, poses, stand};
@@ -61,8 +62,8 @@ fn comparison(results: &Results) -> Option<Comparison<'_>> {
 }
 
 /// The result table and the passes of each count of lights, the most lights first.
-pub(super) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> String {
-    let mut shown: Vec<(String, String)> = Vec::new();
+pub(super) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+    let mut shown: Vec<(String, Html)> = Vec::new();
     for results in rankings(done, scene).iter().rev() {
         shown.extend(panel(scene, "", results, charts));
     }
@@ -86,7 +87,7 @@ fn panel(
     slug: &str,
     results: &Results,
     charts: &mut Charts,
-) -> Option<(String, String)> {
+) -> Option<(String, Html)> {
     let comparison = comparison(results)?;
     let first = comparison.first();
     let most = comparison.records.iter().map(|(_, r)| *r).max_by_key(|r| poses(r))?;
@@ -106,9 +107,9 @@ fn panel(
         false => format!(" \u{b7} slow methods have fewer: {}", listed(&fewer)),
     };
     let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
-    let mut body = format!("<p class=\"meta\">{}</p>\n", super::super::format::escape(&meta));
-    body += &page::table(&format!("{scene}, {title}"), &comparison, &classes);
-    body += &charts.bars(
+    let mut body = html!("<p class=\"meta\">{}</p>\n", meta);
+    body += page::table(&format!("{scene}, {title}"), &comparison, &classes);
+    body += charts.bars(
         &format!("{scene}-passes-{slug}{count}"),
         &passes(format!("Passes that assign and shade, {title}"), results, &comparison),
     );

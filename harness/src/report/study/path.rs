@@ -1,8 +1,9 @@
 //! Times frame by frame along the camera's path.
 
 use super::super::format::{number, percent, significant};
+use super::super::markup::Html;
 use super::data::{Entry, class, counts, entries, laps, lines, poses, short};
-use super::figure::{Charts, name, panels, part, table};
+use super::figure::{Charts, name, panels, part, table, unit};
 use super::order::Order;
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::{Record, mean, median, standard_deviation};
@@ -49,15 +50,15 @@ impl Spread {
 }
 
 /// Lines of frame times, and what they come to, per count of lights.
-pub(super) fn path(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let all = entries(done, scene, "path");
-    let mut shown: Vec<(String, String)> = Vec::new();
+    let mut shown: Vec<(String, Html)> = Vec::new();
     for count in counts(&all).into_iter().rev() {
         let own: Vec<Entry<'_>> =
             all.iter().filter(|entry| entry.record.lights == count).copied().collect();
         let title = format!("Pose by pose, {} lights", number(count as f64));
         let body = charts.xy(&format!("{scene}-path-{count}"), &chart(title.clone(), &own))
-            + &spreads(&title, &own);
+            + spreads(&title, &own);
         shown.push((format!("{} lights", number(count as f64)), body));
     }
     part(
@@ -107,32 +108,32 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
     }
 }
 
-fn spreads(title: &str, entries: &[Entry<'_>]) -> String {
-    let rows: Vec<Vec<String>> = entries
+fn spreads(title: &str, entries: &[Entry<'_>]) -> Html {
+    let rows: Vec<Vec<Html>> = entries
         .iter()
         .filter_map(|entry| Some((entry.record, Spread::of(entry.record)?)))
         .map(|(record, spread)| {
             vec![
                 name(&record.strategy),
-                significant(spread.mean),
-                significant(spread.deviation),
-                percent(spread.relative),
-                significant(spread.worst_over_median),
-                significant(spread.worst),
-                number(poses(record) as f64),
-                number(laps(record).len() as f64),
+                significant(spread.mean).into(),
+                significant(spread.deviation).into(),
+                percent(spread.relative).into(),
+                significant(spread.worst_over_median).into(),
+                significant(spread.worst).into(),
+                number(poses(record) as f64).into(),
+                number(laps(record).len() as f64).into(),
             ]
         })
         .collect();
     let heads = [
-        "strategy",
-        "mean <span class=\"unit\">ms</span>",
-        "SD <span class=\"unit\">ms</span>",
-        "SD / mean <span class=\"unit\">%</span>",
-        "worst / median <span class=\"unit\">\u{d7}</span>",
-        "worst <span class=\"unit\">ms</span>",
-        "poses",
-        "laps",
+        "strategy".into(),
+        unit("mean", "ms"),
+        unit("SD", "ms"),
+        unit("SD / mean", "%"),
+        unit("worst / median", "\u{d7}"),
+        unit("worst", "ms"),
+        "poses".into(),
+        "laps".into(),
     ];
     table(title, &heads, &rows)
 }

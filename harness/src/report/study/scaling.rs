@@ -2,10 +2,11 @@
 
 use super::super::fit::Fit;
 use super::super::format::{ABSENT, number, percent, significant};
+use super::super::markup::{Html, html};
 use super::data::{
     Entry, Line, class, counts, entries, is_bvh, lines, poses, ranking, short, stand,
 };
-use super::figure::{Charts, name, panels, part, table};
+use super::figure::{Charts, name, panels, part, table, unit};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::Record;
 use crate::study::Done;
@@ -72,13 +73,13 @@ pub(super) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
 }
 
 /// Scaling with lights: fits, growing and constant density, radii.
-pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let scaling = entries(done, scene, "scaling");
     let mut html = by_source(&scaling, |source, entries| {
         let slug = format!("{scene}-scaling-{source}");
         let title = "Time against lights, and the straight lines through them".to_owned();
         charts.xy(&slug, &fitted_chart(title, &lines(entries), Record::assign_and_shade_ms))
-            + &fits_table(entries)
+            + fits_table(entries)
     });
     html = part(
         scene,
@@ -92,14 +93,14 @@ pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> String {
         ),
         &html,
     );
-    html + &part(
+    html + part(
         scene,
         "density",
         "Many more lights",
         "Growing density: more lights in the same box. Constant density: the scene grows with the cube \
          root of their number, and lights keep their size. All through the hierarchy.",
         &density(done, scene, charts),
-    ) + &part(
+    ) + part(
         scene,
         "radii",
         "Other radii",
@@ -120,7 +121,7 @@ fn stands(entries: &[Entry<'_>]) -> String {
 }
 
 /// A panel per source of lights: strategies without one, such as None, are in both.
-fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> String) -> String {
+fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html) -> Html {
     let mut shown = Vec::new();
     for (source, text, bvh) in
         [("linear", "From the list of all lights", false), ("bvh", "Through the hierarchy", true)]
@@ -199,11 +200,11 @@ pub(super) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) ->
 }
 
 /// Slope, offset and goodness of the line through each strategy's times; slopes of its passes.
-fn fits_table(entries: &[Entry<'_>]) -> String {
+fn fits_table(entries: &[Entry<'_>]) -> Html {
     let mut rows = Vec::new();
     for (id, records) in lines(entries) {
         let Some(both) = fit(&records, Record::assign_and_shade_ms) else { continue };
-        let mut row = vec![name(id)];
+        let mut row: Vec<String> = Vec::new();
         let straight = straight(&records, Record::assign_and_shade_ms);
         row.extend([
             significant(both.slope * 1e6),
@@ -225,28 +226,27 @@ fn fits_table(entries: &[Entry<'_>]) -> String {
                 fit.map_or_else(String::new, |fit| r2(&fit)),
             ]);
         }
-        rows.push(row);
+        let cells = row.into_iter().map(Html::from);
+        rows.push(std::iter::once(name(id)).chain(cells).collect::<Vec<_>>());
     }
     if rows.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let unit = |head: &str, unit: &str| format!("{head} <span class=\"unit\">{unit}</span>");
     let slope = |head: &str| unit(head, "\u{b5}s per 1,000 lights");
     let heads = [
-        "strategy".to_owned(),
+        "strategy".into(),
         slope("slope"),
         unit("offset", "ms"),
-        "R\u{b2}".to_owned(),
+        "R\u{b2}".into(),
         unit("off a straight line by at most", "%"),
-        "straight within 10 %, lights".to_owned(),
+        "straight within 10 %, lights".into(),
         slope("assign: slope"),
         unit("offset", "ms"),
-        "R\u{b2}".to_owned(),
+        "R\u{b2}".into(),
         slope("shade: slope"),
         unit("offset", "ms"),
-        "R\u{b2}".to_owned(),
+        "R\u{b2}".into(),
     ];
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     table("Straight lines through times against lights", &heads, &rows)
 }
 
@@ -255,11 +255,11 @@ fn r2(fit: &Fit) -> String {
     if fit.points > 2 { format!("{:.3}", fit.r2) } else { "\u{2013}".to_owned() }
 }
 
-fn density(done: &Done, scene: &str, charts: &mut Charts) -> String {
+fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let scaling = entries(done, scene, "scaling");
     let bvh = |entry: &&Entry<'_>| is_bvh(&entry.record.strategy);
     let most = counts(&ranking(done, scene)).last().copied();
-    let mut html = String::new();
+    let mut html = Html::default();
     for (section, title, base) in [
         ("growing", "More lights in the same box", &scaling),
         ("constant", "More lights in a larger scene, as dense as before", &scaling),
@@ -287,12 +287,12 @@ fn density(done: &Done, scene: &str, charts: &mut Charts) -> String {
             series,
             note: String::new(),
         };
-        html += &charts.xy(&format!("{scene}-{section}"), &chart);
+        html += charts.xy(&format!("{scene}-{section}"), &chart);
     }
-    if html.is_empty() { html } else { format!("<div class=\"pair\">{html}</div>") }
+    if html.is_empty() { html } else { html!("<div class=\"pair\">{}</div>", html) }
 }
 
-fn radii(done: &Done, scene: &str) -> String {
+fn radii(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, "radii");
     let mut kinds: Vec<&str> = Vec::new();
     for entry in &all {
@@ -301,7 +301,7 @@ fn radii(done: &Done, scene: &str) -> String {
             kinds.push(kind);
         }
     }
-    let rows: Vec<Vec<String>> = lines(&all)
+    let rows: Vec<Vec<Html>> = lines(&all)
         .into_iter()
         .map(|(id, records)| {
             let of = |kind: &str| {
@@ -315,15 +315,13 @@ fn radii(done: &Done, scene: &str) -> String {
                 (Some(time), _) => significant(time),
                 (None, _) => "\u{2013}".to_owned(),
             };
-            std::iter::once(name(id)).chain(kinds.iter().map(cell)).collect()
+            std::iter::once(name(id)).chain(kinds.iter().map(cell).map(Html::from)).collect()
         })
         .collect();
     if rows.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let heads: Vec<String> =
-        kinds.iter().map(|kind| format!("{kind} <span class=\"unit\">ms</span>")).collect();
-    let heads: Vec<&str> =
-        std::iter::once("strategy").chain(heads.iter().map(String::as_str)).collect();
+    let kinds = kinds.iter().map(|kind| unit(kind, "ms"));
+    let heads: Vec<Html> = std::iter::once("strategy".into()).chain(kinds).collect();
     table("Times by the distribution of radii", &heads, &rows)
 }

@@ -1,10 +1,11 @@
 //! Which parameters and which intersection tests are best.
 
 use super::super::format::{ABSENT, number, significant};
+use super::super::markup::{Html, html};
 use super::super::page;
 use super::super::rank::{first, listed, ranks};
 use super::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
-use super::figure::{Charts, name, panels, part, table};
+use super::figure::{Charts, name, panels, part, table, unit};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::Record;
 use crate::study::Done;
@@ -37,7 +38,7 @@ fn size(record: &Record) -> &str {
 }
 
 /// Group sizes and intersection tests of a scene.
-pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
+pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let sizes = entries(done, scene, "sizes");
     let families = families(&sizes);
     let mut rows = Vec::new();
@@ -48,27 +49,27 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
         let same: Vec<&str> = first(&ranked).iter().skip(1).map(|record| size(record)).collect();
         rows.push(vec![
             name(family),
-            size(best).to_owned(),
-            significant(best.assign_and_shade_ms()) + &page::interval(best),
-            if same.is_empty() { ABSENT.to_owned() } else { listed(&same) },
-            number(records.len() as f64),
-            stand(best),
+            size(best).into(),
+            Html::from(significant(best.assign_and_shade_ms())) + page::interval(best),
+            if same.is_empty() { ABSENT.into() } else { listed(&same).into() },
+            number(records.len() as f64).into(),
+            stand(best).into(),
         ]);
         let slug = format!("{scene}-sizes-{family}");
         shown.push((family.clone(), charts.bars(&slug, &bars(family, records))));
     }
     let heads = [
-        "family",
-        "best size",
-        "assign + shade <span class=\"unit\">ms</span>",
-        "ties with it",
-        "sizes tried",
-        "mean of",
+        "family".into(),
+        "best size".into(),
+        unit("assign + shade", "ms"),
+        "ties with it".into(),
+        "sizes tried".into(),
+        "mean of".into(),
     ];
     let body = if rows.is_empty() {
-        String::new()
+        Html::default()
     } else {
-        table("The best size of each family", &heads, &rows) + &panels("Family", &shown)
+        table("The best size of each family", &heads, &rows) + panels("Family", &shown)
     };
     part(
         scene,
@@ -78,7 +79,7 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> String {
          in metres of a model\u{2019}s parts. Small groups cost assignment, large ones shading. Sizes are \
          searched from each source of lights: the list of all lights, and the hierarchy (/bvh).",
         &body,
-    ) + &part(
+    ) + part(
         scene,
         "tests",
         "Intersection tests",
@@ -131,7 +132,7 @@ fn bars(family: &str, records: &[&Record]) -> BarChart {
     }
 }
 
-fn tests_table(done: &Done, scene: &str) -> String {
+fn tests_table(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, "tests");
     let families = families(&all);
     let mut unions: Vec<&str> = Vec::new();
@@ -142,43 +143,42 @@ fn tests_table(done: &Done, scene: &str) -> String {
     }
     let best: Vec<Vec<&Record>> =
         families.iter().map(|(_, records)| first(&ranks(records.iter().copied()))).collect();
-    let rows: Vec<Vec<String>> = unions
+    let rows: Vec<Vec<Html>> = unions
         .iter()
         .map(|union| {
             let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
                 let found = records.iter().find(|record| tests(record) == Some(*union));
                 found.map_or_else(
-                    || ABSENT.to_owned(),
+                    || ABSENT.into(),
                     |record| {
                         let time = significant(record.assign_and_shade_ms());
                         let is_best = best.iter().any(|best| std::ptr::eq(*best, *record));
-                        if is_best { format!("<b class=\"best\">{time}</b>") } else { time }
+                        if is_best { html!("<b class=\"best\">{}</b>", time) } else { time.into() }
                     },
                 )
             };
-            let name = super::super::format::escape(&union.to_uppercase());
+            let name = Html::from(union.to_uppercase());
             std::iter::once(name).chain(families.iter().zip(&best).map(cell)).collect()
         })
         .collect();
     if rows.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let names: Vec<String> = families.iter().map(|(family, _)| name(family)).collect();
-    let heads: Vec<&str> =
-        std::iter::once("tests").chain(names.iter().map(String::as_str)).collect();
+    let names = families.iter().map(|(family, _)| name(family));
+    let heads: Vec<Html> = std::iter::once("tests".into()).chain(names).collect();
     table("Times by intersection tests", &heads, &rows)
 }
 
 /// The size of each family that is best over all scenes: least geometric mean of its time over that
 /// of the best size in the scene.
-pub(super) fn best_overall(done: &Done) -> String {
+pub(super) fn best_overall(done: &Done) -> Html {
     let scenes = done.scenes();
     let per_scene: Vec<Vec<Entry<'_>>> =
         scenes.iter().map(|scene| entries(done, scene, "sizes")).collect();
     let complete: Vec<&Vec<Entry<'_>>> =
         per_scene.iter().filter(|entries| !entries.is_empty()).collect();
     let Some(leading) = complete.first().filter(|_| complete.len() > 1) else {
-        return String::new();
+        return Html::default();
     };
     let mut rows = Vec::new();
     for (family, records) in families(leading) {
@@ -214,22 +214,22 @@ pub(super) fn best_overall(done: &Done) -> String {
         if let Some((record, mean, worst)) = factors.first() {
             rows.push(vec![
                 name(&family),
-                size(record).to_owned(),
-                significant(*mean),
-                significant(*worst),
+                size(record).into(),
+                significant(*mean).into(),
+                significant(*worst).into(),
             ]);
         }
     }
     if rows.is_empty() {
-        return String::new();
+        return Html::default();
     }
     let heads = [
-        "family",
-        "size",
-        "geometric mean over the best <span class=\"unit\">\u{d7}</span>",
-        "worst scene <span class=\"unit\">\u{d7}</span>",
+        "family".into(),
+        "size".into(),
+        unit("geometric mean over the best", "\u{d7}"),
+        unit("worst scene", "\u{d7}"),
     ];
-    format!(
+    html!(
         "<section aria-labelledby=\"overall\"><h2 id=\"overall\">The size for all scenes</h2>\n\
          <p class=\"note\">The size whose time, over that of the best size of each scene, has the least \
          geometric mean over the scenes.</p>\n{}</section>\n",

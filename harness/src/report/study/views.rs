@@ -1,6 +1,7 @@
 //! The views with the least and the most depth discontinuity: heat maps and lengths of lists.
 
-use super::super::format::{escape, number, significant};
+use super::super::format::{number, significant};
+use super::super::markup::{Html, html};
 use super::data::{Entry, class, entries, short};
 use super::figure::{Charts, panels, part};
 use super::shots::Shots;
@@ -12,12 +13,7 @@ use crate::study::Done;
 const FIRST: [&str; 4] = ["T-E", "SC-E", "G", "M/2"];
 
 /// Both views of each strategy.
-pub(super) fn views(
-    done: &Done,
-    scene: &str,
-    charts: &mut Charts,
-    shots: &mut Shots<'_>,
-) -> String {
+pub(super) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
     let all = entries(done, scene, "views");
     let mut ids: Vec<&str> = Vec::new();
     for entry in all.iter().filter(|entry| entry.record.culls()) {
@@ -35,25 +31,25 @@ pub(super) fn views(
     };
     let first: Vec<&str> =
         ids.iter().filter(|id| FIRST.contains(&short(id).as_str())).copied().collect();
-    let mut shown: Vec<(String, String)> = Vec::new();
+    let mut shown: Vec<(String, Html)> = Vec::new();
     if first.len() > 1 {
-        let (mut maps, mut drawn) = (String::new(), String::new());
+        let (mut maps, mut drawn) = (Html::default(), Html::default());
         for low in [true, false] {
             let entries = of(&first, Some(low));
             let Some(view) = entries.first().map(view) else { continue };
-            maps += &heat_maps(&entries, "views four", shots);
+            maps += heat_maps(&entries, "views four", shots);
             let title = format!("Lists by length, {view}: {}", counted(&entries));
-            drawn += &histograms(&format!("{scene}-views-{view}"), &title, &entries, charts);
+            drawn += histograms(&format!("{scene}-views-{view}"), &title, &entries, charts);
         }
         let names: Vec<String> = first.iter().map(|id| short(id)).collect();
-        shown.push((names.join(", "), format!("{maps}<div class=\"pair\">{drawn}</div>\n")));
+        shown.push((names.join(", "), html!("{}<div class=\"pair\">{}</div>\n", maps, drawn)));
     }
     for id in &ids {
         let entries = of(&[*id], None);
         let title = format!("Lists by length, {id}: {}", counted(&entries));
         let slug = format!("{scene}-views-{}", short(id));
         let mut body = heat_maps(&entries, "views", shots);
-        body += &histograms(&slug, &title, &entries, charts);
+        body += histograms(&slug, &title, &entries, charts);
         shown.push((short(id), body));
     }
     part(
@@ -69,8 +65,8 @@ pub(super) fn views(
 }
 
 /// The heat maps of records, each with what its lists come to.
-fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> String {
-    let mut figures = String::new();
+fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html {
+    let mut figures = Html::default();
     for entry in entries {
         let record = entry.record;
         let heat = record.images.heat_map.as_deref();
@@ -80,21 +76,22 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Strin
         let listed = record
             .listed_per_sample
             .map_or_else(String::new, |listed| format!("; {} lights a pixel", significant(listed)));
-        figures += &format!(
+        figures += html!(
             "<figure><img data-picture=\"{0}\" alt=\"Lights per pixel, {1}, {2}\" width=\"{3}\" height=\"{4}\">\
-             <figcaption><b>{1}, {2}</b>{listed}; assign {5} ms, shade {6} ms.</figcaption></figure>\n",
-            escape(&picture),
-            escape(&short(&record.strategy)),
+             <figcaption><b>{1}, {2}</b>{5}; assign {6} ms, shade {7} ms.</figcaption></figure>\n",
+            picture,
+            short(&record.strategy),
             view(entry),
             record.width,
             record.height,
+            listed,
             significant(record.assign_ms),
             significant(record.shade_ms),
         );
     }
-    match figures.as_str() {
-        "" => figures,
-        _ => format!("<div class=\"{class}\">{figures}</div>\n"),
+    match figures.is_empty() {
+        true => figures,
+        false => html!("<div class=\"{}\">{}</div>\n", class, figures),
     }
 }
 
@@ -112,13 +109,13 @@ fn counted(entries: &[Entry<'_>]) -> &'static str {
 }
 
 /// The lengths of the lists of records, side by side.
-fn histograms(slug: &str, title: &str, entries: &[Entry<'_>], charts: &mut Charts) -> String {
+fn histograms(slug: &str, title: &str, entries: &[Entry<'_>], charts: &mut Charts) -> Html {
     let all: Vec<Histogram> = entries
         .iter()
         .filter(|entry| lengths(entry.record).iter().any(|groups| *groups > 0))
         .map(|entry| histogram(entry.record, view(entry)))
         .collect();
-    if all.is_empty() { String::new() } else { charts.histograms(slug, title, &all) }
+    if all.is_empty() { Html::default() } else { charts.histograms(slug, title, &all) }
 }
 
 /// Whether a record is of the view with the least discontinuity.

@@ -1,6 +1,6 @@
 //! All claims of a paper as a table.
 
-use super::super::super::format::escape;
+use super::super::super::markup::{Html, html};
 use super::super::figure::table;
 use super::{Answer, Claim, Paper};
 
@@ -11,56 +11,56 @@ pub(in crate::report::study) fn claims_html(
     paper: &Paper,
     claims: &[Claim<'_>],
     is_software: bool,
-) -> String {
+) -> Html {
     if claims.is_empty() {
-        return String::new();
+        return Html::default();
     }
-    let rows: Vec<Vec<String>> = claims.iter().map(row).collect();
+    let rows: Vec<Vec<Html>> = claims.iter().map(row).collect();
     let caveat = if is_software {
         " This study ran on a software adapter: the verdicts are not a GPU\u{2019}s."
     } else {
         ""
     };
-    format!(
+    html!(
         "<section class=\"claims\" aria-labelledby=\"claims\"><h2 id=\"claims\">What {} says, and what was \
-         measured</h2>\n<p class=\"note\">{}{caveat}</p>\n{}</section>\n",
+         measured</h2>\n<p class=\"note\">{}{}</p>\n{}</section>\n",
         paper.name,
         paper.about,
+        caveat,
         table(&format!("Claims of {}", paper.name), &HEADS, &rows)
     )
 }
 
 /// The claim, the paper's figures and our departure, what each scene says, and the verdict.
-fn row(claim: &Claim<'_>) -> Vec<String> {
+fn row(claim: &Claim<'_>) -> Vec<Html> {
     let check = claim.check;
     let departure = match check.departure {
-        "" => String::new(),
-        departure => format!("<br><small>Here: {}</small>", escape(departure)),
+        "" => Html::default(),
+        departure => html!("<br><small>Here: {}</small>", departure),
     };
-    let verdict = claim.verdict();
+    let several = claim.answers.len() > 1;
     vec![
-        format!("{} <small>{}</small>", check.words, escape(check.place)),
+        html!("{} <small>{}</small>", check.words, check.place),
         // Where the table is too narrow for heads, words stand before the figures.
-        format!("<b class=\"of\">paper: </b>{}{departure}", escape(check.paper)),
-        claim.answers.iter().map(|answer| measured(answer, claim.answers.len() > 1)).collect(),
-        format!(
+        html!("<b class=\"of\">paper: </b>{}{}", check.paper, departure),
+        claim.answers.iter().map(|answer| measured(answer, several)).collect(),
+        html!(
             "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
-            verdict.id(),
+            claim.verdict().id(),
             check.id,
-            escape(&claim.verdict_text())
+            claim.verdict_text()
         ),
     ]
 }
 
 /// What one scene says; of several, each with its own verdict.
-fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> String {
-    let verdict = escape(&answer.verdict.text());
-    let figure = escape(&answer.figure);
-    let own = format!("<span class=\"verdict {}\">{verdict}</span>", answer.verdict.id());
+fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> Html {
+    let (verdict, figure) = (answer.verdict.text(), &answer.figure);
+    let own = html!("<span class=\"verdict {}\">{}</span>", answer.verdict.id(), verdict);
     match (is_one_of_several, figure.is_empty()) {
-        (false, true) => format!("<p>{verdict}</p>"),
-        (false, false) => format!("<p>{figure}</p>"),
-        (true, true) => format!("<p><b>{}</b> {own}</p>", escape(scene)),
-        (true, false) => format!("<p><b>{}</b> {own}<br>{figure}</p>", escape(scene)),
+        (false, true) => html!("<p>{}</p>", verdict),
+        (false, false) => html!("<p>{}</p>", figure),
+        (true, true) => html!("<p><b>{}</b> {}</p>", scene, own),
+        (true, false) => html!("<p><b>{}</b> {}<br>{}</p>", scene, own, figure),
     }
 }

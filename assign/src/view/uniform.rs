@@ -1,0 +1,65 @@
+//! The camera as shaders read it.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::View;
+
+/// A [`View`] as shaders read it: `view.wesl`, `struct View`. 256 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ViewUniform {
+    /// World to view.
+    pub world_to_view: [[f32; 4]; 4],
+    /// View to world.
+    pub view_to_world: [[f32; 4]; 4],
+    /// View to clip, jitter included.
+    pub view_to_clip: [[f32; 4]; 4],
+    /// Position in view space on the plane of view depth 1 is `ray_scale * ndc + ray_offset`
+    /// (perspective), or at every depth (orthographic).
+    pub ray_scale: [f32; 2],
+    /// See `ray_scale`.
+    pub ray_offset: [f32; 2],
+    /// Upper left corner of the viewport, pixels.
+    pub viewport_origin: [f32; 2],
+    /// Size of the viewport, pixels.
+    pub viewport_size: [f32; 2],
+    /// View depth of the near plane, metres.
+    pub near_m: f32,
+    /// View depth of the far plane, metres; `f32::MAX` when infinite.
+    pub far_m: f32,
+    /// 1 for perspective, 0 for orthographic: the power of view depth in a ray's footprint.
+    pub perspective: f32,
+    /// How far rounding can move a world-space position seen from this camera, metres per metre
+    /// of distance from the world's origin or from the camera.
+    pub position_error: f32,
+    /// The clip depth that the depth buffer is cleared to.
+    pub depth_clear: f32,
+    /// Pads to 272 bytes.
+    pub padding: [f32; 3],
+}
+
+impl View {
+    /// The record shaders read.
+    pub fn uniform(&self) -> ViewUniform {
+        let (perspective, min, max) = self.window();
+        ViewUniform {
+            world_to_view: self.world_to_view.to_cols_array_2d(),
+            view_to_world: self.world_to_view.inverse().to_cols_array_2d(),
+            view_to_clip: self.view_to_clip().to_cols_array_2d(),
+            ray_scale: (0.5 * (max - min)).to_array(),
+            ray_offset: (0.5 * (max + min)).to_array(),
+            viewport_origin: [self.viewport.x as f32, self.viewport.y as f32],
+            viewport_size: [self.viewport.width as f32, self.viewport.height as f32],
+            near_m: self.near_m,
+            far_m: self.far_m.unwrap_or(f32::MAX),
+            perspective: if perspective { 1.0 } else { 0.0 },
+            position_error: POSITION_ERROR,
+            depth_clear: self.depth_clear(),
+            padding: [0.0; 3],
+        }
+    }
+}
+
+/// A position reconstructed from depth passes through three roundings of a product of matrices:
+/// 16 units in the last place bound them with room (the conformance suite's far camera checks it).
+const POSITION_ERROR: f32 = 16.0 * f32::EPSILON;

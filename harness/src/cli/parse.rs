@@ -1,0 +1,72 @@
+//! From the words of a command line to what is asked for.
+
+use std::ffi::OsString;
+
+use clap::{ArgMatches, CommandFactory, FromArgMatches, error::ErrorKind};
+
+use super::{Cli, CliError, Command, Invocation, effect};
+
+/// Understands a command line, program name first.
+///
+/// # Errors
+///
+/// A [`CliError`] of one line for anything unknown, missing, out of range or without effect.
+pub fn parse<I, T>(arguments: I) -> Result<Invocation, CliError>
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    let (asked, matches) = parse_words(arguments)?;
+    if let Some(matches) = matches {
+        effect::check(&asked, &matches)?;
+    }
+    Ok(asked)
+}
+
+/// Understands the command line of stored results, which may hold options without effect: versions before
+/// this one took them. It is reported, not run.
+///
+/// # Errors
+///
+/// As [`parse`], but for options without effect.
+pub fn parse_stored<I, T>(arguments: I) -> Result<Invocation, CliError>
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    parse_words(arguments).map(|(asked, _)| asked)
+}
+
+/// What is asked for, and which options were given; `None` of help.
+fn parse_words<I, T>(arguments: I) -> Result<(Invocation, Option<ArgMatches>), CliError>
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    let shown = |error: clap::Error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            Ok((Invocation::Show(error.render().to_string()), None))
+        }
+        _ => Err(CliError::from_clap(&error, &Cli::command())),
+    };
+    let matches = match Cli::command().try_get_matches_from(arguments) {
+        Ok(matches) => matches,
+        Err(error) => return shown(error),
+    };
+    let cli = match Cli::from_arg_matches(&matches) {
+        Ok(cli) => cli,
+        Err(error) => return shown(error),
+    };
+    let asked = match cli.command {
+        Some(Command::List { what }) => Invocation::List(what),
+        Some(Command::Compare(args)) => Invocation::Compare(args),
+        Some(Command::Study(args)) => Invocation::Study(args),
+        Some(Command::Report(args)) => Invocation::Report(args),
+        Some(Command::Advise(args)) => Invocation::Advise(args),
+        Some(Command::FitLtc(args)) => Invocation::FitLtc(args),
+        Some(Command::Truth(args)) => Invocation::Truth(args),
+        Some(Command::Cdi(args)) => Invocation::Cdi(args),
+        None => Invocation::Compare(cli.compare),
+    };
+    Ok((asked, Some(matches)))
+}

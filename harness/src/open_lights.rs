@@ -1,0 +1,78 @@
+//! What a run says of lights whose file gives them no range.
+
+use assign::Light;
+use scenes::LOST;
+
+/// Lights without a range of their own, and where they were made to end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenLights {
+    /// How many there are.
+    pub count: u64,
+    /// The greatest irradiance that one of them still gives at its end: intensity over squared range.
+    pub threshold: f64,
+    /// The shortest and the longest range, metres.
+    ranges_m: (f32, f32),
+}
+
+impl OpenLights {
+    /// The sound ones of the lights at some indices; `None` where there are none.
+    pub fn new(lights: &[Light], open: &[u32]) -> Option<Self> {
+        let lights = open.iter().filter_map(|&ix| lights.get(ix as usize));
+        let one = |light: &Light| Self {
+            count: 1,
+            threshold: f64::from(light.intensity.max_element()) / f64::from(light.range_m).powi(2),
+            ranges_m: (light.range_m, light.range_m),
+        };
+        lights.filter(|light| light.check().is_ok()).map(one).reduce(|a, b| Self {
+            count: a.count + b.count,
+            threshold: a.threshold.max(b.threshold),
+            ranges_m: (a.ranges_m.0.min(b.ranges_m.0), a.ranges_m.1.max(b.ranges_m.1)),
+        })
+    }
+
+    /// How many they are, where they end, what that loses, and which options change it.
+    pub fn note(&self) -> String {
+        let Self { count, threshold, ranges_m: (shortest, longest) } = *self;
+        let (lights, their) =
+            if count == 1 { ("light has", "its") } else { ("lights have", "their") };
+        let at = match shortest == longest {
+            true => short(longest.into()),
+            false => format!("{} to {}", short(shortest.into()), short(longest.into())),
+        };
+        format!(
+            "{count} {lights} no range in {their} file, and an end at {at} m, where a surface \
+             receives {} lux (candela per square metre): it loses at most {} lux to each light; \
+             --threshold moves the end, --unbounded measures the loss",
+            short(threshold),
+            short(LOST * threshold)
+        )
+    }
+}
+
+/// Three digits.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn the_note_states_count_end_and_loss() {
+        let lamp = |range_m, intensity| Light::point(Vec3::ZERO, range_m, Vec3::splat(intensity));
+        let lights = [lamp(10.0, 2.0), lamp(3.0, 9.0), lamp(20.0, 8.0), lamp(1.0, f32::NAN)];
+        assert_eq!(OpenLights::new(&lights, &[]), None);
+        assert_eq!(OpenLights::new(&lights, &[3]), None);
+        let open = OpenLights::new(&lights, &[0, 2, 3]).expect("two are sound");
+        assert_eq!(open.count, 2);
+        let note = open.note();
+        assert!(note.starts_with("2 lights have no range in their file"), "{note}");
+        for part in ["end at 10 to 20 m", "receives 0.02 lux", "at most 0.0218 lux"] {
+            assert!(note.contains(part), "{note}");
+        }
+    }
+}

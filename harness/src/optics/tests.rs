@@ -1,0 +1,170 @@
+//! Planes of views.
+
+use glam::Vec3;
+use scenes::Camera as SceneCamera;
+
+use super::*;
+use crate::cli::{Invocation, parse};
+
+fn args(line: &str) -> StageArgs {
+    let words = ["lightbench", "compare"].into_iter().chain(line.split_whitespace());
+    let Ok(Invocation::Compare(args)) = parse(words) else { panic!("{line}") };
+    args.stage
+}
+
+/// The atrium, through a camera of its own where a lens is given.
+fn scene(lens: Option<Lens>, near_m: f32, far_m: Option<f32>) -> Scene {
+    let mut scene = scenes::open("atrium").unwrap();
+    let pose = scene.path.pose(0, 1);
+    let camera = |lens| SceneCamera { name: "a".into(), pose, lens, near_m, far_m };
+    scene.cameras.extend(lens.map(camera));
+    scene
+}
+
+fn planes(scene: &Scene, line: &str) -> Planes {
+    let optics = Optics::new(scene, &args(line)).unwrap();
+    let view = optics.view(scene, scene.path.pose(0, 1), [64, 36]);
+    view.check().unwrap();
+    optics.planes(&view)
+}
+
+fn refusal(scene: &Scene, line: &str) -> String {
+    Optics::new(scene, &args(line)).map(|_| ()).unwrap_err().to_string()
+}
+
+const WIDE: Lens = Lens::Perspective { fov_y: 1.0 };
+const FLAT: Lens = Lens::Orthographic { half_width: 4.0, half_height: 3.0 };
+
+#[test]
+fn a_scene_without_a_camera_is_seen_to_its_end_from_every_pose() {
+    let scene = scene(None, 0.0, None);
+    let optics = Optics::new(&scene, &args("")).unwrap();
+    let corner = |ix: usize| {
+        let (min, max) = (scene.bounds.min, scene.bounds.max);
+        let pick = |bit: usize, axis: usize| if ix & bit == 0 { min[axis] } else { max[axis] };
+        Vec3::new(pick(1, 0), pick(2, 1), pick(4, 2))
+    };
+    for frame in 0..12 {
+        let view = optics.view(&scene, scene.path.pose(frame, 12), [64, 36]);
+        view.check().unwrap();
+        let far_m = view.far_m.expect("the scene's bounds give one");
+        let depths = (0..8).map(|ix| -view.world_to_view.transform_point3(corner(ix)).z);
+        let deepest = depths.fold(0.0, f32::max);
+        assert!(deepest < far_m && far_m < 2.0 * scene.bounds.diagonal(), "{deepest} {far_m}");
+    }
+    let planes = planes(&scene, "");
+    let near_m = f64::from(scene.core_bounds.diagonal() * NEAR_SHARE);
+    assert_eq!((planes.near_m, planes.near_from), (near_m, PlaneSource::Scene));
+    assert_eq!(planes.far_from, PlaneSource::Scene);
+}
+
+#[test]
+fn planes_come_from_the_option_else_the_file_else_the_scene() {
+    use PlaneSource::{File, Option, Scene};
+    let whole = scene(Some(WIDE), 0.25, Some(20.0));
+    let sources = |planes: &Planes| (planes.near_from, planes.far_from);
+    let file = planes(&whole, "");
+    assert_eq!((file.near_m, file.far_m, sources(&file)), (0.25, Some(20.0), (File, File)));
+    let both = planes(&whole, "--near 0.5 --far 8");
+    assert_eq!((both.near_m, both.far_m, sources(&both)), (0.5, Some(8.0), (Option, Option)));
+    let open = planes(&whole, "--far infinite");
+    assert_eq!((open.far_m, sources(&open)), (None, (File, Option)));
+    let posed = planes(&whole, "--camera 0,2,4:0,1,0");
+    assert_eq!(sources(&posed), (Scene, Scene));
+    // The file's camera leaves its far plane open: the scene's bounds give one.
+    let half = planes(&scene(Some(WIDE), 0.25, None), "");
+    assert_eq!(sources(&half), (File, Scene));
+    let flat = planes(&scene(Some(FLAT), 0.0, Some(30.0)), "");
+    assert_eq!((flat.near_m, flat.far_m), (0.0, Some(30.0)));
+}
+
+#[test]
+fn planes_in_the_wrong_order_are_refused_by_the_option_at_fault() {
+    let scene_of = |lens| scene(Some(lens), 0.5, Some(20.0));
+    let far = refusal(&scene_of(WIDE), "--far 0.25");
+    assert_eq!(far, "--far is 0.25: it must be above the near plane, 0.5 m of the file's camera");
+    let near = refusal(&scene_of(WIDE), "--near 20");
+    assert_eq!(near, "--near is 20: it must be below the far plane of the file, 20 m");
+    let both = refusal(&scene_of(WIDE), "--near 3 --far 2");
+    assert_eq!(both, "--far is 2: it must be above the near plane, 3 m of --near");
+    let open = refusal(&scene_of(FLAT), "--far infinite");
+    assert!(open.starts_with("--far is infinite: it must be a number of metres"), "{open}");
+}
+
+/// The view of a pose as a stage sees it.
+fn fitted(scene: &Scene, line: &str, pose: Pose) -> (Optics, View) {
+    let mut optics = Optics::new(scene, &args(line)).unwrap();
+    optics.fit_near(scene, &[optics.view(scene, pose, [64, 36])]);
+    (optics, optics.view(scene, pose, [64, 36]))
+}
+
+#[test]
+fn the_near_plane_lies_in_front_of_what_the_view_shows_and_stays_where_it_cuts_nothing() {
+    let scene = scene(None, 0.0, None);
+    let usual_m = scene.core_bounds.diagonal() * NEAR_SHARE;
+    // The scene's own views see everything: none of them changes, at one pose or along the path.
+    let mut all = Vec::new();
+    for frame in 0..60 {
+        let pose = scene.path.pose(frame, 60);
+        let (optics, view) = fitted(&scene, "", pose);
+        assert_eq!(optics.near_m(), usual_m, "frame {frame}");
+        all.push(view);
+    }
+    // A lens just above the floor, level and straight down: half of what it sees is never cut.
+    let floor = scene.bounds.min.y;
+    let middle = scene.bounds.center();
+    let above = |height: f32| Vec3::new(middle.x, floor + height, middle.z);
+    for height in [0.3, 0.03, 0.003] {
+        for target in [above(height) + Vec3::X, above(0.0) + 0.01 * Vec3::X * height] {
+            let (_, view) = fitted(&scene, "", Pose::new(above(height), target));
+            let nearest = scene.depths_shown(&view).expect("a floor").nearest_m;
+            assert!(f64::from(view.near_m) <= 0.98 * nearest, "{height}: {nearest} {view:?}");
+            assert!(view.near_m >= usual_m * LEAST_NEAR && view.near_m <= usual_m, "{height}");
+        }
+    }
+    // Along a path one plane serves all.
+    let close = fitted(&scene, "", Pose::new(above(0.01), above(0.0) + 0.001 * Vec3::X)).1;
+    all.push(close);
+    let mut optics = Optics::new(&scene, &args("")).unwrap();
+    optics.fit_near(&scene, &all);
+    assert_eq!(optics.near_m(), close.near_m);
+    // What an option or a file says stays.
+    let pose = Pose::new(above(0.01), above(0.0) + 0.001 * Vec3::X);
+    assert_eq!(fitted(&scene, "--near 0.5", pose).1.near_m, 0.5);
+    // A far plane in front of the usual near plane is accepted.
+    let (_, view) = fitted(&scene, "--far 0.02", pose);
+    view.check().unwrap();
+    assert!(view.near_m < 0.02, "{view:?}");
+}
+
+#[test]
+fn what_given_planes_cut_away_is_stated() {
+    let notes = |scene: &Scene, line: &str, pose: Pose| {
+        let (optics, view) = fitted(scene, line, pose);
+        optics.notes(scene, &view)
+    };
+    let open = scene(None, 0.0, None);
+    let pose = open.path.pose(0, 1);
+    for line in ["", "--near 0.01", "--far 1000", "--far infinite", "--near 0.01 --far 1000"] {
+        assert_eq!(notes(&open, line, pose), [""; 0], "{line}");
+    }
+    let far = notes(&open, "--far 8", pose);
+    assert!(far.len() == 1 && far[0].contains("behind the far plane, 8.00 m of --far"), "{far:?}");
+    let near = notes(&open, "--near 7", pose);
+    assert!(near.len() == 1 && near[0].contains("near plane, 7.00 m of --near"), "{near:?}");
+    let filed = scene(Some(WIDE), 7.0, Some(8.0));
+    let both = notes(&filed, "", pose);
+    assert!(both.len() == 2 && both.iter().all(|note| note.contains("of the file's")), "{both:?}");
+    // An eye in a surface that is seen from both sides.
+    let mut sheet = open.clone();
+    sheet.materials.iter_mut().for_each(|material| material.double_sided = true);
+    let eye = Vec3::new(open.bounds.center().x, open.bounds.min.y, open.bounds.center().z);
+    let inside = notes(&sheet, "", Pose::new(eye, eye + Vec3::new(1.0, 0.01, 0.0)));
+    assert!(inside.iter().any(|note| note.contains("surfaces from 0")), "{inside:?}");
+    // A camera so far from the scene's origin that f32 cannot place it.
+    let away = Vec3::new(1e6, 0.0, 0.0);
+    let coarse = notes(&open, "", Pose::new(away, away + Vec3::X));
+    assert!(coarse.len() == 1 && coarse[0].contains("apart"), "{coarse:?}");
+    let flat = scene(Some(FLAT), 0.0, Some(1000.0));
+    assert_eq!(notes(&flat, "", pose), [""; 0], "an orthographic near plane at the eye");
+}

@@ -1,0 +1,105 @@
+//! What results lack of what their command asks for.
+//!
+//! A file that was cut by hand, or put together from others, may hold half of the records of its command,
+//! or one twice. It must not count as done.
+
+use super::{Record, Results};
+use crate::{
+    checks::has_mode,
+    choice::{Choice, choices},
+    cli::{self, CompareArgs, Invocation},
+};
+
+/// What is missing from results, or too many in them; `None` where they are what was asked for.
+pub(super) fn lack(results: &Results) -> Option<String> {
+    for (ix, record) in results.records.iter().enumerate() {
+        let same = |known: &&Record| known.strategy == record.strategy && known.mode == record.mode;
+        if results.records.iter().take(ix).any(|known| same(&known)) {
+            return Some(format!("{} is there twice", name(record)));
+        }
+    }
+    // Commands of earlier versions may have options that are refused today.
+    match cli::parse_stored(&results.command) {
+        Ok(Invocation::Compare(args)) => lack_of_comparison(&args, &results.records),
+        Ok(Invocation::Truth(_)) => {
+            results.truth_image.is_none().then(|| "the truth image is missing".to_owned())
+        }
+        Ok(Invocation::Cdi(_)) => {
+            results.deep_images.is_none().then(|| "the deep images are missing".to_owned())
+        }
+        _ if results.records.is_empty() => Some("it has no records".to_owned()),
+        _ => None,
+    }
+}
+
+fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> {
+    if records.is_empty() {
+        return Some("it has no records".to_owned());
+    }
+    let Ok(asked) = choices(args) else { return None };
+    let stored: Option<Vec<Choice>> =
+        records.iter().map(|record| Choice::parse(&record.strategy).ok()).collect();
+    // Strategies of another version cannot be told apart here.
+    let stored = stored?;
+    let mut is_asked = vec![false; records.len()];
+    for &mode in args.mode.modes() {
+        for choice in asked.iter().filter(|choice| has_mode(choice, mode)) {
+            let same = |ix: &usize| records[*ix].mode == mode && stored[*ix].is_same(choice);
+            match (0..records.len()).find(same) {
+                Some(ix) => is_asked[ix] = true,
+                // Of all strategies, those that cannot serve a scene are left out.
+                None if !choice.is_named => {}
+                None => return Some(format!("{} in {} is missing", choice.id(), mode.name())),
+            }
+        }
+    }
+    let extra = is_asked.iter().position(|is_asked| !is_asked)?;
+    Some(format!("{} is not what its command asks for", name(&records[extra])))
+}
+
+fn name(record: &Record) -> String {
+    format!("{} in {}", record.strategy, record.mode.name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn results(line: &str, ids: &[&str]) -> Results {
+        let mut results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
+        results.command = line.split(' ').map(str::to_owned).collect();
+        let record = results.records[0].clone();
+        let records = ids.iter().map(|id| Record { strategy: (*id).to_owned(), ..record.clone() });
+        results.records = records.collect();
+        results
+    }
+
+    #[test]
+    fn records_must_be_those_of_the_command() {
+        let line = "lightbench compare --strategies None,sc-e/bvh,T-E/hs,T-E,M --mode deferred";
+        let whole = ["None", "SC-E/48x48x40/bvh", "T-E/28x28/hs", "T-E/28x28", "M"];
+        assert_eq!(lack(&results(line, &whole)), None);
+        let said = |ids: &[&str]| lack(&results(line, ids)).expect("a lack");
+        assert!(said(&[]).contains("no records"));
+        assert!(said(&whole[..4]).contains("M in deferred is missing"));
+        assert!(said(&whole[1..]).contains("None in deferred is missing"));
+        assert!(said(&[whole[0]; 5]).contains("None in deferred is there twice"));
+        let other = ["None", "SC-E/48x48x40", "T-E/28x28/hs", "T-E/28x28", "M"];
+        assert!(said(&other).contains("sc-e/bvh in deferred is missing"));
+        let more = [&whole[..], &["G/20x20x20"]].concat();
+        assert!(said(&more).contains("G/20x20x20 in deferred is not what"));
+        // Each mode has its records.
+        let both = line.replace("deferred", "both");
+        assert!(lack(&results(&both, &whole)).is_some());
+        // Strategies that `all` means may be left out, and truths and deep images are no records.
+        assert_eq!(lack(&results("lightbench --strategies all", &["None"])), None);
+        for command in ["truth", "cdi"] {
+            let mut results = results(&format!("lightbench {command}"), &[]);
+            assert_eq!(lack(&results), None);
+            (results.truth_image, results.deep_images) = (None, None);
+            assert!(lack(&results).is_some_and(|lack| lack.contains("missing")));
+        }
+        // A command of another version is not understood: what is there counts.
+        assert_eq!(lack(&results("lightbench compare --gone 1", &["None"])), None);
+    }
+}

@@ -1,0 +1,127 @@
+//! `metrics.json`: errors that were computed again from stored images, beside the raw results.
+//!
+//! `results.json` is what a run measured and is never written again. What a report computes from it and
+//! from the images beside it goes into this file, which can be removed and made anew.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Errors, Mode, Results, ResultsError,
+    file::write_atomically,
+    seal::{sealed, unsealed},
+};
+
+/// The file, and that of the results that it belongs to.
+const FILE: &str = "metrics.json";
+const RESULTS: &str = "results.json";
+
+/// The errors of all records.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Metrics {
+    /// The checksum of the results that they belong to.
+    of: String,
+    records: Vec<RecordMetrics>,
+}
+
+/// The errors of one record.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct RecordMetrics {
+    strategy: String,
+    mode: Mode,
+    errors: Errors,
+    unbounded_errors: Errors,
+    truth_errors: Errors,
+    build_errors: Option<Errors>,
+}
+
+impl Results {
+    fn metrics(&self, of: String) -> Metrics {
+        let one = |record: &super::Record| RecordMetrics {
+            strategy: record.strategy.clone(),
+            mode: record.mode,
+            errors: record.errors.clone(),
+            unbounded_errors: record.unbounded_errors.clone(),
+            truth_errors: record.truth_errors.clone(),
+            build_errors: record.vpls.as_ref().map(|vpls| vpls.build_errors.clone()),
+        };
+        Metrics { of, records: self.records.iter().map(one).collect() }
+    }
+
+    /// Takes the errors from the file beside a `results.json` with the checksum `of`, where there is one.
+    pub(super) fn take_metrics(&mut self, results: &Path, of: &str) {
+        let known = beside(results)
+            .and_then(|path| std::fs::read(path).ok())
+            .filter(|bytes| unsealed(bytes).is_ok())
+            .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
+        let Some(known) = known.filter(|known| known.of == of) else { return };
+        for (record, metrics) in self.records.iter_mut().zip(known.records) {
+            if record.strategy != metrics.strategy || record.mode != metrics.mode {
+                continue;
+            }
+            record.errors = metrics.errors;
+            record.unbounded_errors = metrics.unbounded_errors;
+            record.truth_errors = metrics.truth_errors;
+            if let (Some(vpls), Some(errors)) = (&mut record.vpls, metrics.build_errors) {
+                vpls.build_errors = errors;
+            }
+        }
+    }
+
+    /// Writes the errors beside the `results.json` that these results were read from, where they differ
+    /// from those in it.
+    ///
+    /// # Errors
+    ///
+    /// [`ResultsError`] names the file that cannot be read or written.
+    pub fn write_metrics(&self, results: &Path) -> Result<(), ResultsError> {
+        let Some(path) = beside(results) else { return Ok(()) };
+        let (mut known, of) = Self::read_raw(results)?;
+        known.name_as_today();
+        let own = self.metrics(of.clone());
+        if own == known.metrics(of.clone()) && !path.exists() {
+            return Ok(());
+        }
+        known.take_metrics(results, &of);
+        if own == known.metrics(of) {
+            return Ok(());
+        }
+        let text = sealed(&own).map_err(|error| ResultsError::Parse {
+            path: path.clone(),
+            reason: error.to_string(),
+        })?;
+        write_atomically(&path, text.as_bytes())
+    }
+}
+
+/// The file of errors; `None` beside files of results under other names, of which a folder holds many.
+fn beside(results: &Path) -> Option<PathBuf> {
+    (results.file_name()? == RESULTS).then(|| results.with_file_name(FILE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_lie_beside_raw_results_which_stay_as_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(RESULTS);
+        let text = include_str!("example.json");
+        std::fs::write(&path, text).unwrap();
+        let raw = Results::read(&path).unwrap();
+        raw.write_metrics(&path).unwrap();
+        assert!(!folder.path().join(FILE).exists(), "nothing new, nothing written");
+        let mut computed = raw.clone();
+        computed.records[0].truth_errors.insert("flip".into(), Some(0.1 + 0.2));
+        computed.write_metrics(&path).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+        assert_eq!(Results::read(&path).unwrap(), computed);
+        // Those of other results are not taken.
+        let mut other = raw;
+        other.machine.date = "another day".into();
+        other.write(&path).unwrap();
+        assert_eq!(Results::read(&path).unwrap(), other);
+    }
+}

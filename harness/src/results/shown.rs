@@ -1,0 +1,76 @@
+//! Names in results that hide nothing.
+
+use crate::visible::visible;
+
+use super::Results;
+
+impl Results {
+    /// Escapes what a terminal would obey in all text that reports show. The command stays as it is: it is
+    /// to be run again.
+    pub(super) fn show_hidden(&mut self) {
+        let machine = &mut self.machine;
+        let mut all: Vec<&mut String> = vec![
+            &mut machine.adapter,
+            &mut machine.driver,
+            &mut machine.backend,
+            &mut machine.cpu,
+            &mut machine.os,
+            &mut machine.commit,
+            &mut machine.date,
+        ];
+        all.extend(&mut machine.rustc);
+        all.extend(&mut self.truth.notes);
+        all.extend(&mut self.warnings);
+        all.extend(self.rejected_lights.iter_mut().flat_map(|l| [&mut l.scene, &mut l.reason]));
+        all.extend(self.truth_image.iter_mut().map(|image| &mut image.scene));
+        if let Some(run) = &mut self.deep_images {
+            all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);
+        }
+        for record in &mut self.records {
+            all.extend([&mut record.scene, &mut record.scene_hash, &mut record.strategy]);
+            let known = [
+                &mut record.path_hash,
+                &mut record.area_model,
+                &mut record.radii,
+                &mut record.light_places,
+                &mut record.cut,
+                &mut record.light_order,
+                &mut record.note,
+            ];
+            all.extend(known.into_iter().flatten());
+            if let Some(vpls) = &mut record.vpls {
+                all.push(&mut vpls.ranges);
+                let deep = vpls.deep.iter_mut();
+                all.extend(deep.flat_map(|deep| [&mut deep.build, &mut deep.spread]));
+            }
+        }
+        for text in all {
+            if let std::borrow::Cow::Owned(shown) = visible(text) {
+                *text = shown;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_name_moves_the_cursor() {
+        let mut results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
+        let odd = || "a\u{1b}[2J\nreport   /elsewhere".to_owned();
+        results.machine.adapter = odd();
+        results.records[0].scene = odd();
+        results.records[0].radii = Some(odd());
+        results.warnings.push(odd());
+        results.command.push(odd());
+        results.show_hidden();
+        let shown = "a\\u{1b}[2J\\nreport   /elsewhere";
+        let record = &results.records[0];
+        let texts = [&results.machine.adapter, &record.scene, &results.warnings[0]];
+        assert!(texts.iter().all(|text| *text == shown), "{texts:?}");
+        assert_eq!(record.radii.as_deref(), Some(shown));
+        assert_eq!(results.command.last(), Some(&odd()), "the command is to be run again");
+    }
+}

@@ -1,0 +1,104 @@
+//! Cameras: where a node puts them, and what the file says of their lens and planes.
+//!
+//! A camera that the scene places must hold what glTF 2.0 asks of it: an error names the field. A
+//! camera that no node places is not looked at.
+
+use glam::{DMat4, DVec3};
+use gltf::json::{
+    camera::{Camera as JsonCamera, Orthographic, Perspective, Type},
+    validation::Checked,
+};
+
+use super::file::File;
+use crate::{Camera, Lens, Pose, SceneError};
+
+/// Fields of view are above this, radians: an image of 16,384 pixels would see less than f32 can tell
+/// apart.
+const LEAST_FOV_Y: f32 = 1e-6;
+/// And below this, just short of half a turn.
+const MOST_FOV_Y: f32 = 3.141;
+
+/// Camera `ix` of the file, placed by a node.
+pub(super) fn placed(
+    file: &File,
+    ix: usize,
+    json: &JsonCamera,
+    node_name: &str,
+    to_world: &DMat4,
+) -> Result<Camera, SceneError> {
+    let name = json.name.clone().unwrap_or_else(|| node_name.into());
+    let check = Check { file, ix };
+    let (lens, near_m, far_m) = match (json.type_, &json.perspective, &json.orthographic) {
+        (Checked::Valid(Type::Orthographic), _, Some(lens)) => check.orthographic(lens)?,
+        (Checked::Valid(Type::Orthographic), _, None) => return Err(check.missing("orthographic")),
+        (_, Some(lens), _) => check.perspective(lens)?,
+        (_, None, _) => return Err(check.missing("perspective")),
+    };
+    Ok(Camera { name, pose: pose(to_world), lens, near_m, far_m })
+}
+
+/// Checks the fields of one camera.
+struct Check<'a> {
+    file: &'a File,
+    ix: usize,
+}
+
+impl Check<'_> {
+    fn missing(&self, field: &str) -> SceneError {
+        let accepted = "present: it is the camera's type";
+        self.file.invalid(format!("cameras[{}].{field}", self.ix), "missing", accepted)
+    }
+
+    fn is(
+        &self,
+        field: &str,
+        value: f32,
+        is_accepted: bool,
+        accepted: impl Into<String>,
+    ) -> Result<(), SceneError> {
+        if is_accepted && value.is_finite() {
+            return Ok(());
+        }
+        Err(self.file.invalid(format!("cameras[{}].{field}", self.ix), value, accepted))
+    }
+
+    fn perspective(&self, lens: &Perspective) -> Result<(Lens, f32, Option<f32>), SceneError> {
+        let (fov_y, near) = (lens.yfov, lens.znear);
+        let fov_ok = fov_y > LEAST_FOV_Y && fov_y < MOST_FOV_Y;
+        self.is("perspective.yfov", fov_y, fov_ok, "above 0.000001 and below 3.141 radians")?;
+        if let Some(aspect) = lens.aspect_ratio {
+            self.is("perspective.aspectRatio", aspect, aspect > 0.0, "above 0 and finite")?;
+        }
+        let near_ok = near >= f32::MIN_POSITIVE;
+        self.is("perspective.znear", near, near_ok, "above 0 metres and finite")?;
+        if let Some(far) = lens.zfar {
+            let accepted = format!("above znear, {near} m, and finite, or absent: infinitely far");
+            self.is("perspective.zfar", far, far > near, accepted)?;
+        }
+        Ok((Lens::Perspective { fov_y }, near, lens.zfar))
+    }
+
+    fn orthographic(&self, lens: &Orthographic) -> Result<(Lens, f32, Option<f32>), SceneError> {
+        let (half_width, half_height) = (lens.xmag.abs(), lens.ymag.abs());
+        let (near, far) = (lens.znear, lens.zfar);
+        let size = |half: f32| (1e-9..=1e12).contains(&half);
+        let accepted = "from 1e-9 to 1e12 metres";
+        self.is("orthographic.xmag", lens.xmag, size(half_width), accepted)?;
+        self.is("orthographic.ymag", lens.ymag, size(half_height), accepted)?;
+        self.is("orthographic.znear", near, near >= 0.0, "at least 0 metres and finite")?;
+        let accepted = format!("above znear, {near} m, and finite");
+        self.is("orthographic.zfar", far, far > near, accepted)?;
+        Ok((Lens::Orthographic { half_width, half_height }, near, Some(far)))
+    }
+}
+
+/// A glTF camera or spot looks down its node's -Z; scale does not matter, nor does one axis without
+/// length.
+pub(super) fn pose(to_world: &DMat4) -> Pose {
+    let [x, y, z] = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(|axis| axis.truncate());
+    let back = z.try_normalize().or_else(|| x.cross(y).try_normalize()).unwrap_or(DVec3::Z);
+    let up = if y == DVec3::ZERO { back.cross(x) } else { y };
+    let up = (up - back * back.dot(up)).normalize_or(back.any_orthonormal_vector());
+    let eye = to_world.w_axis.truncate();
+    Pose::looking(eye.as_vec3(), -back.as_vec3(), up.as_vec3())
+}

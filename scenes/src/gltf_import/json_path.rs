@@ -1,0 +1,63 @@
+//! JSON paths as the file has them.
+//!
+//! The parser names fields after its own: `extensions.khrLightsPunctual.lights[3]`. Whoever looks for that
+//! in the file finds nothing.
+
+/// Fields of extensions as the parser names them, and as files do. A name of the parser stands for one
+/// extension only, but `specular`, `volume` and others are also fields of materials: they are extensions
+/// only right behind `extensions`.
+const NAMES: &[(&str, &str)] = &[
+    ("khrLightsPunctual", "KHR_lights_punctual"),
+    ("khrMaterialsVariants", "KHR_materials_variants"),
+    ("pbrSpecularGlossiness", "KHR_materials_pbrSpecularGlossiness"),
+    ("unlit", "KHR_materials_unlit"),
+    ("transmission", "KHR_materials_transmission"),
+    ("volume", "KHR_materials_volume"),
+    ("specular", "KHR_materials_specular"),
+    ("ior", "KHR_materials_ior"),
+    ("emissiveStrength", "KHR_materials_emissive_strength"),
+    ("textureTransform", "KHR_texture_transform"),
+];
+
+/// The path with extensions under their names in the file.
+pub(super) fn as_in_file(path: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in path.split('.') {
+        let known = NAMES.iter().find(|(parsers, _)| *parsers == part);
+        let is_extension = parts.last() == Some(&"extensions");
+        parts.push(known.filter(|_| is_extension).map_or(part, |(_, files)| files));
+    }
+    parts.join(".")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::as_in_file;
+
+    #[test]
+    fn extensions_are_named_as_in_the_file() {
+        for (parsers, files) in [
+            (
+                "extensions.khrLightsPunctual.lights[3].type",
+                "extensions.KHR_lights_punctual.lights[3].type",
+            ),
+            (
+                "nodes[1].extensions.khrLightsPunctual.light",
+                "nodes[1].extensions.KHR_lights_punctual.light",
+            ),
+            (
+                "materials[0].extensions.specular.specularTexture.index",
+                "materials[0].extensions.KHR_materials_specular.specularTexture.index",
+            ),
+            (
+                "materials[0].emissiveTexture.extensions.textureTransform",
+                "materials[0].emissiveTexture.extensions.KHR_texture_transform",
+            ),
+            ("materials[0].specular", "materials[0].specular"),
+            ("buffers[0].uri", "buffers[0].uri"),
+            ("", ""),
+        ] {
+            assert_eq!(as_in_file(parsers), files);
+        }
+    }
+}

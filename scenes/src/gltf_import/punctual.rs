@@ -1,0 +1,77 @@
+//! Lights of KHR_lights_punctual: points, spots and suns.
+
+use std::f32::consts::FRAC_PI_4;
+
+use assign::{Light, LightShape, Sun};
+use glam::{DMat4, Vec3};
+use gltf::json::{
+    extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType},
+    scene::Node,
+    validation::Checked,
+};
+
+use super::{Warnings, cameras, file::File, nodes::Placed, warnings::kept_name};
+use crate::SceneError;
+
+impl Placed {
+    /// Adds the light that a node carries. A faulty sun is left out with a warning; other faulty
+    /// lights are kept, to be reported where lights are uploaded.
+    pub(super) fn add_light(
+        &mut self,
+        file: &File,
+        node: &Node,
+        to_world: &DMat4,
+        warnings: &mut Warnings,
+    ) -> Result<(), SceneError> {
+        let of_node = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        let Some(reference) = of_node else {
+            return Ok(());
+        };
+        let of_root = file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        let lights = of_root.map_or(&[][..], |e| &e.lights);
+        let ix = reference.light.value();
+        let json = lights.get(ix).ok_or_else(|| {
+            file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
+        })?;
+        let intensity = Vec3::from(json.color) * json.intensity;
+        let pose = cameras::pose(to_world);
+        let direction = pose.forward();
+        let shape = match json.type_ {
+            Checked::Valid(LightType::Point) => LightShape::Point,
+            Checked::Valid(LightType::Spot) => spot(json, direction),
+            Checked::Valid(LightType::Directional) => {
+                let sun = Sun { direction, irradiance: intensity };
+                match sun.check() {
+                    Ok(()) => self.suns.push(sun),
+                    Err(fault) => warnings.add(format!("{}: left out: {fault}", name(json, ix))),
+                }
+                return Ok(());
+            }
+            Checked::Invalid => {
+                warnings.add(format!("{}: left out: its type is unknown", name(json, ix)));
+                return Ok(());
+            }
+        };
+        self.lights.push(Light {
+            position: pose.eye,
+            // The scene's size decides where an open light ends: `close_ranges`.
+            range_m: json.range.unwrap_or(f32::INFINITY),
+            intensity,
+            shape,
+        });
+        Ok(())
+    }
+}
+
+/// The cone of a spot, with the specification's angles where it has none.
+fn spot(json: &JsonLight, direction: Vec3) -> LightShape {
+    let [inner, outer] = json
+        .spot
+        .as_ref()
+        .map_or([0.0, FRAC_PI_4], |spot| [spot.inner_cone_angle, spot.outer_cone_angle]);
+    LightShape::Spot { direction, inner_angle: inner.min(outer), outer_angle: outer }
+}
+
+fn name(json: &JsonLight, ix: usize) -> String {
+    format!("light {:?}", json.name.as_deref().map_or_else(|| format!("light {ix}"), kept_name))
+}

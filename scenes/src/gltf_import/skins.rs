@@ -1,0 +1,147 @@
+//! Skinned meshes, posed by their joints where the nodes rest.
+//!
+//! Each vertex is moved by the weighted sum of its joints' matrices, `joint_to_world *
+//! inverse_bind`. The node that holds the mesh moves nothing (glTF 2.0, 3.7.3.3).
+
+use std::ops::Range;
+
+use glam::{Mat3, Mat4, Vec3, Vec4};
+
+use super::{Warnings, file::File, meshes::Meshes, nodes::Walk};
+use crate::{Aabb, Mesh, SceneError, Vertex};
+
+/// The most vertices of all posed copies together: many nodes can share one large mesh.
+const MAX_VERTICES: usize = 1 << 26;
+
+/// The joints that move one vertex, and by how much; the weights sum to 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Influence {
+    pub(super) joints: [u32; 4],
+    pub(super) weights: [f32; 4],
+}
+
+/// The skins of a file, and where their joints are.
+pub(super) struct Skins<'a> {
+    file: &'a File,
+    /// For each node of the scene, where it is.
+    to_world: Vec<Option<Mat4>>,
+    /// Vertices of the copies made so far.
+    vertices: usize,
+}
+
+impl<'a> Skins<'a> {
+    pub(super) fn new(file: &'a File, walk: &Walk) -> Self {
+        let mut to_world = vec![None; file.root.nodes.len()];
+        for visit in &walk.visits {
+            to_world[visit.ix] = Some(visit.to_world);
+        }
+        Self { file, to_world, vertices: 0 }
+    }
+
+    /// Adds posed copies of meshes and returns their range. `None` where one of them has no
+    /// joints, or where a joint stands outside the scene: then the node places them. The node's
+    /// transform decides one thing only: where it mirrors, triangles turn round.
+    pub(super) fn pose(
+        &mut self,
+        skin: usize,
+        node_to_world: &Mat4,
+        range: Range<u32>,
+        meshes: &mut Meshes,
+        warnings: &mut Warnings,
+    ) -> Result<Option<Range<u32>>, SceneError> {
+        let Some(matrices) = self.matrices(skin)? else {
+            warnings.add(format!("skin {skin}: joints outside the scene, its meshes stay unposed"));
+            return Ok(None);
+        };
+        let parts = range.start as usize..range.end as usize;
+        if parts.clone().any(|ix| !meshes.influences.contains_key(&ix)) {
+            warnings.add(format!("skin {skin}: meshes without JOINTS_0 stay unposed"));
+            return Ok(None);
+        }
+        let first = meshes.meshes.len() as u32;
+        for ix in parts {
+            self.vertices += meshes.meshes[ix].vertices.len();
+            if self.vertices > MAX_VERTICES {
+                let field = "vertices of skinned meshes (each node counts its own)";
+                let accepted = format!("at most {MAX_VERTICES}");
+                return Err(self.file.invalid(field, self.vertices, accepted));
+            }
+            let influences = &meshes.influences[&ix];
+            let posed = pose(&meshes.meshes[ix], influences, &matrices);
+            let mut posed = posed.ok_or_else(|| {
+                let accepted = format!("below {}, its number of joints", matrices.len());
+                self.file.invalid(format!("skins[{skin}] JOINTS_0"), "out of range", accepted)
+            })?;
+            if node_to_world.determinant() < 0.0 {
+                posed.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+            }
+            if !posed.bounds.size().is_finite() {
+                let field = format!("skins[{skin}] posed vertices");
+                return Err(self.file.invalid(field, "not finite", "finite"));
+            }
+            meshes.meshes.push(posed);
+        }
+        Ok(Some(first..meshes.meshes.len() as u32))
+    }
+
+    /// What each joint does to a vertex; `None` where one is not in the scene.
+    fn matrices(&self, skin: usize) -> Result<Option<Vec<Mat4>>, SceneError> {
+        let skins = &self.file.root.skins;
+        let json = skins.get(skin).ok_or_else(|| {
+            self.file.invalid("nodes' skin", skin, format!("below {}", skins.len()))
+        })?;
+        let inverse_bind = match json.inverse_bind_matrices {
+            Some(accessor) => self.file.floats::<16>(accessor)?,
+            None => vec![Mat4::IDENTITY.to_cols_array(); json.joints.len()],
+        };
+        if inverse_bind.len() < json.joints.len() {
+            let field = format!("skins[{skin}].inverseBindMatrices count");
+            let accepted = format!("at least {}, the number of joints", json.joints.len());
+            return Err(self.file.invalid(field, inverse_bind.len(), accepted));
+        }
+        let joints = json.joints.iter().zip(&inverse_bind);
+        let matrix = |(joint, inverse_bind): (&gltf::json::Index<_>, _)| {
+            let to_world = (*self.to_world.get(joint.value())?)?;
+            Some(to_world * Mat4::from_cols_array(inverse_bind))
+        };
+        Ok(joints.map(matrix).collect())
+    }
+}
+
+/// A mesh as its joints place it, in world space; `None` where a joint's number is out of range.
+fn pose(mesh: &Mesh, influences: &[Influence], matrices: &[Mat4]) -> Option<Mesh> {
+    let mut posed = mesh.clone();
+    for (vertex, influence) in posed.vertices.iter_mut().zip(influences) {
+        let mut blend = Mat4::ZERO;
+        for (joint, weight) in influence.joints.into_iter().zip(influence.weights) {
+            if weight != 0.0 {
+                blend += *matrices.get(joint as usize)? * weight;
+            }
+        }
+        *vertex = moved(vertex, &blend);
+    }
+    posed.bounds = Aabb::from_points(posed.vertices.iter().map(|v| Vec3::from(v.position)));
+    Some(posed)
+}
+
+/// A vertex under a transform: normals turn by the cofactors, which stay finite where the
+/// transform flattens.
+fn moved(vertex: &Vertex, transform: &Mat4) -> Vertex {
+    let linear = Mat3::from_mat4(*transform);
+    let Mat3 { x_axis: x, y_axis: y, z_axis: z } = linear;
+    let cofactors = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    let old_normal = Vec3::from(vertex.normal);
+    let mirrored = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let normal = (cofactors * old_normal * mirrored).normalize_or(old_normal);
+    let tangent = Vec4::from(vertex.tangent);
+    let along = linear * tangent.truncate();
+    let along = (along - normal * normal.dot(along))
+        .try_normalize()
+        .unwrap_or_else(|| normal.any_orthonormal_vector());
+    Vertex {
+        position: transform.transform_point3(vertex.position.into()).to_array(),
+        normal: normal.to_array(),
+        tangent: along.extend(tangent.w * mirrored).to_array(),
+        uv: vertex.uv,
+    }
+}

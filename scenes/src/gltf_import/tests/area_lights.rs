@@ -1,0 +1,96 @@
+//! Area lights: in `extras`, and by EXT_lights_area.
+
+use assign::LightKind;
+
+use super::{valid::assert_warns, *};
+
+/// The sample with an area light on its first node.
+fn with_area_light(light: Value) -> Result<Scene, SceneError> {
+    let mut sample = sample();
+    sample.json["nodes"][0]["extras"] = json!({ "someone": 1, "lightbench_area_light": light });
+    load(&sample)
+}
+
+#[test]
+fn extras_carry_area_lights() {
+    let rectangle = json!({
+        "shape": "rectangle", "width": 2.0, "height": 4.0, "intensity": 8.0, "range": 5.0,
+        "two_sided": true, "diffuse_share": 0.5
+    });
+    let scene = with_area_light(rectangle).expect("valid");
+    let light = scene.lights.iter().find(|l| l.kind() == LightKind::Rectangle).expect("there");
+    light.check().expect("sound");
+    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
+    assert_eq!((emitter.area(), light.range_m, light.intensity), (8.0, 5.0, Vec3::splat(8.0)));
+    assert_eq!((emitter.normal(), emitter.two_sided), (Vec3::NEG_Z, true));
+    assert_eq!(light.diffuse_range_m(), 2.5);
+    let triangle = json!({ "shape": "polygon", "vertices": [[0, 0, 1], [1, 0, 1], [0, 1, 1]] });
+    let scene = with_area_light(triangle).expect("valid");
+    let light = scene.lights.iter().find(|l| l.kind() == LightKind::Polygon).expect("there");
+    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
+    assert!((emitter.normal() - Vec3::Z).length() < 1e-6 && (emitter.area() - 0.5).abs() < 1e-6);
+    let scaled = scene.scaled(3.0).expect("in range");
+    let light = scaled.lights.iter().find(|l| l.kind() == LightKind::Polygon).expect("there");
+    let LightShape::Area(emitter) = light.shape else { panic!("{light:?}") };
+    assert!((emitter.area() - 4.5).abs() < 1e-5);
+}
+
+#[test]
+fn area_lights_that_are_not_understood_name_the_field() {
+    let error = |light| with_area_light(light).expect_err("faulty").to_string();
+    let missing = error(json!({ "shape": "rectangle", "width": 1.0 }));
+    assert!(missing.contains("nodes[0].extras.lightbench_area_light"), "{missing}");
+    assert!(missing.contains("width and height"), "{missing}");
+    let turned = error(json!({ "shape": "rectangle", "width": -1.0, "height": 1.0 }));
+    assert!(turned.contains("above 0"), "{turned}");
+    let misspelt = error(json!({ "shape": "rectangle", "width": 1, "height": 1, "colour": 1 }));
+    assert!(misspelt.contains("colour"), "{misspelt}");
+    let disc = error(json!({ "shape": "disc" }));
+    assert!(disc.contains("rectangle") && disc.contains("polygon"), "{disc}");
+    let line = error(json!({ "shape": "polygon", "vertices": [[0, 0, 0], [1, 0, 0]] }));
+    assert!(line.contains("vertex count is 2"), "{line}");
+}
+
+/// The sample with a light of EXT_lights_area on its third node, which looks along -Z.
+fn with_area_extension(light: Value) -> Result<Scene, SceneError> {
+    let mut sample = sample();
+    sample.json["extensions"]["EXT_lights_area"] = json!({"lights": [light]});
+    sample.json["nodes"][2]["extensions"] = json!({"EXT_lights_area": {"light": 0}});
+    sample.json["nodes"][2]["scale"] = json!([2, 2, 2]);
+    load(&sample)
+}
+
+#[test]
+fn ext_lights_area_gives_area_lights() {
+    let emitter_of = |scene: &Scene| {
+        scene.lights[0].check().expect("sound");
+        match scene.lights[0].shape {
+            LightShape::Area(emitter) => (emitter, scene.lights[0].intensity),
+            other => panic!("{other:?}"),
+        }
+    };
+    let rectangle = json!({"type": "rect", "intensity": 100.0, "size": 0.5, "rect": {"aspect": 2},
+        "color": [1.0, 0.5, 0.25]});
+    let scene = with_area_extension(rectangle).expect("valid");
+    let (emitter, intensity) = emitter_of(&scene);
+    // Twice the size of the file's by the node's scale; 100 cd on each of 2 square metres.
+    assert_eq!((emitter.area(), emitter.normal()), (2.0, Vec3::NEG_Z));
+    assert_eq!(intensity, Vec3::new(200.0, 100.0, 50.0));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let disc = json!({"type": "disc", "intensity": 10.0, "size": 1.0});
+    let scene = with_area_extension(disc).expect("valid");
+    let (emitter, _) = emitter_of(&scene);
+    assert!((emitter.area() / std::f32::consts::PI - 1.0).abs() < 1e-5, "{}", emitter.area());
+    assert!((emitter.normal() - Vec3::NEG_Z).length() < 1e-5, "{}", emitter.normal());
+    assert_warns(&scene, "a disc is drawn as a polygon");
+    let odd = with_area_extension(json!({"type": "tube", "name": "neon"})).expect("valid");
+    assert!(odd.lights.is_empty());
+    assert_warns(&odd, "light \"neon\": EXT_lights_area type \"tube\" is left out");
+    for (light, expected) in [
+        (json!({"type": "rect", "size": 0}), "size and aspect above 0"),
+        (json!({"size": 1}), "missing field `type`"),
+    ] {
+        let error = with_area_extension(light).expect_err("faulty").to_string();
+        assert!(error.contains(expected) && error.contains("lights[0]"), "{error}");
+    }
+}

@@ -1,0 +1,71 @@
+//! What the pixels of a view show, by rays from the eye.
+
+use assign::{Projection, View, ViewUniform};
+use glam::{DMat4, DVec2, DVec3, Vec2};
+
+use super::{SurfaceSample, TracedScene, scene::offset, surface::SeenFrom, triangles::Hit};
+
+/// The rays of a view's pixels, in f64.
+struct Rays {
+    view_to_world: DMat4,
+    is_perspective: bool,
+    uniform: ViewUniform,
+}
+
+impl Rays {
+    fn new(view: &View) -> Self {
+        Self {
+            view_to_world: view.world_to_view.as_dmat4().inverse(),
+            is_perspective: matches!(view.projection, Projection::Perspective { .. }),
+            uniform: view.uniform(),
+        }
+    }
+
+    /// Origin, unit direction, and view depth per metre along it, of the ray through the middle of a
+    /// pixel of the viewport.
+    fn through(&self, pixel: DVec2) -> (DVec3, DVec3, f64) {
+        let of = |pair: [f32; 2]| Vec2::from(pair).as_dvec2();
+        let uv = (pixel + 0.5) / of(self.uniform.viewport_size);
+        let ndc = DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
+        let at = of(self.uniform.ray_scale) * ndc + of(self.uniform.ray_offset);
+        let (origin, direction) = if self.is_perspective {
+            (DVec3::ZERO, at.extend(-1.0))
+        } else {
+            (at.extend(0.0), DVec3::NEG_Z)
+        };
+        let to_world = |direction| self.view_to_world.transform_vector3(direction).normalize();
+        let origin = self.view_to_world.transform_point3(origin);
+        (origin, to_world(direction), 1.0 / direction.length())
+    }
+
+    /// The rays through the pixels beside and below in the block of 2 x 2 pixels in which GPUs take
+    /// differences.
+    fn beside(&self, pixel: [u32; 2]) -> [(DVec3, DVec3); 2] {
+        let pixel_at = pixel.map(f64::from);
+        [0, 1].map(|axis| {
+            let is_odd = (pixel[axis] + self.uniform.viewport_origin[axis] as u32) % 2 == 1;
+            let mut at = pixel_at;
+            at[axis] += if is_odd { -1.0 } else { 1.0 };
+            let (origin, direction, _) = self.through(at.into());
+            (origin, direction)
+        })
+    }
+}
+
+impl TracedScene<'_> {
+    /// What a pixel of the viewport shows, by a ray through its middle: as the rasteriser draws it, from
+    /// the triangles themselves, so without the rounding of depth and G-buffer.
+    pub fn primary(&self, view: &View, pixel: [u32; 2]) -> Option<SurfaceSample> {
+        let rays = Rays::new(view);
+        let (origin, direction, per_metre) = rays.through(pixel.map(f64::from).into());
+        let start_m = f64::from(view.near_m) / per_metre;
+        let end_m = view.far_m.map_or(f64::INFINITY, |far_m| f64::from(far_m) / per_metre);
+        let drawn = |hit: &Hit| self.is_drawn(hit) && self.is_solid(hit);
+        let start = origin + direction * start_m;
+        let hit = self.triangles.first(start, direction, end_m - start_m, drawn)?;
+        let seen = SeenFrom::pixel(direction, rays.beside(pixel));
+        let mut sample = self.surface_at(&hit, &seen);
+        sample.offset_m = offset(sample.position, start_m + hit.distance_m);
+        Some(sample)
+    }
+}
