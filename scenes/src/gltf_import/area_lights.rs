@@ -34,7 +34,7 @@ use gltf::json::scene::Node;
 use serde::Deserialize;
 
 use super::{Warnings, file::File};
-use crate::{SceneError, lights::THRESHOLD};
+use crate::SceneError;
 
 /// The key in a node's `extras`.
 pub(super) const KEY: &str = "lightbench_area_light";
@@ -133,6 +133,106 @@ fn of_extras(
     let emitter = if json.two_sided { emitter.two_sided() } else { emitter };
     let emitter = emitter.with_diffuse_share(json.diffuse_share);
     let intensity = Vec3::from(json.color) * json.intensity;
-    use super::{Warnings, file::File};
-    use crate::SceneError;
+    Ok(Some(Light::area(emitter, position, json.range.unwrap_or(f32::INFINITY), intensity)))
+}
+
+/// The extension's name, on nodes and at the root.
+const EXTENSION: &str = "EXT_lights_area";
+
+/// One light of EXT_lights_area.
+#[derive(Deserialize)]
+struct ExtensionJson {
+    name: Option<String>,
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(default = "white")]
+    color: [f32; 3],
+    /// Luminance, candela per square metre.
+    #[serde(default = "one")]
+    intensity: f32,
+    /// Height of a rectangle, diameter of a disc, metres.
+    #[serde(default = "one")]
+    size: f32,
+    #[serde(default)]
+    rect: RectangleJson,
+}
+
+#[derive(Deserialize)]
+struct RectangleJson {
+    /// Width over height.
+    #[serde(default = "one")]
+    aspect: f32,
+}
+
+impl Default for RectangleJson {
+    fn default() -> Self {
+        Self { aspect: 1.0 }
+    }
+}
+
+/// The light of EXT_lights_area that a node refers to.
+fn of_extension(
+    file: &File,
+    ix: usize,
+    node: &Node,
+    to_world: Mat4,
+    warnings: &mut Warnings,
+) -> Result<Option<Light>, SceneError> {
+    let Some(reference) = node.extensions.as_ref().and_then(|e| e.others.get(EXTENSION)) else {
+        return Ok(None);
+    };
+    let root = file.root.extensions.as_ref().and_then(|e| e.others.get(EXTENSION));
+    let lights = root.and_then(|e| e.get("lights")?.as_array()).map_or(&[][..], Vec::as_slice);
+    let number = reference.get("light").unwrap_or(&serde_json::Value::Null);
+    let found = number.as_u64().and_then(|n| lights.get(usize::try_from(n).ok()?));
+    let value = found.ok_or_else(|| {
+        let field = format!("nodes[{ix}].extensions.{EXTENSION}.light");
+        file.invalid(field, number, format!("below {}, the number of its lights", lights.len()))
+    })?;
+    let field = || format!("extensions.{EXTENSION}.lights[{number}]");
+    let json: ExtensionJson = serde_json::from_value(value.clone())
+        .map_err(|error| file.invalid(field(), value, format!("an area light, but: {error}")))?;
+    let (width, height) = (json.size * json.rect.aspect, json.size);
+    if !(width > 0.0 && height > 0.0 && width.is_finite()) {
+        return Err(file.invalid(field(), value, "a light with size and aspect above 0"));
+    }
+    let name = json.name.unwrap_or_else(|| format!("area light {number}"));
+    // A mirroring transform turns outlines round.
+    let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let place = |x: f32, y: f32| to_world.transform_vector3(Vec3::new(x, y * side, 0.0));
+    let position = to_world.transform_point3(Vec3::ZERO);
+    let (emitter, position) = match json.kind.as_str() {
+        "rect" => {
+            let half_y = place(0.0, -0.5 * height);
+            (Emitter::rectangle(place(0.5 * width, 0.0), half_y), position)
+        }
+        "disc" => {
+            warnings.add(format!(
+                "light {name:?}: a disc is drawn as a polygon of {MAX_VERTICES} vertices and the \
+                 same area"
+            ));
+            // A regular polygon's area is n / 2 r^2 sin(2 pi / n).
+            let step = TAU / MAX_VERTICES as f32;
+            let radius = 0.5 * height * (step / step.sin()).sqrt();
+            let vertex = |ix: usize| {
+                let (sin, cos) = (step * ix as f32).sin_cos();
+                position + place(radius * cos, -radius * sin)
+            };
+            let vertices: Vec<Vec3> = (0..MAX_VERTICES).map(vertex).collect();
+            match Emitter::polygon(&vertices) {
+                Ok(polygon) => polygon,
+                Err(fault) => {
+                    warnings.add(format!("light {name:?} of {EXTENSION} is left out: {fault}"));
+                    return Ok(None);
+                }
+            }
+        }
+        other => {
+            warnings.add(format!("light {name:?}: {EXTENSION} type {other:?} is left out"));
+            return Ok(None);
+        }
+    };
+    // Radiance times area.
+    let intensity = Vec3::from(json.color) * json.intensity * emitter.area();
+    Ok(Some(Light::area(emitter, position, f32::INFINITY, intensity)))
 }

@@ -2,7 +2,7 @@
 
 use assign::{Light, Sun};
 use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4};
-use gltf::json::{Index, scene::Node, validation::Checked};
+use gltf::json::{Index, scene::Node};
 
 use super::{
     Warnings, area_lights, cameras,
