@@ -223,7 +223,7 @@ mod tests {
             let mut order = LightOrder::Bvh.of(&lights);
             let seconds = start.elapsed().as_secs_f64();
             println!("{at_one_place} at each place: {seconds:.2} s");
-            assert!(seconds < 10.0, "{at_one_place} at each place: {seconds} s");
+            assert!(seconds < 30.0, "{at_one_place} at each place: {seconds} s");
             order.sort_unstable();
             assert_eq!(order, (0..150_000).collect::<Vec<_>>());
         }

@@ -378,6 +378,9 @@ fn end_on_device_error(gpu: &Gpu) {
     }));
 }
 
+/// Lights left out that are named on the terminal; the results hold all of them.
+const MOST_REJECTED_SHOWN: usize = 20;
+
 fn describe(stage: &Stage) {
     say(format!(
         "scene    {}: {} triangles, {} models, {} lights{}",
@@ -403,7 +406,12 @@ fn describe(stage: &Stage) {
     for warning in stage.scene.warnings.iter().chain(&stage.notes) {
         say(format!("warning  {warning}"));
     }
-    for rejected in stage.lights.rejected() {
+    let rejected = stage.lights.rejected();
+    for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
         say(format!("warning  light {} left out: {}", rejected.index, rejected.fault));
+    }
+    if rejected.len() > MOST_REJECTED_SHOWN {
+        let more = rejected.len() - MOST_REJECTED_SHOWN;
+        say(format!("warning  and {more} more lights left out"));
     }
 }

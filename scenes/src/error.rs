@@ -19,7 +19,7 @@ pub enum SceneError {
     /// A file that the scene's file names cannot be read.
     #[error(
         "{}: {} names {}, which cannot be read: {}",
-        one_line(file.display()), one_line(field), one_line(part.display()), one_line(source)
+        one_line(file.display()), quoted(field), quoted(&part.display().to_string()), one_line(source)
     )]
     ReadPart {
         /// The scene's file.
@@ -34,7 +34,7 @@ pub enum SceneError {
     /// A file does not follow glTF 2.0, or asks for more than is accepted.
     #[error(
         "{}: {} is {}: it must be {}",
-        one_line(file.display()), one_line(field), quoted(value), one_line(accepted)
+        one_line(file.display()), quoted(field), quoted(value), quoted(accepted)
     )]
     Invalid {
         /// The scene's file.
@@ -62,7 +62,7 @@ pub enum SceneError {
     /// An image does not decode.
     #[error(
         "{}: {} does not decode as PNG, JPEG or WebP: {}",
-        one_line(file.display()), quoted(image), one_line(reason)
+        one_line(file.display()), quoted(image), quoted(reason)
     )]
     Image {
         /// The scene's file.
@@ -169,11 +169,24 @@ mod tests {
             assert!(line.contains(escaped) && !line.contains(char::is_control), "{line:?}");
             assert!(!line.contains('\u{2028}'), "{line:?}");
         }
-        let long = SceneError::Extension {
-            file,
-            extension: "ä".repeat(100_000),
-            supported: String::new(),
-        };
-        assert!(long.to_string().chars().count() < 500);
+        let long = || "ä".repeat(100_000);
+        let errors = [
+            SceneError::Extension {
+                file: file.clone(),
+                extension: long(),
+                supported: String::new(),
+            },
+            SceneError::Invalid {
+                file: file.clone(),
+                field: long(),
+                value: long(),
+                accepted: long(),
+            },
+            SceneError::Image { file: file.clone(), image: long(), reason: long() },
+            SceneError::ReadPart { file, field: long(), part: long().into(), source: source() },
+        ];
+        for error in errors {
+            assert!(error.to_string().chars().count() < 1200, "{error}");
+        }
     }
 }

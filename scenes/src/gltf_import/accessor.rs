@@ -12,7 +12,7 @@ use super::file::File;
 use crate::SceneError;
 
 /// The most elements of an accessor that has no buffer view, and so costs its file nothing.
-const MAX_ZEROED: u64 = 1 << 24;
+const MAX_ZEROED: u64 = 1 << 22;
 
 /// A run of equally spaced elements inside a buffer view.
 struct Run<'a> {

@@ -83,7 +83,14 @@ impl File {
         Ok(file)
     }
 
-    /// Takes what was noted so far.
+    /// Notes a warning while parts are read.
+    pub(super) fn note(&self, warning: String) {
+        if let Ok(mut notes) = self.notes.lock() {
+            notes.add(warning);
+        }
+    }
+
+    /// Takes what was noted while parts were read.
     pub(super) fn take_notes(&self) -> Warnings {
         self.notes.lock().map(|mut notes| std::mem::take(&mut *notes)).unwrap_or_default()
     }
@@ -166,10 +173,8 @@ impl File {
             part: folder.join(name),
             source,
         })?;
-        if let Some(outside) = part.outside
-            && let Ok(mut notes) = self.notes.lock()
-        {
-            notes.add(format!("{field} {shown:?} lies outside the scene's folder: {outside:?}"));
+        if let Some(outside) = part.outside {
+            self.note(format!("{field} {shown:?} lies outside the scene's folder: {outside:?}"));
         }
         Ok(part.bytes)
     }

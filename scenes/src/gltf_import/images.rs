@@ -90,6 +90,9 @@ impl ImageTable {
                 let accepted = format!("at most {most}, a quarter of the machine's memory");
                 return Err(file.invalid("bytes of all images in use", encoded, accepted));
             }
+            if is_cut_short(&source.bytes) {
+                file.note(format!("{:?} is a JPEG cut short: its end is grey", source.label));
+            }
             place_of.insert(*ix, sources.len());
             sources.push(source);
         }
@@ -173,6 +176,17 @@ fn open(file: &File, ix: usize) -> Result<Source<'_>, SceneError> {
     }
     source.size = [width, height];
     Ok(source)
+}
+
+/// Whether the pixels of a JPEG end before its end marker: the decoder fills up what is missing.
+/// Headers may hold a small JPEG with an end marker of its own.
+fn is_cut_short(bytes: &[u8]) -> bool {
+    if !bytes.starts_with(&[0xff, 0xd8]) {
+        return false;
+    }
+    let last = |mark: [u8; 2]| bytes.windows(2).rposition(|window| window == mark);
+    let (scan, end) = (last([0xff, 0xda]), last([0xff, 0xd9]));
+    scan.is_some() && end < scan
 }
 
 fn decode(file: &File, source: &Source<'_>) -> Result<Vec<u8>, SceneError> {

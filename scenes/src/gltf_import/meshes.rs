@@ -124,7 +124,9 @@ impl<'a> Job<'a> {
         let mut mesh = self.assemble(positions, indices, warnings)?;
         mesh.colors = self.colors(mesh.vertices.len())?;
         let mut influences = self.influences(mesh.vertices.len())?;
-        repeats::drop_repeats(&mut mesh, warnings);
+        if influences.is_empty() {
+            repeats::drop_repeats(&mut mesh, warnings);
+        }
         if mesh.indices.is_empty() {
             return Ok(None);
         }

@@ -17,7 +17,8 @@ use crate::Mesh;
 /// A mesh keeps up to this many of either.
 const MOST: usize = 4096;
 
-/// Leaves them out where there are many.
+/// Leaves them out where there are many. Not for meshes that a skin poses: it moves apart what lies in
+/// one place.
 pub(super) fn drop_repeats(mesh: &mut Mesh, warnings: &mut Warnings) {
     if mesh.triangle_count() <= MOST {
         return;
@@ -38,10 +39,11 @@ pub(super) fn drop_repeats(mesh: &mut Mesh, warnings: &mut Warnings) {
         "repeat another one",
         |mesh, ix| {
             let vertices = |ix: usize| corners(mesh, ix).map(|v| mesh.vertices[v]);
+            let colors = |ix: usize| corners(mesh, ix).map(|v| mesh.colors.get(v).copied());
             let mut hasher = DefaultHasher::new();
             vertices(ix).iter().for_each(|v| bytes_of(v).hash(&mut hasher));
             let first = *firsts.entry(hasher.finish()).or_insert(ix);
-            first != ix && vertices(first) == vertices(ix)
+            first != ix && vertices(first) == vertices(ix) && colors(first) == colors(ix)
         },
         warnings,
     );

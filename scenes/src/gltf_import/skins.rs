@@ -3,15 +3,15 @@
 //! Each vertex is moved by the weighted sum of its joints' matrices, `joint_to_world *
 //! inverse_bind`. The node that holds the mesh moves nothing (glTF 2.0, 3.7.3.3).
 
-use std::ops::Range;
+use std::{collections::HashMap, ops::Range, rc::Rc};
 
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use super::{Warnings, file::File, meshes::Meshes, nodes::Walk};
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
-/// The most vertices of all posed copies together: many nodes can share one large mesh.
-const MAX_VERTICES: usize = 1 << 26;
+/// The most vertices and indices of all posed copies together: many nodes can share one large mesh.
+const MAX_ELEMENTS: usize = 1 << 26;
 
 /// The joints that move one vertex, and by how much; the weights sum to 1.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +25,10 @@ pub(super) struct Skins<'a> {
     file: &'a File,
     /// For each node of the scene, where it is.
     to_world: Vec<Option<Mat4>>,
-    /// Vertices of the copies made so far.
-    vertices: usize,
+    /// What each joint of the skins used so far does to a vertex.
+    matrices: HashMap<usize, Option<Rc<[Mat4]>>>,
+    /// Vertices and indices of the copies made so far.
+    elements: usize,
 }
 
 impl<'a> Skins<'a> {
@@ -35,7 +37,7 @@ impl<'a> Skins<'a> {
         for visit in &walk.visits {
             to_world[visit.ix] = Some(visit.to_world);
         }
-        Self { file, to_world, vertices: 0 }
+        Self { file, to_world, matrices: HashMap::new(), elements: 0 }
     }
 
     /// Adds posed copies of meshes and returns their range. `None` where one of them has no
@@ -60,11 +62,11 @@ impl<'a> Skins<'a> {
         }
         let first = meshes.meshes.len() as u32;
         for ix in parts {
-            self.vertices += meshes.meshes[ix].vertices.len();
-            if self.vertices > MAX_VERTICES {
-                let field = "vertices of skinned meshes (each node counts its own)";
-                let accepted = format!("at most {MAX_VERTICES}");
-                return Err(self.file.invalid(field, self.vertices, accepted));
+            self.elements += meshes.meshes[ix].vertices.len() + meshes.meshes[ix].indices.len();
+            if self.elements > MAX_ELEMENTS {
+                let field = "vertices and indices of skinned meshes (each node counts its own)";
+                let accepted = format!("at most {MAX_ELEMENTS}");
+                return Err(self.file.invalid(field, self.elements, accepted));
             }
             let influences = &meshes.influences[&ix];
             let posed = pose(&meshes.meshes[ix], influences, &matrices);
@@ -84,8 +86,17 @@ impl<'a> Skins<'a> {
         Ok(Some(first..meshes.meshes.len() as u32))
     }
 
-    /// What each joint does to a vertex; `None` where one is not in the scene.
-    fn matrices(&self, skin: usize) -> Result<Option<Vec<Mat4>>, SceneError> {
+    /// What each joint does to a vertex; `None` where one is not in the scene. Read once per skin.
+    fn matrices(&mut self, skin: usize) -> Result<Option<Rc<[Mat4]>>, SceneError> {
+        if let Some(known) = self.matrices.get(&skin) {
+            return Ok(known.clone());
+        }
+        let read = self.read_matrices(skin)?.map(Rc::from);
+        self.matrices.insert(skin, read.clone());
+        Ok(read)
+    }
+
+    fn read_matrices(&self, skin: usize) -> Result<Option<Vec<Mat4>>, SceneError> {
         let skins = &self.file.root.skins;
         let json = skins.get(skin).ok_or_else(|| {
             self.file.invalid("nodes' skin", skin, format!("below {}", skins.len()))

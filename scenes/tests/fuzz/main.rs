@@ -13,8 +13,8 @@
 //! | `LIGHTBENCH_FUZZ_FILES` | a folder whose `.gltf` and `.glb` files are seeds too | none |
 //!
 //! A long run: `LIGHTBENCH_FUZZ_INPUTS=10000 cargo test -p scenes --release --test fuzz -- --nocapture`.
-//! The input in work lies in `fuzz/` below cargo's folder for test files: it is there after an
-//! abort, too.
+//! The input in work lies in `fuzz-PROCESS/` in cargo's folder for test files. It stays there after a
+//! failure or an abort.
 
 #[path = "../made_up/mod.rs"]
 mod made_up;
@@ -60,7 +60,8 @@ fn damaged_files_are_read_or_refused() {
     let seed = number("LIGHTBENCH_FUZZ_SEED", 1);
     let files = env::var_os("LIGHTBENCH_FUZZ_FILES").map(PathBuf::from);
     let seeds = seeds::all(files.as_deref());
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz");
+    let folder = format!("fuzz-{}", std::process::id());
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let mut figures = Figures::default();
     for n in first..first + inputs {
         let mut rng = Pcg64Mcg::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ n);
@@ -70,6 +71,7 @@ fn damaged_files_are_read_or_refused() {
         let path = input.write(&folder);
         run(n, path, &mut figures);
     }
+    let _ = fs::remove_dir_all(&folder);
     let seconds = figures.longest.0.as_secs_f64();
     println!(
         "{inputs} inputs: {} read, {} refused; longest {seconds:.2} s (input {}), peak {:.0} MB (input {})",

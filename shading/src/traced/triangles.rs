@@ -203,7 +203,7 @@ mod tests {
         }
         let seconds = start.elapsed().as_secs_f64();
         println!("{seconds:.2} s");
-        assert!(seconds < 10.0, "{seconds} s");
+        assert!(seconds < 30.0, "{seconds} s");
     }
 
     #[test]
