@@ -15,6 +15,7 @@ use harness::{
     cli::{self, CompareArgs, Invocation},
     clock::PassClock,
     error::HarnessError,
+    messages::say_error,
     painter::Painter,
     results::{PassKind, pass_kind},
     stage::Stage,
@@ -34,7 +35,8 @@ fn arguments() -> Result<CompareArgs, HarnessError> {
         ("--source", "both".to_owned()),
     ];
     let words = options.into_iter().flat_map(|(option, value)| [option.to_owned(), value]);
-    match cli::parse(std::iter::once("lightbench".to_owned()).chain(words))? {
+    // Whatever strategies are asked for: some take no source.
+    match cli::parse_stored(std::iter::once("lightbench".to_owned()).chain(words))? {
         Invocation::Compare(args) => Ok(args),
         _ => unreachable!("no subcommand was given"),
     }
@@ -106,7 +108,7 @@ fn methods(criterion: &mut Criterion) {
 }
 
 fn fail(error: &HarnessError) -> ! {
-    eprintln!("bench: {error}");
+    say_error(error);
     std::process::exit(1);
 }
 

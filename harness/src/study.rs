@@ -75,7 +75,13 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
         },
     };
     // What is wrong with a job shows before the first is run, and before anything is written.
-    manifest.jobs.iter().try_for_each(Job::check)?;
+    manifest.jobs.iter().try_for_each(Job::check).map_err(|error| match is_new {
+        true => error,
+        false => CliError::new(format!(
+            "{}: {error}: another version listed the jobs there; give another --out",
+            out.display()
+        )),
+    })?;
     let mine = share(args, &manifest)?;
     if is_new {
         manifest.write(out)?;
@@ -98,7 +104,11 @@ fn jobs_of(
     for scene in scenes {
         jobs.extend(match args.study {
             StudyName::Comparison => comparison::jobs(bench, args, scene)?,
-            StudyName::Culling => culling::jobs(args, scene),
+            StudyName::Culling => {
+                // A scene that cannot be opened shows before anything is written.
+                scene.boxes(bench)?;
+                culling::jobs(args, scene)
+            }
             StudyName::Area => area::jobs(bench, args, scene)?,
             StudyName::Endless => endless::jobs(bench, args, scene)?,
             StudyName::Cdi => cdi::jobs(bench, args, scene)?,

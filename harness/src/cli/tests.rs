@@ -162,7 +162,7 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
     assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
     assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, fit-ltc, truth, cdi, list, help";
+    let known = "known are compare, study, report, advise, fit-ltc, truth, cdi, list";
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
     assert_eq!(
         refusal("study"),
