@@ -58,7 +58,7 @@ fn check(args: &TruthArgs) -> Result<(), CliError> {
         return Err(CliError::out_of_range("--bounces", &args.bounces.to_string(), accepted));
     }
     if args.indirect && args.bounces == 0 {
-        let accepted = "given with --bounces: nothing else would be left";
+        let accepted = "given with --bounces 1 or more: nothing else would be left";
         return Err(CliError::new(format!("--indirect: it must be {accepted}")));
     }
     if args.matte_bounces && !(args.bounces == 1 && args.stage.bounce.primary) {

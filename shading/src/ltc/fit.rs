@@ -184,19 +184,31 @@ mod tests {
 
     /// Roughness and view of texels from smooth to rough and from the normal to grazing.
     const TEXELS: [(usize, usize); 8] =
-        [(3, 0), (8, 30), (20, 10), (20, 50), (30, 48), (40, 40), (50, 0), (63, 20)];
+        [(3, 0), (8, 30), (20, 10), (20, 50), (30, 60), (40, 40), (50, 0), (63, 20)];
 
     fn place(x: usize, y: usize) -> (f64, f64) {
         let y = y as f64 / 63.0;
         (x as f64 / 63.0, 1.0 - y * y)
     }
 
+    /// The fit of a texel, from the normal on: at grazing views several lobes are about as good, and the
+    /// search finds the one next to its neighbour's.
+    fn fit_like_the_table(x: usize, y: usize) -> Entry {
+        let mut last: Option<Fit> = None;
+        for step in 0..=y {
+            let (roughness, cos_view) = place(x, step);
+            last = Some(fit(roughness, cos_view, last.map(|fit| fit.parameters)));
+        }
+        Entry::new(&last.unwrap())
+    }
+
     #[test]
     fn a_fit_from_scratch_is_the_committed_entry() {
+        use rayon::prelude::*;
         let table = Table::ggx().unwrap();
-        for (x, y) in TEXELS {
+        TEXELS.into_par_iter().for_each(|(x, y)| {
             let (roughness, cos_view) = place(x, y);
-            let found = Entry::new(&fit(roughness, cos_view, None));
+            let found = fit_like_the_table(x, y);
             let committed = table.look_up(roughness, cos_view);
             let TableDifference { integrals, covered } = committed.difference(&found);
             assert!(integrals < 1e-5 && covered < 1e-4, "{x}, {y}: {integrals:e}, {covered:e}");
@@ -206,7 +218,7 @@ mod tests {
             }
             let other = table.look_up(roughness - 2e-3, cos_view);
             assert!(other.difference(&found).covered > 1e-4, "{x}, {y}: too coarse to tell");
-        }
+        });
     }
 
     #[test]
