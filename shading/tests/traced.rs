@@ -50,7 +50,7 @@ fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Image>) -> Scen
         lights: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,
-        origin: glam::DVec3::ZERO,
+        origin: DVec3::ZERO,
         path: CameraPath::still(Pose::new(Vec3::ZERO, Vec3::NEG_Z)),
         bounds,
         core_bounds: bounds,
