@@ -3,7 +3,9 @@
 //! A camera that the scene places must hold what glTF 2.0 asks of it: an error names the field. A
 //! camera that no node places is not looked at.
 
-use glam::{DMat4, DVec3};
+use std::f32::consts::PI;
+
+use glam::{DMat4, DVec3, DVec4};
 use gltf::json::{
     camera::{Camera as JsonCamera, Orthographic, Perspective, Type},
     validation::Checked,
@@ -16,7 +18,7 @@ use crate::{Camera, Lens, Pose, SceneError};
 /// apart.
 const LEAST_FOV_Y: f32 = 1e-6;
 /// And below this, just short of half a turn.
-const MOST_FOV_Y: f32 = 3.141;
+const MOST_FOV_Y: f32 = 0.999 * PI;
 
 /// Planes that f32 still tells apart after a scene is scaled, metres.
 const LEAST_NEAR_M: f32 = 1e-12;
@@ -70,7 +72,7 @@ impl Check<'_> {
     fn perspective(&self, lens: &Perspective) -> Result<(Lens, f32, Option<f32>), SceneError> {
         let (fov_y, near) = (lens.yfov, lens.znear);
         let fov_ok = fov_y > LEAST_FOV_Y && fov_y < MOST_FOV_Y;
-        self.is("perspective.yfov", fov_y, fov_ok, "above 0.000001 and below 3.141 radians")?;
+        self.is("perspective.yfov", fov_y, fov_ok, "above 0.000001 and below 3.138 radians")?;
         if let Some(aspect) = lens.aspect_ratio {
             self.is("perspective.aspectRatio", aspect, aspect > 0.0, "above 0 and finite")?;
         }
@@ -102,7 +104,7 @@ impl Check<'_> {
 /// A glTF camera or spot looks down its node's -Z; scale does not matter, nor does one axis without
 /// length.
 pub(super) fn pose(to_world: &DMat4) -> Pose {
-    let [x, y, z] = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(|axis| axis.truncate());
+    let [x, y, z] = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(DVec4::truncate);
     let back = z.try_normalize().or_else(|| x.cross(y).try_normalize()).unwrap_or(DVec3::Z);
     let up = if y == DVec3::ZERO { back.cross(x) } else { y };
     let up = (up - back * back.dot(up)).normalize_or(back.any_orthonormal_vector());

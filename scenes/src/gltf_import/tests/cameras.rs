@@ -27,7 +27,7 @@ fn faulty_fields_are_named_with_their_value() {
         lens[field] = value;
         json!({"type": "orthographic", "orthographic": lens})
     };
-    let yfov = "above 0.000001 and below 3.141 radians";
+    let yfov = "above 0.000001 and below 3.138 radians";
     let size = "from 1e-9 to 1e12 metres";
     let cases = [
         (perspective("zfar", json!(0.0)), "perspective.zfar is 0: it must be above znear, 0.1 m"),
