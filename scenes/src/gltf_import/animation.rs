@@ -112,7 +112,7 @@ pub(super) fn load(
 pub(super) fn note_unplayed(file: &File, walk: &Walk, warnings: &mut Warnings) {
     let nodes = &file.root.nodes;
     let joints = file.root.skins.iter().flat_map(|skin| &skin.joints);
-    let joints: HashSet<usize> = joints.map(|joint| joint.value()).collect();
+    let joints: HashSet<usize> = joints.map(gltf::json::Index::value).collect();
     // Whether a node, or one below it, would take something drawn along.
     let mut carries = vec![false; nodes.len()];
     for visit in walk.visits.iter().rev() {
