@@ -202,7 +202,7 @@ fn extended() -> MadeUp {
         "KHR_xmp"
     ]);
     file.json["extensions"] = json!({"EXT_lights_area": {"lights": [
-        {"type": "area", "shape": "rect", "width": 1.0, "height": 2.0, "intensity": 5.0}]}});
+        {"type": "rect", "size": 2.0, "rect": {"aspect": 0.5}, "intensity": 5.0}]}});
     file.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}},
         "KHR_node_visibility": {"visible": true}});
     file.push("nodes", json!({"extensions": {"EXT_lights_area": {"light": 0}}}));
