@@ -74,7 +74,8 @@ impl CliError {
             )),
             ErrorKind::InvalidSubcommand => {
                 let name = text(ContextKind::InvalidSubcommand).unwrap_or_default();
-                let known: Vec<&str> = program.get_subcommands().map(|c| c.get_name()).collect();
+                let known: Vec<&str> =
+                    program.get_subcommands().map(clap::Command::get_name).collect();
                 Self::unknown("command", &name, &known)
             }
             ErrorKind::MissingRequiredArgument => Self::new(match option {
