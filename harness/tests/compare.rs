@@ -5,7 +5,11 @@ use std::{
     process::{Command, Output},
 };
 
-use harness::{advise::verdict, report::is_surely_faster, results::Results};
+use harness::{
+    advise::verdict,
+    report::is_surely_faster,
+    results::{Record, Results},
+};
 
 fn lightbench(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_lightbench")).args(arguments).output().expect("starts")
@@ -332,6 +336,6 @@ fn lights_without_an_end_are_seen_and_stated() {
     let (results, sunny, words) = run(&floor_file(folder.path(), true), &[]);
     assert!(words.contains("1 lights, 1 sun"), "{words}");
     assert_eq!(results.records[0].light_kinds["sun"], 1);
-    assert!(results.records.iter().all(|record| record.is_lossless()), "{:?}", results.records);
+    assert!(results.records.iter().all(Record::is_lossless), "{:?}", results.records);
     assert!(sunny.pixels.iter().zip(&dim.pixels).all(|(sun, dim)| sun[0] > dim[0] + 0.01));
 }
