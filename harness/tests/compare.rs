@@ -164,7 +164,7 @@ fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
     assert!(said.starts_with(&format!("Use {} (", best.strategy)), "the answer first: {said}");
     // It judged several poses, several times each.
     assert!(best.along_path && best.poses == Some(3) && best.frames == 24, "{best:?}");
-    let gains = |exact: &&harness::results::Record| is_surely_faster(best, exact) == Some(true);
+    let gains = |exact: &&Record| is_surely_faster(best, exact) == Some(true);
     let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
     assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{said}");
     // A view that the user placed is one view, and lights come from files as they do elsewhere.
