@@ -5,7 +5,11 @@ use std::{
     process::{Command, Output},
 };
 
-use harness::{advise::verdict, report::is_surely_faster, results::Results};
+use harness::{
+    advise::verdict,
+    report::is_surely_faster,
+    results::{Record, Results},
+};
 
 /// The scene of the fewest triangles, on which a software adapter spends most of a frame. The default scene
 /// has seven times as many: one test draws it.
@@ -167,7 +171,7 @@ fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
     assert!(said.starts_with(&format!("Use {} (", best.strategy)), "the answer first: {said}");
     // It judged several poses, several times each.
     assert!(best.along_path && best.poses == Some(3) && best.frames == 24, "{best:?}");
-    let gains = |exact: &&harness::results::Record| is_surely_faster(best, exact) == Some(true);
+    let gains = |exact: &&Record| is_surely_faster(best, exact) == Some(true);
     let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
     assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{said}");
     // A view that the user placed is one view, and lights come from files as they do elsewhere.
@@ -351,6 +355,6 @@ fn lights_without_an_end_are_seen_and_stated() {
     let (results, sunny, words) = run(&floor_file(folder.path(), true), &[]);
     assert!(words.contains("1 lights, 1 sun"), "{words}");
     assert_eq!(results.records[0].light_kinds["sun"], 1);
-    assert!(results.records.iter().all(|record| record.is_lossless()), "{:?}", results.records);
+    assert!(results.records.iter().all(Record::is_lossless), "{:?}", results.records);
     assert!(sunny.pixels.iter().zip(&dim.pixels).all(|(sun, dim)| sun[0] > dim[0] + 0.01));
 }

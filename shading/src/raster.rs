@@ -19,6 +19,7 @@ use crate::{
 
 /// What a pass over the triangles draws.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant, reason = "it is made once per pipeline, and never stored")]
 pub(crate) enum RasterPass<'a> {
     /// Depth only.
     Depth,
