@@ -188,7 +188,7 @@ fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> String {
         .collect();
     // Every model reads the G-buffer: what its rounding costs is in all rows above.
     if !truth.gbuffer_errors.is_empty() {
-        let mut row = vec!["rounding of the G-buffer".to_owned(), ABSENT.to_owned()];
+        let mut row = vec!["the G-buffer alone".to_owned(), ABSENT.to_owned()];
         row.extend(cells(&|id| truth.gbuffer_errors.get(id).copied().flatten()));
         rows.push(row);
     }
