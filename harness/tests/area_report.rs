@@ -146,7 +146,7 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
         let name = format!("atrium-{chart}.svg");
         assert!(charts.contains(&name), "{name} of {charts:?}");
     }
-    assert!(page.contains("rounding of the G-buffer"), "what the G-buffer costs has a row");
+    assert!(page.contains("the G-buffer alone"), "what the G-buffer costs has a row");
     assert!(text.contains("Without noise, ltc is nearest to the truth in atrium"), "{text}");
     assert!(
         text.contains("no model is both faster and nearer to the truth by FLIP than"),

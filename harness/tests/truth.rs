@@ -58,7 +58,7 @@ fn points_are_as_shading_has_them_and_shadows_take_light_away() {
     let pair = ImagePair { image: &shaded, reference: &image, exposure: 1.0 };
     let shading: Errors = stored(errors(&pair));
     let error = |errors: &Errors, id: &str| errors[id].expect("finite");
-    assert!(error(&shading, "log_error") < 0.02, "{shading:?}");
+    assert!(error(&shading, "log_error") < 0.03, "{shading:?}");
     // Shading reads the G-buffer: its rounding is about all that the image is off.
     let rounding = &exact.gbuffer_errors;
     let share = error(rounding, "log_error") / error(&shading, "log_error");

@@ -173,7 +173,9 @@ fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye:
 pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surface) -> DVec3 {
     let (arriving, to_light) = arriving(light, position);
     let cos = surface.normal.dot(to_light).clamp(0.0, 1.0);
-    let kept = (DVec3::ONE - f0_of(surface)) * (1.0 - ltc::diffuse_fresnel(cos));
+    let fresnel = ltc::diffuse_fresnel(cos);
+    let kept = (DVec3::ONE - f0_of(surface)) * (1.0 - fresnel)
+        + DVec3::splat((1.0 - f90_of(surface)) * fresnel);
     let albedo = (1.0 - surface.metallic) * surface.base_color * kept;
     arriving * albedo * cos / std::f64::consts::PI
 }

@@ -189,7 +189,7 @@ fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> Html {
         .collect();
     // Every model reads the G-buffer: what its rounding costs is in all rows above.
     if !truth.gbuffer_errors.is_empty() {
-        let mut row: Vec<Html> = vec!["rounding of the G-buffer".into(), ABSENT.into()];
+        let mut row: Vec<Html> = vec!["the G-buffer alone".into(), ABSENT.into()];
         row.extend(cells(&|id| truth.gbuffer_errors.get(id).copied().flatten()));
         rows.push(row);
     }
