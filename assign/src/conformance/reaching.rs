@@ -21,6 +21,9 @@ const EDGE: f64 = 1e-6;
 /// depth or on surfaces.
 const KEPT: usize = 12;
 
+/// Stages by the name of their case.
+type Known = HashMap<&'static str, Vec<Arc<Reaching>>>;
+
 /// Lights as bits, 32 a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct LightBits {
@@ -76,7 +79,7 @@ impl Reaching {
         lights: &[Light],
         knows_normals: bool,
     ) -> Arc<Self> {
-        static KNOWN: Mutex<Option<HashMap<&'static str, Vec<Arc<Reaching>>>>> = Mutex::new(None);
+        static KNOWN: Mutex<Option<Known>> = Mutex::new(None);
         let places: Vec<[u32; 6]> = probes.iter().map(place).collect();
         let same = |known: &&Arc<Self>| {
             known.knows_normals == knows_normals && known.lights == lights && known.places == places
