@@ -29,7 +29,7 @@ pub fn untested(
         stage.go_to(pose, count)?;
         // Where surfaces are seen from somewhere, the lights are to blame.
         why = match (why, untested_here(gpu, stage)?) {
-            (Some(Untested::NoLight), Some(_)) => Some(Untested::NoLight),
+            (Some(unlit @ (Untested::NoLight | Untested::OnlySuns)), Some(_)) => Some(unlit),
             (_, here) => here,
         };
     }
@@ -62,7 +62,7 @@ fn untested_here(gpu: &Gpu, stage: &Stage) -> Result<Option<Untested>, HarnessEr
             return Ok(None);
         }
     }
-    Ok(Some(Untested::NoLight))
+    Ok(Some(if stage.suns.is_empty() { Untested::NoLight } else { Untested::OnlySuns }))
 }
 
 /// The surfaces that the pixels show.

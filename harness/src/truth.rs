@@ -22,7 +22,7 @@ use crate::{
     machine::machine,
     messages::say,
     out_folder::OutFolder,
-    results::{Errors, Results, Truth, TruthImage, TruthLevel, write_atomically},
+    results::{Errors, Results, Truth, TruthImage, TruthLevel, Untested, write_atomically},
     sight::untested,
     stage::Stage,
 };
@@ -108,7 +108,8 @@ pub fn render(
     let level = Truth { level: TruthLevel::None, edge_tolerance: EDGE, notes };
     let mut results = Results::new(machine(&gpu), command, level);
     note_faults(&mut results, stage);
-    if let Some(why) = untested(&gpu, stage, &[], 0)? {
+    let why = untested(&gpu, stage, &[], 0)?.filter(|why| *why != Untested::OnlySuns);
+    if let Some(why) = why {
         let why = why.words(u64::from(stage.lights.count()), false);
         let warning = format!("NOTHING IS LIT directly: {why}");
         say(format!("warning  {warning}"));

@@ -12,6 +12,8 @@ pub enum Untested {
     NoSurface,
     /// No light reaches a surface that a pixel shows.
     NoLight,
+    /// Only suns light what is seen: they stand beside the lists, which hold nothing here.
+    OnlySuns,
 }
 
 impl Untested {
@@ -23,6 +25,7 @@ impl Untested {
             (Self::NoLight, _) if lights == 0 => "there is no light",
             (Self::NoLight, false) => "no light reaches what the view shows",
             (Self::NoLight, true) => "no light reaches what the compared views along the path show",
+            (Self::OnlySuns, _) => "only suns light what is seen, and they stand in no list",
         }
     }
 }

@@ -91,6 +91,10 @@ impl<'a> TracedScene<'a> {
             let mesh = self.scene.instances[*instance as usize].mesh;
             let material =
                 &self.scene.materials[self.scene.meshes[mesh as usize].material as usize];
+            // An unlit surface shows its colour and lights nothing.
+            if material.unlit {
+                continue;
+            }
             let texture = material.emissive_texture.as_ref();
             let texel = texture.map_or(DVec3::ONE, |t| self.textures[t.image as usize].mean());
             let corners = self.triangles.corners(triangle);
@@ -146,7 +150,11 @@ impl<'a> TracedScene<'a> {
         let hit = self.triangles.first(from.ray_origin(), direction, f64::INFINITY, solid)?;
         self.is_drawn(&hit).then(|| {
             let density = self.emission_density(&hit, direction);
-            (self.surface_at(&hit, &SeenFrom::afar(direction)), density)
+            let mut surface = self.surface_at(&hit, &SeenFrom::afar(direction));
+            if self.material(&hit).unlit {
+                surface.emission = DVec3::ZERO;
+            }
+            (surface, density)
         })
     }
 
