@@ -169,7 +169,8 @@ impl Window {
         for plane in self.planes {
             polygon.clip(plane);
         }
-        let depths = polygon.corners.iter().map(|corner| corner.z);
+        // A corner on the plane of the eye may round to behind it.
+        let depths = polygon.corners.iter().map(|corner| corner.z.max(0.0));
         let at = |depth| DepthSpan { nearest_m: depth, farthest_m: depth };
         depths.map(at).reduce(DepthSpan::union)
     }
