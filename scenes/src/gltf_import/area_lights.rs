@@ -33,7 +33,7 @@ use glam::{Mat4, Vec3};
 use gltf::json::scene::Node;
 use serde::Deserialize;
 
-use super::{Warnings, file::File};
+use super::{Warnings, file::File, warnings::kept_name};
 use crate::SceneError;
 
 /// The key in a node's `extras`.
@@ -196,7 +196,7 @@ fn of_extension(
     if !(width > 0.0 && height > 0.0 && width.is_finite()) {
         return Err(file.invalid(field(), value, "a light with size and aspect above 0"));
     }
-    let name = json.name.unwrap_or_else(|| format!("area light {number}"));
+    let name = json.name.as_deref().map_or_else(|| format!("area light {number}"), kept_name);
     // A mirroring transform turns outlines round.
     let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
     let place = |x: f32, y: f32| to_world.transform_vector3(Vec3::new(x, y * side, 0.0));

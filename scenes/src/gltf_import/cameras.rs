@@ -11,7 +11,7 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::file::File;
+use super::{file::File, warnings::kept_name};
 use crate::{Camera, Lens, Pose, SceneError};
 
 /// Fields of view are above this, radians: an image of 16,384 pixels would see less than f32 can tell
@@ -33,7 +33,7 @@ pub(super) fn placed(
     node_name: &str,
     to_world: &DMat4,
 ) -> Result<Camera, SceneError> {
-    let name = json.name.clone().unwrap_or_else(|| node_name.into());
+    let name = json.name.as_deref().map_or_else(|| node_name.into(), kept_name);
     let check = Check { file, ix };
     let (lens, near_m, far_m) = match (json.type_, &json.perspective, &json.orthographic) {
         (Checked::Valid(Type::Orthographic), _, Some(lens)) => check.orthographic(lens)?,
