@@ -41,7 +41,7 @@ impl OpenLights {
         };
         format!(
             "{count} {lights} no range in {their} file, and an end at {at} m, where a surface \
-             receives {} lux (candela per square metre): it loses at most {} lux to each light; \
+             receives {} lux: it loses at most {} lux to each light; \
              --threshold moves the end, --unbounded measures the loss",
             short(threshold),
             short(LOST * threshold)

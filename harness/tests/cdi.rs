@@ -276,8 +276,14 @@ fn what_does_not_go_together_is_refused() {
         ("--vpls 64 --directions 0x4", "--directions is 0x4: it must be STACKSxSLICES"),
         ("--ranges random", "--vpls"),
         ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges: it must be given with"),
-        ("--vpls 64 --random-ranges 1,2", "--random-ranges: it must be given with --ranges random"),
-        ("--vpls 64 --ranges random --correct-rays", "--correct-rays: it must be given with"),
+        (
+            "--vpls 64 --random-ranges 1,2",
+            "--random-ranges would change nothing: it must be given with --vpls N and --ranges random",
+        ),
+        (
+            "--vpls 64 --ranges random --correct-rays",
+            "--correct-rays would change nothing: it must be given with --vpls N and --ranges average",
+        ),
         (
             "--vpls 64 --constant-range 3",
             "--constant-range: it must be given with --ranges constant",
@@ -348,9 +354,14 @@ fn stored(name: &str) -> String {
 
 /// The page and the words of a report of stored results.
 fn report(name: &str) -> (String, String) {
+    report_of(&stored(name))
+}
+
+/// The same of a folder.
+fn report_of(study: &str) -> (String, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("UTF-8");
-    let output = lightbench(&["report", &stored(name), "--out", out]);
+    let output = lightbench(&["report", study, "--out", out]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let page = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     // The terminal wraps its lines.
@@ -380,14 +391,36 @@ fn stored_builds_of_a_low_clock_are_left_out() {
 }
 
 #[test]
-fn stored_lights_without_fresnel_decide_nothing() {
+fn stored_images_by_rays_are_nearer_or_tie() {
     let (page, words) = report("h200-cdi");
+    for claim in ["fewer-lights", "quality"] {
+        assert!(has_verdict(&page, claim, "differs"), "{claim}: {words}");
+    }
+    // The best spans in two scenes are the last that were tried.
+    assert!(words.contains("The best value is the first or last one tried"), "{words}");
+    assert!(words.contains("rays are nearer to the truth") && words.contains("a tie"), "{words}");
+    assert!(!words.contains("too bright"), "{words}");
+}
+
+/// The stored study with lights as older programs had them.
+#[test]
+fn lights_without_fresnel_decide_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = std::path::PathBuf::from(stored("h200-cdi"));
+    std::fs::copy(source.join("study.json"), folder.path().join("study.json")).expect("copies");
+    for job in std::fs::read_dir(source.join("jobs")).expect("jobs") {
+        let job = job.expect("a job");
+        let results = std::fs::read_to_string(job.path().join("results.json")).expect("results");
+        let old = results.replace("\"has_fresnel\":true", "\"has_fresnel\":false");
+        let copy = folder.path().join("jobs").join(job.file_name());
+        std::fs::create_dir_all(&copy).expect("a folder");
+        std::fs::write(copy.join("results.json"), old).expect("writes");
+    }
+    let (page, words) = report_of(folder.path().to_str().expect("UTF-8"));
     assert!(words.contains("they are 4 to 7 % too bright"), "{words}");
     for claim in ["fewer-lights", "quality", "similar"] {
         assert!(has_verdict(&page, claim, "unknown"), "{claim}: {words}");
     }
-    // The best spans in two scenes are the last that were tried.
-    assert!(words.contains("The best value is the first or last one tried"), "{words}");
     // Sentences refuse what the claims refuse.
     assert!(words.contains("In atrium ranges by rays"), "{words}");
     assert!(words.contains("these lights are 4 to 7 % too bright: measure again"), "{words}");
