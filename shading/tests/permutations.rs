@@ -320,8 +320,8 @@ fn flags_of_rare_materials() {
         assert_eq!(source.contains(".dielectric"), rare.contains("dielectrics"), "{rare:?}");
         assert_eq!(source.contains(".color"), rare.contains("vertex_colors"), "{rare:?}");
     }
-    for flags in with_areas(vec![["dielectrics"].into()]) {
-        check_compute("deferred", &flags, LOOK_UPS[0], LOOK_UPS[0].2, &[0, 1, 2, 4, 6, 10]);
+    for flags in with_suns(with_areas(vec![["dielectrics"].into()])) {
+        check_compute("deferred", &flags, LOOK_UPS[0], LOOK_UPS[0].2, &[0, 1, 2, 4, 6, 11]);
         let spheres = link("package::raster_spheres", &flags, None);
         assert!(spheres.bindings.contains(&(1, 4)), "{flags:?}");
     }
