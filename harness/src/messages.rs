@@ -2,7 +2,7 @@
 //!
 //! `eprintln!` and `println!` panic where the reader has gone (`2>&1 | head -1`) or the disk behind a
 //! redirection is full. A line for a person must not end hours of measuring, so [`say`] ignores both.
-//! Standard output is the product, so [`print`] reports a full disk, and takes a closed pipe for a reader
+//! Standard output is the product, so [`print()`] reports a full disk, and takes a closed pipe for a reader
 //! that has read enough.
 
 use std::io::{self, ErrorKind, Write};
