@@ -75,13 +75,7 @@ impl Compiled {
         layouts: &[Option<&wgpu::BindGroupLayout>],
         zero_memory: bool,
     ) -> wgpu::ComputePipeline {
-        let key = PipelineKey {
-            module: module.clone(),
-            entry_point: entry_point.to_owned(),
-            layouts: layouts.iter().map(|layout| layout.cloned()).collect(),
-            zero_memory,
-        };
-        find_or_make(&self.pipelines, key, || {
+        let make = || {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(entry_point),
                 bind_group_layouts: layouts,
@@ -98,7 +92,22 @@ impl Compiled {
                 },
                 cache: None,
             })
-        })
+        };
+        // Objects from elsewhere would never be found again, and their pipelines never be released.
+        let is_known = lock(&self.modules).values().any(|known| known == module) && {
+            let known = lock(&self.layouts);
+            layouts.iter().flatten().all(|layout| known.values().any(|own| own == *layout))
+        };
+        if !is_known {
+            return make();
+        }
+        let key = PipelineKey {
+            module: module.clone(),
+            entry_point: entry_point.to_owned(),
+            layouts: layouts.iter().map(|layout| layout.cloned()).collect(),
+            zero_memory,
+        };
+        find_or_make(&self.pipelines, key, make)
     }
 }
 

@@ -112,6 +112,15 @@ pub(crate) fn served(
                         let accepted = format!("windowed for {}", choice.id());
                         return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
                     }
+                    if choice.is_specular_cut() && stage.has_dielectrics() {
+                        return Err(CliError::new(format!(
+                            "{}: its bound on lost light holds for dielectrics that reflect 0.04, and \
+                             materials of the scene reflect otherwise (KHR_materials_ior, \
+                             KHR_materials_specular): leave the segment out",
+                            choice.id()
+                        ))
+                        .into());
+                    }
                     strategy.prepare(gpu, &stage.renderer.frame(&stage.view, &stage.lights))?;
                 }
                 Method::RasterSphere => {

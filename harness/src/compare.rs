@@ -194,7 +194,11 @@ impl Run<'_> {
     /// Sets the stage for the poses that are timed.
     fn follow_path(&mut self) {
         if self.args.path {
+            let known = self.stage.notes.clone();
             self.stage.follow_path(self.plan.timed);
+            for note in self.stage.notes.iter().filter(|note| !known.contains(note)) {
+                say(format!("warning  {note}"));
+            }
         }
     }
 

@@ -164,15 +164,15 @@ impl Optics {
 
     /// What the planes of a view cut away, and where f32 is too coarse for what it shows: one sentence
     /// each.
-    pub fn notes(&self, scene: &Scene, view: &View) -> Vec<String> {
+    pub fn notes(&self, scene: &Scene, views: &[View]) -> Vec<String> {
         let mut notes = Vec::new();
         let given_far =
             if let Far::At(far_m, from) = self.far { Some((far_m, from)) } else { None };
         let is_least = self.near_m <= self.usual_m * LEAST_NEAR;
         let is_given = self.near_from != PlaneSource::Scene;
         let span = (is_given || is_least || given_far.is_some())
-            .then(|| scene.depths_shown(view))
-            .flatten();
+            .then(|| views.iter().filter_map(|view| scene.depths_shown(view)))
+            .and_then(|spans| spans.reduce(DepthSpan::union));
         let shown = |metres: f64| significant(metres);
         if let Some(span) = span {
             let near_m = f64::from(self.near_m);
@@ -195,7 +195,11 @@ impl Optics {
                 ));
             }
         }
-        let off_m = view.eye().abs().max_element();
+        let off = |view: &&View| view.eye().abs().max_element();
+        let Some(view) = views.iter().max_by(|a, b| off(a).total_cmp(&off(b))) else {
+            return notes;
+        };
+        let off_m = off(&view);
         let step_m = off_m * f32::EPSILON;
         if step_m > finest_m(scene, view) {
             notes.push(format!(

@@ -4,7 +4,9 @@ use assign::{
     Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns, View,
 };
 use glam::{DVec3, Vec3};
-use scenes::{Aabb, LightSpec, Places, Scene, close_ranges, primary_light, scatter_lights};
+use scenes::{
+    Aabb, Dielectric, LightSpec, Places, Scene, close_ranges, primary_light, scatter_lights,
+};
 use shading::{AreaModel, Renderer};
 
 use crate::{
@@ -69,7 +71,7 @@ impl Set {
         let pose = camera::pose(scene, args)?;
         optics.fit_near(scene, &[optics.view(scene, pose, size)]);
         let view = optics.view(scene, pose, size);
-        let notes = optics.notes(scene, &view);
+        let notes = optics.notes(scene, &[view]);
         let radius_scale = args.radius_scale.unwrap_or_else(|| radius_scale_of(unscaled_m));
         let lit = Lit::new(scene, radius_scale, args)?;
         Ok(Self { optics, view, notes, radius_scale, lit })
@@ -149,6 +151,7 @@ impl Stage {
         };
         self.own_lights = 0;
         self.lights = LightBuffer::ordered(gpu, &lights, args.light_order)?;
+        self.note_plain_vpls();
         Ok(())
     }
 
@@ -174,6 +177,26 @@ impl Stage {
         views.push(self.view);
         self.optics.fit_near(&self.scene, &views);
         self.view.near_m = self.optics.near_m();
+        views.iter_mut().for_each(|view| view.near_m = self.view.near_m);
+        self.notes = self.optics.notes(&self.scene, &views);
+        self.note_plain_vpls();
+    }
+
+    /// Says what virtual point lights leave out.
+    fn note_plain_vpls(&mut self) {
+        if self.vpls.is_some() && self.has_dielectrics() {
+            self.notes.push(
+                "virtual point lights reflect as plain dielectrics do: KHR_materials_ior and \
+                 KHR_materials_specular change what surfaces show of them, not what they send on"
+                    .to_owned(),
+            );
+        }
+    }
+
+    /// Whether a material reflects other than glTF's plain dielectric does.
+    pub fn has_dielectrics(&self) -> bool {
+        let plain = Dielectric::default();
+        self.scene.materials.iter().any(|material| !material.unlit && material.dielectric != plain)
     }
 
     /// The eye in the coordinates of the scene's file, metres.

@@ -26,7 +26,9 @@ pub struct DepthSpan {
 }
 
 impl DepthSpan {
-    fn union(self, other: Self) -> Self {
+    /// Both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
         Self {
             nearest_m: self.nearest_m.min(other.nearest_m),
             farthest_m: self.farthest_m.max(other.farthest_m),

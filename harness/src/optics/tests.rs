@@ -148,7 +148,7 @@ fn the_near_plane_lies_in_front_of_what_the_view_shows_and_stays_where_it_cuts_n
 fn what_given_planes_cut_away_is_stated() {
     let notes = |scene: &Scene, line: &str, pose: Pose| {
         let (optics, view) = fitted(scene, line, pose);
-        optics.notes(scene, &view)
+        optics.notes(scene, &[view])
     };
     let open = scene(None, 0.0, None);
     let pose = open.path.pose(0, 1);

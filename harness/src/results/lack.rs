@@ -47,8 +47,8 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
             let same = |ix: &usize| records[*ix].mode == mode && stored[*ix].is_same(choice);
             match (0..records.len()).find(same) {
                 Some(ix) => is_asked[ix] = true,
-                // Of all strategies, those that cannot serve a scene are left out.
-                None if !choice.is_named => {}
+                // Of all strategies, those that cannot serve a scene are left out. No culling serves all.
+                None if !choice.is_named && !choice.is_reference() => {}
                 None => return Some(format!("{} in {} is missing", choice.id(), mode.name())),
             }
         }
@@ -93,6 +93,8 @@ mod tests {
         assert!(lack(&results(&both, &whole)).is_some());
         // Strategies that `all` means may be left out, and truths and deep images are no records.
         assert_eq!(lack(&results("lightbench --strategies all", &["None"])), None);
+        assert!(lack(&results("lightbench --strategies all", &["SC-E/48x48x40"])).is_some());
+        assert!(lack(&results("lightbench --strategies all --mode both", &["None"])).is_some());
         for command in ["truth", "cdi"] {
             let mut results = results(&format!("lightbench {command}"), &[]);
             assert_eq!(lack(&results), None);

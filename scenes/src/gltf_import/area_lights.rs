@@ -141,10 +141,10 @@ const EXTENSION: &str = "EXT_lights_area";
 
 /// One light of EXT_lights_area.
 #[derive(Deserialize)]
-struct ExtensionJson {
-    name: Option<String>,
+struct ExtensionJson<'a> {
+    name: Option<&'a str>,
     #[serde(rename = "type")]
-    kind: String,
+    kind: &'a str,
     #[serde(default = "white")]
     color: [f32; 3],
     /// Luminance, candela per square metre.
@@ -190,18 +190,19 @@ fn of_extension(
         file.invalid(field, number, format!("below {}, the number of its lights", lights.len()))
     })?;
     let field = || format!("extensions.{EXTENSION}.lights[{number}]");
-    let json: ExtensionJson = serde_json::from_value(value.clone())
+    // Borrowed: many nodes may name one light with a long name.
+    let json = ExtensionJson::deserialize(value)
         .map_err(|error| file.invalid(field(), value, format!("an area light, but: {error}")))?;
     let (width, height) = (json.size * json.rect.aspect, json.size);
     if !(width > 0.0 && height > 0.0 && width.is_finite()) {
         return Err(file.invalid(field(), value, "a light with size and aspect above 0"));
     }
-    let name = json.name.as_deref().map_or_else(|| format!("area light {number}"), kept_name);
+    let name = json.name.map_or_else(|| format!("area light {number}"), kept_name);
     // A mirroring transform turns outlines round.
     let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
     let place = |x: f32, y: f32| to_world.transform_vector3(Vec3::new(x, y * side, 0.0));
     let position = to_world.transform_point3(Vec3::ZERO);
-    let (emitter, position) = match json.kind.as_str() {
+    let (emitter, position) = match json.kind {
         "rect" => {
             let half_y = place(0.0, -0.5 * height);
             (Emitter::rectangle(place(0.5 * width, 0.0), half_y), position)

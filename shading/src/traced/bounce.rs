@@ -34,7 +34,8 @@ pub struct Paths {
     pub count: u32,
     /// Surfaces that each may meet, at most [`MAX_BOUNCES`].
     pub bounces: u32,
-    /// Whether those surfaces reflect lights as virtual point lights emit: diffusely, and no area lights.
+    /// Whether those surfaces reflect lights as virtual point lights emit: diffusely, and no area lights, no
+    /// suns and no emission.
     /// Then a path ends at the first.
     pub is_matte: bool,
 }
@@ -72,7 +73,9 @@ fn path(
     for bounce in 0..bounces {
         let first = bounce * DIMENSIONS;
         let brdf = BrdfSampler::new(&at.surface, at.to_eye);
-        if let Some(emission) = scene.draw_emission(&at, point.at(first + TURN)) {
+        if !paths.is_matte
+            && let Some(emission) = scene.draw_emission(&at, point.at(first + TURN))
+        {
             let weight = 1.0 / (emission.density + brdf.density(emission.direction));
             radiance += share * weight * from_direction(&at, &emission, scene);
         }
@@ -93,7 +96,8 @@ fn path(
         } else {
             direct_radiance_once(lights, &hit, scene, point, lit)
         };
-        radiance += share * (hit.emission * weight + reflected);
+        let emitted = if paths.is_matte { DVec3::ZERO } else { hit.emission * weight };
+        radiance += share * (emitted + reflected);
         at = hit;
     }
     radiance

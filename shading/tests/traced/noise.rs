@@ -19,8 +19,13 @@ fn gain(estimate: impl Fn(u32, u64) -> Estimate) -> f64 {
     let mean = singles.iter().sum::<f64>() / 4096.0;
     let spread = singles.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 4095.0;
     let all: Vec<Estimate> = (0..24).map(|seed| estimate(4096, seed)).collect();
+    let mean = all.iter().map(|one| one.mean.y).sum::<f64>() / 24.0;
+    let seen = all.iter().map(|one| (one.mean.y - mean).powi(2)).sum::<f64>() / 23.0;
+    // What the images state of themselves is what 24 of them differ by, as far as 24 can tell.
     let stated = all.iter().map(|one| one.variance.y).sum::<f64>() / 24.0;
-    spread / 4096.0 / stated
+    assert!((0.3..3.0).contains(&(stated / seen)), "stated {stated}, seen {seen}");
+    println!("gain {} seen, {} stated", spread / 4096.0 / seen, spread / 4096.0 / stated);
+    spread / 4096.0 / seen.max(stated)
 }
 
 #[test]
