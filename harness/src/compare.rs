@@ -119,7 +119,7 @@ impl Bench {
         let (_, scene, triangles) = match known {
             Some(known) => self.triangles.insert(known),
             None => {
-                let scene = scenes::open(scene)?.scaled(scale as f32)?;
+                let scene = scenes::open(scene)?.scaled(scale)?;
                 let triangles = WorldTriangles::new(&self.gpu, &scene)?;
                 self.triangles.insert((key, scene, triangles))
             }

@@ -12,7 +12,7 @@
 
 use assign::{Projection, View};
 use glam::Vec2;
-use scenes::{Lens, Pose, Scene};
+use scenes::{DepthSpan, Lens, Pose, Scene};
 
 use crate::{
     camera::file_camera,

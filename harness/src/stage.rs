@@ -89,7 +89,7 @@ impl Stage {
     fn under_scattered_lights(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let scene = scenes::open(&args.scene)?;
         let unscaled_m = scene.core_bounds.diagonal();
-        let mut scene = scene.scaled(args.scene_scale as f32)?.replicated(args.replicate)?;
+        let mut scene = scene.scaled(args.scene_scale)?.replicated(args.replicate)?;
         if args.bounce.is_on() {
             // What is seen is what the primary light sends, and the truth knows nothing else.
             scene = scene.without_emission();
@@ -252,7 +252,7 @@ impl Lit {
         let mut warnings = Vec::new();
         if let Some(file) = &args.lights_from {
             let origin = scene.origin / args.scene_scale;
-            let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale as f32)?;
+            let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale)?;
             if other.lights.is_empty() && other.suns.is_empty() {
                 let accepted = "a file that holds lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
@@ -275,7 +275,8 @@ impl Lit {
         }
         let own = lights.len();
         let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
-        let total = (u64::from(args.lights) + lights.len() as u64) * copies_of;
+        // The scene's own lights are copied already.
+        let total = u64::from(args.lights) * copies_of + lights.len() as u64;
         if total > u64::from(scenes::MAX_LIGHTS) {
             let value = format!("{} with {copies_of} copies: {total} lights", args.lights);
             let accepted = format!("at most {} lights together", scenes::MAX_LIGHTS);

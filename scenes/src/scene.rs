@@ -264,7 +264,7 @@ impl Scene {
     /// # Errors
     ///
     /// [`SceneError::OutOfRange`] unless `factor` is finite and within 1e-6..=1e6.
-    pub fn scaled(mut self, factor: f32) -> Result<Self, SceneError> {
+    pub fn scaled(mut self, factor: f64) -> Result<Self, SceneError> {
         if !(1e-6..=1e6).contains(&factor) {
             return Err(SceneError::OutOfRange {
                 field: "scene scale",
@@ -272,6 +272,8 @@ impl Scene {
                 accepted: "between 0.000001 and 1000000",
             });
         }
+        self.origin *= factor;
+        let factor = factor as f32;
         let scale = Mat4::from_scale(Vec3::splat(factor));
         for model in &mut self.models {
             model.object_to_world = scale * model.object_to_world;
@@ -297,7 +299,6 @@ impl Scene {
             }
         }
         self.path = self.path.scaled(factor);
-        self.origin *= f64::from(factor);
         for bounds in [&mut self.bounds, &mut self.core_bounds] {
             *bounds = Aabb::new(bounds.min * factor, bounds.max * factor);
         }

@@ -136,7 +136,7 @@ pub(super) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let extent = if args.quick { QUICK } else { FULL };
-    let [core, _] = scene.boxes(bench)?;
+    let ([core, _], _) = scene.boxes(bench)?;
     let mut jobs = images(args, scene, &extent, core.diagonal());
     jobs.extend(steps(args, scene, &extent));
     jobs.extend(deep_images(args, scene, &extent));

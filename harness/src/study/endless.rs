@@ -1,7 +1,7 @@
 //! Many polygon lights through clusters with normal cones (Swarbrick 2025, chapter 5): 126 lights in
 //! one scene and 2,016 in sixteen, from three places, by the number of cones.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use scenes::Aabb;
 
 use super::{Job, StudyScene};
@@ -87,7 +87,7 @@ pub(super) fn jobs(
     let size = args.size.unwrap_or(extent.size);
     let drawn = scene.options(size, args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
-    let [core, all] = scene.boxes(bench)?;
+    let ([core, all], origin) = scene.boxes(bench)?;
     let range = range_m(core).to_string();
     let lit = ["--lights", LIGHTS, "--areas", "1"];
     let shaped = ["--outlines", "polygons", "--diffuse-share", DIFFUSE_SHARE, "--radii", "equal"];
@@ -102,7 +102,7 @@ pub(super) fn jobs(
     };
     let [(_, few), (_, many)] = extent.copies;
     for (side, count) in extent.copies {
-        let far = afar(all, side.parse().unwrap_or(1));
+        let far = afar(all, origin, side.parse().unwrap_or(1));
         for (place, camera) in [("a", "path:0/12"), ("b", "path:7/12"), ("c", far.as_str())] {
             // The paper has no figures of few lights from afar.
             if place != "c" || count != few {
@@ -159,14 +159,18 @@ fn range_m(core: Aabb) -> f32 {
     ((size.x * size.y * size.z).cbrt() * RANGE_SHARE).clamp(1e-6, 1e6)
 }
 
-/// A camera that overlooks all copies: above a corner of the ground, looking down at its middle.
-fn afar(one: Aabb, side: u32) -> String {
+/// A camera that overlooks all copies: above a corner of the ground, looking down at its middle. `origin` is
+/// where world space begins in the coordinates of the scene's file.
+fn afar(one: Aabb, origin: DVec3, side: u32) -> String {
     let size = one.size();
     let ground = Vec3::new(size.x, 0.0, size.z) * side as f32;
     let middle = one.min + 0.5 * ground;
     let eye = one.min + 0.05 * ground + Vec3::Y * (size.y + 0.2 * ground.length());
     // Every digit, so that small scenes have views of their own; no negative zero.
-    let point = |point: Vec3| point.to_array().map(|x| (x + 0.0).to_string()).join(",");
+    let point = |point: Vec3| match origin == DVec3::ZERO {
+        true => point.to_array().map(|x| (x + 0.0).to_string()).join(","),
+        false => (point.as_dvec3() + origin).to_array().map(|x| x.to_string()).join(","),
+    };
     format!("{}:{}", point(eye), point(middle))
 }
 
@@ -178,8 +182,8 @@ mod tests {
     fn the_far_camera_stands_above_a_corner_and_looks_at_the_middle() {
         let one = Aabb::new(Vec3::new(-15.0, 0.0, -7.0), Vec3::new(15.0, 10.0, 7.0));
         for side in [1, 4] {
-            let Ok(pose) = afar(one, side).parse::<crate::cli::CameraPose>() else {
-                panic!("{} is a pose", afar(one, side));
+            let Ok(pose) = afar(one, DVec3::ZERO, side).parse::<crate::cli::CameraPose>() else {
+                panic!("{} is a pose", afar(one, DVec3::ZERO, side));
             };
             assert!(
                 pose.eye[1] > f64::from(one.max.y) && pose.eye[0] < 0.0 && pose.eye[2] < 0.0,
@@ -195,18 +199,23 @@ mod tests {
         for size in [1e-4_f32, 0.01, 3.3, 1e5] {
             let one =
                 Aabb::new(Vec3::new(-0.5, 0.0, -0.25) * size, Vec3::new(0.5, 0.4, 0.25) * size);
-            let text = afar(one, 3);
+            let text = afar(one, DVec3::ZERO, 3);
             let pose: crate::cli::CameraPose =
                 text.parse().unwrap_or_else(|e| panic!("{text}: {e}"));
             let ground = Vec3::new(3.0 * size, 0.0, 1.5 * size);
             let eye = one.min + 0.05 * ground + Vec3::Y * (0.4 * size + 0.2 * ground.length());
-            assert_eq!(glam::DVec3::from(pose.eye).as_vec3(), eye, "{text}");
+            assert_eq!(DVec3::from(pose.eye).as_vec3(), eye, "{text}");
             let range: f32 = range_m(one).to_string().parse().unwrap();
             assert_eq!(range, range_m(one));
             assert!(range > 0.1 * size && range < size, "{range}");
         }
+        // A scene far off is named by its file's coordinates.
+        let one = Aabb::new(Vec3::splat(-1.0), Vec3::ONE);
+        let far = afar(one, DVec3::new(1e7, 0.0, 0.25), 1);
+        let pose: crate::cli::CameraPose = far.parse().unwrap_or_else(|e| panic!("{far}: {e}"));
+        assert_eq!(pose.target, [1e7, -1.0, 0.25], "{far}");
         let flat = Aabb::new(Vec3::ZERO, Vec3::new(2.0, 0.0, -0.0));
-        assert!(!afar(flat, 1).contains("-0"), "{}", afar(flat, 1));
+        assert!(!afar(flat, DVec3::ZERO, 1).contains("-0"), "{}", afar(flat, DVec3::ZERO, 1));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use scenes::Aabb;
 
 use crate::{
@@ -59,13 +60,16 @@ impl StudyScene {
         scene.into_iter().chain(lit).map(str::to_owned).collect()
     }
 
-    /// The boxes of its core and of all that is in it, metres.
-    pub(super) fn boxes(&self, bench: &mut Bench) -> Result<[Aabb; 2], HarnessError> {
+    /// The boxes of its core and of all that is in it, metres in world space, and where that begins in the
+    /// coordinates that options take.
+    pub(super) fn boxes(&self, bench: &mut Bench) -> Result<([Aabb; 2], DVec3), HarnessError> {
         let scale = self.scale.to_string();
         let words = ["lightbench", "compare", "--scene", &self.scene, "--scene-scale", &scale];
         let words = [&words[..], &["--size", "16x9", "--lights", "1"]].concat();
-        let Invocation::Compare(args) = cli::parse(words)? else { return Ok([Aabb::EMPTY; 2]) };
+        let Invocation::Compare(args) = cli::parse(words)? else {
+            return Ok(([Aabb::EMPTY; 2], DVec3::ZERO));
+        };
         let scene = &bench.stage(&args.stage)?.scene;
-        Ok([scene.core_bounds, scene.bounds])
+        Ok(([scene.core_bounds, scene.bounds], scene.origin))
     }
 }

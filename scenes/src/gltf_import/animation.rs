@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use glam::{DMat4, DVec3, Mat4, Quat, Vec4, Vec4Swizzles};
+use glam::{DMat4, DVec3, Quat, Vec4, Vec4Swizzles};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
     validation::Checked,
@@ -45,10 +45,14 @@ struct Track {
     is_rotation: bool,
 }
 
-/// The nodes that any animation acts on.
+/// The nodes that any animation moves, turns or scales.
 pub(super) fn targets(file: &File) -> HashSet<usize> {
     let channels = file.root.animations.iter().flat_map(|animation| &animation.channels);
-    channels.map(|channel| channel.target.node.value()).collect()
+    let moves = |channel: &&Channel| {
+        use Property::{Rotation, Scale, Translation};
+        matches!(channel.target.path, Checked::Valid(Translation | Rotation | Scale))
+    };
+    channels.filter(moves).map(|channel| channel.target.node.value()).collect()
 }
 
 /// The animation of the camera at the end of `chain`; `None` where nothing moves it. Only the
@@ -182,22 +186,26 @@ impl AnimatedNode {
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
         let root = DMat4::from_translation(-self.origin);
-        let parts = self.chain.iter().map(|part| part.matrix(time).as_dmat4());
-        pose(&parts.fold(root, |world, part| world * part))
+        // As `nodes::walk` places what stands still: scales of 0 turn no camera.
+        let (place, facing) = self.chain.iter().fold((root, root), |(place, facing), part| {
+            let local = part.local(time);
+            (place * local.matrix().as_dmat4(), facing * local.facing().as_dmat4())
+        });
+        pose(&DMat4 { w_axis: place.w_axis, ..facing })
     }
 }
 
 impl Part {
-    fn matrix(&self, time: f32) -> Mat4 {
+    /// The transform at a time.
+    fn local(&self, time: f32) -> Local {
         let sample = |track: &Option<Track>| track.as_ref().map(|t| t.sample(time));
         match self.local {
-            Local::Matrix(matrix) => matrix,
+            Local::Matrix(_) => self.local,
             Local::Parts { translation, rotation, scale } => Local::Parts {
                 translation: sample(&self.translation).map_or(translation, Vec4::xyz),
                 rotation: sample(&self.rotation).map_or(rotation, quaternion),
                 scale: sample(&self.scale).map_or(scale, Vec4::xyz),
-            }
-            .matrix(),
+            },
         }
     }
 }

@@ -148,8 +148,10 @@ impl File {
             })?;
             let bytes: Vec<u8> = percent_encoding::percent_decode_str(body).collect();
             if head.ends_with(";base64") {
+                let digits: Vec<u8> =
+                    bytes.into_iter().filter(|byte| !byte.is_ascii_whitespace()).collect();
                 return BASE64
-                    .decode(bytes)
+                    .decode(digits)
                     .map_err(|_| self.invalid(field, &shown, "valid base64"));
             }
             return Ok(bytes);
@@ -180,7 +182,7 @@ impl File {
     }
 }
 
-/// Data URIs may leave out the padding at their end.
+/// Data URIs may leave out the padding at their end, and break their lines.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     GeneralPurposeConfig::new()

@@ -70,6 +70,7 @@ struct Job<'a> {
     field: String,
     material: usize,
     uv_set: u32,
+    has_textures: bool,
     needs_tangents: bool,
     /// What it holds compressed.
     draco: Option<DracoMesh>,
@@ -89,6 +90,7 @@ impl<'a> Job<'a> {
             field: format!("meshes[{mesh}].primitives[{ix}]"),
             material,
             uv_set: materials.uv_sets[material],
+            has_textures: materials.materials[material].textures().iter().any(Option::is_some),
             needs_tangents: materials.materials[material].normal_texture.is_some(),
             draco: None,
         }
@@ -230,6 +232,12 @@ impl<'a> Job<'a> {
         self.fill(Semantic::Normals, &mut vertices, |v, normal| v.normal = normal)?;
         self.fill(Semantic::Tangents, &mut vertices, |v, tangent| v.tangent = tangent)?;
         self.fill(Semantic::TexCoords(self.uv_set), &mut vertices, |v, uv| v.uv = uv)?;
+        if self.has_textures && self.attribute(Semantic::TexCoords(self.uv_set)).is_none() {
+            warnings.add(format!(
+                "mesh {:?}: has no TEXCOORD_{}, which its material's textures need: they show one colour",
+                self.name, self.uv_set
+            ));
+        }
         let mut bad = 0;
         for uv in vertices.iter_mut().map(|v| &mut v.uv) {
             if !(uv[0].is_finite() && uv[1].is_finite()) {

@@ -86,10 +86,17 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let targets = animation::targets(&file);
     let mut view_camera = 0;
     for (ix, chain) in placed.camera_chains.iter().enumerate() {
-        if animated.is_none() && chain.iter().any(|node| targets.contains(node)) {
-            animated = animation::load(&file, chain, origin, &mut warnings)?;
-            view_camera = if animated.is_some() { ix } else { 0 };
+        if !chain.iter().any(|node| targets.contains(node)) {
+            continue;
         }
+        if animated.is_some() {
+            let name = &placed.cameras[ix].name;
+            warnings
+                .add(format!("camera {name:?}: its animation is not played, only the first is"));
+            continue;
+        }
+        animated = animation::load(&file, chain, origin, &mut warnings)?;
+        view_camera = if animated.is_some() { ix } else { 0 };
     }
     let mut scene = Scene {
         name: name(path),

@@ -48,6 +48,9 @@ impl Placed {
             && let Some(range) =
                 skins.pose(skin.value(), &visit.to_world, range.clone(), meshes, warnings)?
         {
+            if instances(file, visit.ix, node)?.is_some() {
+                warnings.add(format!("node {name:?}: {INSTANCING} is left out on a skinned mesh"));
+            }
             // The joints place a skinned mesh, not the node that holds it.
             self.add_model(name, range, Mat4::IDENTITY, meshes, warnings);
             return Ok(());

@@ -87,7 +87,7 @@ impl Local {
     }
 
     /// The matrix with axes of length 0 replaced, so that it still turns what looks along them.
-    fn facing(&self) -> Mat4 {
+    pub(super) fn facing(&self) -> Mat4 {
         match *self {
             Self::Matrix(matrix) => with_axes(matrix),
             Self::Parts { translation, rotation, scale } => {
@@ -138,6 +138,16 @@ pub(super) fn walk(file: &File, origin: DVec3) -> Result<Walk, SceneError> {
         }
         let node = &nodes[ix];
         let local = Local::of(node);
+        if let Some(row) = node.matrix.map(|m| [m[3], m[7], m[11], m[15]])
+            && row != [0.0, 0.0, 0.0, 1.0]
+        {
+            let accepted = "0, 0, 0, 1: an affine transform";
+            return Err(file.invalid(
+                format!("nodes[{ix}].matrix last row"),
+                format!("{row:?}"),
+                accepted,
+            ));
+        }
         let exact = parent_to_world * local.matrix().as_dmat4();
         let to_world = exact.as_mat4();
         if !to_world.is_finite() {

@@ -21,6 +21,7 @@ use crate::{Encoding, Scene, SceneError};
 
 /// A quad of two triangles, indexed, with normals and uv; one textured material with a normal
 /// map; a mirrored and a plain instance; a spot light; an animated camera.
+#[derive(Clone)]
 struct Sample {
     json: Value,
     binary: Vec<u8>,
@@ -152,7 +153,7 @@ fn animated_cameras_become_the_path() {
     assert_eq!(scaled.path.pose(2, 3).eye, Vec3::new(8.0, 0.0, 10.0));
     assert_eq!((scaled.lights[0].range_m, scaled.lights[0].intensity.x), (40.0, 32.0));
     assert_eq!(scaled.bounds.max, Vec3::new(2.0, 4.0, 0.0));
-    assert!(scaled.scaled(f32::NAN).is_err());
+    assert!(scaled.scaled(f64::NAN).is_err());
 }
 
 #[test]

@@ -118,3 +118,34 @@ fn a_scene_far_from_the_origin_is_drawn_as_one_at_it() {
     let scaled = moved_to([1e6, 0.0, 0.0]).scaled(2.0).expect("in range");
     assert!((scaled.origin.x - 2e6).abs() < 10.0, "{}", scaled.origin);
 }
+
+/// A camera under a node that is flat along one axis looks where it would look without an animation, and a
+/// second animated camera is named.
+#[test]
+fn animated_cameras_keep_their_directions_and_others_are_named() {
+    let mut sample = sample();
+    let animated = sample.json["animations"][0].clone();
+    let target = animated["channels"][0]["target"]["node"].as_u64().expect("a node") as usize;
+    let still = {
+        let mut still = sample.clone();
+        still.json["animations"] = json!([]);
+        still.json["nodes"][target]["scale"] = json!([1.0, 0.0, 1.0]);
+        load(&still).expect("valid").cameras[0].pose.forward()
+    };
+    sample.json["nodes"][target]["scale"] = json!([1.0, 0.0, 1.0]);
+    let channels = sample.json["animations"][0]["channels"].as_array_mut().expect("channels");
+    channels.retain(|channel| channel["target"]["path"] == "translation");
+    let scene = load(&sample).expect("valid");
+    assert!(scene.path.pose(0, 3).forward().distance(still) < 1e-6, "{:?}", scene.path.pose(0, 3));
+}
+
+#[test]
+fn transforms_must_be_affine() {
+    let mut sample = sample();
+    let mut matrix = [0.0; 16];
+    (0..4).for_each(|ix| matrix[5 * ix] = 1.0);
+    matrix[3] = 0.5;
+    sample.json["nodes"][0] = json!({"mesh": 0, "matrix": matrix});
+    let error = load(&sample).expect_err("projective").to_string();
+    assert!(error.contains("nodes[0].matrix last row is [0.5, 0.0, 0.0, 1.0]"), "{error}");
+}
