@@ -46,9 +46,9 @@ const ABOUT: &str = "Compare ways of assigning many lights to pixels";
 const LONG_ABOUT: &str = "\
 Compare ways of assigning many lights to pixels.
 
-Draws one scene with each strategy through the same pipeline: only the light lists differ, and \
-None, the reference of all images, evaluates every light where the others leave out early what adds \
-nothing to a sample (Sphere is None that does). Times every pass, checks every list and every image against no culling, and writes a \
+Draws one scene with each strategy through the same pipeline: only the light lists differ. None, the \
+reference, evaluates every light at every sample. All others skip a light early where it adds nothing; \
+Sphere is None with that skip. Times every pass, checks every list and every image against no culling, and writes a \
 report: DIR/index.html to look at, DIR/results.json to compute with.";
 
 const EXAMPLES: &str = "\
@@ -62,6 +62,7 @@ Examples:
       One strategy with three settings. `lightbench list strategies` names them all.
 
 How to read the result:
+  rank           1 is fastest of those that lose nothing; methods that tie share a rank
   both ms        assigning and shading together: compare strategies by it
   span ms        the same with the gaps between passes; not known on a software adapter
   listed         lights in the list that a pixel reads, mean; contributing is what a perfect list holds

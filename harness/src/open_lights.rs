@@ -40,9 +40,9 @@ impl OpenLights {
             false => format!("{} to {}", short(shortest.into()), short(longest.into())),
         };
         format!(
-            "{count} {lights} no range in {their} file, and an end at {at} m, where a surface \
-             receives {} lux: it loses at most {} lux to each light; \
-             --threshold moves the end, --unbounded measures the loss",
+            "{count} {lights} no range in {their} file, and an end at {at} m, where a surface receives {} lux. \
+             Each end takes at most {} lux from a surface: --threshold moves it, --unbounded measures the \
+             loss",
             short(threshold),
             short(LOST * threshold)
         )

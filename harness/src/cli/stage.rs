@@ -67,7 +67,7 @@ pub struct StageArgs {
     #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
     pub diffuse_share: f64,
 
-    /// Give every light the range at which its intensity over squared distance (candela: lux) falls
+    /// End every light where its intensity over squared distance (candela over square metres: lux) falls
     /// to this, 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02, lights whose
     /// file gives no range 0.02 or less, so that dim ones are seen]
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
@@ -78,7 +78,8 @@ pub struct StageArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold)]
     pub influence: Option<f64>,
 
-    /// Order of the lights in their buffer, for all methods alike
+    /// Order of the lights in their buffer, for all methods alike: given (as they come), morton (along a
+    /// space-filling curve) or bvh (as the leaves of a hierarchy)
     #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order)]
     pub light_order: LightOrder,
 

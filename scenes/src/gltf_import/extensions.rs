@@ -85,6 +85,24 @@ pub(super) fn check(path: &Path, json: &Value, warnings: &mut Warnings) -> Resul
     Ok(())
 }
 
+/// Takes the extensions that are not read out of the JSON, so that nothing in them can be a fault.
+pub(super) fn strip(value: &mut Value) {
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(strip),
+        Value::Object(map) => {
+            for (key, value) in map.iter_mut().filter(|(key, _)| *key != "extras") {
+                if key == "extensions"
+                    && let Some(extensions) = value.as_object_mut()
+                {
+                    extensions.retain(|name, _| READ.contains(&name.as_str()));
+                }
+                strip(value);
+            }
+        }
+        _ => {}
+    }
+}
+
 /// Counts the objects that carry each extension.
 fn count<'a>(value: &'a Value, uses: &mut BTreeMap<&'a str, u64>) {
     match value {

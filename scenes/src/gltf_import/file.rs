@@ -269,6 +269,7 @@ fn parse(path: &Path, json: &[u8], warnings: &mut Warnings) -> Result<Root, Scen
     let asset = json.get("asset").cloned();
     adapt::adapt(&mut json, warnings);
     let known = extensions::check(path, &json, warnings);
+    extensions::strip(&mut json);
     let root: Root = serde_json::from_value(json).map_err(|e| {
         // Other versions look different: better to name the version than what differs.
         let wrong = asset.and_then(|asset| check_version_of(path, &asset).err());

@@ -203,3 +203,15 @@ fn animations_of_what_is_drawn_are_named() {
     assert_warns(&moved(2), "1 animated nodes stay at rest, \"node 2\" the first");
     assert_warns(&moved(0), "\"node 0\" the first");
 }
+
+/// Whatever stands in an extension that nobody reads is no fault.
+#[test]
+fn extensions_that_are_not_read_cannot_be_faulty() {
+    let mut sample = sample();
+    sample.json["materials"][0]["extensions"] = json!({"KHR_materials_volume": {"thicknessFactor": "inf"}, "KHR_materials_transmission": 7});
+    sample.json["extensionsUsed"] = json!(["KHR_materials_volume", "KHR_materials_transmission"]);
+    let scene = load(&sample).expect("valid");
+    for name in ["KHR_materials_volume", "KHR_materials_transmission"] {
+        assert!(scene.warnings.iter().any(|line| line.contains(name)), "{:?}", scene.warnings);
+    }
+}
