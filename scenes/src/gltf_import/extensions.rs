@@ -85,12 +85,15 @@ pub(super) fn check(path: &Path, json: &Value, warnings: &mut Warnings) -> Resul
     Ok(())
 }
 
-/// Takes the extensions that are not read out of the JSON, so that nothing in them can be a fault.
+/// Takes the extensions that are not read out of the JSON, so that nothing in them can be a fault. Those of
+/// textures stay: a warning names them where a texture has no other image.
 pub(super) fn strip(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(strip),
         Value::Object(map) => {
-            for (key, value) in map.iter_mut().filter(|(key, _)| *key != "extras") {
+            for (key, value) in
+                map.iter_mut().filter(|(key, _)| !["extras", "textures"].contains(&key.as_str()))
+            {
                 if key == "extensions"
                     && let Some(extensions) = value.as_object_mut()
                 {
