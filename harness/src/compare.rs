@@ -12,6 +12,7 @@ use crate::{
     checks::{check_area_options, check_modes, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
     cli::{CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
+    described::{describe, note_faults},
     drift::note_drift,
     error::HarnessError,
     errors::ImagePair,
@@ -21,8 +22,8 @@ use crate::{
     out_folder::{OutFolder, leave_all},
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
-    report::{self, significant},
-    results::{BASELINE, Machine, RejectedLight, Results, Truth, Untested},
+    report,
+    results::{BASELINE, Machine, Results, Truth, Untested},
     sight::untested,
     stage::Stage,
 };
@@ -352,21 +353,6 @@ impl Run<'_> {
     }
 }
 
-/// Notes what was wrong with the scene and its lights.
-pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
-    results.warnings.extend(stage.scene.warnings.iter().cloned());
-    results.warnings.extend(stage.notes.iter().cloned());
-    results.warnings.extend(stage.open_lights.map(|open| open.note()));
-    let rejected = stage.lights.rejected().iter();
-    results.rejected_lights = rejected
-        .map(|rejected| RejectedLight {
-            scene: stage.scene.name.clone(),
-            index: rejected.index as u64,
-            reason: rejected.fault.to_string(),
-        })
-        .collect();
-}
-
 fn progress_bar(total: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -380,42 +366,4 @@ fn end_on_device_error(gpu: &Gpu) {
         leave_all();
         std::process::exit(1);
     }));
-}
-
-/// Lights left out that are named on the terminal; the results hold all of them.
-const MOST_REJECTED_SHOWN: usize = 20;
-
-fn describe(stage: &Stage) {
-    say(format!(
-        "scene    {}: {} triangles, {} models, {} lights{}",
-        stage.scene.name,
-        stage.scene.triangle_count(),
-        stage.scene.models.len(),
-        stage.lights.count(),
-        match stage.suns.as_slice().len() {
-            0 => String::new(),
-            1 => ", 1 sun".to_owned(),
-            count => format!(", {count} suns"),
-        }
-    ));
-    if let Some(open) = &stage.open_lights {
-        say(format!("lights   {}", open.note()));
-    }
-    if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
-        say(format!(
-            "lights   scattered with a mean radius of {} m",
-            significant(stage.radius_scale)
-        ));
-    }
-    for warning in stage.scene.warnings.iter().chain(&stage.notes) {
-        say(format!("warning  {warning}"));
-    }
-    let rejected = stage.lights.rejected();
-    for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
-        say(format!("warning  light {} left out: {}", rejected.index, rejected.fault));
-    }
-    if rejected.len() > MOST_REJECTED_SHOWN {
-        let more = rejected.len() - MOST_REJECTED_SHOWN;
-        say(format!("warning  and {more} more lights left out"));
-    }
 }

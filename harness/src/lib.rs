@@ -13,6 +13,7 @@ pub mod cli;
 pub mod clock;
 pub mod compare;
 pub mod deep;
+mod described;
 mod digits;
 pub mod drift;
 pub mod error;

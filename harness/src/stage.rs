@@ -258,9 +258,6 @@ impl Lit {
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
             }
             // The scene that they light decides where they end.
-            for &ix in &other.open_lights {
-                other.lights[ix as usize].range_m = f32::INFINITY;
-            }
             let first = lights.len() as u32;
             let closed = close_ranges(&mut other.lights, scene.core_bounds.diagonal());
             open.extend(closed.into_iter().map(|ix| first + ix));

@@ -16,7 +16,8 @@ use shading::{EDGE, HdrImage, luminance};
 use crate::{
     checks::remove_stale,
     cli::{CliError, TruthArgs},
-    compare::{Bench, note_faults},
+    compare::Bench,
+    described::note_faults,
     error::HarnessError,
     errors::{ImagePair, errors, stored},
     machine::machine,

@@ -59,8 +59,8 @@ pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
 }
 
 /// Opens the lights of a procedural scene or of a glTF file: a scene whose lights are all there
-/// is to use. The file may hold nothing but lights. World space
-/// begins at `origin` of the file.
+/// is to use. The file may hold nothing but lights. World space begins at `origin` of the file. Lights
+/// without a range reach infinitely far: [`close_ranges`](crate::close_ranges) ends them.
 ///
 /// # Errors
 ///

@@ -1,0 +1,62 @@
+//! What a stage holds and what is wrong with it: on the terminal, and in results.
+
+use crate::{
+    messages::say,
+    report::significant,
+    results::{RejectedLight, Results},
+    stage::Stage,
+};
+
+/// Lights left out that are named on the terminal; the results hold all of them.
+const MOST_REJECTED_SHOWN: usize = 20;
+
+/// Notes what was wrong with the scene and its lights.
+pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
+    results.warnings.extend(stage.scene.warnings.iter().cloned());
+    results.warnings.extend(stage.notes.iter().cloned());
+    results.warnings.extend(stage.open_lights.map(|open| open.note()));
+    let rejected = stage.lights.rejected().iter();
+    results.rejected_lights = rejected
+        .map(|rejected| RejectedLight {
+            scene: stage.scene.name.clone(),
+            index: rejected.index as u64,
+            reason: rejected.fault.to_string(),
+        })
+        .collect();
+}
+
+/// Says on the terminal what a stage holds, and what is wrong with it.
+pub(crate) fn describe(stage: &Stage) {
+    say(format!(
+        "scene    {}: {} triangles, {} models, {} lights{}",
+        stage.scene.name,
+        stage.scene.triangle_count(),
+        stage.scene.models.len(),
+        stage.lights.count(),
+        match stage.suns.as_slice().len() {
+            0 => String::new(),
+            1 => ", 1 sun".to_owned(),
+            count => format!(", {count} suns"),
+        }
+    ));
+    if let Some(open) = &stage.open_lights {
+        say(format!("lights   {}", open.note()));
+    }
+    if stage.vpls.is_none() && stage.lights.count() as usize > stage.own_lights + 1 {
+        say(format!(
+            "lights   scattered with a mean radius of {} m",
+            significant(stage.radius_scale)
+        ));
+    }
+    for warning in stage.scene.warnings.iter().chain(&stage.notes) {
+        say(format!("warning  {warning}"));
+    }
+    let rejected = stage.lights.rejected();
+    for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
+        say(format!("warning  light {} left out: {}", rejected.index, rejected.fault));
+    }
+    if rejected.len() > MOST_REJECTED_SHOWN {
+        let more = rejected.len() - MOST_REJECTED_SHOWN;
+        say(format!("warning  and {more} more lights left out"));
+    }
+}
