@@ -1,6 +1,6 @@
 //! How far the models of a study are from its truth image: an error of shading, never of culling.
 
-use super::{Done, Job, MODELS, TRUTH};
+use crate::study::{Done, Job, MODELS, TRUTH};
 use crate::{
     error::HarnessError,
     errors::{ImagePair, errors, stored},

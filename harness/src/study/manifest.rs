@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::StudyScene;
+use crate::study::StudyScene;
 use crate::{
     messages::say,
     results::{Results, ResultsError, sealed, unsealed, write_atomically},
@@ -31,7 +31,7 @@ pub struct Job {
 impl Job {
     /// A job of a scene: its section, what tells it from others of the section, and its command without
     /// the program's name.
-    pub(super) fn new(scene: &StudyScene, section: &str, variant: &str, words: &[&str]) -> Self {
+    pub(crate) fn new(scene: &StudyScene, section: &str, variant: &str, words: &[&str]) -> Self {
         let parts = [scene.name.as_str(), section, variant];
         let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         let command = std::iter::once("lightbench").chain(words.iter().copied());
