@@ -30,7 +30,7 @@ pub use fit_ltc::FitLtcArgs;
 pub use names::{did_you_mean, nearest};
 pub use parse::{parse, parse_stored};
 pub use stage::{LightBox, OutlinesChoice, RadiiChoice, StageArgs};
-pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs, StudyName};
+pub use study::{AdviseArgs, ReportArgs, Shard, StudyArgs};
 pub use truth::TruthArgs;
 pub(crate) use values::MAX_CHECKS;
 pub use values::{DirectionCounts, FarPlane, Size, Sizes, Span, Strategies};
@@ -151,6 +151,8 @@ pub enum Listing {
     Scenes,
     /// Every adapter that wgpu can drive, the one taken by default first
     Adapters,
+    /// Every study, and what it answers
+    Studies,
 }
 
 /// The options of `lightbench compare`.

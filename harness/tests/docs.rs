@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use harness::{
     advise::{answer, error_of, verdict},
     registry::STRATEGIES,
-    report::{claims_markdown, is_surely_faster, render_markdown, write_study},
+    report::{is_surely_faster, render_markdown},
     results::{Record, Results},
-    study::Done,
+    study::{Done, claims_markdown, write_study},
 };
 
 #[test]

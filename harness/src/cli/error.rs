@@ -83,8 +83,8 @@ impl CliError {
                 "<DIR|FILE.json>..." => {
                     "report needs a folder of a comparison or a study, or a file of results"
                 }
-                "<STUDY>" => "study needs which one: comparison, culling, area, endless or cdi",
-                _ => "list needs what to list: strategies, scenes or adapters",
+                "<STUDY>" => "study needs the name of one: `lightbench list studies` lists them",
+                _ => "list needs what to list: strategies, scenes, adapters or studies",
             }),
             ErrorKind::ArgumentConflict => Self::new(conflict(error, option, program)),
             ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues => {

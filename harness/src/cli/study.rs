@@ -3,42 +3,12 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::{
     stage::StageArgs,
     values::{self, Size},
 };
-
-/// A study by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StudyName {
-    /// The comparison paper, more lights, other radii, and speed against accuracy
-    Comparison,
-    /// The culling survey: 0 to 1,500 lights in spawn cylinders, along a path, in both modes
-    Culling,
-    /// Models of area lights: their error against a truth image, their time, and area lights against
-    /// spots
-    Area,
-    /// Many polygon lights through clusters with normal cones: light operations and times
-    Endless,
-    /// Compound deep images: times of every step, ranges against exact rays, and indirect light by
-    /// virtual point lights against a path-traced image
-    Cdi,
-}
-
-impl StudyName {
-    /// As on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Comparison => "comparison",
-            Self::Culling => "culling",
-            Self::Area => "area",
-            Self::Endless => "endless",
-            Self::Cdi => "cdi",
-        }
-    }
-}
 
 /// Which jobs of a study to run: every n-th.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,8 +42,9 @@ impl FromStr for Shard {
 /// The options of `lightbench study`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct StudyArgs {
-    /// Which study
-    pub study: StudyName,
+    /// Which study: `lightbench list studies` names them and says what each answers
+    #[arg(value_parser = values::text)]
+    pub study: String,
 
     /// A scene's name or a .gltf or .glb file; given again for each further scene
     #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
@@ -120,7 +91,7 @@ impl StudyArgs {
     pub fn folder(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             let quick = if self.quick { "-quick" } else { "" };
-            PathBuf::from(format!("out/study-{}{quick}", self.study.name()))
+            PathBuf::from(format!("out/study-{}{quick}", self.study))
         })
     }
 
@@ -132,8 +103,7 @@ impl StudyArgs {
     /// What decides the jobs: the command without its folder, its choice of jobs, its shard and its
     /// adapter.
     pub fn identity(&self) -> Vec<String> {
-        let mut words =
-            vec!["lightbench".to_owned(), "study".to_owned(), self.study.name().to_owned()];
+        let mut words = ["lightbench", "study", &self.study].map(str::to_owned).to_vec();
         let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
         for scene in &self.scene {
             option("--scene", scene.clone());

@@ -66,7 +66,7 @@ fn list_lists_what_can_be_named() {
     assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
     assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
-    assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
+    assert_eq!(refusal("list"), "list needs what to list: strategies, scenes, adapters or studies");
     let unknown = refusal("list lights");
     assert!(
         unknown.ends_with("is lights: it must be one of strategies, scenes, adapters"),
@@ -166,7 +166,7 @@ fn unknown_names_come_with_the_nearest() {
     assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
     assert_eq!(
         refusal("study"),
-        "study needs which one: comparison, culling, area, endless or cdi"
+        "study needs the name of one: `lightbench list studies` lists them"
     );
     assert_eq!(
         refusal("report"),

@@ -13,8 +13,8 @@ use super::page;
 use super::{finding, frames, notices};
 use crate::results::{Results, ResultsError, write_atomically};
 
-pub(super) const PAGE: &str = include_str!("report.html");
-pub(super) const STYLE: &str = include_str!("report.css");
+pub(crate) const PAGE: &str = include_str!("report.html");
+pub(crate) const STYLE: &str = include_str!("report.css");
 
 /// The page's programs, in the order in which they are read.
 const SCRIPTS: [&str; 5] = [
@@ -115,12 +115,12 @@ fn view(results: &Results, images: &[(String, Vec<u8>)]) -> serde_json::Value {
 }
 
 /// JSON that no HTML parser takes for the end of its script element. `<` stands only in strings.
-pub(super) fn in_script(json: &str) -> Html {
+pub(crate) fn in_script(json: &str) -> Html {
     Html::trusted(json.replace('<', "\\u003c"))
 }
 
 /// Replaces each `{{name}}` of a template; what is put in is not looked at again.
-pub(super) fn fill(template: &str, values: &[(&str, Html)]) -> String {
+pub(crate) fn fill(template: &str, values: &[(&str, Html)]) -> String {
     let mut filled = String::new();
     let mut parts = template.split("{{");
     filled.push_str(parts.next().unwrap_or_default());

@@ -3,22 +3,21 @@
 //! Both show the same columns (`metrics`), computed from the same comparisons: the
 //! records that differ in nothing but the strategy.
 
-mod comparison;
-mod finding;
-mod fit;
-mod format;
-mod frames;
-mod html;
-mod lead;
+pub(crate) mod comparison;
+pub(crate) mod finding;
+pub(crate) mod fit;
+pub(crate) mod format;
+pub(crate) mod frames;
+pub(crate) mod html;
+pub(crate) mod lead;
 mod loss;
 mod markdown;
-mod markup;
+pub(crate) mod markup;
 mod metrics;
-mod page;
-mod rank;
-mod raster;
-mod study;
-mod table;
+pub(crate) mod page;
+pub(crate) mod rank;
+pub(crate) mod raster;
+pub(crate) mod table;
 
 pub use finding::{finding, lights, notices};
 pub use format::significant;
@@ -27,5 +26,4 @@ pub use lead::needs_built_hierarchy;
 pub use loss::error_words;
 pub use markdown::render_markdown;
 pub use rank::{indistinguishable, is_surely_faster, listed};
-pub use study::{claims_markdown, write_study};
 pub use table::{TABLE_WIDTH, render_table};

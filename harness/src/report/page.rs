@@ -33,7 +33,7 @@ pub(super) fn strategy_classes(results: &Results) -> BTreeMap<&str, String> {
 }
 
 /// The style class of each pass, by name: a hue per kind, a shade per pass.
-pub(super) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
+pub(crate) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
     let mut classes = BTreeMap::new();
     let mut next: [usize; 4] = [0; 4];
     for (name, times) in results.records.iter().flat_map(|record| record.passes.iter()) {
@@ -55,7 +55,7 @@ pub(super) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
 const UNBROKEN: usize = 24;
 
 /// Text as HTML in which no name such as `DC-I/64x64x24` is broken at its hyphen.
-pub(super) fn with_names_whole(text: &str) -> Html {
+pub(crate) fn with_names_whole(text: &str) -> Html {
     let word = |(ix, word): (usize, &str)| {
         let space = if ix == 0 { "" } else { " " };
         let is_name = word.contains('-') && word.chars().count() <= UNBROKEN;
@@ -67,13 +67,13 @@ pub(super) fn with_names_whole(text: &str) -> Html {
     text.split(' ').enumerate().map(word).collect()
 }
 
-pub(super) fn paragraphs(class: &str, texts: &[String]) -> Html {
+pub(crate) fn paragraphs(class: &str, texts: &[String]) -> Html {
     let paragraph =
         |text: &String| html!("<p class=\"{}\">{}</p>\n", class, with_names_whole(text));
     texts.iter().map(paragraph).collect()
 }
 
-pub(super) fn notices(texts: &[String]) -> Html {
+pub(crate) fn notices(texts: &[String]) -> Html {
     if texts.is_empty() {
         return Html::default();
     }
@@ -104,7 +104,7 @@ pub(super) fn comparisons_html(results: &Results) -> Html {
 /// The kind of light that stands in no list.
 const SUN: &str = "sun";
 
-pub(super) fn setting(record: &Record) -> String {
+pub(crate) fn setting(record: &Record) -> String {
     let kinds: Vec<_> = record
         .light_kinds
         .iter()
@@ -133,7 +133,7 @@ pub(super) fn setting(record: &Record) -> String {
     parts.join(" \u{b7} ")
 }
 
-pub(super) fn table(
+pub(crate) fn table(
     caption: &str,
     comparison: &Comparison<'_>,
     classes: &BTreeMap<&str, String>,
@@ -190,7 +190,7 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> Html {
 }
 
 /// Where the median of assigning and shading lies, in small; its tip says how surely.
-pub(super) fn interval(record: &Record) -> Html {
+pub(crate) fn interval(record: &Record) -> Html {
     record.interval_ms().map_or_else(Html::default, |interval| {
         html!(
             "<small class=\"interval\" title=\"{} % of such intervals hold the median\">\
@@ -223,7 +223,7 @@ fn is_best(metric: &Metric, comparison: &Comparison<'_>, record: &Record, value:
 }
 
 /// What each column means.
-pub(super) fn columns() -> Html {
+pub(crate) fn columns() -> Html {
     let column = |metric: &Metric| {
         html!(
             "<dt>{} <span class=\"unit\">{}</span></dt><dd>{}</dd>\n",
@@ -236,7 +236,7 @@ pub(super) fn columns() -> Html {
 }
 
 /// Where, when and from what the figures came.
-pub(super) fn provenance(results: &Results) -> Html {
+pub(crate) fn provenance(results: &Results) -> Html {
     let machine = &results.machine;
     let mut rows: Vec<(&str, String)> = vec![
         ("Adapter", machine.adapter.clone()),
@@ -307,7 +307,7 @@ fn truth(results: &Results) -> String {
 }
 
 /// A command line that a POSIX shell splits into the same words.
-pub(super) fn shell_words(words: &[String]) -> String {
+pub(crate) fn shell_words(words: &[String]) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
     let quoted: Vec<_> = words
         .iter()

@@ -8,7 +8,7 @@ use super::rank::listed;
 use crate::results::{Machine, Record};
 
 /// What stands behind the name of a marked row.
-pub(super) const MARK: &str = "\u{2020}";
+pub(crate) const MARK: &str = "\u{2020}";
 
 /// More methods of one mode than this are counted instead of named.
 const NAMED: usize = 6;
@@ -28,7 +28,7 @@ pub(super) fn mark(machine: &Machine, record: &Record) -> String {
 }
 
 /// What the mark means, with the rows that carry it; `None` where none does.
-pub(super) fn notice<'a>(
+pub(crate) fn notice<'a>(
     machine: &Machine,
     records: impl IntoIterator<Item = &'a Record>,
 ) -> Option<String> {

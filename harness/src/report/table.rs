@@ -73,7 +73,7 @@ fn push_table(text: &mut String, comparison: &Comparison<'_>) {
     }
 }
 
-pub(super) fn push_wrapped(text: &mut String, paragraph: &str) {
+pub(crate) fn push_wrapped(text: &mut String, paragraph: &str) {
     let mut width = 0;
     for word in paragraph.split_whitespace() {
         let space = if width == 0 { 0 } else { 1 };

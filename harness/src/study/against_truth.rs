@@ -1,12 +1,19 @@
 //! How far the models of a study are from its truth image: an error of shading, never of culling.
 
-use crate::study::{Done, Job, MODELS, TRUTH};
+use super::job::Job;
+use super::manifest::Done;
 use crate::{
     error::HarnessError,
     errors::{ImagePair, errors, stored},
     results::{Results, TruthImage},
     stored::Store,
 };
+
+/// The section of a study whose jobs render the truth images of its scenes.
+pub const TRUTH: &str = "truth";
+
+/// The section whose images are compared with them.
+pub const MODELS: &str = "models";
 
 /// Computes the errors of every record of [`MODELS`] against the truth image of its scene, where both
 /// images are there.

@@ -1,8 +1,9 @@
 //! What the parts of the page ask of a study's records.
 
+use super::job::Job;
+use super::manifest::Done;
 use crate::report::format::number;
 use crate::results::{Record, Results};
-use crate::study::{Done, Job};
 use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
 
 /// A record with the job that it comes from.

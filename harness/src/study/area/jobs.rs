@@ -4,13 +4,18 @@
 //! Models light every sample with every light (`None`), so no error comes from culling and no time from
 //! assignment. Lights are rectangles, as in the paper.
 
-use crate::study::{BOUNDS, Job, MODELS, StudyScene, TRUTH};
+use crate::study::against_truth::{MODELS, TRUTH};
+use crate::study::job::{Job, Settings};
+use crate::study::scene::StudyScene;
 use crate::{
     cli::{Size, StudyArgs},
     compare::Bench,
     error::HarnessError,
     results::BASELINE,
 };
+
+/// The section whose records list area lights by their outlines and by balls around them.
+pub const BOUNDS: &str = "bounds";
 
 /// The range of a light as a share of the diagonal of the scene's core: from where it hangs, it is
 /// seen on floor and walls.
@@ -132,21 +137,24 @@ pub(crate) fn jobs(
     let timed = [&["--strategies", BASELINE], &frames[..]].concat();
     let view = [&common[..], &["--lights", FEW, "--areas", "1"]].concat();
     let mut jobs = Vec::new();
-    jobs.push(Job::new(scene, TRUTH, "", &[&["truth"], &view[..]].concat()));
+    jobs.push(Job::new(scene, TRUTH, "", Settings::default(), &[&["truth"], &view[..]].concat()));
     for model in extent.models {
         let words = [&["compare"], &view[..], &timed, &["--area-model", model]].concat();
-        jobs.push(Job::new(scene, MODELS, &plain(model), &words));
+        let settings = Settings::from([("lights", FEW), ("model", model)]);
+        jobs.push(Job::new(scene, MODELS, &plain(model), settings, &words));
     }
     for (count, models) in extent.costs {
         let count = count.to_string();
         let mut cost = |what: &str, drawn: &[&str], options: &[&str]| {
             let words = [&["compare"], drawn, &timed, &["--lights", &count], options];
             let words = [&words.concat()[..], &["--pictures", "none"]].concat();
-            jobs.push(Job::new(scene, "cost", &format!("{count}-{what}"), &words));
+            let settings = Settings::from([("lights", count.as_str()), ("model", what)]);
+            let name = format!("{count}-{}", plain(what));
+            jobs.push(Job::new(scene, "cost", &name, settings, &words));
         };
         cost("spots", &scaled, &["--spots", "1"]);
         for model in *models {
-            cost(&plain(model), &common, &["--areas", "1", "--area-model", model]);
+            cost(model, &common, &["--areas", "1", "--area-model", model]);
         }
     }
     let ids: Vec<String> =
@@ -156,7 +164,8 @@ pub(crate) fn jobs(
     let culled = ["--lights", extent.culled, "--areas", "1", "--radius-scale", &near];
     let own = ["--strategies", &ids, "--pictures", "none"];
     let words = [&["compare"], &alike[..], &outlines, &culled, &frames, &own].concat();
-    jobs.push(Job::new(scene, BOUNDS, extent.culled, &words));
+    let settings = Settings::from([("lights", extent.culled)]);
+    jobs.push(Job::new(scene, BOUNDS, extent.culled, settings, &words));
     Ok(jobs)
 }
 

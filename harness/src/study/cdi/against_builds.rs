@@ -1,7 +1,8 @@
 //! Whether it shows in the image how deep images were built: the same lights, with ranges through
 //! deep images of one pass over the triangles and through those of a pass for each direction.
 
-use crate::study::{Done, MODELS};
+use crate::study::against_truth::MODELS;
+use crate::study::manifest::Done;
 use crate::{
     error::HarnessError,
     errors::{ImagePair, errors, stored},

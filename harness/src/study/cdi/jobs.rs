@@ -1,7 +1,9 @@
 //! Compound deep images (Archer, Leach, Knowles 2019): time of every step, ranges against exact rays,
 //! and indirect light by virtual point lights against a path-traced image.
 
-use crate::study::{Job, MODELS, StudyScene, TRUTH};
+use crate::study::against_truth::{MODELS, TRUTH};
+use crate::study::job::{Job, Settings};
+use crate::study::scene::StudyScene;
 use crate::{
     cli::{Size, StudyArgs},
     compare::Bench,
@@ -10,15 +12,15 @@ use crate::{
 };
 
 /// The section whose job is timed step by step.
-pub const STEPS: &str = "steps";
+pub(crate) const STEPS: &str = "steps";
 /// The section of what light comes straight from the primary light: the paper's zero bounces.
-pub const DIRECT: &str = "direct";
+pub(crate) const DIRECT: &str = "direct";
 /// The section of deep images, by directions, sizes and builds.
-pub const BUILDS: &str = "builds";
+pub(crate) const BUILDS: &str = "builds";
 /// The section of rays from every pixel of reflective shadow maps.
-pub const CASTS: &str = "casts";
+pub(crate) const CASTS: &str = "casts";
 /// The section of strategies that share the virtual point lights.
-pub const STRATEGIES: &str = "strategies";
+pub(crate) const STRATEGIES: &str = "strategies";
 
 /// The strategy that errors and steps are measured with: the paper's.
 const GRID: &str = "HG/48x48x40";
@@ -115,7 +117,7 @@ impl Extent {
 }
 
 /// Whether rays are cast as in most jobs: how many, through which deep images, built how.
-pub fn is_usual(vpls: &Vpls) -> bool {
+pub(crate) fn is_usual(vpls: &Vpls) -> bool {
     let is_of = |extent: &Extent, deep: &DeepImages| {
         let directions = format!("{}x{}", deep.stacks, deep.slices);
         let size = deep.size_px.to_string();
@@ -150,62 +152,76 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     let traced = [&["truth"], &drawn[..], &["--primary", "--shadows"]].concat();
     let bounced = ["--bounces", "1", "--indirect", "--samples", extent.samples];
     let mut jobs = vec![
-        Job::new(scene, TRUTH, "", &[&traced[..], &bounced].concat()),
-        Job::new(scene, DIRECT, "", &traced),
+        Job::new(scene, TRUTH, "", Settings::default(), &[&traced[..], &bounced].concat()),
+        Job::new(scene, DIRECT, "", Settings::default(), &traced),
     ];
     let timed = ["--strategies", GRID, "--frames", extent.frames, "--warmup", extent.warmup];
     let timed = [&timed[..], &["--light-order", "given"]].concat();
     let common = [&["compare"], &drawn[..], &timed, &["--truth", "none"]].concat();
-    let mut add = |variant: &str, rsm: &str, words: &[&str]| {
+    let mut add = |name: &str, rsm: &str, varied: &[(&str, &str)], words: &[&str]| {
         let words = [&common[..], &["--vpls", rsm], words].concat();
-        jobs.push(Job::new(scene, MODELS, variant, &words));
+        let mut settings = Settings::from([("rsm_px", rsm)]);
+        varied.iter().for_each(|(name, value)| settings.set(name, value));
+        jobs.push(Job::new(scene, MODELS, name, settings, &words));
     };
     // How ranges are found.
     for (rule, scales) in [("average", extent.scales), ("maximum", extent.longest_scales)] {
         for scale in scales {
             let words = [&extent.deep(None, None)[..], &["--ranges", rule, "--range-scale", scale]];
-            add(&format!("{rule}-x{scale}"), extent.rsm, &words.concat());
+            let varied = [("sweep", rule), ("scale", scale)];
+            add(&format!("{rule}-x{scale}"), extent.rsm, &varied, &words.concat());
         }
     }
     let random: Vec<String> =
         extent.random.iter().map(|share| format!("0,{}", share * diagonal_m)).collect();
     let random_words = |span| ["--ranges", "random", "--random-ranges", span];
     for (share, span) in extent.random.iter().zip(&random) {
-        add(&format!("random-{share}"), extent.rsm, &random_words(span));
+        let text = share.to_string();
+        let swept = |rule| [("sweep", rule), ("share", text.as_str())];
+        add(&format!("random-{share}"), extent.rsm, &swept("random"), &random_words(span));
         // What rays leave out, without what they say of the others.
         let deep = extent.deep(None, None);
         let words = ["--ranges", "random-discard", "--random-ranges", span];
-        add(&format!("random-discard-{share}"), extent.rsm, &[&deep[..], &words].concat());
+        let words = [&deep[..], &words].concat();
+        let varied = swept("random-discard");
+        add(&format!("random-discard-{share}"), extent.rsm, &varied, &words);
         let range_m = (0.5 * share * diagonal_m).to_string();
         let words = ["--ranges", "constant-discard", "--constant-range", &range_m];
-        add(&format!("constant-discard-{share}"), extent.rsm, &[&deep[..], &words].concat());
+        let words = [&deep[..], &words].concat();
+        let varied = swept("constant-discard");
+        add(&format!("constant-discard-{share}"), extent.rsm, &varied, &words);
     }
-    add("infinite", extent.rsm, &["--ranges", "infinite"]);
+    add("infinite", extent.rsm, &[("ranges", "infinite")], &["--ranges", "infinite"]);
     // The paper sees no difference between the two builds in the image.
     let each = [&extent.deep(None, None)[..], &["--build", "per-direction-batched"]].concat();
-    add("per-direction", extent.rsm, &each);
+    add("per-direction", extent.rsm, &[("build", "per-direction-batched")], &each);
     let corrected = [&extent.deep(None, None)[..], &["--correct-rays"]].concat();
-    add("corrected", extent.rsm, &corrected);
+    add("corrected", extent.rsm, &[("primary_ray", "corrected")], &corrected);
     let reflected = [&extent.deep(None, None)[..], &["--primary-ray", "reflected"]].concat();
-    add("reflected", extent.rsm, &reflected);
+    add("reflected", extent.rsm, &[("primary_ray", "reflected")], &reflected);
     // More and fewer lights.
     for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
-        add(&format!("rsm{rsm}-average"), rsm, &extent.deep(None, None));
+        add(&format!("rsm{rsm}-average"), rsm, &[], &extent.deep(None, None));
         // Every other span.
         for (share, span) in extent.random.iter().zip(&random).skip(1).step_by(2) {
-            add(&format!("rsm{rsm}-random-{share}"), rsm, &random_words(span));
+            let text = share.to_string();
+            let varied = [("ranges", "random"), ("share", text.as_str())];
+            add(&format!("rsm{rsm}-random-{share}"), rsm, &varied, &random_words(span));
         }
     }
     // What the deep images are like, and how many rays go through them.
     for directions in extent.directions.iter().rev().skip(1) {
-        add(&format!("directions-{directions}"), extent.rsm, &extent.deep(Some(directions), None));
+        let deep = extent.deep(Some(directions), None);
+        let varied = [("directions", *directions)];
+        add(&format!("directions-{directions}"), extent.rsm, &varied, &deep);
     }
     for size in extent.deep_sizes.iter().skip(1) {
-        add(&format!("size-{size}"), extent.rsm, &extent.deep(None, Some(size)));
+        let deep = extent.deep(None, Some(size));
+        add(&format!("size-{size}"), extent.rsm, &[("deep_px", size)], &deep);
     }
     for rays in extent.rays.iter().skip(1) {
         let words = [&extent.deep(None, None)[..], &["--rays", rays]].concat();
-        add(&format!("rays-{rays}"), extent.rsm, &words);
+        add(&format!("rays-{rays}"), extent.rsm, &[("rays", rays)], &words);
     }
     jobs
 }
@@ -222,8 +238,8 @@ fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
     // Lights that are made anew each frame have no order but their map's, and no hierarchy.
     let all = ["--strategies", extent.strategies, "--light-order", "given", "--truth", "none"];
     vec![
-        Job::new(scene, STEPS, "", &[&common[..], &own].concat()),
-        Job::new(scene, STRATEGIES, "", &[&common[..], &all].concat()),
+        Job::new(scene, STEPS, "", Settings::default(), &[&common[..], &own].concat()),
+        Job::new(scene, STRATEGIES, "", Settings::default(), &[&common[..], &all].concat()),
     ]
 }
 
@@ -233,37 +249,48 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
     let drawn = ["cdi", "--scene", &scene.scene, "--scene-scale", &scale, "--seed", &seed];
     let common = [&drawn[..], &["--frames", extent.frames]].concat();
     let mut jobs = Vec::new();
-    let mut add = |variant: &str, words: &[&str]| {
+    let mut add = |name: &str, varied: &[(&str, &str)], words: &[&str]| {
         let words = [&common[..], words].concat();
-        jobs.push(Job::new(scene, BUILDS, variant, &words));
+        let mut settings = Settings::default();
+        varied.iter().for_each(|(name, value)| settings.set(name, value));
+        jobs.push(Job::new(scene, BUILDS, name, settings, &words));
     };
     let compared = ["--casts", "none", "--compared", extent.compared];
     let only_built = ["--casts", "none", "--compared", "0"];
     for directions in extent.directions {
         let deep = extent.deep(Some(directions), None);
-        add(&format!("compute-{directions}"), &[&deep[..], &compared].concat());
+        let varied = |build| [("build", build), ("directions", *directions)];
+        let words = [&deep[..], &compared].concat();
+        add(&format!("compute-{directions}"), &varied("compute"), &words);
         for build in ["fragment", "per-direction", "per-direction-batched"] {
             // Rays through both builds of most directions are compared: the paper sees no difference.
             let is_usual = extent.directions.last() == Some(directions);
             let rays = if is_usual && build == "per-direction" { compared } else { only_built };
             let words = [&deep[..], &["--build", build], &rays].concat();
-            add(&format!("{build}-{directions}"), &words);
+            add(&format!("{build}-{directions}"), &varied(build), &words);
         }
     }
     for size in extent.deep_sizes.iter().skip(1) {
         let deep = extent.deep(None, Some(size));
-        add(&format!("size-{size}"), &[&deep[..], &compared].concat());
+        add(&format!("size-{size}"), &[("deep_px", size)], &[&deep[..], &compared].concat());
     }
     let usual = extent.deep(None, None);
-    add("oversampled", &[&usual[..], &["--oversampling", "2"], &compared].concat());
-    add("squares", &[&usual[..], &["--spread", "squares"], &compared].concat());
-    add("linked-lists", &[&usual[..], &["--build", "linked-lists"], &compared].concat());
+    let oversampled = [&usual[..], &["--oversampling", "2"], &compared].concat();
+    add("oversampled", &[("oversampling", "2")], &oversampled);
+    let squares = [&usual[..], &["--spread", "squares"], &compared].concat();
+    add("squares", &[("spread", "squares")], &squares);
+    let linked = [&usual[..], &["--build", "linked-lists"], &compared].concat();
+    add("linked-lists", &[("build", "linked-lists")], &linked);
     let deep = extent.deep(Some(extent.conservative), None);
-    add("conservative", &[&deep[..], &["--build", "conservative"], &compared].concat());
+    let conservative = [&deep[..], &["--build", "conservative"], &compared].concat();
+    add("conservative", &[("build", "conservative")], &conservative);
     let cast = [&usual[..], &["--casts", extent.casts, "--compared", "0"]].concat();
-    jobs.push(Job::new(scene, CASTS, "", &[&common[..], &cast].concat()));
+    let words = [&common[..], &cast].concat();
+    jobs.push(Job::new(scene, CASTS, "", Settings::default(), &words));
     let linked = [&cast[..], &["--build", "linked-lists"]].concat();
-    jobs.push(Job::new(scene, CASTS, "linked-lists", &[&common[..], &linked].concat()));
+    let words = [&common[..], &linked].concat();
+    let settings = Settings::from([("build", "linked-lists")]);
+    jobs.push(Job::new(scene, CASTS, "linked-lists", settings, &words));
     jobs
 }
 

@@ -1,11 +1,15 @@
 //! Which times of deep images and rays count: those of a steady, risen clock. The others stand in the
 //! tables, struck out, and decide nothing.
 
+use crate::drift::slower_than_again;
 use crate::report::format::significant;
 use crate::report::markup::{Html, html};
-use crate::drift::slower_than_again;
 use crate::results::{CastTimes, DeepImageRun, DeepImages};
-use crate::study::{Done, cdi};
+use crate::study::cdi::jobs;
+use crate::study::manifest::Done;
+
+/// The paper's card, for every figure of its own.
+pub(crate) const PAPER: &str = "Archer, Leach and Knowles 2019, on a GTX 1060";
 
 /// The runs of `lightbench cdi` of a section.
 pub(crate) fn runs<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> Vec<&'a DeepImageRun> {
@@ -28,7 +32,7 @@ pub(crate) fn refused_build(done: &Done, scene: &str, run: &DeepImageRun) -> Opt
     if let Some(why) = run.unsteady() {
         return Some(why);
     }
-    let sections = [cdi::BUILDS, cdi::CASTS].into_iter();
+    let sections = [jobs::BUILDS, jobs::CASTS].into_iter();
     let same = sections
         .flat_map(|section| runs(done, scene, section))
         .filter(|other| other.scene_hash == run.scene_hash && is_same_work(&other.deep, &run.deep));
@@ -76,7 +80,7 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
     let mut notices = Vec::new();
     for scene in done.scenes() {
         let jobs =
-            [cdi::BUILDS, cdi::CASTS].into_iter().flat_map(|section| done.of(scene, section));
+            [jobs::BUILDS, jobs::CASTS].into_iter().flat_map(|section| done.of(scene, section));
         for (job, results) in jobs {
             let Some(run) = results.deep_images.as_ref() else { continue };
             // What a job says of itself stands among the notices already.
@@ -127,7 +131,8 @@ mod tests {
     use crate::results::{
         DeviceType, Machine, PassKind, PassTimes, Passes, Results, Truth, TruthLevel,
     };
-    use crate::study::{Job, Manifest};
+    use crate::study::job::{Job, Settings};
+    use crate::study::manifest::Manifest;
 
     fn run(build_ms: f64, cast_ms: &[&[f64]]) -> DeepImageRun {
         let cast = |ms: &&[f64]| CastTimes { cast_ms: ms.to_vec(), ..CastTimes::default() };
@@ -160,6 +165,7 @@ mod tests {
             name: format!("town-{ix}"),
             scene: "town".into(),
             section: section.into(),
+            settings: Settings::default(),
             command: Vec::new(),
         };
         let jobs: Vec<Job> =
@@ -171,7 +177,7 @@ mod tests {
             (job.name.clone(), results)
         });
         let results: BTreeMap<String, Results> = results.collect();
-        let manifest = Manifest { identity: Vec::new(), study: "cdi".into(), jobs };
+        let manifest = Manifest::new(Vec::new(), "cdi", jobs);
         Done { manifest, results, folders: BTreeMap::new() }
     }
 
@@ -182,15 +188,15 @@ mod tests {
         let rising = [[0.138; 16], [0.122; 16]].concat();
         let casts: [&[f64]; 3] = [&[0.144; 32], &rising, &[0.166; 32]];
         let done = done(vec![
-            (cdi::BUILDS, run(0.316, &[])),
-            (cdi::CASTS, run(0.967, &casts)),
-            (cdi::BUILDS, run(0.33, &[])),
+            (jobs::BUILDS, run(0.316, &[])),
+            (jobs::CASTS, run(0.967, &casts)),
+            (jobs::BUILDS, run(0.33, &[])),
         ]);
-        let cold = runs(&done, "town", cdi::CASTS)[0];
+        let cold = runs(&done, "town", jobs::CASTS)[0];
         let why = refused_build(&done, "town", cold).expect("refused");
         assert!(why.contains("0.316 ms") && why.contains("0.967"), "{why}");
-        assert_eq!(timed_runs(&done, "town", cdi::BUILDS).len(), 2);
-        assert!(timed_runs(&done, "town", cdi::CASTS).is_empty());
+        assert_eq!(timed_runs(&done, "town", jobs::BUILDS).len(), 2);
+        assert!(timed_runs(&done, "town", jobs::CASTS).is_empty());
         let counted = timed_casts(&done, "town", cold);
         assert_eq!(counted.len(), 1, "what came before the clock rose is left out");
         assert_eq!(counted[0].cast_ms[0], 0.166);
@@ -201,9 +207,9 @@ mod tests {
     fn without_a_rise_no_ray_of_a_cold_job_counts() {
         let steady: [&[f64]; 2] = [&[0.144; 32], &[0.166; 32]];
         let both =
-            |other| done(vec![(cdi::BUILDS, run(other, &[])), (cdi::CASTS, run(0.967, &steady))]);
+            |other| done(vec![(jobs::BUILDS, run(other, &[])), (jobs::CASTS, run(0.967, &steady))]);
         let counted =
-            |done: &Done| timed_casts(done, "town", runs(done, "town", cdi::CASTS)[0]).len();
+            |done: &Done| timed_casts(done, "town", runs(done, "town", jobs::CASTS)[0]).len();
         assert_eq!(counted(&both(0.316)), 0);
         assert_eq!(counted(&both(0.95)), 2);
     }

@@ -2,14 +2,14 @@
 //! of the truth or of one seed could make the difference, and whether each sweep found its least error
 //! inside.
 
-use crate::report::format::{difference, percent, significant};
-use crate::report::markup::{Html, html};
-use crate::study::cdi::page::light::{METRIC, RULES, error, rule, setting, total_ms};
-use crate::study::data::{Entry, entries};
-use crate::study::page::figure::table;
-use crate::errors::ERROR_METRICS;
+use crate::report::format::{difference, significant};
 use crate::results::{Record, TruthImage, Vpls};
-use crate::study::{Done, MODELS, cdi, truth_of};
+use crate::study::against_truth::{MODELS, truth_of};
+use crate::study::cdi::jobs;
+use crate::study::cdi::lights::{RULES, error, rule, setting, total_ms};
+use crate::study::data::{Entry, entries};
+use crate::study::job::Settings;
+use crate::study::manifest::Done;
 
 /// Standard errors on either side that hold 95 % of a normal distribution.
 const SIGMAS: f64 = 1.96;
@@ -86,7 +86,7 @@ fn least<'a>(entries: impl Iterator<Item = Entry<'a>>) -> Option<Entry<'a>> {
 /// settings.
 pub(crate) fn best_cast<'a>(entries: &[Entry<'a>]) -> Option<Entry<'a>> {
     let is_usual = |record: &Record| {
-        record.vpls.as_ref().is_some_and(|vpls| cdi::is_usual(vpls) && vpls.random_m.is_none())
+        record.vpls.as_ref().is_some_and(|vpls| jobs::is_usual(vpls) && vpls.random_m.is_none())
     };
     least(entries.iter().copied().filter(|entry| is_usual(entry.record)))
 }
@@ -204,7 +204,7 @@ fn in_time(record: &Record) -> String {
 }
 
 /// Rays against random ranges from the same map, in the first scene that has both.
-pub(crate) fn headline(done: &Done) -> Option<String> {
+pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let all = entries(done, scene, MODELS);
         let cast = best_cast(&all)?;
@@ -229,22 +229,21 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
     })
 }
 
-/// The setting of a rule that errs least on average over the scenes, with that error and the greatest of
+/// The setting of a sweep that errs least on average over the scenes, with that error and the greatest of
 /// any scene: what a renderer would set once.
-fn best_in_common(done: &Done, is_of: fn(&str) -> bool) -> Option<(f64, f64)> {
+fn best_in_common(done: &Done, is_of: fn(&Settings) -> bool) -> Option<(f64, f64)> {
     let scenes = done.scenes();
-    let mut settings: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut errors_of: Vec<(&Settings, Vec<f64>)> = Vec::new();
     for scene in &scenes {
         for Entry { job, record } in entries(done, scene, MODELS) {
-            let name = job.name.strip_prefix(&format!("{scene}-{MODELS}-")).unwrap_or_default();
-            let Some(error) = error(record).filter(|_| is_of(name)) else { continue };
-            match settings.iter_mut().find(|(known, _)| known == name) {
+            let Some(error) = error(record).filter(|_| is_of(&job.settings)) else { continue };
+            match errors_of.iter_mut().find(|(known, _)| **known == job.settings) {
                 Some((_, errors)) => errors.push(error),
-                None => settings.push((name.to_owned(), vec![error])),
+                None => errors_of.push((&job.settings, vec![error])),
             }
         }
     }
-    settings
+    errors_of
         .into_iter()
         .filter(|(_, errors)| errors.len() == scenes.len())
         .map(|(_, errors)| {
@@ -254,6 +253,11 @@ fn best_in_common(done: &Done, is_of: fn(&str) -> bool) -> Option<(f64, f64)> {
         .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
+/// Whether a job is of the sweep of one of the rules: over factors, or over longest ranges.
+fn is_swept(settings: &Settings, rules: &[&str]) -> bool {
+    settings.text("sweep").is_some_and(|rule| rules.contains(&rule))
+}
+
 /// One setting for all scenes: rays against ranges that know nothing of the scene, where there are
 /// several scenes.
 pub(crate) fn in_common(done: &Done) -> Option<String> {
@@ -261,12 +265,8 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     if scenes.len() < 2 {
         return None;
     }
-    let is_cast = |name: &str| name.starts_with("average-x") || name.starts_with("maximum-x");
-    let is_random = |name: &str| {
-        name.starts_with("random-") && !name.contains("rsm") && !name.contains("discard")
-    };
-    let (own, own_worst) = best_in_common(done, is_cast)?;
-    let (theirs, their_worst) = best_in_common(done, is_random)?;
+    let (own, own_worst) = best_in_common(done, |job| is_swept(job, &["average", "maximum"]))?;
+    let (theirs, their_worst) = best_in_common(done, |job| is_swept(job, &["random"]))?;
     // The mean of the scenes' errors: their noises are independent.
     let noises = scenes.iter().filter_map(|scene| Some(noise_of(truth_of(done, scene)?.1)));
     let noise = noises.map(|noise| noise * noise).sum::<f64>().sqrt() / scenes.len() as f64;
@@ -278,9 +278,12 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     let others: Vec<String> = [
         (
             "random ranges of the same lights",
-            best_in_common(done, |n| n.starts_with("random-discard-")),
+            best_in_common(done, |job| is_swept(job, &["random-discard"])),
         ),
-        ("one range for them all", best_in_common(done, |n| n.starts_with("constant-discard-"))),
+        (
+            "one range for them all",
+            best_in_common(done, |job| is_swept(job, &["constant-discard"])),
+        ),
     ]
     .into_iter()
     .filter_map(|(what, found)| {
@@ -301,45 +304,6 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
         significant(their_worst),
         others.concat()
     ))
-}
-
-/// What the build of the deep images changes in the image: nothing in the paper.
-pub(crate) fn by_build(entries: &[Entry<'_>]) -> Html {
-    let of = |entry: &Entry<'_>| {
-        let vpls = entry.record.vpls.as_ref()?;
-        let errors = &vpls.build_errors;
-        let cell = |id: &str| {
-            let error = errors.get(id).copied().flatten();
-            error.map_or_else(|| crate::report::format::ABSENT.to_owned(), difference)
-        };
-        let mut row = vec![vpls.deep.as_ref()?.build.clone()];
-        row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
-        (!errors.is_empty()).then_some(row)
-    };
-    let rows: Vec<Vec<String>> = entries.iter().filter_map(of).collect();
-    if rows.is_empty() {
-        return Html::default();
-    }
-    let mut heads = vec!["build"];
-    heads.extend(ERROR_METRICS.iter().map(|metric| metric.head));
-    let title = "Errors against the image through deep images of one pass";
-    html!("<h4>{}</h4>\n", title) + table(title, &heads, &rows)
-}
-
-/// How far the image through deep images of a pass a direction is from that of one pass: its mean error,
-/// and the share of pixels that differ by more than a twentieth.
-pub(crate) fn image_by_build(done: &Done, scene: &str) -> Option<(f64, f64)> {
-    entries(done, scene, MODELS).iter().find_map(|entry| {
-        let vpls = entry.record.vpls.as_ref()?;
-        let is_brute = vpls.deep.as_ref()?.build.starts_with("per-direction");
-        let of = |id: &str| vpls.build_errors.get(id).copied().flatten();
-        Some((of(METRIC)?, of("pixels_off")?)).filter(|_| is_brute)
-    })
-}
-
-/// A share for a sentence: `0.12 %`.
-pub(crate) fn share(value: f64) -> String {
-    format!("{} %", percent(value))
 }
 
 #[cfg(test)]

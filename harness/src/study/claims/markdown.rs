@@ -1,15 +1,10 @@
 //! All claims of a paper as a Markdown table, for the documents: verdicts without the figures, which
 //! `lightbench report` prints.
 
-use crate::study::claims::{Claim, Paper, claims, paper};
-use crate::study::Done;
+use super::claim::{Claim, Paper};
 
-/// The verdict on each claim of the paper that a study is held against; empty where there is no paper.
-pub fn claims_markdown(done: &Done) -> String {
-    paper(&done.manifest.study).map_or_else(String::new, |paper| table(paper, &claims(done, paper)))
-}
-
-fn table(paper: &Paper, claims: &[Claim<'_>]) -> String {
+/// The verdict on each claim of a paper.
+pub(crate) fn markdown(paper: &Paper, claims: &[Claim<'_>]) -> String {
     let mut text = format!(
         "| what {} says | where | its figures | verdict |\n|---|---|---|---|\n",
         paper.name

@@ -1,17 +1,14 @@
 //! All claims of a paper as a table.
 
+use super::claim::{Claim, Paper};
+use super::verdict::Answer;
 use crate::report::markup::{Html, html};
 use crate::study::page::figure::table;
-use crate::study::claims::{Answer, Claim, Paper};
 
 const HEADS: [&str; 4] = ["claim", "the paper", "measured here", "verdict"];
 
 /// All claims as a table.
-pub(crate) fn claims_html(
-    paper: &Paper,
-    claims: &[Claim<'_>],
-    is_software: bool,
-) -> Html {
+pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool) -> Html {
     if claims.is_empty() {
         return Html::default();
     }

@@ -1,8 +1,9 @@
 //! The frames that a renderer may draw, along the path: forward shading without a depth pre-pass and
 //! with one, deferred shading without and with models in the G-buffer.
 
-use crate::study::{Job, StudyScene};
 use crate::cli::Size;
+use crate::study::job::{Job, Settings};
+use crate::study::scene::StudyScene;
 
 /// Strategies at the paper's parameters, and one of each kind through the hierarchy.
 const STRATEGIES: &str = "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2,T-E/bvh,SC-E/bvh,G/bvh";
@@ -32,7 +33,8 @@ pub(crate) fn jobs(
         words.extend(["--strategies", strategies, "--mode", "all"]);
         words.extend(["--path", "--frames", poses, "--laps", laps, "--checks", "1"]);
         words.extend(["--truth", "none", "--pictures", "none"]);
-        Job::new(scene, "frames", &lights, &words)
+        let settings = Settings::from([("lights", lights.as_str())]);
+        Job::new(scene, "frames", &lights, settings, &words)
     };
     counts.iter().map(job).collect()
 }

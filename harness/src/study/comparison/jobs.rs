@@ -5,15 +5,16 @@
 //! every pose of a run once a lap, and laps repeat the run, so that ties are known. A still camera serves
 //! as an example only: pictures, heat maps, and lists checked pair by pair.
 
-mod extent;
-
-use crate::study::{Job, StudyScene, views::Views};
+use super::depth_views::Views;
+use super::extent::{self, Extent};
+use super::frame_jobs;
+use crate::study::job::{Job, Settings};
+use crate::study::scene::StudyScene;
 use crate::{
     cli::{Invocation, Size, StudyArgs},
     compare::Bench,
     error::HarnessError,
 };
-use extent::Extent;
 
 /// Builds the jobs of one scene.
 struct Plan<'a> {
@@ -41,7 +42,7 @@ pub(crate) fn jobs(
     plan.beyond();
     plan.accuracy();
     let Extent { size, frames_at, .. } = plan.extent;
-    plan.jobs.extend(crate::study::comparison::frame_jobs::jobs(scene, size, args.seed, frames_at, args.quick));
+    plan.jobs.extend(frame_jobs::jobs(scene, size, args.seed, frames_at, args.quick));
     Ok(plan.jobs)
 }
 
@@ -61,16 +62,29 @@ fn look(bench: &mut Bench, scene: &StudyScene) -> Result<(Option<Views>, u64), H
 }
 
 impl Plan<'_> {
-    /// Adds a job: its section, what tells it from others of the section, and its options.
-    fn add(&mut self, section: &str, variant: &str, lights: u32, options: &[&str]) {
+    /// Adds a job: its section, what it varies beside the number of lights, and its options. The values of
+    /// what it varies are its name within the section; where it varies nothing else, the number of lights
+    /// is.
+    fn add(&mut self, section: &str, varied: &[(&str, &str)], lights: u32, options: &[&str]) {
         let scale = self.scene.scale.to_string();
-        self.add_scaled(section, variant, lights, &scale, options);
+        let name = match varied {
+            [] => lights.to_string(),
+            _ => varied.iter().map(|(_, value)| *value).collect::<Vec<_>>().join("-"),
+        };
+        self.add_scaled(section, &name, varied, lights, &scale, options);
+    }
+
+    /// Adds the only job of its section.
+    fn add_named(&mut self, section: &str, lights: u32, options: &[&str]) {
+        let scale = self.scene.scale.to_string();
+        self.add_scaled(section, "", &[], lights, &scale, options);
     }
 
     fn add_scaled(
         &mut self,
         section: &str,
-        variant: &str,
+        name: &str,
+        varied: &[(&str, &str)],
         lights: u32,
         scale: &str,
         options: &[&str],
@@ -82,7 +96,9 @@ impl Plan<'_> {
         words.extend(["--scene-scale", scale, "--lights", &lights, "--size", &size]);
         words.extend(["--seed", &seed, "--warmup", self.extent.warmup]);
         words.extend(options);
-        self.jobs.push(Job::new(self.scene, section, variant, &words));
+        let mut settings = Settings::from([("lights", lights.as_str()), ("scale", scale)]);
+        varied.iter().for_each(|(name, value)| settings.set(name, value));
+        self.jobs.push(Job::new(self.scene, section, name, settings, &words));
     }
 
     /// Options of strategies along the path, with that many poses a lap.
@@ -97,36 +113,44 @@ impl Plan<'_> {
     }
 
     /// Adds a job along the path.
-    fn add_along(&mut self, section: &str, variant: &str, lights: u32, poses: u32, ids: &str) {
+    fn add_along(
+        &mut self,
+        section: &str,
+        varied: &[(&str, &str)],
+        lights: u32,
+        poses: u32,
+        ids: &str,
+    ) {
         let options = self.along(poses, ids);
         let options: Vec<&str> = options.iter().map(String::as_str).collect();
-        self.add(section, variant, lights, &options);
+        self.add(section, varied, lights, &options);
     }
 
     /// Every strategy from the still camera, with pictures: an example, and the rate of no culling.
     fn example(&mut self) {
         let frames = self.extent.frames.to_string();
         let options = ["--strategies", self.extent.main, "--frames", &frames, "--pictures", "all"];
-        self.add("main", &self.extent.most.to_string(), self.extent.most, &options);
+        self.add("main", &[], self.extent.most, &options);
     }
 
     /// Group sizes and intersection tests (the paper's sections 4.3.1 and 4.3.2), from each source of
     /// lights that they are reported for.
     fn searches(&mut self) {
         let (most, poses) = (self.extent.most, self.extent.search_poses);
-        for (source, families) in [("", self.extent.linear_sizes), ("/bvh", self.extent.bvh_sizes)]
-        {
-            for (family, sizes) in families {
-                let ids: Vec<String> =
-                    sizes.iter().map(|size| format!("{family}/{size}{source}")).collect();
-                let variant = format!("{family}{}", source.replace('/', "-"));
-                self.add_along("sizes", &variant, most, poses, &ids.join(","));
-            }
+        for (family, sizes) in self.extent.linear_sizes {
+            let ids: Vec<String> = sizes.iter().map(|size| format!("{family}/{size}")).collect();
+            self.add_along("sizes", &[("family", *family)], most, poses, &ids.join(","));
+        }
+        for (family, sizes) in self.extent.bvh_sizes {
+            let ids: Vec<String> =
+                sizes.iter().map(|size| format!("{family}/{size}/bvh")).collect();
+            let varied = [("family", *family), ("source", "bvh")];
+            self.add_along("sizes", &varied, most, poses, &ids.join(","));
         }
         for family in self.extent.tested {
             let ids: Vec<String> =
                 self.extent.tests.iter().map(|tests| format!("{family}/{tests}")).collect();
-            self.add_along("tests", family, most, poses, &ids.join(","));
+            self.add_along("tests", &[("family", *family)], most, poses, &ids.join(","));
         }
     }
 
@@ -138,7 +162,7 @@ impl Plan<'_> {
         for (name, frame) in [("low", views.low), ("high", views.high)] {
             let camera = format!("path:{frame}/{}", views.count);
             let options = ["--strategies", &strategies, "--camera", &camera, "--frames", &frames];
-            self.add("views", name, self.extent.most, &options);
+            self.add("views", &[("view", name)], self.extent.most, &options);
         }
     }
 
@@ -151,11 +175,12 @@ impl Plan<'_> {
                 true => (self.extent.rank_poses[1], self.extent.ranked_at_most),
                 false => (self.extent.rank_poses[0], self.extent.ranked),
             };
-            self.add_along("path", &count.to_string(), count, poses, ids);
+            self.add_along("path", &[], count, poses, ids);
             if !self.extent.slow.is_empty() {
-                let variant = format!("{count}-slow");
                 let (poses, ids) = (self.extent.slow_poses, self.extent.slow);
-                self.add_along("path", &variant, count, poses, ids);
+                let lights = count.to_string();
+                let varied = [("lights", lights.as_str()), ("methods", "slow")];
+                self.add_along("path", &varied, count, poses, ids);
             }
         }
     }
@@ -168,7 +193,7 @@ impl Plan<'_> {
             if count <= self.extent.most && !self.extent.scaled_whole.is_empty() {
                 ids = format!("{ids},{}", self.extent.scaled_whole);
             }
-            self.add_along("scaling", &count.to_string(), count, self.extent.search_poses, &ids);
+            self.add_along("scaling", &[], count, self.extent.search_poses, &ids);
         }
     }
 
@@ -179,14 +204,14 @@ impl Plan<'_> {
         for &count in self.extent.many {
             let factor = (f64::from(count) / f64::from(self.extent.most)).cbrt();
             let scale = (self.scene.scale * factor).to_string();
-            self.add_scaled("constant", &count.to_string(), count, &scale, &options);
+            self.add_scaled("constant", &count.to_string(), &[], count, &scale, &options);
             if count <= 100_000 {
-                self.add("growing", &count.to_string(), count, &options);
+                self.add("growing", &[], count, &options);
             }
         }
         for radii in self.extent.radii {
             let options = [&options[..], &["--radii", radii]].concat();
-            self.add("radii", radii, self.extent.most, &options);
+            self.add("radii", &[("radii", *radii)], self.extent.most, &options);
         }
     }
 
@@ -206,14 +231,14 @@ impl Plan<'_> {
         if !self.extent.caps.is_empty() {
             let caps = knobs(&extent::LOSSY, "cap", self.extent.caps);
             let options = ["--strategies", &caps, "--frames", &frames, "--truth", "none"];
-            self.add("caps", "", most, &options);
+            self.add_named("caps", most, &options);
         }
         if !self.extent.reuse.is_empty() {
             let poses = self.extent.reuse_poses.to_string();
             let reuse = knobs(&extent::LOSSY[1..], "reuse", self.extent.reuse);
             let options = ["--strategies", &reuse, "--path", "--frames", &poses];
             let options = [&options[..], &["--truth", "none", "--pictures", "none"]].concat();
-            self.add("reuse", "", most, &options);
+            self.add_named("reuse", most, &options);
         }
         let lossless = extent::LOSSY.map(|family| format!("{family}/bvh")).join(",");
         for cut in ["windowed", "hard"] {
@@ -221,7 +246,8 @@ impl Plan<'_> {
                 let options = ["--strategies", &lossless, "--threshold", threshold, "--cut", cut];
                 let options = [&options[..], &["--unbounded", "--frames", &frames]].concat();
                 let options = [&options[..], &["--truth", "none"]].concat();
-                self.add("ranges", &format!("{cut}-{threshold}"), most, &options);
+                let varied = [("cut", cut), ("threshold", threshold)];
+                self.add("ranges", &varied, most, &options);
             }
         }
     }

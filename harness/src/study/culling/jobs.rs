@@ -10,8 +10,11 @@
 //! few of their processors: there no culling takes most of a second per frame. Laps, the same poses
 //! again, show which methods tie.
 
-use crate::study::{Job, StudyScene};
 use crate::cli::{Size, StudyArgs};
+use crate::compare::Bench;
+use crate::error::HarnessError;
+use crate::study::job::{Job, Settings};
+use crate::study::scene::StudyScene;
 
 /// Clay, no culling, bounding spheres, rasterised spheres, the paper's clusters, the same without a cap,
 /// our sparse clusters, and cells that lights add themselves to.
@@ -47,19 +50,31 @@ const SIZE: Size = Size { width: 1920, height: 1080 };
 const QUICK_SIZE: Size = Size { width: 192, height: 108 };
 
 /// The jobs of one scene: a mode and a number of lights each.
-pub(crate) fn jobs(args: &StudyArgs, scene: &StudyScene) -> Vec<Job> {
+///
+/// # Errors
+///
+/// Names what is wrong with the scene: a scene that cannot be opened shows before anything is written.
+pub(crate) fn jobs(
+    bench: &mut Bench,
+    args: &StudyArgs,
+    scene: &StudyScene,
+) -> Result<Vec<Job>, HarnessError> {
+    scene.boxes(bench)?;
+    Ok(plan(args, scene))
+}
+
+fn plan(args: &StudyArgs, scene: &StudyScene) -> Vec<Job> {
     let (extents, size) = if args.quick { (QUICK, QUICK_SIZE) } else { (FULL, SIZE) };
     let size = args.size.unwrap_or(size);
     let mut jobs = Vec::new();
     for extent in &extents {
         for count in extent.counts {
             let is_last = extent.counts.last() == Some(count);
-            jobs.push(Job {
-                name: format!("{}-{}-{count}", scene.name, extent.mode),
-                scene: scene.name.clone(),
-                section: extent.mode.to_owned(),
-                command: command(args, scene, extent, *count, size, is_last),
-            });
+            let words = command(args, scene, extent, *count, size, is_last);
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let lights = count.to_string();
+            let settings = Settings::from([("mode", extent.mode), ("lights", lights.as_str())]);
+            jobs.push(Job::new(scene, extent.mode, &lights, settings, &words));
         }
     }
     jobs
@@ -74,7 +89,7 @@ fn command(
     size: Size,
     is_last: bool,
 ) -> Vec<String> {
-    let mut command = vec!["lightbench".to_owned(), "compare".to_owned()];
+    let mut command = vec!["compare".to_owned()];
     command.extend(scene.options(size, args.seed));
     let mut option = |name: &str, value: String| command.extend([name.to_owned(), value]);
     option("--lights", count.to_string());
@@ -108,7 +123,7 @@ mod tests {
             panic!("a study")
         };
         let scene = &StudyScene::all(&args).unwrap()[0];
-        let jobs = jobs(&args, scene);
+        let jobs = plan(&args, scene);
         for mode in ["deferred", "forward"] {
             let of_mode: Vec<&Job> = jobs.iter().filter(|job| job.section == mode).collect();
             let said: Vec<String> = of_mode.iter().map(|job| job.command.join(" ")).collect();

@@ -1,16 +1,17 @@
 //! The culling survey: times along a path against 0 to 1,500 lights, in both modes. What the survey
 //! claims of them is judged in `claims`.
 
+use crate::chart::{Axis, Marks, Scale, XyChart};
 use crate::report::finding::lights;
 use crate::report::format::{ABSENT, number, significant};
 use crate::report::markup::Html;
 use crate::report::rank::{ALIKE, listed};
-use crate::study::data::{Entry, counts, entries, lines};
-use crate::study::page::figure::{Charts, name, part, table, unit};
-use crate::study::comparison::page::scaling::{fit, points};
-use crate::chart::{Axis, Marks, Scale, XyChart};
 use crate::results::Record;
-use crate::study::Done;
+use crate::study::data::{Entry, counts, entries, lines};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, name, table, unit};
+use crate::study::page::lines::{fit, points};
+use crate::study::page::part::Part;
 
 /// The sections of the study: how pixels are lit.
 const MODES: [&str; 2] = ["deferred", "forward"];
@@ -28,13 +29,13 @@ fn frame(record: &Record) -> f64 {
 }
 
 /// A chart, the fits and the times of each mode.
-pub(crate) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> {
     MODES
         .iter()
-        .map(|mode| {
+        .filter_map(|mode| {
             let all = entries(done, scene, mode);
             if all.is_empty() {
-                return Html::default();
+                return None;
             }
             let chart = XyChart {
                 title: format!("Frame time against lights, {mode}"),
@@ -61,7 +62,7 @@ pub(crate) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
                  through these times; relMSE against no culling at the most lights. Clusters of 40 x 40 \
                  pixels and 24 slices that end at 128 lights are the survey\u{2019}s.{caution}"
             );
-            part(scene, mode, &format!("Times, {mode}"), &text, &body)
+            Some(Part::new(mode, format!("Times, {mode}"), text, body))
         })
         .collect()
 }

@@ -1,9 +1,9 @@
 //! What a study of polygon lights measured, by place, number of lights and setting, and what the paper
 //! measured.
 
-use crate::study::data::{Entry, entries, parameters};
 use crate::results::{Operations, Record};
-use crate::study::Done;
+use crate::study::data::{Entry, entries, parameters};
+use crate::study::manifest::Done;
 
 /// The places of the camera: their sections, and what the page calls them.
 pub(crate) const PLACES: [(&str, &str); 3] = [

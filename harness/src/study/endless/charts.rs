@@ -1,13 +1,13 @@
 //! Charts of one case of polygon lights: times, outer specular operations and operations that nobody
 //! sees, by the number of cones.
 
+use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::report::format::significant;
 use crate::report::markup::Html;
+use crate::results::{Operations, Record};
 use crate::study::data::class;
 use crate::study::endless::cases::{Case, seen, setting};
 use crate::study::page::figure::Charts;
-use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
-use crate::results::{Operations, Record};
 
 /// The charts that a case has figures for.
 pub(crate) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Html {

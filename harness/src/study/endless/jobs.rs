@@ -4,7 +4,8 @@
 use glam::{DVec3, Vec3};
 use scenes::Aabb;
 
-use crate::study::{Job, StudyScene};
+use crate::study::job::{Job, Settings};
+use crate::study::scene::StudyScene;
 use crate::{
     cli::{Size, StudyArgs},
     compare::Bench,
@@ -98,7 +99,8 @@ pub(crate) fn jobs(
     let mut jobs = Vec::new();
     let mut add = |place: &str, count: &str, strategies: &str, own: &[&str]| {
         let words = [&common[..], &["--strategies", strategies], own].concat();
-        jobs.push(Job::new(scene, place, count, &words));
+        let settings = Settings::from([("place", place), ("lights", count)]);
+        jobs.push(Job::new(scene, place, count, settings, &words));
     };
     let [(_, few), (_, many)] = extent.copies;
     for (side, count) in extent.copies {

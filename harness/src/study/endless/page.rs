@@ -5,15 +5,16 @@ use crate::report::finding::lights;
 use crate::report::format::{ABSENT, difference, number, percent, significant};
 use crate::report::markup::{Html, html};
 use crate::report::rank::{Ratio, competes, first, listed, ranks};
+use crate::results::{Operations, Record};
 use crate::study::data::Entry;
-use crate::study::endless::charts::charts_of;
 use crate::study::endless::cases::{
     Case, Cut, PLACES, RULED, Setting, USUAL, cases, cases_at, lost, paper, seen, setting,
 };
-use crate::study::page::figure::{Charts, panels, part, table, unit};
+use crate::study::endless::charts::charts_of;
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, panels, table, unit};
+use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
-use crate::results::{Operations, Record};
-use crate::study::Done;
 
 /// What the figures of a part mean.
 const NOTE: &str = "A light operation is one term, diffuse or specular, of one light at one sample. Listed: \
@@ -27,16 +28,16 @@ const NOTE: &str = "A light operation is one term, diffuse or specular, of one l
     from a GTX 1060 at 1280 x 720 in another scene.";
 
 /// A part per place, with a panel per count of lights.
-pub(crate) fn endless(
+pub(crate) fn places(
     done: &Done,
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> Html {
-    let places = [PLACES.as_slice(), &[RULED]].concat();
-    let cases = cases_at(done, scene, &places);
-    let mut html = Html::default();
-    for (place, title) in places {
+) -> Vec<Part> {
+    let all = [PLACES.as_slice(), &[RULED]].concat();
+    let cases = cases_at(done, scene, &all);
+    let mut parts = Vec::new();
+    for (place, title) in all {
         let shown: Vec<(String, Html)> = cases
             .iter()
             .filter(|case| case.place == place)
@@ -45,9 +46,9 @@ pub(crate) fn endless(
                 (lights(case.lights), body)
             })
             .collect();
-        html += part(scene, place, title, NOTE, &panels("Lights", &shown));
+        parts.push(Part::new(place, title, NOTE, panels("Lights", &shown)));
     }
-    html
+    parts
 }
 
 /// What the camera sees.

@@ -1,13 +1,13 @@
 //! Charts of errors against times, one panel a metric, with the frontier of what nothing beats in both.
 
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::errors::{ERROR_METRICS, ErrorMetric};
 use crate::report::format::{difference, significant};
 use crate::report::markup::{Html, html};
+use crate::results::{Errors, Record};
 use crate::study::data::Entry;
 use crate::study::page::figure::{Charts, panels};
 use crate::study::page::shots::{Shots, Wanted};
-use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
-use crate::errors::{ERROR_METRICS, ErrorMetric};
-use crate::results::{Errors, Record};
 
 /// The metric that a reader sees first, where a plot has no reason for another.
 pub(crate) const FIRST: &str = "rel_mse";

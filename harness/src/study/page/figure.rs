@@ -1,7 +1,7 @@
 //! Charts with their files, choices between panels, and tables.
 
-use crate::report::markup::{Html, html};
 use crate::chart::{BarChart, Histogram, XyChart, histograms_svg, histograms_svg_file};
+use crate::report::markup::{Html, html};
 
 /// The charts of a page: each is drawn twice, for the page and for a file of its own.
 #[derive(Default)]
@@ -106,21 +106,6 @@ where
          <table class=\"figures\"><thead><tr>{1}</tr></thead>\n<tbody>\n{2}</tbody></table></div>\n",
         label,
         heads,
-        body
-    )
-}
-
-/// A part of a scene's section, or nothing where it is empty.
-pub(crate) fn part(scene: &str, id: &str, title: &str, text: &str, body: &Html) -> Html {
-    if body.is_empty() {
-        return Html::default();
-    }
-    html!(
-        "<div class=\"part\" id=\"{0}-{1}\" data-part=\"{1}\"><h3>{2}</h3>\n<p class=\"note\">{3}</p>\n{4}</div>\n",
-        scene,
-        id,
-        title,
-        text,
         body
     )
 }

@@ -2,32 +2,30 @@
 
 use serde_json::json;
 
+use super::figure::Charts;
+use super::part::Part;
+use super::shots::Shots;
+use crate::chart::CHART_CSS;
 use crate::report::finding::clock_notice;
 use crate::report::format::short_adapter;
 use crate::report::html::{PAGE, STYLE, fill, in_script};
 use crate::report::markup::{Html, html};
-use crate::report::page;
 use crate::report::rank::listed;
-use crate::report::{frames, raster};
-use crate::study::page::figure::Charts;
-use crate::study::page::shots::Shots;
-use crate::study::page::{
-    accuracy, area, area_cost, area_pictures, cdi, claims, culling, endless, overview, path,
-    scaling, sizes, views,
-};
-use crate::chart::CHART_CSS;
+use crate::report::{page, raster};
 use crate::results::{DeviceType, Results, TruthLevel};
-use crate::study::Done;
+use crate::study::claims;
+use crate::study::manifest::Done;
+use crate::study::slice::Study;
 
 /// The page's own rules, beside those of a comparison's page.
 pub(crate) const STUDY_STYLE: &str = include_str!("study.css");
 
 /// The page's programs: those of a comparison's page that it shares, and its own.
 pub(crate) const SCRIPTS: [&str; 5] = [
-    include_str!("../report.js"),
-    include_str!("../bars.js"),
-    include_str!("../lists.js"),
-    include_str!("../pictures.js"),
+    include_str!("../../report/report.js"),
+    include_str!("../../report/bars.js"),
+    include_str!("../../report/lists.js"),
+    include_str!("../../report/pictures.js"),
     include_str!("study.js"),
 ];
 
@@ -51,61 +49,37 @@ pub(crate) struct Page {
 }
 
 /// The page of what is done of a study.
-pub(crate) fn page(done: &Done) -> Page {
+pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     let mut charts = Charts::default();
     let mut shots = Shots::new(done);
-    let study = done.manifest.study.as_str();
     let mut body = Html::default();
     let scenes = done.scenes();
-    let found: Vec<Vec<String>> = scenes.iter().map(|scene| findings(done, scene)).collect();
-    let mut words: Vec<String> = headline(done).into_iter().collect();
+    let found: Vec<Vec<String>> = scenes.iter().map(|scene| study.findings(done, scene)).collect();
+    let mut words: Vec<String> = study.headline(done).into_iter().collect();
     let headline = words.first().cloned().unwrap_or_else(|| "Nothing is done yet.".to_owned());
     words.extend(found.iter().flatten().cloned());
-    // Of several scenes, each says what it found at its own place, and the most important above.
+    // Of several scenes, each lists its findings in its own section, and its first one at the top.
     let several = scenes.len() > 1;
     let most = if several { 1 } else { usize::MAX };
     let others: Vec<String> =
         found.iter().flat_map(|texts| texts.iter().take(most)).cloned().collect();
     let mut sections: Vec<Html> = Vec::new();
     for (scene, texts) in scenes.iter().copied().zip(&found) {
-        let html = match study {
-            "comparison" => [
-                accuracy::accuracy(done, scene, &mut charts, &mut shots),
-                scaling::scaling(done, scene, &mut charts),
-                path::path(done, scene, &mut charts),
-                frames::part_of_study(done, scene),
-                views::views(done, scene, &mut charts, &mut shots),
-                sizes::sizes(done, scene, &mut charts),
-                overview::overview(done, scene, &mut charts),
-            ]
-            .into_iter()
-            .collect(),
-            "area" => [
-                area::area(done, scene, &mut charts, &mut shots),
-                area_pictures::pictures(done, scene, &mut shots),
-                area_cost::cost(done, scene, &mut charts),
-            ]
-            .into_iter()
-            .collect(),
-            "endless" => endless::endless(done, scene, &mut charts, &mut shots),
-            "cdi" => cdi::cdi_parts(done, scene, &mut charts, &mut shots),
-            _ => culling::culling(done, scene, &mut charts),
-        };
-        if !html.is_empty() {
+        let mut parts = study.parts(done, scene, &mut charts, &mut shots);
+        parts.retain(|part| !part.body.is_empty());
+        if !parts.is_empty() {
             let texts = if several { page::paragraphs("said", texts) } else { Html::default() };
-            sections.push(section(scene, &texts, &html));
+            sections.push(section(scene, &texts, &parts));
         }
     }
-    if let Some(paper) = claims::paper(study).filter(|_| !done.results.is_empty()) {
-        let claims = claims::claims(done, paper);
-        body += claims::claims_html(paper, &claims, is_software(done));
+    if !done.results.is_empty() {
+        let claims = claims::judge(done, study.paper());
+        body += claims::claims_html(study.paper(), &claims, is_software(done));
         words.extend(claims.iter().map(claims::Claim::text));
     }
     body += sections.into_iter().collect();
-    if study == "comparison" {
-        body += sizes::best_overall(done);
-    }
-    let notices = notices(done, shots.left_out);
+    body += study.overall(done);
+    let notices = notices(study, done, shots.left_out);
     words.extend(notices.iter().cloned());
     let data = serde_json::to_string(&json!({
         "study": done.manifest,
@@ -145,17 +119,10 @@ const READING: &str = "<p>Frames are drawn in rounds, every method once a round 
     model of area lights against a truth image. Every chart is a file in \
     <code>charts/</code> too.</p>";
 
-fn section(scene: &str, texts: &Html, parts: &Html) -> Html {
-    // The parts that the scene has, as links: names and titles are HTML already.
-    let mut links = Html::default();
-    for part in parts.as_str().split("<div class=\"part\" id=\"").skip(1) {
-        let id = part.split('"').next().unwrap_or_default();
-        let title = part.split_once("<h3>").and_then(|(_, rest)| rest.split_once("</h3>"));
-        if let Some((title, _)) = title {
-            let (id, title) = (Html::trusted(id), Html::trusted(title));
-            links += html!("<a href=\"#{}\">{}</a>", id, title);
-        }
-    }
+/// The section of a scene: what it found, links to its parts, and the parts.
+fn section(scene: &str, texts: &Html, parts: &[Part]) -> Html {
+    let links: Html = parts.iter().map(|part| part.link(scene)).collect();
+    let parts: Html = parts.iter().map(|part| part.html(scene)).collect();
     html!(
         "<section class=\"scene\" data-scene=\"{0}\" aria-labelledby=\"scene-{0}\">\n\
          <h2 id=\"scene-{0}\">{0}</h2>\n{1}<nav class=\"parts\" aria-label=\"Parts of {0}\">{2}</nav>\n\
@@ -180,34 +147,8 @@ fn is_software(done: &Done) -> bool {
     done.results.values().any(|results| results.machine.device_type == DeviceType::Cpu)
 }
 
-/// What stands above all.
-fn headline(done: &Done) -> Option<String> {
-    match done.manifest.study.as_str() {
-        "comparison" => overview::headline(done),
-        "area" => area::headline(done),
-        "endless" => endless::headline(done),
-        "cdi" => cdi::headline(done),
-        _ => culling::headline(done),
-    }
-}
-
-/// What a scene found, a sentence each, the most important first.
-fn findings(done: &Done, scene: &str) -> Vec<String> {
-    match done.manifest.study.as_str() {
-        "comparison" => {
-            let mut all = overview::findings(done, scene);
-            all.extend(accuracy::cheapest(done, scene, 1e-2));
-            all
-        }
-        "area" => [area::findings(done, scene), area_cost::findings(done, scene)].concat(),
-        "endless" => endless::findings(done, scene),
-        "cdi" => cdi::findings(done, scene),
-        _ => culling::findings(done, scene),
-    }
-}
-
 /// What a reader has to know before trusting a figure.
-fn notices(done: &Done, pictures_left_out: usize) -> Vec<String> {
+fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<String> {
     let mut notices = Vec::new();
     let missing = done.missing();
     if !missing.is_empty() {
@@ -249,12 +190,7 @@ fn notices(done: &Done, pictures_left_out: usize) -> Vec<String> {
         }
         notices.extend(results.warnings.iter().map(|warning| format!("{job}: {warning}")));
     }
-    for scene in done.scenes() {
-        notices.extend(overview::ties(done, scene));
-    }
-    if done.manifest.study == "cdi" {
-        notices.extend(cdi::notices(done));
-    }
+    notices.extend(study.notices(done));
     if pictures_left_out > 0 {
         notices.push(format!(
             "{pictures_left_out} pictures are not on this page, which would be too large: they lie in the \

@@ -10,8 +10,9 @@ use image::{ImageFormat, ImageReader, imageops::FilterType};
 use serde_json::{Map, Value, json};
 use shading::HdrImage;
 
+use crate::study::against_truth::truth_of;
 use crate::study::data::Entry;
-use crate::study::{Done, truth_of};
+use crate::study::manifest::Done;
 
 /// Pictures are at most this wide, pixels: as wide as the page shows them.
 const WIDEST: u32 = 960;

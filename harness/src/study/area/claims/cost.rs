@@ -3,11 +3,11 @@
 
 use crate::report::format::{percent, significant};
 use crate::report::rank::ALIKE;
-use crate::study::area::page::models::{SPOTS, model};
-use crate::study::data::entries;
-use crate::study::claims::{Answer, Check, Verdict};
 use crate::results::Record;
-use crate::study::Done;
+use crate::study::area::page::models::{SPOTS, model};
+use crate::study::claims::{Answer, Check, Verdict};
+use crate::study::data::entries;
+use crate::study::manifest::Done;
 
 /// The record of a model at a number of lights.
 pub(crate) fn at<'a>(

@@ -3,10 +3,10 @@
 use shading::ltc::{POLYNOMIAL_COMPONENTS, Polynomial, Table};
 
 use crate::report::format::{difference, significant};
-use crate::study::area::claims::error_of;
 use crate::study::area::claims::cost::{Faster, at, faster, time};
+use crate::study::area::claims::errors::error_of;
 use crate::study::claims::{Answer, Check, Verdict};
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// Errors this near are nearly equal; the paper's two differ by 0.43 %.
 const HARDLY: f64 = 0.01;

@@ -1,15 +1,16 @@
 //! What area lights cost: times against the number of lights, by model, beside spots.
 
+use crate::chart::{Axis, Marks, Scale, Series, XyChart};
 use crate::report::finding::lights;
 use crate::report::format::{ABSENT, significant};
 use crate::report::markup::{Html, html};
+use crate::results::Record;
 use crate::study::area::page::models::{SPOTS, class, model, name};
 use crate::study::data::{Line, counts, entries};
-use crate::study::page::figure::{Charts, part, table, unit};
-use crate::study::comparison::page::scaling::{fit, points};
-use crate::chart::{Axis, Marks, Scale, Series, XyChart};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::lines::{fit, points};
+use crate::study::page::part::Part;
 
 fn shade(record: &Record) -> f64 {
     record.shade_ms
@@ -32,10 +33,10 @@ fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<Line<'a>> {
 }
 
 /// A chart and the times, each over those of as many spots.
-pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
     let lines = by_model(done, scene);
     if lines.is_empty() {
-        return Html::default();
+        return None;
     }
     let series = |(own, records): &Line<'_>| Series {
         name: (*own).to_owned(),
@@ -50,16 +51,15 @@ pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Html {
         note: String::new(),
     };
     let body = charts.xy(&format!("{scene}-cost"), &chart) + times(done, scene, &lines);
-    part(
-        scene,
+    Some(Part::new(
         "cost",
         "Cost of area lights and of spots",
         "The lighting pass alone, every light at every sample. Behind each time stands how many times as \
          long it takes as with as many spots; the slope is that of the straight line through the times, \
          and it is set against that of spots. The paper measured about two spots to one area light, of \
          whole frames: its row among the claims has both.",
-        &body,
-    )
+        body,
+    ))
 }
 
 fn times(done: &Done, scene: &str, lines: &[Line<'_>]) -> Html {

@@ -1,15 +1,17 @@
 //! Models of area lights against the truth: errors, times, and what each gets wrong.
 
+use crate::errors::ERROR_METRICS;
 use crate::report::format::{ABSENT, difference, percent, significant};
 use crate::report::markup::Html;
 use crate::report::rank::listed;
-use crate::study::data::{Entry, entries};
-use crate::study::page::errors_plot::{FIRST, Plot, frontier};
-use crate::study::page::figure::{Charts, dotted, part, table, unit, words};
-use crate::study::page::shots::{Shots, Wanted};
-use crate::errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage};
-use crate::study::{Done, MODELS, truth_of};
+use crate::study::against_truth::{MODELS, truth_of};
+use crate::study::data::{Entry, entries};
+use crate::study::manifest::Done;
+use crate::study::page::errors_plot::{FIRST, Plot, frontier};
+use crate::study::page::figure::{Charts, dotted, table, unit, words};
+use crate::study::page::part::Part;
+use crate::study::page::shots::{Shots, Wanted};
 
 /// The metric by which models are told apart in words.
 const METRIC: &str = "flip";
@@ -115,20 +117,24 @@ fn error(record: &Record, id: &str) -> Option<f64> {
 }
 
 /// Errors and times of all models, and what each gets wrong.
-pub(crate) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
+pub(crate) fn models(
+    done: &Done,
+    scene: &str,
+    charts: &mut Charts,
+    shots: &mut Shots<'_>,
+) -> Vec<Part> {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
         all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
     let truth = truth_of(done, scene).map(|(_, truth)| truth);
-    let mut html = Html::default();
+    let mut parts = Vec::new();
     if let (Some(truth), false) = (truth, known.is_empty()) {
-        html += part(
-            scene,
+        parts.push(Part::new(
             "models",
             "Models of area lights against the truth",
-            &about(truth),
-            &(errors_table(&known, truth) + words_table(&known)),
-        );
+            about(truth),
+            errors_table(&known, truth) + words_table(&known),
+        ));
     }
     let plot = Plot {
         slug: "models",
@@ -145,15 +151,15 @@ pub(crate) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
         first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
-    html + part(
-        scene,
+    parts.push(Part::new(
         "model-times",
         "Speed against accuracy: models",
         "The error of shading against the truth image; no light is culled. Left and low is good. Monte \
          Carlo is a curve over its samples; the tip of a point says how many. The staircase joins the models \
          that none beats in both. A point opens its picture beside the truth.",
-        &plot.html(scene, charts, shots),
-    )
+        plot.html(scene, charts, shots),
+    ));
+    parts
 }
 
 /// What the truth image is.

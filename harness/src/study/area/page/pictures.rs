@@ -1,20 +1,21 @@
 //! Each model beside the truth: image, difference, and the worst tile.
 
 use std::io::Cursor;
-use std::rc::Rc;
 
 use image::{ImageFormat, RgbImage, imageops};
 use shading::HdrImage;
 
+use crate::errors::{ImagePair, TILE_PX, worst_tile_at};
 use crate::report::format::significant;
 use crate::report::markup::{Html, html};
+use crate::study::against_truth::{MODELS, truth_of};
 use crate::study::area::page::models::model;
 use crate::study::data::{Entry, entries};
-use crate::study::page::figure::{panels, part};
+use crate::study::manifest::Done;
+use crate::study::page::figure::panels;
+use crate::study::page::part::Part;
+use crate::study::page::pictures::{figure, linear};
 use crate::study::page::shots::Shots;
-use crate::errors::{ImagePair, TILE_PX, worst_tile_at};
-use crate::stored::Store;
-use crate::study::{Done, MODELS, truth_of};
 
 /// Gain of difference pictures over that of the images.
 const GAIN: f32 = 8.0;
@@ -24,13 +25,11 @@ const CUT_PX: u32 = 4 * TILE_PX as u32;
 const LARGER: u32 = 4;
 
 /// One panel a model.
-pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html {
-    let Some((job, truth)) = truth_of(done, scene) else { return Html::default() };
+pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Option<Part> {
+    let (job, truth) = truth_of(done, scene)?;
     let exposure = truth.exposure;
-    let Some(reference) = linear(done, &job.name, Some(&truth.raw)) else { return Html::default() };
-    let Some(truth_key) = shots.linear(&job.name, &truth.raw, exposure) else {
-        return Html::default();
-    };
+    let reference = linear(done, &job.name, Some(&truth.raw))?;
+    let truth_key = shots.linear(&job.name, &truth.raw, exposure)?;
     let mut shown: Vec<(String, Html)> = Vec::new();
     for entry in entries(done, scene, MODELS) {
         let Entry { job, record } = entry;
@@ -65,31 +64,12 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html 
             );
         shown.push((name.to_owned(), html!("<div class=\"views\">{}</div>\n", body)));
     }
-    part(
-        scene,
+    Some(Part::new(
         "pictures",
         "What models look like",
         "All under the exposure of the truth.",
-        &panels("Model", &shown),
-    )
-}
-
-/// A linear image of a job.
-pub(crate) fn linear(done: &Done, job: &str, name: Option<&str>) -> Option<Rc<HdrImage>> {
-    Store::new(done.folders.get(job)?).image(name).ok().flatten()
-}
-
-/// A picture with its caption; nothing without a picture.
-pub(crate) fn figure(key: Option<String>, title: &str, text: &str) -> Html {
-    let Some(key) = key else { return Html::default() };
-    let separator = if text.is_empty() { "." } else { ": " };
-    html!(
-        "<figure><img data-picture=\"{0}\" alt=\"{1}\"><figcaption><b>{1}</b>{2}{3}</figcaption></figure>\n",
-        key,
-        title,
-        separator,
-        text
-    )
+        panels("Model", &shown),
+    ))
 }
 
 /// What is around a tile, in the truth and beside it in the image, enlarged.

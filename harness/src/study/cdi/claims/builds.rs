@@ -2,12 +2,13 @@
 
 use crate::report::fit::Fit;
 use crate::report::format::{mebibytes, number, percent, significant};
+use crate::results::DeepImageRun;
+use crate::study::cdi::claims::scenes::{other, too_alike};
+use crate::study::cdi::jobs;
 use crate::study::cdi::page::builds::most_directions;
 use crate::study::cdi::times::{runs, timed_runs};
-use crate::study::cdi::claims::casts::{other, too_alike};
 use crate::study::claims::{Answer, Verdict};
-use crate::results::DeepImageRun;
-use crate::study::{Done, cdi};
+use crate::study::manifest::Done;
 
 /// The paper's least factor of a pass for each direction over one for all.
 const LEAST_FACTOR: f64 = 20.0;
@@ -48,7 +49,7 @@ pub(crate) fn one_pass(done: &Done, scene: &str) -> Answer {
 
 /// Builds by compute that differ only in the number of directions, by that number, ms.
 fn by_directions(done: &Done, scene: &str) -> Vec<(f64, f64)> {
-    let all = timed_runs(done, scene, cdi::BUILDS);
+    let all = timed_runs(done, scene, jobs::BUILDS);
     let Some(first) = all.iter().find(|run| run.deep.build == "compute") else { return Vec::new() };
     let plain = |run: &&&DeepImageRun| {
         let (own, known) = (&run.deep, &first.deep);
@@ -106,7 +107,7 @@ pub(crate) fn build_linear(done: &Done, scene: &str) -> Answer {
 
 /// A scene's images of most directions, as a build makes them.
 pub(crate) fn usual<'a>(done: &'a Done, scene: &'a str, build: &str) -> Option<&'a DeepImageRun> {
-    let all = runs(done, scene, cdi::BUILDS);
+    let all = runs(done, scene, jobs::BUILDS);
     let first = all.first().copied()?;
     let own = all.into_iter().filter(|run| {
         run.deep.build == build
@@ -157,7 +158,7 @@ pub(crate) fn redundant(done: &Done, scene: &str) -> Answer {
 pub(crate) fn coverage(done: &Done, scene: &str) -> Answer {
     /// Errors of ranges may grow by a tenth.
     const SUFFICES: f64 = 1.1;
-    let all = runs(done, scene, cdi::BUILDS);
+    let all = runs(done, scene, jobs::BUILDS);
     let conservative = all.iter().find(|run| run.deep.build == "conservative");
     let same = |run: &&&DeepImageRun| {
         conservative.is_some_and(|known| {

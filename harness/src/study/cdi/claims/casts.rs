@@ -1,12 +1,14 @@
 //! What the deep-image paper claims of casting rays through deep images.
 
 use crate::report::format::{percent, significant};
-use crate::study::cdi::times::{runs, timed_casts, timed_runs};
-use crate::study::data::entries;
-use crate::study::cdi::claims::builds::usual;
-use crate::study::claims::{Answer, Verdict, on_another_gpu};
 use crate::results::{CastTimes, PassKind, Vpls, median};
-use crate::study::{Done, cdi};
+use crate::study::cdi::claims::builds::usual;
+use crate::study::cdi::claims::scenes::{other, too_alike};
+use crate::study::cdi::jobs;
+use crate::study::cdi::times::{runs, timed_casts, timed_runs};
+use crate::study::claims::{Answer, Verdict, on_another_gpu};
+use crate::study::data::entries;
+use crate::study::manifest::Done;
 
 /// Passes of the lights, ms.
 fn passes_ms(vpls: &Vpls, is_own: fn(&str) -> bool) -> f64 {
@@ -17,7 +19,7 @@ fn passes_ms(vpls: &Vpls, is_own: fn(&str) -> bool) -> f64 {
 pub(crate) fn cast_share(done: &Done, scene: &str) -> Answer {
     /// Half and twice the paper's 1 %.
     const ABOUT: std::ops::RangeInclusive<f64> = 0.005..=0.02;
-    let all = entries(done, scene, cdi::STEPS);
+    let all = entries(done, scene, jobs::STEPS);
     let steps = all.first().and_then(|entry| Some((entry.record, entry.record.vpls.as_ref()?)));
     let Some((record, vpls)) = steps.filter(|(_, vpls)| vpls.unsteady().is_none()) else {
         return Answer::unknown("the steps of a frame at a steady clock");
@@ -43,7 +45,7 @@ pub(crate) fn cast_share(done: &Done, scene: &str) -> Answer {
 
 /// Times of rays through arrays that count, of maps of the whole scene, from the smallest map on.
 pub(crate) fn casts<'a>(done: &'a Done, scene: &'a str) -> Vec<&'a CastTimes> {
-    let all = runs(done, scene, cdi::CASTS).into_iter();
+    let all = runs(done, scene, jobs::CASTS).into_iter();
     let arrays = all.filter(|run| run.deep.build != "linked-lists");
     let mut casts: Vec<&CastTimes> = arrays
         .flat_map(|run| timed_casts(done, scene, run))
@@ -130,36 +132,6 @@ pub(crate) fn rate(done: &Done, scene: &str) -> Answer {
     Answer { figure, verdict }
 }
 
-/// The scene of the fewest triangles among those whose deep images were built.
-pub(crate) fn simplest(done: &Done) -> Option<&str> {
-    let triangles = |scene: &&str| runs(done, scene, cdi::BUILDS).first().map(|run| run.triangles);
-    let known = done.scenes().into_iter().filter(|scene| triangles(scene).is_some());
-    known.min_by_key(|scene| triangles(scene))
-}
-
-/// The scene that another is compared with; the reason where there is none.
-pub(crate) fn other<'a>(done: &'a Done, scene: &str) -> Result<&'a str, Answer> {
-    match simplest(done) {
-        Some(simplest) if simplest != scene => Ok(simplest),
-        Some(_) => Err(Answer::undecided("this scene is the reference")),
-        None => Err(Answer::unknown("builds")),
-    }
-}
-
-/// The claims are about a town of 20 times the triangles: scenes that differ by less than half of that
-/// decide nothing.
-pub(crate) fn too_alike(done: &Done, scene: &str, simple: &str) -> Option<Verdict> {
-    const LEAST: f64 = 10.0;
-    let triangles = |scene| runs(done, scene, cdi::BUILDS).first().map(|run| run.triangles as f64);
-    let ratio = triangles(scene)? / triangles(simple)?;
-    (ratio < LEAST).then(|| {
-        let ratio = significant(ratio);
-        Verdict::undecided(&format!(
-            "{ratio} times the triangles of {simple}, not the paper\u{2019}s 20"
-        ))
-    })
-}
-
 pub(crate) fn geometry(done: &Done, scene: &str) -> Answer {
     /// The paper's text.
     const MOST: f64 = 1.1;
@@ -188,7 +160,7 @@ pub(crate) fn geometry(done: &Done, scene: &str) -> Answer {
 
 pub(crate) fn arrays(done: &Done, scene: &str) -> Answer {
     let build = |wanted: &str| {
-        let mut all = timed_runs(done, scene, cdi::BUILDS);
+        let mut all = timed_runs(done, scene, jobs::BUILDS);
         all.retain(|run| run.deep.build == wanted && run.deep.oversampling == 1);
         let most = all.iter().map(|run| run.deep.directions()).max()?;
         let usual_px = usual(done, scene, "compute")?.deep.size_px;
@@ -196,7 +168,7 @@ pub(crate) fn arrays(done: &Done, scene: &str) -> Answer {
         all.first().map(|run| run.build_ms())
     };
     let cast = |linked: bool| {
-        let all = runs(done, scene, cdi::CASTS).into_iter();
+        let all = runs(done, scene, jobs::CASTS).into_iter();
         let own = all.filter(|run| (run.deep.build == "linked-lists") == linked);
         let whole =
             own.flat_map(|run| timed_casts(done, scene, run)).filter(|cast| !cast.is_middle);

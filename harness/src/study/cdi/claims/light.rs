@@ -1,14 +1,19 @@
 //! What the deep-image paper claims of images, against the path-traced one.
 
 use crate::report::format::{difference, number, percent, significant};
-use crate::study::cdi::page::light::{METRIC, RULES, error, rule, setting};
-use crate::study::cdi::verdicts::{
-    Nearer, best, best_cast, image_by_build, is_at_end, nearer, noise_of, share,
-};
-use crate::study::data::{Entry, entries};
-use crate::study::claims::{Answer, Verdict};
 use crate::results::{Record, Vpls};
-use crate::study::{Done, MODELS, truth_of};
+use crate::study::against_truth::{MODELS, truth_of};
+use crate::study::cdi::lights::{METRIC, RULES, error, rule, setting};
+use crate::study::cdi::same_build::image_by_build;
+use crate::study::cdi::verdicts::{Nearer, best, best_cast, is_at_end, nearer, noise_of};
+use crate::study::claims::{Answer, Verdict};
+use crate::study::data::{Entry, entries};
+use crate::study::manifest::Done;
+
+/// A share for a sentence: `0.12 %`.
+fn share(value: f64) -> String {
+    format!("{} %", percent(value))
+}
 
 /// Whether how deep images are built shows in the image.
 pub(crate) fn same_image(done: &Done, scene: &str) -> Answer {

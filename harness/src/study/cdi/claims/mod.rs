@@ -1,9 +1,13 @@
-//! What the deep-image paper (Archer, Leach and Knowles 2019) claims. Claims are decided in
-//! [`crate::study::cdi::claims::builds`], [`crate::study::cdi::claims::casts`] and [`crate::study::cdi::claims::light`].
+//! What the deep-image paper (Archer, Leach and Knowles 2019) claims: one row per claim.
 
-use crate::study::cdi::claims::builds::{build_linear, coverage, one_pass, overhead, redundant, size};
-use crate::study::cdi::claims::casts::{against_random, arrays, cast_share, geometry, rate, rays_linear};
-use crate::study::cdi::claims::light::{fewer_lights, same_image, similar, visual_quality};
+mod builds;
+mod casts;
+mod light;
+mod scenes;
+
+use self::builds::{build_linear, coverage, one_pass, overhead, redundant, size};
+use self::casts::{against_random, arrays, cast_share, geometry, rate, rays_linear};
+use self::light::{fewer_lights, same_image, similar, visual_quality};
 use crate::study::claims::{Check, Paper};
 
 /// Archer, Leach and Knowles 2019.

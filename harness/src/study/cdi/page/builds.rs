@@ -1,12 +1,14 @@
 //! Building deep images: times by directions and by build, and memory.
 
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::report::format::{ABSENT, mebibytes, number, significant};
 use crate::report::markup::{Html, html};
-use crate::study::cdi::times::{refused_build, runs, shown, timed_runs};
-use crate::study::page::figure::{Charts, part, table, unit};
-use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::{CastTimes, DeepImageRun, median};
-use crate::study::{Done, cdi};
+use crate::study::cdi::jobs;
+use crate::study::cdi::times::{PAPER, refused_build, runs, shown, timed_runs};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::part::Part;
 
 /// The paper's table 2: directions, and times in its atrium and its town; of 169 from the text.
 const PAPER_BUILDS: [(u32, [f64; 2]); 6] = [
@@ -37,9 +39,9 @@ const BUILDS: [(&str, &str, &str); 4] = [
 ];
 
 /// Times, factors and memory.
-pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Html {
-    let all = runs(done, scene, cdi::BUILDS);
-    let Some(first) = all.first().copied() else { return Html::default() };
+pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
+    let all = runs(done, scene, jobs::BUILDS);
+    let first = all.first().copied()?;
     let plain: Vec<&DeepImageRun> =
         all.iter().copied().filter(|run| is_plain(run, first)).collect();
     let of = |build: &str, directions: u32| {
@@ -106,9 +108,9 @@ pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Html {
          is rasterised is slow there as on no other chip. The paper\u{2019}s figures: {2}.",
         number(first.triangles as f64),
         first.deep.size_px,
-        crate::study::cdi::page::PAPER
+        PAPER
     );
-    part(scene, "builds", "Building deep images", &text, &body)
+    Some(Part::new("builds", "Building deep images", text, body))
 }
 
 fn build_chart(plain: &[&DeepImageRun]) -> XyChart {
@@ -238,8 +240,8 @@ pub(crate) struct MostDirections {
 
 /// The builds of most directions, where a single pass was timed at a steady, risen clock.
 pub(crate) fn most_directions(done: &Done, scene: &str) -> Option<MostDirections> {
-    let first = runs(done, scene, cdi::BUILDS).first().copied()?;
-    let all = timed_runs(done, scene, cdi::BUILDS);
+    let first = runs(done, scene, jobs::BUILDS).first().copied()?;
+    let all = timed_runs(done, scene, jobs::BUILDS);
     let directions = all.iter().map(|run| run.deep.directions()).max()?;
     let best = |builds: &[&str]| {
         let own = all.iter().filter(|run| {

@@ -1,39 +1,26 @@
 //! Indirect light by virtual point lights against the path-traced image: errors by how ranges are found,
-//! and pictures. What the errors say, [`crate::study::cdi::verdicts`] says.
+//! and pictures. [`verdicts`](crate::study::cdi::verdicts) judges the errors.
 
+use crate::errors::ERROR_METRICS;
 use crate::report::format::{ABSENT, difference, number, percent, significant};
 use crate::report::markup::{Html, html};
-use crate::study::area::page::pictures::{figure, linear};
-use crate::study::cdi::times;
-use crate::study::cdi::verdicts::best;
-use crate::study::data::{Entry, entries};
-use crate::study::page::errors_plot::Plot;
-use crate::study::page::figure::{Charts, dotted, panels, part, table, unit};
-use crate::study::page::shots::{Shots, Wanted};
-use crate::errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage, Vpls};
-use crate::study::{Done, MODELS, cdi, truth_of};
-
-/// The metric by which rules are told apart in words.
-pub(crate) const METRIC: &str = "mean_error";
+use crate::study::against_truth::{MODELS, truth_of};
+use crate::study::cdi::jobs;
+use crate::study::cdi::lights::{METRIC, RULES, rule, setting, total_ms};
+use crate::study::cdi::same_build::by_build;
+use crate::study::cdi::times;
+use crate::study::cdi::verdicts::{about_ties, best};
+use crate::study::data::{Entry, entries};
+use crate::study::manifest::Done;
+use crate::study::page::errors_plot::Plot;
+use crate::study::page::figure::{Charts, dotted, panels, table, unit};
+use crate::study::page::part::Part;
+use crate::study::page::pictures::{figure, linear};
+use crate::study::page::shots::{Shots, Wanted};
 
 /// Gain of pictures of differences over that of the images.
 const GAIN: f32 = 4.0;
-
-/// Rules of ranges, in the order of their colours, and what each is.
-pub(crate) const RULES: [(&str, &str, &str); 6] = [
-    ("average", "strategy-0", "rays, average"),
-    ("maximum", "strategy-1", "rays, maximum"),
-    ("random", "strategy-3", "random"),
-    ("random-discard", "strategy-4", "random, lights that meet nothing left out"),
-    ("constant-discard", "strategy-6", "constant, lights that meet nothing left out"),
-    ("infinite", "strategy-none", "infinite"),
-];
-
-pub(crate) fn rule(record: &Record) -> &'static str {
-    let ranges = record.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
-    RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
-}
 
 /// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set
 /// otherwise by themselves.
@@ -43,13 +30,13 @@ fn series(record: &Record) -> String {
     match vpls.ranges.as_str() {
         "random" => format!("random, {side}\u{b2}"),
         "infinite" => "infinite".to_owned(),
-        _ if !cdi::is_usual(vpls) => "rays, otherwise set".to_owned(),
+        _ if !jobs::is_usual(vpls) => "rays, otherwise set".to_owned(),
         _ => format!("{}, {side}\u{b2}", rule(record)),
     }
 }
 
 fn class(record: &Record) -> String {
-    let is_cast = |vpls: &Vpls| vpls.rays > 0 && !cdi::is_usual(vpls);
+    let is_cast = |vpls: &Vpls| vpls.rays > 0 && !jobs::is_usual(vpls);
     if record.vpls.as_ref().is_some_and(is_cast) {
         return "strategy-5".to_owned();
     }
@@ -60,53 +47,8 @@ fn class(record: &Record) -> String {
         .to_owned()
 }
 
-/// Everything that a frame takes: lights, lists and shading, ms. NaN where the clock was not steady.
-pub(crate) fn total_ms(record: &Record) -> f64 {
-    if record.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
-        return f64::NAN;
-    }
-    record.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
-}
-
-/// What is set otherwise than usual: `× 3`, `0.4 to 8 m`, `8 directions`.
-pub(crate) fn setting(record: &Record) -> String {
-    let Some(vpls) = &record.vpls else { return String::new() };
-    let mut parts = Vec::new();
-    match vpls.random_m {
-        Some([low, high]) if low == high => parts.push(format!("{} m", significant(low))),
-        Some([low, high]) => parts.push(format!("{} to {} m", significant(low), significant(high))),
-        None if vpls.ranges != "infinite" => {
-            parts.push(format!("\u{d7} {}", significant(vpls.range_scale)));
-        }
-        None => {}
-    }
-    for (said, words) in
-        [(vpls.is_reflected, "reflected primary rays"), (vpls.is_corrected, "corrected rays")]
-    {
-        parts.extend(said.then(|| words.to_owned()));
-    }
-    if let Some(deep) = &vpls.deep {
-        parts.push(format!(
-            "{} directions of {2} x {2}, {1} rays",
-            deep.directions(),
-            vpls.rays,
-            deep.size_px
-        ));
-    }
-    parts.push(format!(
-        "{} of {} lights",
-        number(vpls.kept as f64),
-        number(vpls.candidates as f64)
-    ));
-    parts.join(", ")
-}
-
 fn title(record: &Record) -> String {
     format!("{}: {}", rule(record), setting(record))
-}
-
-pub(crate) fn error(record: &Record) -> Option<f64> {
-    record.truth_errors.get(METRIC).copied().flatten().filter(|error| error.is_finite())
 }
 
 /// Errors, times and pictures.
@@ -115,15 +57,14 @@ pub(crate) fn indirect(
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> Html {
+) -> Vec<Part> {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
         all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
-    let Some((_, truth)) = truth_of(done, scene) else { return Html::default() };
-    if known.is_empty() {
-        return Html::default();
-    }
-    let rows = errors_table(&known) + crate::study::cdi::verdicts::by_build(&known);
+    let Some((_, truth)) = truth_of(done, scene).filter(|_| !known.is_empty()) else {
+        return Vec::new();
+    };
+    let rows = errors_table(&known) + by_build(&known);
     let plot = Plot {
         slug: "indirect",
         title: "Error of indirect light against time",
@@ -146,8 +87,8 @@ pub(crate) fn indirect(
         ms: total_ms,
     };
     let body = plot.html(scene, charts, shots) + rows;
-    part(scene, "indirect", "Indirect light against the truth", &about(truth), &body)
-        + pictures(done, scene, shots)
+    let errors = Part::new("indirect", "Indirect light against the truth", about(truth), body);
+    [Some(errors), pictures(done, scene, shots)].into_iter().flatten().collect()
 }
 
 fn about(truth: &TruthImage) -> String {
@@ -160,7 +101,7 @@ fn about(truth: &TruthImage) -> String {
         truth.height,
         significant(truth.seconds),
         percent(truth.standard_error),
-        crate::study::cdi::verdicts::about_ties(truth)
+        about_ties(truth)
     )
 }
 
@@ -184,7 +125,7 @@ fn errors_table(entries: &[Entry<'_>]) -> Html {
                 of(|vpls| vpls.mean_range_m),
                 vpls.map_or_else(
                     || ABSENT.into(),
-                    |vpls| cdi_times::shown(vpls.total_ms(), vpls.unsteady().is_none()),
+                    |vpls| times::shown(vpls.total_ms(), vpls.unsteady().is_none()),
                 ),
                 significant(record.assign_and_shade_ms()).into(),
             ];
@@ -200,15 +141,13 @@ fn errors_table(entries: &[Entry<'_>]) -> Html {
 }
 
 /// The best of each rule, over all that was tried, beside the truth.
-fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html {
-    let Some((truth_job, truth)) = truth_of(done, scene) else { return Html::default() };
+fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Option<Part> {
+    let (truth_job, truth) = truth_of(done, scene)?;
     let exposure = truth.exposure;
-    let Some(reference) = linear(done, &truth_job.name, Some(&truth.raw)) else {
-        return Html::default();
-    };
+    let reference = linear(done, &truth_job.name, Some(&truth.raw))?;
     let truth_key = shots.linear(&truth_job.name, &truth.raw, exposure);
     let direct = done
-        .of(scene, cdi::DIRECT)
+        .of(scene, jobs::DIRECT)
         .find_map(|(job, results)| Some((job, results.truth_image.as_ref()?)))
         .and_then(|(job, image)| shots.file(&job.name, &image.image));
     let mut shown = Vec::new();
@@ -245,5 +184,5 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html {
         shown.push((name.to_owned(), html!("<div class=\"views\">{}</div>\n", body)));
     }
     let text = "Of each rule the setting of least mean error. Indirect images are under the exposure of the truth.";
-    part(scene, "pictures", "What ranges look like", text, &panels("Ranges", &shown))
+    Some(Part::new("pictures", "What ranges look like", text, panels("Ranges", &shown)))
 }

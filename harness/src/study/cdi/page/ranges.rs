@@ -1,23 +1,25 @@
 //! Rays through deep images against exact ones: how far off distances are, by directions and by size.
 
+use crate::chart::{Axis, Histogram, Marks, Point, Scale, Series, XyChart};
 use crate::report::format::{number, percent, significant};
 use crate::report::markup::Html;
-use crate::study::cdi::times::runs;
-use crate::study::page::figure::{Charts, part, table, unit};
-use crate::chart::{Axis, Histogram, Marks, Point, Scale, Series, XyChart};
 use crate::results::{DeepImageRun, RangeErrors};
-use crate::study::{Done, cdi};
+use crate::study::cdi::jobs;
+use crate::study::cdi::times::runs;
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::part::Part;
 
 /// The runs whose rays were compared, with what was found.
 fn compared<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a DeepImageRun, &'a RangeErrors)> {
-    let all = runs(done, scene, cdi::BUILDS).into_iter();
+    let all = runs(done, scene, jobs::BUILDS).into_iter();
     all.filter_map(|run| Some((run, run.range_errors.as_ref()?))).collect()
 }
 
 /// Charts and table.
-pub(crate) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+pub(crate) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
     let all = compared(done, scene);
-    let Some((first, _)) = all.first().copied() else { return Html::default() };
+    let (first, _) = all.first().copied()?;
     let of_size = |run: &&(&DeepImageRun, &RangeErrors)| {
         run.0.deep.size_px == first.deep.size_px && is_paper_build(run.0)
     };
@@ -46,7 +48,7 @@ pub(crate) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> Html {
                 the same triangles in the direction that was asked for. A footprint is the side of a pixel. A ray \
                 is lost where it meets a surface and none in the deep images, invented where it is the other way \
                 round.";
-    part(scene, "ranges", "Ranges against exact rays", text, &body)
+    Some(Part::new("ranges", "Ranges against exact rays", text, body))
 }
 
 /// Whether it is built as in the paper.

@@ -1,14 +1,14 @@
 //! The paper's strategies at one count of lights, and their times.
 
 use crate::report::format::{number, significant};
+use crate::results::Record;
+use crate::study::claims::Answer;
+use crate::study::claims::order::Order;
+use crate::study::comparison::claims::pairs::{Member, Pairs};
 use crate::study::data::{
     Entry, counts, family, is_near, is_of_the_paper, nearest_count, ranking, short, stand, stand_in,
 };
-use crate::study::claims::order::Order;
-use crate::study::claims::Answer;
-use crate::study::comparison::claims::pairs::{Member, Pairs};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// Records of the paper's strategies under the same lights, exact ones only.
 pub(crate) struct Field<'a> {

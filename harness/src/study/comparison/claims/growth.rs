@@ -3,16 +3,16 @@
 use crate::report::fit::Fit;
 use crate::report::format::{number, percent, significant};
 use crate::report::rank::listed;
+use crate::results::Record;
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
+use crate::study::comparison::page::scaling::{Straight, straight};
 use crate::study::data::{
     Entry, entries, family, is_of_the_paper, lines, poses, short, stand, stand_in,
 };
-use crate::study::claims::order::Order;
-use crate::study::comparison::page::scaling::{Straight, Time, straight};
-use crate::study::claims::{Answer, Verdict};
-use crate::study::comparison::claims::ALIKE;
-use crate::study::comparison::claims::pairs::{Member, Pairs};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::manifest::Done;
+use crate::study::page::lines::{Time, fit};
 
 /// The counts of lights between which the paper fits its lines.
 const RANGE: [u64; 2] = [100, 10_000];
@@ -28,11 +28,6 @@ fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<(&'a str, Vec<&'a
     // The paper's own strategy comes before what stands in for it.
     lines.sort_by_key(|(id, _)| stand_in(id).is_some());
     lines
-}
-
-/// The line through a strategy's times by least squares, as in the paper.
-fn fit(records: &[&Record], time: Time) -> Option<Fit> {
-    crate::study::comparison::page::scaling::fit(records, time)
 }
 
 fn basis(lines: &[(&str, Vec<&Record>)]) -> String {

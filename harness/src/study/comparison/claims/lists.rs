@@ -1,15 +1,15 @@
 //! Claims on the lengths of lists: depth discontinuity (section 4.4.1.2) and models.
 
 use crate::report::format::{number, percent, significant};
+use crate::results::Record;
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::comparison::page::views::is_low;
 use crate::study::data::{
     Entry, counts, entries, family, is_bvh, is_of_the_paper, nearest_count, ranking, short, stand,
     stand_in,
 };
-use crate::study::claims::order::Order;
-use crate::study::comparison::page::views::is_low;
-use crate::study::claims::{Answer, Verdict};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// Below this growth of T-E's lists the two views are too alike to tell anything.
 const LEAST_GROWTH: f64 = 0.05;

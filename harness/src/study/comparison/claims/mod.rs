@@ -1,5 +1,6 @@
 //! What the comparison paper (Enhuber 2019) claims, and what decides each claim in one scene.
 
+mod bounds;
 mod field;
 mod growth;
 mod lists;
@@ -8,16 +9,7 @@ mod search;
 mod speed;
 mod spread;
 
-use crate::report::fit::Fit;
-use crate::report::format::significant;
-use crate::report::raster::MARK;
-use crate::study::data::{Entry, entries, family, is_bvh, is_of_the_paper, lines, stand_in};
-use crate::study::claims::order::Order;
-use crate::study::comparison::page::scaling::fit;
-use crate::study::claims::{Answer, Check, Paper};
-use crate::results::Record;
-use crate::study::Done;
-use pairs::Pairs;
+use crate::study::claims::{Check, Paper};
 
 /// Enhuber 2019.
 pub(crate) const PAPER: Paper = Paper {
@@ -31,9 +23,6 @@ pub(crate) const PAPER: Paper = Paper {
             means. Of fewer than six rounds or laps, times less than 5 % apart decide nothing.",
     checks: &CHECKS,
 };
-
-/// Figures up to this factor apart are called alike; the paper draws bars and gives no bound.
-const ALIKE: f64 = 1.5;
 
 const NO_PRE_PASS: &str =
     "the depth pre-pass is on no bill, so methods that need it lose less at few lights";
@@ -241,7 +230,7 @@ const CHECKS: [Check; 28] = [
                 SC-I and SC-E high, because of the depth pre-pass and the bounds",
         departure: "SC-I reads depth too, so both rows of SC pay for the pre-pass. The paper lights hidden \
                     surfaces in spite of its pre-pass; here lighting is deferred. Less than 2 % apart is a tie.",
-        decide: bounds,
+        decide: bounds::explicit_against_implicit,
     },
     Check {
         id: "dominates",
@@ -284,65 +273,3 @@ const CHECKS: [Check; 28] = [
         decide: growth::grid_like_dense,
     },
 ];
-
-/// Explicit against implicit bounds of the same groups from the same source: slope lower, offset
-/// higher. Decided as in the paper, where methods that read depth pay for a depth pre-pass; the bill of
-/// a renderer that draws one anyway stands beside it.
-fn bounds(done: &Done, scene: &str) -> Answer {
-    let scaling: Vec<Entry<'_>> = entries(done, scene, "scaling")
-        .into_iter()
-        .filter(|entry| is_of_the_paper(entry.record))
-        .collect();
-    let lines = lines(&scaling);
-    let of = |wanted: String, bvh: bool| {
-        let (_, records) =
-            lines.iter().find(|(id, _)| family(id) == wanted && is_bvh(id) == bvh)?;
-        let fit = |time| fit(records, time).filter(|fit: &Fit| fit.points > 2);
-        Some((fit(Record::with_depth_ms)?, fit(Record::assign_and_shade_ms)?))
-    };
-    // The pre-pass rasterises, which some chips do on a few of their processors.
-    let is_weak = done.results.values().any(|results| results.machine.weak_raster().is_some());
-    let mark = if is_weak { format!(" {MARK}") } else { String::new() };
-    let mut pairs = Pairs::default();
-    let has_depth = scaling.iter().any(|entry| entry.record.passes.get("depth").is_some());
-    let mut figures = Vec::new();
-    for group in ["T", "DC", "SC"] {
-        for bvh in [false, true] {
-            let pair = (of(format!("{group}-E"), bvh), of(format!("{group}-I"), bvh));
-            let (Some((explicit, explicit_without)), Some((implicit, implicit_without))) = pair
-            else {
-                continue;
-            };
-            let source = if bvh { "/bvh" } else { "" };
-            for (what, order) in [
-                ("slope", Order::of_fits(explicit.slope, implicit.slope)),
-                ("offset", Order::of_fits(implicit.offset, explicit.offset)),
-            ] {
-                let names = match what {
-                    "slope" => [format!("{group}-E{source}"), format!("{group}-I{source}")],
-                    _ => [format!("{group}-I{source}"), format!("{group}-E{source}")],
-                };
-                pairs.add(&format!("{} ({what})", names[0]), &names[1], order);
-            }
-            figures.push(format!(
-                "{group}{source}: slope \u{d7} {}, offset {} to {} ms{mark} with the depth pre-pass on the bill, {} to {} without",
-                significant(explicit.slope / implicit.slope),
-                significant(implicit.offset),
-                significant(explicit.offset),
-                significant(implicit_without.offset),
-                significant(explicit_without.offset),
-            ));
-        }
-    }
-    if figures.is_empty() || !has_depth {
-        return Answer::unknown("scaling of explicit and implicit bounds, with the depth pre-pass");
-    }
-    let mut notes: Vec<String> = lines
-        .iter()
-        .filter(|(id, _)| family(id) == "T-I")
-        .filter_map(|(id, _)| Some(format!("with {}", stand_in(id)?)))
-        .collect();
-    notes.dedup();
-    let verdict = pairs.verdict().qualified(&notes);
-    Answer { figure: figures.join("; ") + &pairs.exceptions(), verdict }
-}

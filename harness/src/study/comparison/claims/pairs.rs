@@ -1,9 +1,12 @@
 //! Pairs of strategies that the paper orders, and what they come to together.
 
 use crate::report::rank::listed;
-use crate::study::data::stand_in;
-use crate::study::claims::order::Order;
 use crate::study::claims::Verdict;
+use crate::study::claims::order::Order;
+use crate::study::data::stand_in;
+
+/// Figures up to this factor apart are called alike; the paper draws bars and gives no bound.
+pub(crate) const ALIKE: f64 = 1.5;
 
 /// Names in a figure: more than this many pairs are counted and not named.
 const MOST_NAMED: usize = 6;

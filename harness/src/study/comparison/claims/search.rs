@@ -2,14 +2,14 @@
 
 use crate::report::format::{percent, significant};
 use crate::report::rank::{first, ranks};
-use crate::study::data::{
-    Entry, entries, family, is_bvh, parameters, short, stand, stand_in, tests as tests_of,
-};
+use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::pairs::Pairs;
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::data::{
+    Entry, entries, family, is_bvh, parameters, short, stand, stand_in, tests as tests_of,
+};
+use crate::study::manifest::Done;
 
 /// The sizes that the paper selects (table 4.3).
 const SELECTED: [(&str, &str); 7] = [

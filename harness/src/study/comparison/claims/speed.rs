@@ -5,7 +5,7 @@ use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::field::{Field, ordered};
 use crate::study::comparison::claims::pairs::Pairs;
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// Up to this ratio of times a strategy is a little slower; the paper's are 1.04 to 1.10.
 const LITTLE: f64 = 1.2;

@@ -1,15 +1,14 @@
 //! Claims on how times vary along the path: table 4.4 and figure 4.8.
 
 use crate::report::format::{number, percent, significant};
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
+use crate::study::comparison::page::path::Spread;
 use crate::study::data::{
     Entry, counts, entries, family, is_near, is_of_the_paper, nearest_count, short, stand, stand_in,
 };
-use crate::study::claims::order::Order;
-use crate::study::comparison::page::path::Spread;
-use crate::study::claims::{Answer, Verdict};
-use crate::study::comparison::claims::ALIKE;
-use crate::study::comparison::claims::pairs::{Member, Pairs};
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// The strategies of table 4.4; the paper leaves DC-E out of it.
 const COMPARED: [&str; 7] = ["SC-E", "SC-I", "T-E", "DC-I", "G", "T-I", "M"];

@@ -1,6 +1,6 @@
 //! The jobs of a scene, without a device.
 
-use crate::study::comparison::jobs::*;
+use super::*;
 
 fn plan(quick: bool, triangles: u64) -> Vec<Job> {
     let scene = StudyScene { scene: "atrium".into(), name: "atrium".into(), scale: 1.0 };
@@ -14,12 +14,6 @@ fn plan(quick: bool, triangles: u64) -> Vec<Job> {
     plan.beyond();
     plan.accuracy();
     plan.jobs
-}
-
-/// What follows an option of a job.
-fn value<'a>(job: &'a Job, option: &str) -> Option<&'a str> {
-    let at = job.command.iter().position(|word| word == option)?;
-    job.command.get(at + 1).map(String::as_str)
 }
 
 #[test]
@@ -51,7 +45,7 @@ fn what_ranks_is_measured_along_the_path() {
             assert!(!own.is_empty(), "{section}");
             for job in own {
                 assert!(job.command.iter().any(|word| word == "--path"), "{}", job.name);
-                let laps: u32 = value(job, "--laps").and_then(|n| n.parse().ok()).expect("laps");
+                let laps: u32 = job.option("--laps").and_then(|n| n.parse().ok()).expect("laps");
                 assert!(laps >= 6, "{}: {laps} laps", job.name);
             }
         }
@@ -59,7 +53,7 @@ fn what_ranks_is_measured_along_the_path() {
     let jobs = plan(false, 1_000);
     let poses = |name: &str| -> u32 {
         let job = jobs.iter().find(|job| job.name == name).expect("a job");
-        value(job, "--frames").and_then(|n| n.parse().ok()).expect("frames")
+        job.option("--frames").and_then(|n| n.parse().ok()).expect("frames")
     };
     assert_eq!((poses("atrium-path-10000"), poses("atrium-sizes-SC-E")), (240, 24));
     assert_eq!((poses("atrium-scaling-1000"), poses("atrium-tests-T-E")), (24, 24));
@@ -70,9 +64,9 @@ fn what_ranks_is_measured_along_the_path() {
 fn sizes_are_searched_from_the_source_that_they_are_reported_for() {
     let jobs = plan(false, 1_000);
     for job in jobs.iter().filter(|job| job.section == "sizes") {
-        let ids = value(job, "--strategies").expect("strategies");
-        let is_bvh = job.name.ends_with("-bvh");
+        let ids = job.option("--strategies").expect("strategies");
+        let is_bvh = job.settings.text("source") == Some("bvh");
         assert!(ids.split(',').all(|id| id.ends_with("/bvh") == is_bvh), "{}: {ids}", job.name);
-        assert!(value(job, "--source").is_none(), "{}", job.name);
+        assert!(job.option("--source").is_none(), "{}", job.name);
     }
 }

@@ -3,12 +3,13 @@
 use crate::report::format::{difference, significant};
 use crate::report::markup::Html;
 use crate::report::rank::Ratio;
-use crate::study::data::{class, entries, family, knob, lines};
-use crate::study::page::errors_plot::{FIRST, Plot};
-use crate::study::page::figure::{Charts, part};
-use crate::study::page::shots::{Shots, Wanted};
 use crate::results::Record;
-use crate::study::Done;
+use crate::study::data::{class, entries, family, knob, lines};
+use crate::study::manifest::Done;
+use crate::study::page::errors_plot::{FIRST, Plot};
+use crate::study::page::figure::Charts;
+use crate::study::page::part::Part;
+use crate::study::page::shots::{Shots, Wanted};
 
 /// The three charts of a scene.
 pub(crate) fn accuracy(
@@ -16,7 +17,7 @@ pub(crate) fn accuracy(
     scene: &str,
     charts: &mut Charts,
     shots: &mut Shots<'_>,
-) -> Html {
+) -> [Part; 2] {
     let mut html = Html::default();
     let label = |record: &Record| knob(&record.strategy).unwrap_or("lossless").to_owned();
     let series = |record: &Record| family(&record.strategy).to_owned();
@@ -44,14 +45,13 @@ pub(crate) fn accuracy(
     };
     html += caps.html(scene, charts, shots);
     html += reuse.html(scene, charts, shots);
-    let html = part(
-        scene,
+    let culling = Part::new(
         "accuracy",
         "Speed against accuracy: culling error",
         "The error against no culling with the same shader; left and low is good. The staircase joins \
          the settings that none beats in both; the others are faded. Exact images lie in the lane of \
          zeros. A point whose pictures were kept opens them.",
-        &html,
+        html,
     );
     let ranges = Plot {
         slug: "ranges",
@@ -71,16 +71,16 @@ pub(crate) fn accuracy(
         first: FIRST,
         ms: Record::assign_and_shade_ms,
     };
-    html + part(
-        scene,
+    let ranges = Part::new(
         "ranges",
         "Speed against accuracy: the lights\u{2019} range",
         "Another error, never to be mixed with the one above: that of ending lights at the distance at \
          which their intensity falls to a threshold, against lights without a range. It does not \
          depend on the strategy, whose lists are exact; the time does. Points are labelled with the \
          threshold.",
-        &ranges.html(scene, charts, shots),
-    )
+        ranges.html(scene, charts, shots),
+    );
+    [culling, ranges]
 }
 
 /// The cheapest setting of a section whose error stays below a bound, in words.

@@ -2,17 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::report::comparison::{Comparison, comparisons};
 use crate::report::format::{number, short_adapter, significant};
 use crate::report::lead::{Lead, span};
 use crate::report::markup::{Html, html};
 use crate::report::page;
 use crate::report::rank::{Ratio, first, listed, ranks, tie};
-use crate::study::data::{Entry, class, counts, entries, poses, stand};
-use crate::study::page::figure::{Charts, panels, part};
-use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::{PassKind, Record, Results, mean};
-use crate::study::Done;
+use crate::study::data::{Entry, class, counts, entries, poses, stand};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, panels};
+use crate::study::page::part::Part;
 
 /// From this ratio of the longest to the shortest bar on, the axis is logarithmic.
 const LOG_ABOVE: f64 = 20.0;
@@ -62,7 +63,7 @@ fn comparison(results: &Results) -> Option<Comparison<'_>> {
 }
 
 /// The result table and the passes of each count of lights, the most lights first.
-pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     let mut shown: Vec<(String, Html)> = Vec::new();
     for results in rankings(done, scene).iter().rev() {
         shown.extend(panel(scene, "", results, charts));
@@ -70,14 +71,13 @@ pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     for results in examples(done, scene).iter().rev() {
         shown.extend(panel(scene, "still-", results, charts));
     }
-    part(
-        scene,
+    Part::new(
         "main",
         "All strategies",
         "At the comparison paper\u{2019}s parameters, from the list of all lights and through the hierarchy \
          (/bvh). Times are means along the path where they were measured there: these rank. A table of \
          one pose is an example, with pictures and lists. A heading sorts by its column.",
-        &panels("Lights", &shown),
+        panels("Lights", &shown),
     )
 }
 

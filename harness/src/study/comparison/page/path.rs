@@ -1,13 +1,14 @@
 //! Times frame by frame along the camera's path.
 
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::report::format::{number, percent, significant};
 use crate::report::markup::Html;
-use crate::study::data::{Entry, class, counts, entries, laps, lines, poses, short};
-use crate::study::page::figure::{Charts, name, panels, part, table, unit};
-use crate::study::claims::order::Order;
-use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::{Record, mean, median, standard_deviation};
-use crate::study::Done;
+use crate::study::claims::order::Order;
+use crate::study::data::{Entry, class, counts, entries, laps, lines, poses, short};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::part::Part;
 
 /// From this ratio of the greatest to the least mean on, the axis of times is logarithmic.
 const LOG_ABOVE: f64 = 8.0;
@@ -50,7 +51,7 @@ impl Spread {
 }
 
 /// Lines of frame times, and what they come to, per count of lights.
-pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     let all = entries(done, scene, "path");
     let mut shown: Vec<(String, Html)> = Vec::new();
     for count in counts(&all).into_iter().rev() {
@@ -61,14 +62,13 @@ pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Html {
             + spreads(&title, &own);
         shown.push((format!("{} lights", number(count as f64)), body));
     }
-    part(
-        scene,
+    Part::new(
         "path",
         "Along the path",
         "Assigning and shading at each pose of the camera, mean over laps. SD is the standard deviation \
          over poses, by which the comparison paper ranks; SD / mean and worst / median stand beside it. \
          Slow methods have fewer poses.",
-        &panels("Lights", &shown),
+        panels("Lights", &shown),
     )
 }
 

@@ -1,28 +1,20 @@
 //! Times against the number of lights, with straight lines through them.
 
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::report::fit::Fit;
 use crate::report::format::{ABSENT, number, percent, significant};
 use crate::report::markup::{Html, html};
+use crate::results::Record;
 use crate::study::data::{
     Entry, Line, class, counts, entries, is_bvh, lines, poses, ranking, short, stand,
 };
-use crate::study::page::figure::{Charts, name, panels, part, table, unit};
-use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::lines::{Time, fit, points};
+use crate::study::page::part::Part;
 
 /// Points along a fitted line; on logarithmic axes it is a curve.
 const STEPS: u32 = 40;
-
-/// A time of a record, ms.
-pub(crate) type Time = fn(&Record) -> f64;
-
-/// The straight line through the times of a strategy.
-pub(crate) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
-    let points: Vec<(f64, f64)> =
-        records.iter().map(|record| (record.lights as f64, time(record))).collect();
-    Fit::through(&points)
-}
 
 /// A time no farther than this share of itself from a line lies on it.
 const TOLERANCE: f64 = 0.1;
@@ -73,41 +65,40 @@ pub(crate) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
 }
 
 /// Scaling with lights: fits, growing and constant density, radii.
-pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3] {
     let scaling = entries(done, scene, "scaling");
-    let mut html = by_source(&scaling, |source, entries| {
+    let html = by_source(&scaling, |source, entries| {
         let slug = format!("{scene}-scaling-{source}");
         let title = "Time against lights, and the straight lines through them".to_owned();
         charts.xy(&slug, &fitted_chart(title, &lines(entries), Record::assign_and_shade_ms))
             + fits_table(entries)
     });
-    html = part(
-        scene,
+    let scaled = Part::new(
         "scaling",
         "Scaling",
-        &format!(
+        format!(
             "{} Whiskers are intervals; dashes are a least-squares line through each strategy\u{2019}s \
              times: straight on linear axes, bent on these. How far times are off a line is told of \
              another one, which takes relative distances, so that few lights count as much as many.",
             stands(&scaling)
         ),
-        &html,
+        html,
     );
-    html + part(
-        scene,
+    let density = Part::new(
         "density",
         "Many more lights",
         "Growing density: more lights in the same box. Constant density: the scene grows with the cube \
          root of their number, and lights keep their size. All through the hierarchy.",
-        &density(done, scene, charts),
-    ) + part(
-        scene,
+        density(done, scene, charts),
+    );
+    let radii = Part::new(
         "radii",
         "Other radii",
         "The same mean radius, distributed otherwise; in brackets the time over that with the gamma \
          distribution.",
-        &radii(done, scene),
-    )
+        radii(done, scene),
+    );
+    [scaled, density, radii]
 }
 
 /// What the points of a chart are: means along the path, or medians of one pose.
@@ -180,23 +171,6 @@ fn lights_axis(scale: Scale) -> Axis {
 
 fn time_axis(scale: Scale) -> Axis {
     Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale }
-}
-
-/// A strategy's times against its lights.
-pub(crate) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) -> Series {
-    let point = |record: &&Record| {
-        let y = time(record);
-        let lights = number(record.lights as f64);
-        Point {
-            x: record.lights as f64,
-            y,
-            y_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
-            tip: format!("{id}\n{lights} lights\n{} ms", significant(y)),
-            ..Point::default()
-        }
-    };
-    let points = records.iter().map(point).collect();
-    Series { name: short(id), class: class(id), marks, points, ..Series::default() }
 }
 
 /// Slope, offset and goodness of the line through each strategy's times; slopes of its passes.

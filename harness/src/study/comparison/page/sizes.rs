@@ -1,14 +1,15 @@
 //! Which parameters and which intersection tests are best.
 
+use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::report::format::{ABSENT, number, significant};
 use crate::report::markup::{Html, html};
 use crate::report::page;
 use crate::report::rank::{first, listed, ranks};
-use crate::study::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
-use crate::study::page::figure::{Charts, name, panels, part, table, unit};
-use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::Record;
-use crate::study::Done;
+use crate::study::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::part::Part;
 
 /// A family with the source of its lights: `SC-E`, `SC-E/bvh`. Sizes of one compete.
 fn searched(record: &Record) -> String {
@@ -38,9 +39,9 @@ fn size(record: &Record) -> &str {
 }
 
 /// Group sizes and intersection tests of a scene.
-pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> Html {
-    let sizes = entries(done, scene, "sizes");
-    let families = families(&sizes);
+pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] {
+    let searches = entries(done, scene, "sizes");
+    let families = families(&searches);
     let mut rows = Vec::new();
     let mut shown = Vec::new();
     for (family, records) in &families {
@@ -71,24 +72,24 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     } else {
         table("The best size of each family", &heads, &rows) + panels("Family", &shown)
     };
-    part(
-        scene,
+    let sizes = Part::new(
         "sizes",
         "Group sizes",
         "Sizes in pixels of a tile\u{2019}s sides and depth slices, in cells along the box\u{2019}s sides, \
          in metres of a model\u{2019}s parts. Small groups cost assignment, large ones shading. Sizes are \
          searched from each source of lights: the list of all lights, and the hierarchy (/bvh).",
-        &body,
-    ) + part(
-        scene,
+        body,
+    );
+    let tests = Part::new(
         "tests",
         "Intersection tests",
         "Unions of tests of a light\u{2019}s bounds against a group\u{2019}s frustum: half-spaces (HS), and \
          separating axes along its edges (SAT-E), towards its nearest corner (SAT-N), along its planes' normals \
          (SAT-P) and towards every corner (SAT-V). \
          Assign + shade in ms; the fastest of each family, and all that tie with it, stand out.",
-        &tests_table(done, scene),
-    )
+        tests_table(done, scene),
+    );
+    [sizes, tests]
 }
 
 fn bars(family: &str, records: &[&Record]) -> BarChart {

@@ -1,19 +1,20 @@
 //! The views with the least and the most depth discontinuity: heat maps and lengths of lists.
 
+use crate::chart::Histogram;
 use crate::report::format::{number, significant};
 use crate::report::markup::{Html, html};
-use crate::study::data::{Entry, class, entries, short};
-use crate::study::page::figure::{Charts, panels, part};
-use crate::study::page::shots::Shots;
-use crate::chart::Histogram;
 use crate::results::Record;
-use crate::study::Done;
+use crate::study::data::{Entry, class, entries, short};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, panels};
+use crate::study::page::part::Part;
+use crate::study::page::shots::Shots;
 
 /// Those that a reader sees first.
 const FIRST: [&str; 4] = ["T-E", "SC-E", "G", "M/2"];
 
 /// Both views of each strategy.
-pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
+pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Part {
     let all = entries(done, scene, "views");
     let mut ids: Vec<&str> = Vec::new();
     for entry in all.iter().filter(|entry| entry.record.culls()) {
@@ -52,15 +53,14 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
         body += histograms(&slug, &title, &entries, charts);
         shown.push((short(id), body));
     }
-    part(
-        scene,
+    Part::new(
         "views",
         "Views of low and high depth discontinuity",
         "Of the views along the path, the one in which the fewest neighbouring pixels are a tenth apart \
          in depth, and the one in which the most are. A tile that holds near and far surfaces lists the \
          lights between them too; a cluster does not. The lists of G and M are the same from everywhere. \
          Heat maps show the lights in the list of each pixel: blue at none, red at 150, green above.",
-        &panels("Strategy", &shown),
+        panels("Strategy", &shown),
     )
 }
 
@@ -120,7 +120,7 @@ fn histograms(slug: &str, title: &str, entries: &[Entry<'_>], charts: &mut Chart
 
 /// Whether a record is of the view with the least discontinuity.
 pub(crate) fn is_low(entry: &Entry<'_>) -> bool {
-    entry.job.name.ends_with("low")
+    entry.job.settings.text("view") == Some("low")
 }
 
 fn view(entry: &Entry<'_>) -> &'static str {

@@ -2,10 +2,10 @@
 
 use crate::report::format::{number, percent, significant};
 use crate::report::rank::listed;
-use crate::study::culling::claims::modes::{Mode, Tally, bounding_sphere, capped, whole};
-use crate::study::culling::claims::{Answer, Verdict};
 use crate::results::Record;
-use crate::study::Done;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::culling::claims::modes::{Mode, Tally, bounding_sphere, capped, whole};
+use crate::study::manifest::Done;
 
 /// The paper's cap.
 const CAP: u64 = 128;

@@ -11,7 +11,7 @@ mod times;
 use images::{cap, range, tiles};
 use times::{clay, clusters, deferred, gain, linear, raster, rate, slowest, sphere};
 
-use crate::study::claims::{Answer, Check, Paper, Verdict};
+use crate::study::claims::{Check, Paper};
 
 /// Watrous 2024.
 pub(crate) const PAPER: Paper = Paper {

@@ -1,11 +1,11 @@
 //! The records of the survey by renderer and method, and what several parts say together.
 
 use crate::report::format::significant;
-use crate::study::data::{counts, entries, family, knob};
-use crate::study::claims::order::Order;
-use crate::study::culling::claims::{Answer, Verdict};
 use crate::results::{BASELINE, EARLY_EXIT, Record};
-use crate::study::Done;
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::data::{counts, entries, family, knob};
+use crate::study::manifest::Done;
 
 /// The sections of the study: how pixels are lit.
 const MODES: [&str; 2] = ["deferred", "forward"];

@@ -2,15 +2,15 @@
 
 use crate::report::fit::Fit;
 use crate::report::format::{number, percent, significant};
-use crate::study::data::{entries, lines};
-use crate::study::claims::order::Order;
+use crate::results::{CONTROL, Record};
 use crate::study::claims::on_another_gpu;
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
 use crate::study::culling::claims::modes::{
     Mode, Tally, bounding_sphere, capped, none, of_the_survey, raster_sphere, timed,
 };
-use crate::study::culling::claims::{Answer, Verdict};
-use crate::results::{CONTROL, Record};
-use crate::study::Done;
+use crate::study::data::{entries, lines};
+use crate::study::manifest::Done;
 
 /// Points off their line by no more than this share of the growth, root mean square, are on it.
 const ASTRAY: f64 = 0.05;

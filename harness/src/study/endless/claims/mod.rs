@@ -1,9 +1,11 @@
 //! What the polygon-light paper (Swarbrick 2025) claims: one row per claim.
 
-use crate::study::endless::claims::operations::{
-    artefact, growth, in_vain, inner, outer_24, outer_54, seen_lost, tracking,
-};
-use crate::study::endless::claims::times::{
+mod operations;
+mod rows;
+mod times;
+
+use self::operations::{artefact, growth, in_vain, inner, outer_24, outer_54, seen_lost, tracking};
+use self::times::{
     assignment, balance, dif, early_exit, far, flagless, most, shading, six, sixteenfold, slices,
     thread_per_cluster, without,
 };

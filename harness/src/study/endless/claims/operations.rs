@@ -2,12 +2,12 @@
 
 use crate::report::format::{percent, significant};
 use crate::report::rank::listed;
+use crate::results::{Operations, Record};
+use crate::study::claims::{Answer, Verdict};
 use crate::study::endless::cases::{Case, Cut, Setting, cases, lost, seen, setting};
 use crate::study::endless::claims::rows::{Outcome, by_case, error, verdict};
 use crate::study::endless::claims::times::shares;
-use crate::study::claims::{Answer, Verdict};
-use crate::results::{Operations, Record};
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// How far a share may lie from the paper's.
 const NEAR: f64 = 0.1;

@@ -1,11 +1,11 @@
 //! The rows that stand for those of the polygon-light paper, case by case, and how cases make a verdict.
 
 use crate::report::format::significant;
-use crate::study::endless::cases::{Case, Cut, Setting, USUAL, cases, setting};
+use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::endless::cases::{Case, Cut, Setting, USUAL, cases, setting};
+use crate::study::manifest::Done;
 
 /// The rows of one case: the paper's own settings where they were measured, that is its clusters and its
 /// cone test without an early exit; else its cone test in our clusters; else cones without a loss.

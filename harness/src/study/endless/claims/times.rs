@@ -2,11 +2,11 @@
 
 use crate::report::format::{percent, significant};
 use crate::report::rank::listed;
+use crate::results::Record;
+use crate::study::claims::{Answer, Verdict};
 use crate::study::endless::cases::{Case, Cut, USUAL, cases, setting};
 use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, told, verdict};
-use crate::study::claims::{Answer, Verdict};
-use crate::results::Record;
-use crate::study::Done;
+use crate::study::manifest::Done;
 
 /// Cones against position in assign + shade.
 fn beats(done: &Done, scene: &str, count: u32) -> Answer {
