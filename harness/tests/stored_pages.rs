@@ -56,8 +56,7 @@ fn between<'a>(text: &'a str, start: &'a str, end: &'a str) -> impl Iterator<Ite
 
 /// The cells of each table of a page, as text.
 fn tables(page: &str) -> Vec<Vec<String>> {
-    let cells =
-        |table: &str| between(table, "<td", "</td>").map(|cell| text_of(&format!("<td{cell}")));
+    let cells = |table| between(table, "<td", "</td>").map(|cell| text_of(&format!("<td{cell}")));
     between(page, "<table", "</table>").map(|table| cells(table).collect()).collect()
 }
 

@@ -72,7 +72,7 @@ pub(crate) const fn check_positions(template: &str) {
 }
 
 /// Shows a value as HTML.
-pub(crate) struct Escaped<'a, T: ?Sized>(pub(super) &'a T);
+pub(crate) struct Escaped<'a, T: ?Sized>(pub(crate) &'a T);
 
 impl<T: Markup + ?Sized> Display for Escaped<'_, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -11,7 +11,7 @@ use super::rank::{ALIKE, Ranked, competes};
 use crate::results::{Clock, DeviceType, PassKind, Record, Results, TruthLevel};
 
 /// Colours that the style sheet has for strategies other than no culling.
-pub(super) const STRATEGY_COLOURS: usize = 9;
+pub(crate) const STRATEGY_COLOURS: usize = 9;
 
 /// Colours that it has for the passes of one kind.
 const PASS_COLOURS: usize = 4;

@@ -21,7 +21,7 @@ pub const MODELS: &str = "models";
 /// # Errors
 ///
 /// Where a file is no image, or of another size than the truth.
-pub fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
+pub(crate) fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
     let scenes: Vec<String> = done.scenes().into_iter().map(str::to_owned).collect();
     for scene in &scenes {
         let Some((job, truth)) = truth_of(done, scene) else { continue };

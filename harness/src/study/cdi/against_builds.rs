@@ -19,7 +19,7 @@ const SINGLE_PASS: &str = "compute";
 /// # Errors
 ///
 /// Where a file is no image, or the two are of different sizes.
-pub fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
+pub(crate) fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
     let jobs: Vec<(String, String)> = done
         .manifest
         .jobs

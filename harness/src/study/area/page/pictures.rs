@@ -3,7 +3,6 @@
 use std::io::Cursor;
 
 use image::{ImageFormat, RgbImage, imageops};
-use shading::HdrImage;
 
 use crate::errors::{ImagePair, TILE_PX, worst_tile_at};
 use crate::report::format::significant;
@@ -94,6 +93,8 @@ fn beside(pair: &ImagePair<'_>, corner: [u32; 2]) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
+    use shading::HdrImage;
+
     use super::*;
 
     #[test]
