@@ -184,15 +184,16 @@ fn stored_caps_that_tie_are_not_advised() {
         }
         // As if this cap erred by less than the budget, and its median were the least by luck.
         caps += 1;
-        record.errors.insert("rel_mse".into(), Some(0.0005));
-        record.differing_channels = Some(9);
+        record.image.errors.insert("rel_mse".into(), Some(0.0005));
+        record.image.differing_channels = Some(9);
         let exact = turned.records.iter().filter(|r| r.is_exact() && r.culls());
         let best = exact.min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
         let best = best.expect("an exact one").clone();
         let record = &mut turned.records[ix];
-        (record.passes, record.rounds, record.frames) = (best.passes, best.rounds, best.frames);
+        (record.times.passes, record.times.rounds, record.times.frames) =
+            (best.times.passes, best.times.rounds, best.times.frames);
         record.set_times();
-        record.shade_ms -= 1e-6;
+        record.times.shade_ms -= 1e-6;
         let named = &verdict(&turned, 0.001).expect("a verdict").best;
         assert!(named.is_exact(), "{} is named", named.strategy);
     }
