@@ -78,15 +78,15 @@ fn area(folder: &Path) -> Done {
         let file = format!("{}.exr", model.replace(':', "-"));
         image(value).write_exr(&folder.join(&file)).expect("writes");
         let mut record = record("None", Mode::Deferred, 0.0, time);
-        record.area_model = Some(model.into());
-        record.images.raw = Some(file);
+        record.setting.area_model = Some(model.into());
+        record.image.files.raw = Some(file);
         let variant = model.replace(':', "-");
         add(&mut done, "models", &variant, Results { records: vec![record], ..empty() }, folder);
     }
     for lights in [1, 4, 16] {
         for (model, each) in [(None, 0.5), (Some("ltc"), 1.0), (Some("point"), 0.75)] {
             let mut record = record("None", Mode::Deferred, 0.0, each * lights as f64);
-            (record.lights, record.area_model) = (lights, model.map(str::to_owned));
+            (record.setting.lights, record.setting.area_model) = (lights, model.map(str::to_owned));
             let variant = format!("{lights}-{}", model.unwrap_or("spots"));
             add(&mut done, "cost", &variant, Results { records: vec![record], ..empty() }, folder);
         }
@@ -105,11 +105,11 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
     let before = write(&done);
     assert!(!before.page.contains("data-part=\"models\""), "no errors, no table");
     complete(&mut done).expect("images");
-    let error = |model: &str, id: &str| of(&done, model).truth_errors[id].expect("finite");
+    let error = |model: &str, id: &str| of(&done, model).image.truth_errors[id].expect("finite");
     assert!((error("ltc", "bias") - 0.01).abs() < 1e-4 && error("ltc", "missing_energy") == 0.0);
     assert!((error("point", "bias") + 0.25).abs() < 0.1, "{}", error("point", "bias"));
     assert!(error("monte-carlo-1", "rel_mse") > 10.0 * error("monte-carlo-16", "rel_mse"));
-    assert!(!of(&done, "ltc").errors.contains_key("flip"), "culling errors are left alone");
+    assert!(!of(&done, "ltc").image.errors.contains_key("flip"), "culling errors are left alone");
 
     let Written { text, page, charts } = write(&done);
     for part in ["models", "model-times", "pictures", "cost"] {
@@ -150,8 +150,8 @@ fn an_image_that_equals_the_truth_has_no_error_and_one_of_another_size_is_named(
     let mut done = area(folder.path());
     image(true_value).write_exr(&folder.path().join("ltc.exr")).expect("writes");
     complete(&mut done).expect("images");
-    assert!(of(&done, "ltc").truth_errors.values().all(|error| *error == Some(0.0)));
-    assert!(of(&done, "mrp").truth_errors.values().any(|error| *error > Some(0.0)));
+    assert!(of(&done, "ltc").image.truth_errors.values().all(|error| *error == Some(0.0)));
+    assert!(of(&done, "mrp").image.truth_errors.values().any(|error| *error > Some(0.0)));
     let small = HdrImage { width: 2, height: 1, pixels: vec![[1.0; 3]; 2] };
     small.write_exr(&folder.path().join("ltc.exr")).expect("writes");
     let error = complete(&mut done).expect_err("refused").to_string();

@@ -90,11 +90,11 @@ fn endless(turned: &str) -> Done {
             // The paper has about 10 % more at 16 times the lights.
             let more = if lights > 126 { 1.1 } else { 1.0 };
             let mut record = record(id, Mode::Deferred, assign, shade * far * more);
-            record.lights = lights;
+            record.setting.lights = lights;
             record.is_lossy = flip > 0.0;
             let millions = |terms: f64| (terms * 1e6) as u64;
             let specular = if id.contains("/s0.") { 5.0 } else { DIFFUSE };
-            record.operations = Some(Operations {
+            record.lists.operations = Some(Operations {
                 diffuse: millions(DIFFUSE),
                 specular: millions(specular + outer),
                 outer_specular: millions(outer),
@@ -102,7 +102,7 @@ fn endless(turned: &str) -> Done {
                 perceptible_listed: Some(millions(seen)),
                 evaluated: None,
             });
-            record.errors.insert("flip".into(), Some(flip));
+            record.image.errors.insert("flip".into(), Some(flip));
             record.images.baseline = Some("None.png".into());
             record
         };
@@ -144,7 +144,7 @@ fn a_setting_that_the_paper_lacks_decides_nothing_and_a_tie_is_a_tie() {
         let position = results.records[1].clone();
         for record in &mut results.records {
             if record.strategy.ends_with("/n6") {
-                record.passes = position.passes.clone();
+                record.times.passes = position.passes.clone();
                 record.set_times();
             }
         }
@@ -195,7 +195,7 @@ fn the_papers_figures_stand_beside_ours_by_place_and_lights() {
 fn what_a_cut_loses_is_a_lower_bound_where_lists_flags_were_not_counted() {
     let mut done = endless("");
     for record in done.results.values_mut().flat_map(|results| &mut results.records) {
-        if let Some(operations) = &mut record.operations {
+        if let Some(operations) = &mut record.lists.operations {
             operations.perceptible = operations.perceptible_listed.unwrap_or(0);
             operations.perceptible_listed = None;
         }

@@ -18,21 +18,21 @@ pub(crate) const RULES: [(&str, &str, &str); 6] = [
 
 /// The name of the rule by which ranges were found.
 pub(crate) fn rule(record: &Record) -> &'static str {
-    let ranges = record.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
+    let ranges = record.setting.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
     RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
 }
 
 /// Everything that a frame takes: lights, lists and shading, ms. NaN where the clock was not steady.
 pub(crate) fn total_ms(record: &Record) -> f64 {
-    if record.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
+    if record.setting.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
         return f64::NAN;
     }
-    record.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
+    record.setting.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
 }
 
 /// What is set otherwise than usual: `× 3`, `0.4 to 8 m`, `8 directions`.
 pub(crate) fn setting(record: &Record) -> String {
-    let Some(vpls) = &record.vpls else { return String::new() };
+    let Some(vpls) = &record.setting.vpls else { return String::new() };
     let mut parts = Vec::new();
     match vpls.random_m {
         Some([low, high]) if low == high => parts.push(format!("{} m", significant(low))),
@@ -65,5 +65,5 @@ pub(crate) fn setting(record: &Record) -> String {
 
 /// Its mean error against the truth, where that is finite.
 pub(crate) fn error(record: &Record) -> Option<f64> {
-    record.truth_errors.get(METRIC).copied().flatten().filter(|error| error.is_finite())
+    record.image.truth_errors.get(METRIC).copied().flatten().filter(|error| error.is_finite())
 }

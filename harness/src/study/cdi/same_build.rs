@@ -12,7 +12,7 @@ use crate::study::page::figure::table;
 /// What the build of the deep images changes in the image: nothing in the paper.
 pub(crate) fn by_build(entries: &[Entry<'_>]) -> Html {
     let of = |entry: &Entry<'_>| {
-        let vpls = entry.record.vpls.as_ref()?;
+        let vpls = entry.record.setting.vpls.as_ref()?;
         let errors = &vpls.build_errors;
         let cell = |id: &str| {
             let error = errors.get(id).copied().flatten();
@@ -36,7 +36,7 @@ pub(crate) fn by_build(entries: &[Entry<'_>]) -> Html {
 /// and the share of pixels that differ by more than a twentieth.
 pub(crate) fn image_by_build(done: &Done, scene: &str) -> Option<(f64, f64)> {
     entries(done, scene, MODELS).iter().find_map(|entry| {
-        let vpls = entry.record.vpls.as_ref()?;
+        let vpls = entry.record.setting.vpls.as_ref()?;
         let is_brute = vpls.deep.as_ref()?.build.starts_with("per-direction");
         let of = |id: &str| vpls.build_errors.get(id).copied().flatten();
         Some((of(METRIC)?, of("pixels_off")?)).filter(|_| is_brute)

@@ -12,7 +12,7 @@ pub(crate) type Time = fn(&Record) -> f64;
 /// The straight line through the times of a strategy.
 pub(crate) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
     let points: Vec<(f64, f64)> =
-        records.iter().map(|record| (record.lights as f64, time(record))).collect();
+        records.iter().map(|record| (record.setting.lights as f64, time(record))).collect();
     Fit::through(&points)
 }
 
@@ -20,9 +20,9 @@ pub(crate) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
 pub(crate) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) -> Series {
     let point = |record: &&Record| {
         let y = time(record);
-        let lights = number(record.lights as f64);
+        let lights = number(record.setting.lights as f64);
         Point {
-            x: record.lights as f64,
+            x: record.setting.lights as f64,
             y,
             y_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
             tip: format!("{id}\n{lights} lights\n{} ms", significant(y)),

@@ -103,7 +103,7 @@ pub(crate) fn class(model: &str) -> String {
 
 /// A record's model of area lights; spots where it has none.
 pub(crate) fn model(record: &Record) -> &str {
-    record.area_model.as_deref().unwrap_or(SPOTS)
+    record.setting.area_model.as_deref().unwrap_or(SPOTS)
 }
 
 /// A model's name with the dot of its colour.
@@ -113,7 +113,7 @@ pub(crate) fn name(model: &str) -> Html {
 
 /// An error against the truth, where it is finite.
 fn error(record: &Record, id: &str) -> Option<f64> {
-    record.truth_errors.get(id).copied().flatten()
+    record.image.truth_errors.get(id).copied().flatten()
 }
 
 /// Errors and times of all models, and what each gets wrong.
@@ -125,7 +125,7 @@ pub(crate) fn models(
 ) -> Vec<Part> {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
-        all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
+        all.iter().filter(|entry| !entry.record.image.truth_errors.is_empty()).copied().collect();
     let truth = truth_of(done, scene).map(|(_, truth)| truth);
     let mut parts = Vec::new();
     if let (Some(truth), false) = (truth, known.is_empty()) {
@@ -140,7 +140,7 @@ pub(crate) fn models(
         slug: "models",
         title: "Error of models against time",
         entries: known,
-        errors: |record| &record.truth_errors,
+        errors: |record| &record.image.truth_errors,
         series: |record| family(model(record)).to_owned(),
         class: |record| class(model(record)),
         shape: |_| None,
@@ -188,7 +188,7 @@ fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> Html {
     let mut rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
-            let mut row = vec![name(model(record)), significant(record.shade_ms).into()];
+            let mut row = vec![name(model(record)), significant(record.times.shade_ms).into()];
             row.extend(cells(&|id| error(record, id)));
             row
         })
@@ -234,20 +234,22 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let known: Vec<(&Record, f64)> = all
         .iter()
         .filter_map(|entry| Some((entry.record, error(entry.record, METRIC)?)))
-        .filter(|(record, _)| record.shade_ms.is_finite())
+        .filter(|(record, _)| record.times.shade_ms.is_finite())
         .collect();
-    let best = frontier(known.iter().map(|(record, error)| (record.shade_ms, *error)));
+    let best = frontier(known.iter().map(|(record, error)| (record.times.shade_ms, *error)));
     if best.is_empty() {
         return Vec::new();
     }
     let on: Vec<String> = best
         .iter()
-        .filter_map(|at| known.iter().find(|(record, error)| (record.shade_ms, *error) == *at))
+        .filter_map(|at| {
+            known.iter().find(|(record, error)| (record.times.shade_ms, *error) == *at)
+        })
         .map(|(record, error)| {
             format!(
                 "{} ({} ms, {})",
                 model(record),
-                significant(record.shade_ms),
+                significant(record.times.shade_ms),
                 difference(*error)
             )
         })
@@ -260,7 +262,7 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     if let (Some((table, error)), Some((polynomial, other))) = (of("ltc"), of("ltc-polynomial")) {
         found.push(format!(
             "In {scene} polynomials in place of the table take {} times as long, FLIP {} instead of {}.",
-            significant(polynomial.shade_ms / table.shade_ms),
+            significant(polynomial.times.shade_ms / table.times.shade_ms),
             difference(*other),
             difference(*error)
         ));
@@ -281,7 +283,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
             "Without noise, {} is nearest to the truth in {scene}: FLIP {} in {} ms.",
             model(record),
             difference(error),
-            significant(record.shade_ms)
+            significant(record.times.shade_ms)
         ))
     })
 }

@@ -25,7 +25,7 @@ const GAIN: f32 = 4.0;
 /// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set
 /// otherwise by themselves.
 fn series(record: &Record) -> String {
-    let Some(vpls) = &record.vpls else { return String::new() };
+    let Some(vpls) = &record.setting.vpls else { return String::new() };
     let side = vpls.rsm_px;
     match vpls.ranges.as_str() {
         "random" => format!("random, {side}\u{b2}"),
@@ -37,7 +37,7 @@ fn series(record: &Record) -> String {
 
 fn class(record: &Record) -> String {
     let is_cast = |vpls: &Vpls| vpls.rays > 0 && !jobs::is_usual(vpls);
-    if record.vpls.as_ref().is_some_and(is_cast) {
+    if record.setting.vpls.as_ref().is_some_and(is_cast) {
         return "strategy-5".to_owned();
     }
     RULES
@@ -60,7 +60,7 @@ pub(crate) fn indirect(
 ) -> Vec<Part> {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
-        all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
+        all.iter().filter(|entry| !entry.record.image.truth_errors.is_empty()).copied().collect();
     let Some((_, truth)) = truth_of(done, scene).filter(|_| !known.is_empty()) else {
         return Vec::new();
     };
@@ -69,17 +69,21 @@ pub(crate) fn indirect(
         slug: "indirect",
         title: "Error of indirect light against time",
         entries: known,
-        errors: |record| &record.truth_errors,
+        errors: |record| &record.image.truth_errors,
         series,
         class,
         // A mark for each size of the map.
         shape: |record| {
-            let side = record.vpls.as_ref()?.rsm_px;
+            let side = record.setting.vpls.as_ref()?.rsm_px;
             [256, 128, 64, 512].iter().position(|known| *known == side)
         },
         name: title,
         label: |record| {
-            record.vpls.as_ref().map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
+            record
+                .setting
+                .vpls
+                .as_ref()
+                .map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
         },
         wanted: Wanted::Truth,
         time: "Lights, assign and shade",
@@ -116,7 +120,7 @@ fn errors_table(entries: &[Entry<'_>]) -> Html {
     let rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
-            let vpls = record.vpls.as_ref();
+            let vpls = record.setting.vpls.as_ref();
             let of = |value: fn(&Vpls) -> f64| -> Html {
                 vpls.map_or_else(|| ABSENT.into(), |vpls| significant(value(vpls)).into())
             };
@@ -130,7 +134,7 @@ fn errors_table(entries: &[Entry<'_>]) -> Html {
                 significant(record.assign_and_shade_ms()).into(),
             ];
             let cell = |id: &str| {
-                let error = record.truth_errors.get(id).copied().flatten();
+                let error = record.image.truth_errors.get(id).copied().flatten();
                 Html::from(error.map_or_else(|| ABSENT.to_owned(), difference))
             };
             row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
@@ -156,7 +160,7 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Option<Part> {
         else {
             continue;
         };
-        let raw = record.images.raw.as_deref();
+        let raw = record.image.files.raw.as_deref();
         let Some(image) = linear(done, &job.name, raw) else { continue };
         let own = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
         let gain = GAIN * exposure as f32;

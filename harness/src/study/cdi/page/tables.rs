@@ -56,7 +56,7 @@ const STEPS: [Step; 6] = [
 fn steps(done: &Done, scene: &str) -> Option<Part> {
     let all = entries(done, scene, jobs::STEPS);
     let record = all.first()?.record;
-    let vpls = record.vpls.as_ref()?;
+    let vpls = record.setting.vpls.as_ref()?;
     let theirs = |ms: f64| if ms.is_finite() { significant(ms) } else { ABSENT.to_owned() };
     let row = |name: &str, ms: f64, paper: [f64; 2]| {
         vec![name.to_owned(), significant(ms), theirs(paper[0]), theirs(paper[1])]
@@ -68,10 +68,10 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
             row(name, own.map(|(_, times)| times.median_ms).sum(), *paper)
         })
         .collect();
-    let scene_ms = record.passes.median_ms(Some(PassKind::Scene));
+    let scene_ms = record.times.passes.median_ms(Some(PassKind::Scene));
     rows.insert(2, row("render G-buffer", scene_ms, [1.3, 8.0]));
-    rows.push(row("build light grid", record.assign_ms, [0.7, 0.5]));
-    rows.push(row("apply lighting", record.shade_ms, [12.0, 6.1]));
+    rows.push(row("build light grid", record.times.assign_ms, [0.7, 0.5]));
+    rows.push(row("apply lighting", record.times.shade_ms, [12.0, 6.1]));
     let total = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     rows.push(row("total", total, [20.6, 43.5]));
     let ms = |head| unit(head, "ms");
@@ -80,9 +80,9 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
         "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
          paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding. A data-centre GPU \
          draws fragments on a few of its processors: what is rasterised is slow there as on no other chip.",
-        record.scene,
-        record.width,
-        record.height,
+        record.setting.scene,
+        record.setting.width,
+        record.setting.height,
         number(vpls.kept as f64),
         vpls.rsm_px,
         vpls.rsm_px,
@@ -196,23 +196,23 @@ fn strategies(done: &Done, scene: &str) -> Option<Part> {
     let text = format!(
         "{} virtual point lights at {} x {}, in the order of their map, from the list of all: lights of this frame \
          have no hierarchy.",
-        number(first.record.lights as f64),
-        first.record.width,
-        first.record.height
+        number(first.record.setting.lights as f64),
+        first.record.setting.width,
+        first.record.setting.height
     );
     let title = "Strategies under virtual point lights";
     Some(Part::new("vpl-strategies", title, text, table(title, &heads, &rows)))
 }
 
 fn row_of(record: &Record) -> Vec<Html> {
-    let differing = record.differing_channels.map(|count| number(count as f64));
+    let differing = record.image.differing_channels.map(|count| number(count as f64));
     vec![
         name(&record.strategy),
         significant(record.assign_and_shade_ms()).into(),
-        significant(record.assign_ms).into(),
-        significant(record.shade_ms).into(),
+        significant(record.times.assign_ms).into(),
+        significant(record.times.shade_ms).into(),
         differing.unwrap_or_else(|| ABSENT.to_owned()).into(),
-        mebibytes(record.lists_bytes as f64).into(),
+        mebibytes(record.lists.bytes as f64).into(),
     ]
 }
 

@@ -18,7 +18,7 @@ pub(crate) fn frames(done: &Done, scene: &str) -> Part {
     let mut tables = Html::default();
     for (machine, records) in jobs.iter().rev() {
         let Some(first) = records.first() else { continue };
-        let caption = format!("{scene}, {} lights", number(first.lights as f64));
+        let caption = format!("{scene}, {} lights", number(first.setting.lights as f64));
         tables += table(&format!("Kinds of frame: {caption}"), records, machine);
     }
     Part::new("frames", "Kinds of frame", READING, tables)
