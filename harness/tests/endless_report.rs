@@ -103,13 +103,13 @@ fn endless(turned: &str) -> Done {
                 evaluated: None,
             });
             record.image.errors.insert("flip".into(), Some(flip));
-            record.images.baseline = Some("None.png".into());
+            record.image.files.baseline = Some("None.png".into());
             record
         };
         let mut records: Vec<Record> = SETTINGS.iter().map(make).collect();
         let frame_ms = if turned == "without" { 90.0 } else { 19_000.0 };
         let mut none = record("None", Mode::Deferred, 0.0, frame_ms);
-        none.lights = lights;
+        none.setting.lights = lights;
         records.insert(0, none);
         add(&mut done, place, &lights.to_string(), Results { records, ..empty() });
     }
@@ -144,7 +144,7 @@ fn a_setting_that_the_paper_lacks_decides_nothing_and_a_tie_is_a_tie() {
         let position = results.records[1].clone();
         for record in &mut results.records {
             if record.strategy.ends_with("/n6") {
-                record.times.passes = position.passes.clone();
+                record.times.passes = position.times.passes.clone();
                 record.set_times();
             }
         }
