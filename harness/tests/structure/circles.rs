@@ -1,0 +1,145 @@
+//! Builds the graph of a crate's modules, and finds circles in it.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt, fs, io,
+    path::Path as FilePath,
+};
+
+use crate::module::{Module, Path, read_module};
+
+/// One direction of a circle: a module below `from` uses a module below `to`. Both are children of one parent.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Edge {
+    /// The user.
+    pub from: Path,
+    /// The used.
+    pub to: Path,
+}
+
+impl fmt::Display for Edge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} -> {}", self.from.join("::"), self.to.join("::"))
+    }
+}
+
+/// The modules of one crate, keyed by their paths.
+#[derive(Debug, Default)]
+pub struct Crate {
+    modules: BTreeMap<Path, Module>,
+}
+
+impl Crate {
+    /// Reads every Rust file below `src`.
+    pub fn read(src: &FilePath) -> io::Result<Self> {
+        let mut files = Vec::new();
+        collect_files(src, &[], &mut files)?;
+        Ok(Self::of_files(&files))
+    }
+
+    /// The crate of these modules' paths and sources.
+    pub fn of_files(files: &[(Path, String)]) -> Self {
+        let mut modules = BTreeMap::new();
+        for (path, source) in files {
+            let is_child = |other: &&Path| other.len() == path.len() + 1 && other.starts_with(path);
+            let others = files.iter().map(|(other, _)| other);
+            let children: Vec<String> = others.filter(is_child).flat_map(|c| c.last().cloned()).collect();
+            modules.insert(path.clone(), read_module(path, &children, source));
+        }
+        let of_tests: Vec<Path> = modules
+            .iter()
+            .flat_map(|(path, module)| {
+                module.test_modules.iter().map(|name| [path.as_slice(), &[name.clone()]].concat())
+            })
+            .collect();
+        modules.retain(|path, _| !of_tests.iter().any(|tests| path.starts_with(tests)));
+        Self { modules }
+    }
+
+    /// The module that defines what `path` names: re-exports and imports are followed.
+    fn definition(&self, path: &[String], steps: usize) -> Path {
+        let mut inside = Path::new();
+        for (ix, name) in path.iter().enumerate() {
+            let child = [inside.as_slice(), &[name.clone()]].concat();
+            if self.modules.contains_key(&child) {
+                inside = child;
+                continue;
+            }
+            let followed = self.modules.get(&inside).filter(|_| steps > 0).and_then(|module| {
+                if let Some(import) = module.imports.get(name) {
+                    return Some(import.clone());
+                }
+                let defines = |glob: &&Path| {
+                    **glob != inside && self.modules.get(*glob).is_some_and(|m| m.items.contains(name))
+                };
+                let glob = module.globs.iter().find(defines)?;
+                Some([glob.as_slice(), &[name.clone()]].concat())
+            });
+            return match followed {
+                Some(import) => {
+                    self.definition(&[import.as_slice(), &path[ix + 1..]].concat(), steps - 1)
+                }
+                None => inside,
+            };
+        }
+        inside
+    }
+
+    /// Who uses whom, each pair as the two children of their nearest common ancestor. A module and its
+    /// own ancestor make no pair.
+    pub fn edges(&self) -> BTreeSet<Edge> {
+        let mut edges = BTreeSet::new();
+        for (from, module) in &self.modules {
+            for path in &module.named {
+                let to = self.definition(path, 16);
+                let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+                if common < from.len() && common < to.len() {
+                    let from = from[..=common].to_vec();
+                    edges.insert(Edge { from, to: to[..=common].to_vec() });
+                }
+            }
+        }
+        edges
+    }
+
+    /// The edges that lie on a circle.
+    pub fn edges_of_circles(&self) -> BTreeSet<Edge> {
+        let edges = self.edges();
+        let is_back = |edge: &&Edge| is_reachable(&edges, &edge.to, &edge.from);
+        edges.iter().filter(is_back).cloned().collect()
+    }
+}
+
+fn is_reachable(edges: &BTreeSet<Edge>, start: &Path, goal: &Path) -> bool {
+    let mut seen = BTreeSet::from([start]);
+    let mut open = vec![start];
+    while let Some(at) = open.pop() {
+        if at == goal {
+            return true;
+        }
+        let next = edges.iter().filter(|edge| edge.from == *at).map(|edge| &edge.to);
+        open.extend(next.filter(|next| seen.insert(next)));
+    }
+    false
+}
+
+/// Collects paths and sources of the modules below a folder.
+fn collect_files(
+    folder: &FilePath,
+    path: &[String],
+    files: &mut Vec<(Path, String)>,
+) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let file = entry?.path();
+        let Some(stem) = file.file_stem().and_then(|stem| stem.to_str()) else { continue };
+        let child = [path, &[stem.to_owned()]].concat();
+        if file.is_dir() {
+            collect_files(&file, &child, files)?;
+        } else if file.extension().is_some_and(|extension| extension == "rs") {
+            let is_parent = matches!(stem, "lib" | "main" | "mod");
+            let path = if is_parent { path.to_vec() } else { child };
+            files.push((path, fs::read_to_string(&file)?));
+        }
+    }
+    Ok(())
+}
