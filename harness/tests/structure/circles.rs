@@ -8,12 +8,12 @@ use std::{
 
 use crate::module::{Module, Path, read_module};
 
-/// One direction of a circle: a module below `from` uses a module below `to`. Both are children of one parent.
+/// One module uses another.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Edge {
-    /// The user.
+    /// The module that imports.
     pub from: Path,
-    /// The used.
+    /// The module that it imports from.
     pub to: Path,
 }
 
@@ -22,6 +22,9 @@ impl fmt::Display for Edge {
         write!(f, "{} -> {}", self.from.join("::"), self.to.join("::"))
     }
 }
+
+/// How many re-exports are followed from one name.
+const MAX_STEPS: usize = 16;
 
 /// The modules of one crate, keyed by their paths.
 #[derive(Debug, Default)]
@@ -34,16 +37,17 @@ impl Crate {
     pub fn read(src: &FilePath) -> io::Result<Self> {
         let mut files = Vec::new();
         collect_files(src, &[], &mut files)?;
-        Ok(Self::of_files(&files))
+        Ok(Self::from_files(&files))
     }
 
-    /// The crate of these modules' paths and sources.
-    pub fn of_files(files: &[(Path, String)]) -> Self {
+    /// Reads sources, each with the path of its module.
+    pub fn from_files(files: &[(Path, String)]) -> Self {
         let mut modules = BTreeMap::new();
         for (path, source) in files {
             let is_child = |other: &&Path| other.len() == path.len() + 1 && other.starts_with(path);
             let others = files.iter().map(|(other, _)| other);
-            let children: Vec<String> = others.filter(is_child).flat_map(|c| c.last().cloned()).collect();
+            let children: Vec<String> =
+                others.filter(is_child).flat_map(|c| c.last().cloned()).collect();
             modules.insert(path.clone(), read_module(path, &children, source));
         }
         let of_tests: Vec<Path> = modules
@@ -56,7 +60,7 @@ impl Crate {
         Self { modules }
     }
 
-    /// The module that defines what `path` names: re-exports and imports are followed.
+    /// The module that defines what `path` names, after at most `steps` imports and re-exports.
     fn definition(&self, path: &[String], steps: usize) -> Path {
         let mut inside = Path::new();
         for (ix, name) in path.iter().enumerate() {
@@ -70,7 +74,8 @@ impl Crate {
                     return Some(import.clone());
                 }
                 let defines = |glob: &&Path| {
-                    **glob != inside && self.modules.get(*glob).is_some_and(|m| m.items.contains(name))
+                    **glob != inside
+                        && self.modules.get(*glob).is_some_and(|m| m.items.contains(name))
                 };
                 let glob = module.globs.iter().find(defines)?;
                 Some([glob.as_slice(), &[name.clone()]].concat())
@@ -85,17 +90,14 @@ impl Crate {
         inside
     }
 
-    /// Who uses whom, each pair as the two children of their nearest common ancestor. A module and its
-    /// own ancestor make no pair.
+    /// Every use of one module by another that is neither its ancestor nor below it.
     pub fn edges(&self) -> BTreeSet<Edge> {
         let mut edges = BTreeSet::new();
         for (from, module) in &self.modules {
             for path in &module.named {
-                let to = self.definition(path, 16);
-                let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-                if common < from.len() && common < to.len() {
-                    let from = from[..=common].to_vec();
-                    edges.insert(Edge { from, to: to[..=common].to_vec() });
+                let to = self.definition(path, MAX_STEPS);
+                if !from.starts_with(&to) && !to.starts_with(from) {
+                    edges.insert(Edge { from: from.clone(), to });
                 }
             }
         }
@@ -105,22 +107,28 @@ impl Crate {
     /// The edges that lie on a circle.
     pub fn edges_of_circles(&self) -> BTreeSet<Edge> {
         let edges = self.edges();
-        let is_back = |edge: &&Edge| is_reachable(&edges, &edge.to, &edge.from);
-        edges.iter().filter(is_back).cloned().collect()
+        let mut used: BTreeMap<&Path, Vec<&Path>> = BTreeMap::new();
+        for Edge { from, to } in &edges {
+            used.entry(from).or_default().push(to);
+        }
+        let reached: BTreeMap<&Path, BTreeSet<&Path>> =
+            used.keys().map(|from| (*from, reachable(&used, from))).collect();
+        let is_on_circle =
+            |edge: &&Edge| reached.get(&edge.to).is_some_and(|all| all.contains(&edge.from));
+        edges.iter().filter(is_on_circle).cloned().collect()
     }
 }
 
-fn is_reachable(edges: &BTreeSet<Edge>, start: &Path, goal: &Path) -> bool {
-    let mut seen = BTreeSet::from([start]);
-    let mut open = vec![start];
-    while let Some(at) = open.pop() {
-        if at == goal {
-            return true;
+/// The modules that `start` uses, directly or through others.
+fn reachable<'a>(used: &BTreeMap<&'a Path, Vec<&'a Path>>, start: &Path) -> BTreeSet<&'a Path> {
+    let mut reached = BTreeSet::new();
+    let mut open: Vec<&Path> = used.get(start).cloned().unwrap_or_default();
+    while let Some(module) = open.pop() {
+        if reached.insert(module) {
+            open.extend(used.get(module).into_iter().flatten());
         }
-        let next = edges.iter().filter(|edge| edge.from == *at).map(|edge| &edge.to);
-        open.extend(next.filter(|next| seen.insert(next)));
     }
-    false
+    reached
 }
 
 /// Collects paths and sources of the modules below a folder.

@@ -7,7 +7,7 @@ use crate::tokens::{Token, tokens};
 /// A path inside a crate, from its root: `["report", "rank"]`.
 pub type Path = Vec<String>;
 
-/// What one file says of its crate. Test code (`#[cfg(test)]`) is left out.
+/// What one file imports and defines. Code under `#[cfg(test)]` is left out.
 #[derive(Clone, Debug, Default)]
 pub struct Module {
     /// Absolute paths that the file names, those of its imports included.
@@ -25,8 +25,13 @@ pub struct Module {
 /// Reads the file of the module at `path`, whose children are named `children`.
 pub fn read_module(path: &[String], children: &[String], source: &str) -> Module {
     let tokens = tokens(source);
-    let mut reader =
-        Reader { tokens: &tokens, ix: 0, inside: path.to_vec(), children, module: Module::default() };
+    let mut reader = Reader {
+        tokens: &tokens,
+        ix: 0,
+        inside: path.to_vec(),
+        children,
+        module: Module::default(),
+    };
     reader.read();
     reader.module
 }

@@ -14,7 +14,7 @@ pub enum Token {
 impl Token {
     /// Whether it is this name or keyword.
     pub fn is_word(&self, word: &str) -> bool {
-        matches!(self, Self::Word(own) if own == word)
+        matches!(self, Self::Word(name) if name == word)
     }
 }
 
