@@ -10,11 +10,11 @@ use crate::module::{Module, Path, read_module};
 
 /// One module uses another.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Edge {
+pub(crate) struct Edge {
     /// The module that imports.
-    pub from: Path,
+    pub(crate) from: Path,
     /// The module that it imports from.
-    pub to: Path,
+    pub(crate) to: Path,
 }
 
 impl fmt::Display for Edge {
@@ -28,33 +28,31 @@ const MAX_STEPS: usize = 16;
 
 /// The modules of one crate, keyed by their paths.
 #[derive(Debug, Default)]
-pub struct Crate {
+pub(crate) struct Crate {
     modules: BTreeMap<Path, Module>,
 }
 
 impl Crate {
     /// Reads every Rust file below `src`.
-    pub fn read(src: &FilePath) -> io::Result<Self> {
+    pub(crate) fn read(src: &FilePath) -> io::Result<Self> {
         let mut files = Vec::new();
         collect_files(src, &[], &mut files)?;
         Ok(Self::from_files(&files))
     }
 
     /// Reads sources, each with the path of its module.
-    pub fn from_files(files: &[(Path, String)]) -> Self {
+    pub(crate) fn from_files(files: &[(Path, String)]) -> Self {
         let mut modules = BTreeMap::new();
         for (path, source) in files {
             let is_child = |other: &&Path| other.len() == path.len() + 1 && other.starts_with(path);
             let others = files.iter().map(|(other, _)| other);
             let children: Vec<String> =
-                others.filter(is_child).flat_map(|c| c.last().cloned()).collect();
+                others.filter(is_child).filter_map(|c| c.last().cloned()).collect();
             modules.insert(path.clone(), read_module(path, &children, source));
         }
         let of_tests: Vec<Path> = modules
             .iter()
-            .flat_map(|(path, module)| {
-                module.test_modules.iter().map(|name| [path.as_slice(), &[name.clone()]].concat())
-            })
+            .flat_map(|(path, module)| module.test_modules.iter().map(|name| child_of(path, name)))
             .collect();
         modules.retain(|path, _| !of_tests.iter().any(|tests| path.starts_with(tests)));
         Self { modules }
@@ -64,7 +62,7 @@ impl Crate {
     fn definition(&self, path: &[String], steps: usize) -> Path {
         let mut inside = Path::new();
         for (ix, name) in path.iter().enumerate() {
-            let child = [inside.as_slice(), &[name.clone()]].concat();
+            let child = child_of(&inside, name);
             if self.modules.contains_key(&child) {
                 inside = child;
                 continue;
@@ -78,7 +76,7 @@ impl Crate {
                         && self.modules.get(*glob).is_some_and(|m| m.items.contains(name))
                 };
                 let glob = module.globs.iter().find(defines)?;
-                Some([glob.as_slice(), &[name.clone()]].concat())
+                Some(child_of(glob, name))
             });
             return match followed {
                 Some(import) => {
@@ -91,7 +89,7 @@ impl Crate {
     }
 
     /// Every use of one module by another that is neither its ancestor nor below it.
-    pub fn edges(&self) -> BTreeSet<Edge> {
+    pub(crate) fn edges(&self) -> BTreeSet<Edge> {
         let mut edges = BTreeSet::new();
         for (from, module) in &self.modules {
             for path in &module.named {
@@ -105,7 +103,7 @@ impl Crate {
     }
 
     /// The edges that lie on a circle.
-    pub fn edges_of_circles(&self) -> BTreeSet<Edge> {
+    pub(crate) fn edges_of_circles(&self) -> BTreeSet<Edge> {
         let edges = self.edges();
         let mut used: BTreeMap<&Path, Vec<&Path>> = BTreeMap::new();
         for Edge { from, to } in &edges {
@@ -117,6 +115,10 @@ impl Crate {
             |edge: &&Edge| reached.get(&edge.to).is_some_and(|all| all.contains(&edge.from));
         edges.iter().filter(is_on_circle).cloned().collect()
     }
+}
+
+fn child_of(parent: &[String], name: &str) -> Path {
+    [parent, &[name.to_owned()]].concat()
 }
 
 /// The modules that `start` uses, directly or through others.
@@ -140,7 +142,7 @@ fn collect_files(
     for entry in fs::read_dir(folder)? {
         let file = entry?.path();
         let Some(stem) = file.file_stem().and_then(|stem| stem.to_str()) else { continue };
-        let child = [path, &[stem.to_owned()]].concat();
+        let child = child_of(path, stem);
         if file.is_dir() {
             collect_files(&file, &child, files)?;
         } else if file.extension().is_some_and(|extension| extension == "rs") {

@@ -5,25 +5,25 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::tokens::{Token, tokens};
 
 /// A path inside a crate, from its root: `["report", "rank"]`.
-pub type Path = Vec<String>;
+pub(crate) type Path = Vec<String>;
 
 /// What one file imports and defines. Code under `#[cfg(test)]` is left out.
 #[derive(Clone, Debug, Default)]
-pub struct Module {
+pub(crate) struct Module {
     /// Absolute paths that the file names, those of its imports included.
-    pub named: Vec<Path>,
+    pub(crate) named: Vec<Path>,
     /// Imported names and what they stand for.
-    pub imports: BTreeMap<String, Path>,
+    pub(crate) imports: BTreeMap<String, Path>,
     /// Modules of which every name is imported.
-    pub globs: Vec<Path>,
+    pub(crate) globs: Vec<Path>,
     /// Names of the items that the file defines.
-    pub items: BTreeSet<String>,
+    pub(crate) items: BTreeSet<String>,
     /// Child modules that only tests have.
-    pub test_modules: Vec<String>,
+    pub(crate) test_modules: Vec<String>,
 }
 
 /// Reads the file of the module at `path`, whose children are named `children`.
-pub fn read_module(path: &[String], children: &[String], source: &str) -> Module {
+pub(crate) fn read_module(path: &[String], children: &[String], source: &str) -> Module {
     let tokens = tokens(source);
     let mut reader = Reader {
         tokens: &tokens,

@@ -2,7 +2,7 @@
 
 /// One token.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Token {
+pub(crate) enum Token {
     /// A name or a keyword.
     Word(String),
     /// `::`
@@ -13,13 +13,13 @@ pub enum Token {
 
 impl Token {
     /// Whether it is this name or keyword.
-    pub fn is_word(&self, word: &str) -> bool {
+    pub(crate) fn is_word(&self, word: &str) -> bool {
         matches!(self, Self::Word(name) if name == word)
     }
 }
 
 /// The tokens of `source`, without comments, strings and characters.
-pub fn tokens(source: &str) -> Vec<Token> {
+pub(crate) fn tokens(source: &str) -> Vec<Token> {
     let chars: Vec<char> = source.chars().collect();
     let at = |ix: usize| chars.get(ix).copied().unwrap_or('\0');
     let mut found = Vec::new();
@@ -39,12 +39,11 @@ pub fn tokens(source: &str) -> Vec<Token> {
             let end = end.unwrap_or(chars.len());
             let word: String = chars[ix..end].iter().collect();
             let is_raw = matches!(word.as_str(), "r" | "br" | "cr") && matches!(at(end), '"' | '#');
-            match is_raw.then(|| end_of_raw_string(&chars, end)).flatten() {
-                Some(after) => ix = after,
-                None => {
-                    found.push(Token::Word(word));
-                    ix = end;
-                }
+            if let Some(after) = is_raw.then(|| end_of_raw_string(&chars, end)).flatten() {
+                ix = after;
+            } else {
+                found.push(Token::Word(word));
+                ix = end;
             }
         } else if c == ':' && at(ix + 1) == ':' {
             found.push(Token::PathSeparator);
