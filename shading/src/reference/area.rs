@@ -3,10 +3,11 @@
 use assign::{Emitter, Light};
 use glam::{DMat3, DVec3};
 
-use crate::{
-    ltc,
-    reference::{Surface, f0_of, f90_of, window},
+use super::{
+    brdf::{Surface, f0_of, f90_of},
+    window,
 };
+use crate::ltc;
 
 /// Relative error at which the quadrature of the truth stops.
 const TOLERANCE: f64 = 1e-4;
