@@ -1,6 +1,6 @@
 //! The lighting function in f64 on the CPU: what the shaders are tested against.
 
-use assign::{Light, LightShape, Sun};
+use assign::{Light, LightShape, MIN_DISTANCE_2, Sun, fall_off};
 use glam::DVec3;
 use scenes::Dielectric;
 
@@ -51,8 +51,6 @@ pub(crate) const MIN_ROUGHNESS: f64 = 0.045;
 pub(crate) const MIN_COS_VIEW: f64 = 1e-4;
 /// Reflectance of a dielectric at normal incidence.
 const DIELECTRIC_F0: f64 = 0.04;
-/// Least squared distance of inverse-square fall-off, square metres.
-const MIN_DISTANCE_2: f64 = 1e-4;
 
 /// The two terms of the BRDF, per steradian.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,22 +103,6 @@ pub(crate) fn ggx(alpha_2: f64, normal: DVec3, half_way: DVec3) -> f64 {
     let sin_2 = q_2 * (1.0 - 0.25 * q_2);
     let peak = sin_2 * (1.0 - alpha_2) + alpha_2;
     alpha_2 / (std::f64::consts::PI * peak * peak)
-}
-
-/// The window `(1 - (d / range)^4)^2`, clamped at 0.
-pub(crate) fn window(distance_2: f64, range_m: f64) -> f64 {
-    (1.0 - (distance_2 / (range_m * range_m)).powi(2)).max(0.0).powi(2)
-}
-
-/// Inverse-square fall-off times the window `(1 - (d / range)^4)^2`, clamped at 0.
-pub fn fall_off(distance_2: f64, range_m: f64) -> f64 {
-    fall_off_beyond(distance_2, range_m, 0.0)
-}
-
-/// The same, growing no further within a distance.
-fn fall_off_beyond(distance_2: f64, range_m: f64, min_distance_m: f64) -> f64 {
-    window(distance_2, range_m)
-        / distance_2.max(min_distance_m * min_distance_m).max(MIN_DISTANCE_2)
 }
 
 /// Radiance that one light adds at `position`: of an area light the BRDF's integral over its emitter,
@@ -184,7 +166,7 @@ pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surfa
 fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
-    let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));
+    let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m), MIN_DISTANCE_2);
     if let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape {
         let cos_outer = f64::from(outer_angle).cos();
         // Equal angles end the light at once.
@@ -193,8 +175,8 @@ fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
         weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);
     }
     if let LightShape::Vpl { normal, min_distance_m } = light.shape {
-        let (distance_2, min_m) = (offset.length_squared(), f64::from(min_distance_m));
-        weight = fall_off_beyond(distance_2, f64::from(light.range_m), min_m)
+        let least_2 = f64::from(min_distance_m).powi(2).max(MIN_DISTANCE_2);
+        weight = fall_off(offset.length_squared(), f64::from(light.range_m), least_2)
             * normal.as_dvec3().normalize().dot(-to_light).max(0.0);
     }
     (light.intensity.as_dvec3() * weight, to_light)
@@ -247,12 +229,5 @@ mod tests {
     fn a_smooth_mirror_keeps_almost_all_light() {
         let albedo = albedo(&surface(0.2, 1.0), DVec3::new(0.6, 0.0, 0.8));
         assert!((albedo - 1.0).abs() < 0.02, "{albedo}");
-    }
-
-    #[test]
-    fn fall_off_ends_at_the_range() {
-        assert_eq!(fall_off(4.0, 2.0), 0.0);
-        assert!(fall_off(3.999, 2.0) > 0.0);
-        assert_eq!(fall_off(0.0, 2.0), 1e4);
     }
 }
