@@ -3,9 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use assign::{Gpu, Shader, View, entry, storage_entry, uniform_entry};
+use assign::{
+    Gpu, Shader, View,
+    conformance::{Bound, download, run_kernel, upload},
+    kernel::Slot,
+};
 use assign_clustered::{BINS_WESL, ClusterSize, ClustersUniform, Normals};
-use bytemuck::{bytes_of, cast_slice};
 use glam::Vec3;
 
 const DRIVER: &str = "
@@ -44,7 +47,7 @@ fn find(@builtin(global_invocation_id) id: vec3u) {
 
 struct Finder {
     gpu: Gpu,
-    pipeline: wgpu::ComputePipeline,
+    module: wgpu::ShaderModule,
 }
 
 /// What is found of a direction: its bin, whether the bin's cone holds it, whether it is gathered.
@@ -62,27 +65,7 @@ impl Finder {
             .module("package::strategy", BINS_WESL)
             .create(&gpu, "package::driver")
             .unwrap();
-        let stages = wgpu::ShaderStages::COMPUTE;
-        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries };
-            gpu.device.create_bind_group_layout(&descriptor)
-        };
-        let clusters = layout(&[uniform_entry(4, stages)]);
-        let own = layout(&[storage_entry(0, stages, true), storage_entry(1, stages, false)]);
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[None, Some(&clusters), Some(&own)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: None,
-            layout: Some(&layout),
-            module: &module,
-            entry_point: Some("find"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Self { gpu, pipeline }
+        Self { gpu, module }
     }
 
     /// Looks directions up, each with its rounded one.
@@ -91,35 +74,23 @@ impl Finder {
         let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 64]);
         let size: ClusterSize = "32x32x8".parse().unwrap();
         let clusters = ClustersUniform::new(size, Normals::Bins(bins), &view, None).unwrap();
-        let uniform = gpu.uniform("clusters", size_of::<ClustersUniform>() as u64);
-        gpu.queue.write_buffer(&uniform, 0, bytes_of(&clusters));
+        let uniform = upload(gpu, "clusters", &[clusters]).unwrap();
         let vectors: Vec<[f32; 4]> =
             normals.iter().flatten().map(|v| v.extend(0.0).to_array()).collect();
-        let input = gpu.storage("normals", size_of_val(&vectors[..]) as u64).unwrap();
-        gpu.queue.write_buffer(&input, 0, cast_slice(&vectors));
-        let bytes = 16 * normals.len() as u64;
-        let output = gpu.storage("found", bytes).unwrap();
-        let group = |index, entries: &[wgpu::BindGroupEntry<'_>]| {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &self.pipeline.get_bind_group_layout(index),
-                entries,
-            })
-        };
-        let groups =
-            [group(1, &[entry(4, &uniform)]), group(2, &[entry(0, &input), entry(1, &output)])];
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(1, &groups[0], &[]);
-            pass.set_bind_group(2, &groups[1], &[]);
-            pass.dispatch_workgroups(normals.len().div_ceil(64) as u32, 1, 1);
-        }
-        gpu.queue.submit([encoder.finish()]);
-        let words = gpu.read(&output, bytes).unwrap();
-        let found = cast_slice::<u8, [u32; 4]>(&words).iter();
-        found.map(|&[bin, holds, gathered, _]| (bin, holds == 1, gathered == 1)).collect()
+        let input = upload(gpu, "normals", &vectors).unwrap();
+        let output = upload(gpu, "found", &vec![[0_u32; 4]; normals.len()]).unwrap();
+        let groups = [
+            Bound::Nothing,
+            Bound::Buffers(&[(4, Slot::Uniform, &uniform)]),
+            Bound::Buffers(&[(0, Slot::Read, &input), (1, Slot::Write, &output)]),
+        ];
+        let workgroups = normals.len().div_ceil(64) as u32;
+        run_kernel(gpu, &self.module, "find", &groups, workgroups);
+        let found: Vec<[u32; 4]> = download(gpu, &output, normals.len()).unwrap();
+        found
+            .into_iter()
+            .map(|[bin, holds, gathered, _]| (bin, holds == 1, gathered == 1))
+            .collect()
     }
 }
 

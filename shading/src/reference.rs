@@ -4,31 +4,12 @@ mod area;
 mod brdf;
 
 use area::SeenArea;
-use assign::{Light, LightShape, Sun};
+use assign::{Light, LightShape, MIN_DISTANCE_2, Sun, fall_off};
 pub(crate) use brdf::{MIN_COS_VIEW, MIN_ROUGHNESS, f0_of, f90_of, ggx, lobes_of};
 pub use brdf::{Reflectance, Surface, reflect_light};
 use glam::DVec3;
 
 use crate::ltc;
-
-/// Least squared distance of inverse-square fall-off, square metres.
-const MIN_DISTANCE_2: f64 = 1e-4;
-
-/// The window `(1 - (d / range)^4)^2`, clamped at 0.
-pub(crate) fn window(distance_2: f64, range_m: f64) -> f64 {
-    (1.0 - (distance_2 / (range_m * range_m)).powi(2)).max(0.0).powi(2)
-}
-
-/// Inverse-square fall-off times the window `(1 - (d / range)^4)^2`, clamped at 0.
-pub fn fall_off(distance_2: f64, range_m: f64) -> f64 {
-    fall_off_beyond(distance_2, range_m, 0.0)
-}
-
-/// The same, growing no further within a distance.
-fn fall_off_beyond(distance_2: f64, range_m: f64, min_distance_m: f64) -> f64 {
-    window(distance_2, range_m)
-        / distance_2.max(min_distance_m * min_distance_m).max(MIN_DISTANCE_2)
-}
 
 /// Radiance that one light adds at `position`: of an area light the BRDF's integral over its emitter,
 /// to 1e-4 of it.
@@ -91,7 +72,7 @@ pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surfa
 fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
-    let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m));
+    let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m), MIN_DISTANCE_2);
     if let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape {
         let cos_outer = f64::from(outer_angle).cos();
         // Equal angles end the light at once.
@@ -100,21 +81,9 @@ fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
         weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);
     }
     if let LightShape::Vpl { normal, min_distance_m } = light.shape {
-        let (distance_2, min_m) = (offset.length_squared(), f64::from(min_distance_m));
-        weight = fall_off_beyond(distance_2, f64::from(light.range_m), min_m)
+        let least_2 = f64::from(min_distance_m).powi(2).max(MIN_DISTANCE_2);
+        weight = fall_off(offset.length_squared(), f64::from(light.range_m), least_2)
             * normal.as_dvec3().normalize().dot(-to_light).max(0.0);
     }
     (light.intensity.as_dvec3() * weight, to_light)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fall_off_ends_at_the_range() {
-        assert_eq!(fall_off(4.0, 2.0), 0.0);
-        assert!(fall_off(3.999, 2.0) > 0.0);
-        assert_eq!(fall_off(0.0, 2.0), 1e4);
-    }
 }

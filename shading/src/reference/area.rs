@@ -1,12 +1,9 @@
 //! Area lights in f64 on the CPU: the true integral, and what linearly transformed cosines make of it.
 
-use assign::{Emitter, Light};
+use assign::{Emitter, Light, range_window};
 use glam::{DMat3, DVec3};
 
-use super::{
-    brdf::{Surface, f0_of, f90_of},
-    window,
-};
+use super::brdf::{Surface, f0_of, f90_of};
 use crate::ltc;
 
 /// Relative error at which the quadrature of the truth stops.
@@ -40,7 +37,7 @@ impl SeenArea {
             return None;
         }
         let distance_2 = to_position.distance_squared(emitter.closest(to_position));
-        let window = |range_m: f32| window(distance_2, f64::from(range_m));
+        let window = |range_m: f32| range_window(distance_2, f64::from(range_m));
         let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
         let frame = shading_frame(surface.normal, to_eye);
         let vertices = emitter.vertices().iter();
