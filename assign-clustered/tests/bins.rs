@@ -1,21 +1,21 @@
-//! Bins of normals on the adapter: every direction lies in one, whose cone holds it, and is gathered into
-//! that one however the G-buffer rounds it.
+//! Bins of normals on the adapter: every direction lies in a bin whose cone holds it, and the pass `bounds` puts
+//! it into that bin however the G-buffer rounds it.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use assign::{Gpu, Shader, View, entry, storage_entry, uniform_entry};
-use assign_clustered::{BINS_WESL, ClusterSize, ClustersUniform, Normals};
+use assign::{Gpu, Shader, entry, storage_entry, uniform_entry};
+use assign_clustered::{BINS_WESL, NormalBinsUniform, Normals, SpecularCut};
 use bytemuck::{bytes_of, cast_slice};
 use glam::Vec3;
 
 const DRIVER: &str = "
-import package::strategy::{
+import package::strategy::normal_bins::{
   bin_count, bin_of, bin_of_cell, cells_near, cone_of_bin, greatest_of, NORMAL_MIN,
 };
 
-// A direction, and the same as the G-buffer rounds it.
+// Pairs: a direction, and that direction as the G-buffer rounds it.
 @group(2) @binding(0) var<storage, read> normals: array<vec4f>;
-// The bin; whether its cone holds the direction; whether the rounded one is gathered into it.
+// The bin; whether its cone holds the direction; whether the rounded direction is gathered into it.
 @group(2) @binding(1) var<storage, read_write> found: array<vec4u>;
 
 @compute @workgroup_size(64)
@@ -47,7 +47,7 @@ struct Finder {
     pipeline: wgpu::ComputePipeline,
 }
 
-/// What is found of a direction: its bin, whether the bin's cone holds it, whether it is gathered.
+/// The bin of a direction, whether the bin's cone holds it, and whether its rounded form is gathered there.
 type Found = (u32, bool, bool);
 
 impl Finder {
@@ -59,7 +59,7 @@ impl Finder {
             .module("package::driver", DRIVER)
             .module("package::facing", facing)
             .module("package::bounds", bounds)
-            .module("package::strategy", BINS_WESL)
+            .strategy(BINS_WESL)
             .create(&gpu, "package::driver")
             .unwrap();
         let stages = wgpu::ShaderStages::COMPUTE;
@@ -67,11 +67,11 @@ impl Finder {
             let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries };
             gpu.device.create_bind_group_layout(&descriptor)
         };
-        let clusters = layout(&[uniform_entry(4, stages)]);
+        let bins = layout(&[uniform_entry(6, stages)]);
         let own = layout(&[storage_entry(0, stages, true), storage_entry(1, stages, false)]);
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
-            bind_group_layouts: &[None, Some(&clusters), Some(&own)],
+            bind_group_layouts: &[None, Some(&bins), Some(&own)],
             immediate_size: 0,
         });
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -85,14 +85,12 @@ impl Finder {
         Self { gpu, pipeline }
     }
 
-    /// Looks directions up, each with its rounded one.
+    /// Finds the bins of directions, each given with its rounded form.
     fn find(&self, bins: u32, normals: &[[Vec3; 2]]) -> Vec<Found> {
         let gpu = &self.gpu;
-        let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 64]);
-        let size: ClusterSize = "32x32x8".parse().unwrap();
-        let clusters = ClustersUniform::new(size, Normals::Bins(bins), &view, None).unwrap();
-        let uniform = gpu.uniform("clusters", size_of::<ClustersUniform>() as u64);
-        gpu.queue.write_buffer(&uniform, 0, bytes_of(&clusters));
+        let bins = NormalBinsUniform::new(Normals::Bins(bins), SpecularCut::None);
+        let uniform = gpu.uniform("normal bins", size_of::<NormalBinsUniform>() as u64);
+        gpu.queue.write_buffer(&uniform, 0, bytes_of(&bins));
         let vectors: Vec<[f32; 4]> =
             normals.iter().flatten().map(|v| v.extend(0.0).to_array()).collect();
         let input = gpu.storage("normals", size_of_val(&vectors[..]) as u64).unwrap();
@@ -107,7 +105,7 @@ impl Finder {
             })
         };
         let groups =
-            [group(1, &[entry(4, &uniform)]), group(2, &[entry(0, &input), entry(1, &output)])];
+            [group(1, &[entry(6, &uniform)]), group(2, &[entry(0, &input), entry(1, &output)])];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -123,7 +121,7 @@ impl Finder {
     }
 }
 
-/// A half float at its worst: cut off, and flushed to 0 where too small for a normal one.
+/// The worst rounding to half floats: mantissas are cut off, and subnormal numbers become 0.
 fn cut_off(normal: Vec3) -> Vec3 {
     let cut = |x: f32| {
         let kept = f32::from_bits(x.to_bits() & !0x1fff);
@@ -132,7 +130,7 @@ fn cut_off(normal: Vec3) -> Vec3 {
     Vec3::new(cut(normal.x), cut(normal.y), cut(normal.z))
 }
 
-/// Directions on a lattice over the faces of the cube, many beside a border of some cell.
+/// Directions on a lattice over the faces of the cube. Many lie next to a border between cells.
 fn directions() -> Vec<Vec3> {
     let mut coordinates: Vec<f32> = (-20..=20).map(|i| i as f32 / 20.0).collect();
     for border in [-1.0_f32, -1.0 / 3.0, 0.0, 1.0 / 3.0, 1.0] {
@@ -170,7 +168,7 @@ fn every_direction_lies_in_a_bin_that_it_is_gathered_into() {
 }
 
 #[test]
-fn what_turns_by_more_than_the_slack_is_noticed() {
+fn directions_turned_by_more_than_the_slack_miss_their_bin() {
     let finder = Finder::new();
     let turned = |n: Vec3| [n, (n + 4e-3 * n.any_orthonormal_vector()).normalize()];
     let normals: Vec<[Vec3; 2]> = directions().into_iter().map(turned).collect();

@@ -195,7 +195,7 @@ impl Deferred {
         let shader = lists
             .options
             .set_flags(shaders::lighting(LISTS_GROUP))
-            .module("package::strategy", lists.lookup.module.source())
+            .strategy(lists.lookup.module)
             .flag("model_ids", model_ids)
             .flag("dielectrics", dielectrics)
             .flag("emissive", emissive);

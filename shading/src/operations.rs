@@ -113,7 +113,7 @@ pub fn count_operations(
     let lookup = strategy.lookup();
     let module = options
         .set_flags(shaders::lighting(LISTS_GROUP))
-        .module("package::strategy", lookup.module.source())
+        .strategy(lookup.module)
         .flag("model_ids", model_ids)
         .create(gpu, "package::operations")?;
     let layouts = [renderer.frame.layout(), lookup.layout, &layout];

@@ -71,7 +71,7 @@ pub fn probe(
     let layout = gpu.bind_group_layout("probe", &entries);
     let lookup = strategy.lookup();
     let module = shaders::lighting(LISTS_GROUP)
-        .module("package::strategy", lookup.module.source())
+        .strategy(lookup.module)
         .flag("model_ids", model_ids)
         .create(gpu, "package::probe")?;
     let pipeline =
