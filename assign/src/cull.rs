@@ -5,7 +5,7 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule,
+    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule, StrategyWesl,
     frame::{entry, storage_entry},
     kernel::MAX_WORKGROUPS,
 };
@@ -150,30 +150,30 @@ impl Culler {
     }
 
     /// The linked WGSL of the kernel, for a scene with lights of these kinds.
-    pub fn kernel_source(
+    pub fn kernel_source<'a>(
         shape: GroupShape,
         settings: CullSettings,
         sparse: bool,
-        module: &str,
+        wesl: impl Into<StrategyWesl<'a>>,
         kinds: LightKinds,
     ) -> Result<String, AssignError> {
         let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        kernel_shader(variant, module, kinds).link("package::cull")
+        kernel_shader(variant, wesl.into(), kinds).link("package::cull")
     }
 
     /// The linked WGSL of the kernel of live groups that are boxes and know how they face.
-    pub fn facing_kernel_source(
+    pub fn facing_kernel_source<'a>(
         settings: CullSettings,
         facing: Facing,
-        module: &str,
+        wesl: impl Into<StrategyWesl<'a>>,
         kinds: LightKinds,
     ) -> Result<String, AssignError> {
         let variant = Variant { shape: GroupShape::Box, settings, sparse: true, facing };
-        kernel_shader(variant, module, kinds).link("package::cull")
+        kernel_shader(variant, wesl.into(), kinds).link("package::cull")
     }
 
     fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
-        let shader = kernel_shader(self.variant, self.module.source(), kinds);
+        let shader = kernel_shader(self.variant, self.module.wesl(), kinds);
         // SAFETY: the driver's loops count up, without wrapping, to a number that is no greater than
         // the length of a buffer and does not change meanwhile, test the next of finitely many
         // nodes, clear a bit of a word a round, or try to take what fits from a pool that only
@@ -235,7 +235,7 @@ impl Culler {
     }
 }
 
-fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Shader<'a> {
+fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, kinds: LightKinds) -> Shader<'a> {
     let bounds = match variant.shape {
         GroupShape::Frustum => include_str!("shaders/bounds_frustum.wesl"),
         GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
@@ -246,7 +246,7 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Sh
         .module("package::cull", include_str!("shaders/cull.wesl"))
         .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
-        .module("package::strategy", module)
+        .strategy(wesl)
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
         .module("package::reflected", include_str!("shaders/reflected.wesl"))
         .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))

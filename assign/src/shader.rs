@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::{AssignError, Gpu, LightKinds, compiled::ModuleKey};
+use crate::{AssignError, Gpu, LightKinds, StrategyWesl, compiled::ModuleKey};
 
 /// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
 ///
@@ -47,6 +47,15 @@ impl<'a> Shader<'a> {
         self.modules.retain(|(known, _)| known != path);
         self.modules.push((path.to_owned(), source.into()));
         self
+    }
+
+    /// Mounts a strategy: its modules, the main one as `package::strategy`, and its flags.
+    pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
+        let StrategyWesl { main, imports, flags } = wesl.into();
+        let shader = self.module("package::strategy", main);
+        let shader =
+            imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source));
+        flags.iter().fold(shader, |shader, (name, value)| shader.flag(name, *value))
     }
 
     /// Sets a flag that `@if` reads. A flag that a module reads and nothing sets is an error.

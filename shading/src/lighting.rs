@@ -136,7 +136,7 @@ impl Deferred {
         let shader = lists
             .options
             .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
-            .module("package::strategy", lists.lookup.module.source());
+            .strategy(lists.lookup.module);
         // SAFETY: its loops count up to the number of suns and to the length of a list, which is a
         // `u32` read once. The strategy's author vouches for its look-up.
         #[allow(unsafe_code, reason = "its loops end")]

@@ -6,7 +6,7 @@ use assign::Shader;
 pub(crate) const LISTS_GROUP: u32 = 1;
 
 /// The contract's modules and the pipeline's, for a shader of one's own: `package::lighting`
-/// and `package::brdf` among them. All flags off; mount a look-up as `package::strategy`.
+/// and `package::brdf` among them. All flags off; mount a look-up with `Shader::strategy`.
 pub fn lighting_shader<'a>() -> Shader<'a> {
     lighting_modules(LISTS_GROUP)
 }

@@ -4,13 +4,19 @@
 
 use std::collections::BTreeSet;
 
-/// A strategy's look-up: name, WESL, bindings.
-type LookUp = (&'static str, &'static str, &'static [u32]);
+use assign::StrategyWesl;
 
-const LOOK_UPS: [LookUp; 2] = [
-    ("no culling", include_str!("../../assign/src/shaders/everything.wesl"), &[0, 1]),
-    ("DC-I", assign_clustered::IMPLICIT_WESL, &[0, 1, 4]),
-];
+/// A strategy's look-up: name, WESL, bindings.
+type LookUp = (&'static str, StrategyWesl<'static>, &'static [u32]);
+
+const NO_CULLING: StrategyWesl<'static> = StrategyWesl {
+    main: include_str!("../../assign/src/shaders/everything.wesl"),
+    imports: &[],
+    flags: &[],
+};
+
+const LOOK_UPS: [LookUp; 2] =
+    [("no culling", NO_CULLING, &[0, 1]), ("DC-I", assign_clustered::IMPLICIT_WESL, &[0, 1, 4])];
 
 /// In the order of their bindings: slot i has bindings 2i and 2i + 1.
 const TEXTURES: [&str; 4] =
@@ -77,8 +83,8 @@ fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
     for flag in flags {
         shader = shader.flag(flag, true);
     }
-    if let Some((_, module, _)) = look_up {
-        shader = shader.module("package::strategy", module);
+    if let Some((_, wesl, _)) = look_up {
+        shader = shader.strategy(wesl);
     }
     let source = shader.link(root).unwrap_or_else(|e| panic!("{what}: {e}"));
     let module = naga::front::wgsl::parse_str(&source)

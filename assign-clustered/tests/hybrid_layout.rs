@@ -1,14 +1,12 @@
-//! The shaders of the hybrid-lighting grid, linked without a GPU: they validate, and what they share
-//! with Rust has the same size and the same offsets there.
+//! The shaders of HG, linked without a GPU: they validate, and structs that they share with Rust or with
+//! each other have the same size and offsets.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 mod linked;
 
-use std::mem::offset_of;
-
 use assign::{LightKinds, LiveGroups};
-use assign_cdi::{CellsUniform, HybridShader};
+use assign_clustered::HybridShader;
 use linked::members;
 
 fn validated(shader: HybridShader, kinds: LightKinds) -> naga::Module {
@@ -25,30 +23,8 @@ fn all_permutations_validate() {
     }
 }
 
-/// Name and offset of every field of a Rust struct, in its order.
-macro_rules! fields {
-    ($name:ty: $($field:ident),+) => {
-        vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+]
-    };
-}
-
-#[test]
-fn cells() {
-    let rust = fields!(CellsUniform: counts, slices_per_unit, tile_px, origin_px, first_m, near_m,
-        exponential, surfaces_only, mask_words, tiles_per_part);
-    for shader in HybridShader::ALL {
-        // `sort` knows lists alone.
-        if shader == HybridShader::Sort {
-            continue;
-        }
-        let (wesl, bytes) = members(&validated(shader, LightKinds::ALL[3]), "Cells");
-        assert_eq!(wesl, rust, "{shader:?}: fields of WESL, then of Rust");
-        // A vector of three makes the struct a multiple of 16 bytes.
-        assert_eq!(bytes, size_of::<CellsUniform>(), "{shader:?}");
-    }
-}
-
-/// Of a pool of 2^30 entries and 65,535 workgroups, each lane of which adds one list up to `CAREFUL`.
+/// A pool has at most 2^30 entries. Each lane of 65,535 workgroups may add one list of up to `CAREFUL` to a
+/// full pool before it sees that the pool is full.
 #[test]
 fn reservations_at_once_cannot_wrap_the_cursor() {
     let module = validated(HybridShader::Reserve, LightKinds::default());
@@ -64,9 +40,9 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
     assert!(careful > 0 && most < 1 << 32, "{lanes} lanes of {careful}: {most}");
 }
 
-/// The live cells as `reserve` writes them, and as `sort` reads them.
+/// `reserve` writes the live cells by the struct of `package::live`, `sort` reads them by one of its own.
 #[test]
-fn live_cells() {
+fn live_cells_have_one_layout() {
     assert!(LiveGroups::WESL.contains("struct LiveGroups"));
     let kinds = LightKinds::default();
     let (written, _) = members(&validated(HybridShader::Reserve, kinds), "LiveGroups");

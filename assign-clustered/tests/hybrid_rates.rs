@@ -1,4 +1,4 @@
-//! How loose the cells of a light are: against the exact distance of its ball from each cell, in f64.
+//! How loose HG's lists are: compares them with the exact distance of each light's ball from each cell, in f64.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -6,12 +6,13 @@ use assign::{
     Assignment, DepthMapping, ENTRY_LIGHT, EncoderPasses, Frame, Gpu, Light, LightBuffer,
     Projection, SampleDomain, View,
 };
-use assign_cdi::{CellSize, CellsUniform, HybridGrid};
+use assign_clustered::{FroxelSize, FroxelsUniform, HybridGrid};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// A part of the view: window coordinates at depth 1, or everywhere if orthographic, and depths.
+/// A part of the view: a range of window coordinates and a range of depths. Window coordinates are metres at
+/// depth 1 or, in an orthographic view, at any depth.
 struct Cell {
     low: DVec2,
     high: DVec2,
@@ -20,8 +21,8 @@ struct Cell {
 }
 
 impl Cell {
-    /// Squared distance of a ball's centre, in view space with depth for z, from the cell: least over
-    /// depth of a convex function.
+    /// Squared distance of a ball's centre from the cell, in view space with depth for z. It is the minimum
+    /// over depth of a convex function.
     fn distance_squared(&self, center: DVec3) -> f64 {
         let at = |depth: f64| {
             let footprint = if self.perspective { depth } else { 1.0 };
@@ -41,7 +42,7 @@ impl Cell {
     }
 }
 
-fn cells(size: CellSize, view: &View, uniform: &CellsUniform) -> Vec<Cell> {
+fn cells(size: FroxelSize, view: &View, uniform: &FroxelsUniform) -> Vec<Cell> {
     let (perspective, window) = match view.projection {
         Projection::Perspective { min, max } => (true, [min, max]),
         Projection::Orthographic { min, max } => (false, [min, max]),
@@ -73,7 +74,7 @@ fn cells(size: CellSize, view: &View, uniform: &CellsUniform) -> Vec<Cell> {
     cells
 }
 
-/// Pairs of lights and cells that meet, and those listed beside them, as a share of the listed.
+/// The number of pairs of a light and a cell that meet, and the share of listed pairs that do not.
 fn rates(gpu: &Gpu, view: &View, ranges_m: [f32; 2]) -> (usize, f64) {
     let mut rng = Pcg64Mcg::seed_from_u64(1);
     let mut between = |low: f32, high: f32| rng.random_range(low..high);
@@ -84,11 +85,11 @@ fn rates(gpu: &Gpu, view: &View, ranges_m: [f32; 2]) -> (usize, f64) {
         })
         .collect();
     let buffer = LightBuffer::new(gpu, &lights).unwrap();
-    let size: CellSize = "48x48x24".parse().unwrap();
-    let uniform = CellsUniform::new(size, view, buffer.bounds()).unwrap();
+    let size: FroxelSize = "48x48x24".parse().unwrap();
+    let uniform = FroxelsUniform::new(size, view, buffer.bounds()).unwrap();
     let mut strategy = HybridGrid::new(gpu, size).unwrap();
     let frame = Frame::new(view, &buffer).sampled_at(SampleDomain::AnyDepth);
-    // The pool grows before the second.
+    // The pool grows before the second frame.
     for _ in 0..2 {
         strategy.prepare(gpu, &frame).unwrap();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -118,7 +119,7 @@ fn rates(gpu: &Gpu, view: &View, ranges_m: [f32; 2]) -> (usize, f64) {
 }
 
 #[test]
-fn most_of_what_is_listed_meets_the_cell() {
+fn most_listed_lights_meet_their_cell() {
     let gpu = Gpu::open(None).unwrap();
     let perspective =
         View { far_m: Some(20.0), ..View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [640, 360]) };
@@ -133,7 +134,7 @@ fn most_of_what_is_listed_meets_the_cell() {
     ] {
         let (met, false_share) = rates(&gpu, &view, ranges_m);
         println!("{ranges_m:?}: {met} pairs, {:.2} % false", 100.0 * false_share);
-        assert!(met > 1_000, "{met}");
-        assert!(false_share < most, "{ranges_m:?}: {false_share}");
+        assert!(met > 1_000, "{ranges_m:?}: only {met} pairs meet");
+        assert!(false_share < most, "{ranges_m:?}: {false_share} of the listed pairs do not meet");
     }
 }

@@ -1,4 +1,4 @@
-//! HG keeps the contract, and the suite would notice if it did not.
+//! HG passes the conformance suite, and the suite rejects it with each planted fault.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -7,7 +7,7 @@ use assign::{
     ListsSnapshot, Reuse, SampleDomain, View,
     conformance::{self, faulty::Fault, flat_depth},
 };
-use assign_cdi::HybridGrid;
+use assign_clustered::HybridGrid;
 use glam::Vec3;
 
 fn grid(size: &str) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
@@ -42,7 +42,7 @@ fn faults_are_rejected() {
 }
 
 #[test]
-fn kept_lists_miss_lights_that_move() {
+fn reused_lists_miss_lights_that_move() {
     let reused = |frames| {
         let make = grid("16x16x8");
         move |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
@@ -50,7 +50,8 @@ fn kept_lists_miss_lights_that_move() {
         }
     };
     conformance::run_case("lights-move", &reused(1)).expect("conforms");
-    let error = conformance::run_case("lights-move", &reused(3)).expect_err("stale lists");
+    let error = conformance::run_case("lights-move", &reused(3))
+        .expect_err("lists of an earlier frame miss lights that moved");
     assert!(error.to_string().contains("missed pair"), "{error}");
 }
 
@@ -67,7 +68,7 @@ fn draw(gpu: &Gpu, strategy: &mut dyn Assignment, frame: &Frame<'_>) -> ListsSna
     strategy.lists().snapshot(gpu).unwrap()
 }
 
-/// A frame's counters and lists are its own, whatever the frames before held: none here, all there.
+/// Counters and lists are those of the frame, whether earlier frames held nothing or everything.
 #[test]
 fn only_cells_that_hold_samples_get_lists() {
     let gpu = Gpu::open(None).unwrap();
@@ -86,46 +87,46 @@ fn only_cells_that_hold_samples_get_lists() {
         assert_eq!(nothing.counters, Counters::default());
         assert!(nothing.lists[1..].iter().all(|list| list.count == 0));
     }
-    // A wall that spans slices, and every cell where look-ups may come at any depth.
+    // If look-ups may come at any depth, every cell counts as holding samples.
     let any = draw(&gpu, &mut *strategy, &frame.sampled_at(SampleDomain::AnyDepth));
     assert_eq!(any.counters.occupied_groups, 4 * 3 * 8);
     assert_eq!(draw(&gpu, &mut *strategy, &frame.with_depth(&wall)).counters, walls[0].counters);
 }
 
-/// Lists are cut behind their lowest lights, however they were filled.
+/// A capped list keeps its lowest lights, in whatever order it was filled.
 #[test]
-fn cut_lists_keep_the_lowest_lights() {
+fn capped_lists_keep_the_lowest_lights() {
     let gpu = Gpu::open(None).unwrap();
     let view = view();
     let wall = flat_depth(&gpu, [64, 48], 0.05);
-    // Short lists and long ones, which are sorted in two ways.
+    // Short and long lists are sorted in different ways.
     for (count, cap) in [(240, 101), (5_000, 1_001), (5_000, 2_501)] {
         let light = Light::point(Vec3::ZERO, 50.0, Vec3::ONE);
         let lights = LightBuffer::new(&gpu, &vec![light; count]).unwrap();
         let mut strategy = grid("16x16x8")(&gpu).unwrap();
         strategy.lists_mut().cap_lists(cap);
         let frame = Frame::new(&view, &lights).with_depth(&wall);
-        // The pool grows before the second.
+        // The pool grows before the second frame.
         draw(&gpu, &mut *strategy, &frame);
         strategy.prepare(&gpu, &frame).unwrap();
         let drawn = draw(&gpu, &mut *strategy, &frame);
         assert_eq!(drawn.counters.overflowed_groups, 0);
         assert_eq!(drawn.counters.longest, count as u32);
-        let mut cut = 0;
+        let mut capped = 0;
         for group in 0..4 * 3 * 8 {
             let entries = drawn.entries_of(group).unwrap();
             if !entries.is_empty() {
                 let kept: Vec<u32> = entries.iter().map(|entry| entry & ENTRY_LIGHT).collect();
                 assert!(kept == (0..cap).collect::<Vec<_>>(), "group {group}: {kept:?}");
-                cut += 1;
+                capped += 1;
             }
         }
-        assert_eq!(cut, 12);
+        assert_eq!(capped, 12);
     }
 }
 
 #[test]
-fn wrong_use_is_named() {
+fn errors_name_what_is_wrong() {
     let gpu = Gpu::noop().unwrap();
     let lights = LightBuffer::new(&gpu, &[]).unwrap();
     let view = view();
@@ -136,7 +137,7 @@ fn wrong_use_is_named() {
     assert!(error.contains("HG/32x32x8 needs depth"), "{error}");
     strategy.prepare(&gpu, &frame.sampled_at(SampleDomain::AnyDepth)).unwrap();
     let error = grid("0x32x8")(&gpu).err().unwrap().to_string();
-    assert!(error.contains("cell tile size is 0: it must be 1 to 16384"), "{error}");
+    assert!(error.contains("froxel tile size is 0: it must be 1 to 16384"), "{error}");
     let huge =
         View { viewport: assign::Viewport { x: 0, y: 0, width: 16384, height: 16384 }, ..view };
     let error =
