@@ -48,6 +48,8 @@ pub use stats::{Interval, mean, median, median_interval, percentile, standard_de
 pub use truth_image::TruthImage;
 pub use untested::Untested;
 
+pub use crate::truth_level::TruthLevel;
+
 use passes::nan_from_null;
 
 /// The version of `results.json` that this program writes and reads.
@@ -100,16 +102,6 @@ pub struct Truth {
     /// Further remarks, one sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
-}
-
-/// How much of a run was checked against the truth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum TruthLevel {
-    /// Every (light, sample) pair, on the CPU in f64.
-    Full,
-    /// Images only.
-    None,
 }
 
 /// A light that took no part in the run.
