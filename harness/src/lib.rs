@@ -41,5 +41,6 @@ pub mod stage;
 pub mod stored;
 pub mod study;
 pub mod truth;
+mod truth_level;
 pub mod visible;
 pub mod vpls;

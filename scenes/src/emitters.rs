@@ -20,6 +20,17 @@ pub enum Outlines {
     Polygons,
 }
 
+impl Outlines {
+    /// `both`, `rectangles` or `polygons`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Both => "both",
+            Self::Rectangles => "rectangles",
+            Self::Polygons => "polygons",
+        }
+    }
+}
+
 /// Half the longer side of emitters, as a share of their range.
 const HALF_SIZE_SHARE: (f64, f64) = (0.03, 0.15);
 

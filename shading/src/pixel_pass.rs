@@ -40,7 +40,7 @@ impl PixelPass<'_> {
         let mut shader = self.images.set_flags(self.shader);
         let lookup = self.strategy.map(|strategy| strategy.lookup());
         if let Some(lookup) = &lookup {
-            shader = shader.module("package::strategy", lookup.module.source());
+            shader = shader.strategy(lookup.module);
         }
         let module = shader.create(gpu, &format!("package::{}", self.name))?;
         let lists = lookup.map(|lookup| lookup.layout);
