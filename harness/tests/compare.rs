@@ -178,7 +178,10 @@ fn advice_starts_with_the_best_method_and_prefers_lossy_ones_only_for_speed() {
         "the first line must name the best method: {text}"
     );
     // It measured several poses, several times each.
-    assert!(best.setting.along_path && best.setting.poses == Some(3) && best.times.frames == 24, "{best:?}");
+    assert!(
+        best.setting.along_path && best.setting.poses == Some(3) && best.times.frames == 24,
+        "{best:?}"
+    );
     let gains = |exact: &&Record| is_surely_faster(best, exact) == Some(true);
     let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
     assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{text}");

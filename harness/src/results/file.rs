@@ -241,7 +241,9 @@ mod tests {
             fs::write(&path, text).expect("writes");
             Results::read(&path).expect_err("refused").to_string()
         };
-        assert!(read(r#"{"schema_version": 3}"#).contains("schema_version is 3: it must be 1 to 2"));
+        assert!(
+            read(r#"{"schema_version": 3}"#).contains("schema_version is 3: it must be 1 to 2")
+        );
         assert!(read(r#"{"schema_version": 1}"#).contains("missing field"));
         assert!(read("{").contains("not a results.json"));
         fs::remove_file(&path).expect("removes");
