@@ -6,7 +6,7 @@ use assign::{Emitter, MAX_VERTICES};
 use glam::{DQuat, Vec3};
 use rand::{Rng, RngExt};
 
-use crate::lights::random_direction;
+use crate::random::random_direction;
 
 /// Outlines of scattered area lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
