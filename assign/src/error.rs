@@ -16,7 +16,7 @@ pub enum AssignError {
         looked_for: String,
     },
     /// No adapter of that name.
-    #[error("no adapter called {name:?}: known are {known}")]
+    #[error("there is no adapter called {name:?}: the known names are {known}")]
     UnknownAdapter {
         /// The name, or part of it, asked for.
         name: String,
@@ -24,7 +24,7 @@ pub enum AssignError {
         known: String,
     },
     /// The adapter refused a device.
-    #[error("adapter {adapter}: no device: {reason}")]
+    #[error("adapter {adapter} opens no device: {reason}")]
     NoDevice {
         /// The adapter's name.
         adapter: String,
@@ -55,7 +55,7 @@ pub enum AssignError {
         reason: String,
     },
     /// The renderer left out something the strategy needs.
-    #[error("{strategy} needs {missing}, which the frame does not hold")]
+    #[error("{strategy} needs {missing}, which the frame lacks")]
     Missing {
         /// The strategy's id.
         strategy: String,
@@ -63,7 +63,7 @@ pub enum AssignError {
         missing: &'static str,
     },
     /// A buffer would exceed the device's limit.
-    #[error("{what} needs {bytes} bytes: this device binds at most {limit}")]
+    #[error("{what} needs {bytes} bytes: this device can bind at most {limit}")]
     TooLarge {
         /// What the buffer holds.
         what: String,
@@ -73,7 +73,7 @@ pub enum AssignError {
         limit: u64,
     },
     /// The device has no memory left for a buffer.
-    #[error("{what} needs {bytes} bytes: the device has no room for them")]
+    #[error("{what} needs {bytes} bytes: the device has too little free memory")]
     OutOfMemory {
         /// What the buffer holds.
         what: String,

@@ -59,7 +59,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     if let Some(known) = known.as_ref().filter(|known| known.identity != wanted) {
         let value = out.display().to_string();
         let accepted = format!(
-            "a folder without a study, or with this one; it holds `{}`: give another --out",
+            "a folder without a study or with this study; it holds `{}`: choose another --out",
             known.identity.join(" ")
         );
         return Err(CliError::out_of_range("--out", &value, &accepted).into());
@@ -78,7 +78,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     manifest.jobs.iter().try_for_each(Job::check).map_err(|error| match is_new {
         true => error,
         false => CliError::new(format!(
-            "{}: {error}: another version listed the jobs there; give another --out",
+            "{}: {error}: another version of lightbench listed these jobs; choose another --out",
             out.display()
         )),
     })?;

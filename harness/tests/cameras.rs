@@ -232,10 +232,10 @@ fn cameras_follow_their_file_and_empty_views_count_as_untested() {
             assert_eq!(record.lists.untested, Some(why), "{camera}");
             assert!(!record.is_exact() && record.shows_no_loss(), "{camera}");
         }
-        let said = [finding(&results)[0].clone(), render_table(&results)];
+        let texts = [finding(&results)[0].clone(), render_table(&results)];
         assert!(results.warnings[0].starts_with("NOTHING WAS TESTED: "), "{:?}", results.warnings);
-        assert!(said.iter().all(|text| !text.contains("same image")), "{said:?}");
-        assert!(said[1].contains("NOTHING WAS TESTED"), "{said:?}");
+        assert!(texts.iter().all(|text| !text.contains("same image")), "{texts:?}");
+        assert!(texts[1].contains("NOTHING WAS TESTED"), "{texts:?}");
         assert!(harness::advise::verdict(&results, 0.0).is_none(), "{camera}");
         let advice = harness::advise::answer(&results, 0.0);
         assert!(advice.starts_with("No advice: "), "{advice}");
