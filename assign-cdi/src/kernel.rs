@@ -1,4 +1,4 @@
-//! Short forms of wgpu's descriptors, for the crate's many small kernels.
+//! Short forms of wgpu's descriptors for this crate's many small kernels.
 
 use assign::{AssignError, Gpu, Shader, entry, storage_entry, uniform_entry};
 

@@ -294,7 +294,10 @@ fn what_does_not_go_together_is_refused() {
         ("cdi --build per-direction --oversampling 2", "--oversampling is 2: it must be 1 where"),
         ("truth --primary --indirect", "--indirect: it must be given with --bounces 1"),
         ("cdi --casts 12", "--casts is 12: it must be none, or sizes from 16 to 2,048"),
-        ("cdi --directions 64x64", "stacks x slices is 64 x 64: it must be 1 to 1024 together"),
+        (
+            "cdi --directions 64x64",
+            "directions (stacks x slices) is 64 x 64: it must be 1 to 1024 in all",
+        ),
     ] {
         let output = lightbench(&line.split_whitespace().collect::<Vec<_>>());
         let stderr = String::from_utf8_lossy(&output.stderr);
