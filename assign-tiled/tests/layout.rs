@@ -1,5 +1,5 @@
-//! The tiles' modules, linked without a GPU: they validate, and their uniform has the same size
-//! and the same offsets in Rust and in WESL.
+//! The shaders of tiles, linked without a GPU: they validate, and their uniform has the same size and offsets
+//! in Rust and in WESL.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -21,7 +21,7 @@ fn validated(what: &str, source: &str) -> naga::Module {
     module
 }
 
-/// The culling kernel around a module of tiles, validated.
+/// The culling kernel of tiles, validated.
 fn kernel(bounds: Bounds, settings: CullSettings, kinds: LightKinds) -> naga::Module {
     let module = match bounds {
         Bounds::Implicit => IMPLICIT_WESL,
@@ -78,13 +78,13 @@ fn is_first(at: naga::ResourceBinding) -> bool {
 }
 
 #[test]
-fn tiles() {
+fn tiles_have_one_layout_in_wesl_and_rust() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
         check_tiles(&kernel(bounds, CullSettings::default(), LightKinds::default()));
     }
 }
 
 #[test]
-fn the_bounds_pass_validates_and_reads_the_same_tiles() {
+fn the_pass_bounds_validates_and_reads_the_same_layout() {
     check_tiles(&validated("tile bounds", &bounds_source().unwrap()));
 }
