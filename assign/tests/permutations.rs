@@ -68,8 +68,9 @@ fn every_permutation_of_the_kernel_validates() {
     for (shape, bounds, settings, sparse) in permutations() {
         for kinds in LightKinds::ALL {
             let what = format!("{shape:?}, {settings:?}, sparse {sparse}, {kinds:?}");
-            let source = Culler::kernel_source(shape, settings, sparse, strategy(bounds).as_str(), kinds)
-                .unwrap_or_else(|e| panic!("{what}: {e}"));
+            let source =
+                Culler::kernel_source(shape, settings, sparse, strategy(bounds).as_str(), kinds)
+                    .unwrap_or_else(|e| panic!("{what}: {e}"));
             let linked = LinkedModule::new(&what, &source);
             let module = linked.module();
             let mut entry_points: Vec<_> = module.entry_points.iter().map(|e| &e.name).collect();
@@ -95,7 +96,8 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
     let (_, bounds, settings, sparse) = permutations()[0];
     let strategy = strategy(bounds);
     let kinds = LightKinds::default();
-    let source = Culler::kernel_source(FRUSTUM.0, settings, sparse, strategy.as_str(), kinds).unwrap();
+    let source =
+        Culler::kernel_source(FRUSTUM.0, settings, sparse, strategy.as_str(), kinds).unwrap();
     let careful = LinkedModule::new("the culling kernel", &source).constant("CAREFUL");
     let most = 65_535 * u64::from(careful) + (1 << 30);
     assert!(careful > 0 && most < 1 << 32, "{careful}: {most}");
@@ -148,8 +150,13 @@ fn flags_change_the_kernel() {
 fn a_strategy_of_the_wrong_shape_is_rejected() {
     let boxes = strategy(BOXES[0].1);
     let settings = CullSettings::default();
-    let linked =
-        Culler::kernel_source(GroupShape::Frustum, settings, false, boxes.as_str(), LightKinds::default());
+    let linked = Culler::kernel_source(
+        GroupShape::Frustum,
+        settings,
+        false,
+        boxes.as_str(),
+        LightKinds::default(),
+    );
     let validate = |source: String| LinkedModule::validate("boxes as frusta", &source);
     assert!(linked.map_err(|e| e.to_string()).and_then(validate).is_err());
 }
