@@ -8,7 +8,7 @@ use crate::{
     cli::{CompareArgs, LightBox},
     clock::clock_of,
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
     results::{Errors, Images, Operations, Record, mean},
     schedule::rounds,
