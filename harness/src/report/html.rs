@@ -10,6 +10,7 @@ use serde_json::json;
 use super::format::{number, short_adapter};
 use super::markup::{Html, with_names_whole};
 use super::section::sections;
+use super::terms::terms;
 use super::{finding, frames, notices, page};
 use crate::chart::CHART_CSS;
 use crate::results::{Results, ResultsError, write_atomically};
@@ -55,6 +56,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
             ("notices", page::notices(&notices(results))),
             ("comparisons", sections(results, &kept) + frames::sections(results)),
             ("columns", page::columns()),
+            ("terms", terms()),
             ("reading", Html::default()),
             ("file", "results.json".into()),
             ("link", "#from".into()),

@@ -28,6 +28,7 @@ mod section;
 mod study;
 mod table;
 mod terminal;
+mod terms;
 
 pub use finding::{finding, lights, notices};
 pub use format::significant;

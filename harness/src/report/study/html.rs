@@ -8,6 +8,7 @@ use super::super::html::{PAGE, SCRIPT, STYLE, fill, in_script};
 use super::super::markup::{Html, html, with_names_whole};
 use super::super::page;
 use super::super::rank::listed;
+use super::super::terms::terms;
 use super::super::{frames, raster};
 use super::figure::Charts;
 use super::shots::Shots;
@@ -120,6 +121,7 @@ pub(super) fn page(done: &Done) -> Page {
             ("file", DATA.into()),
             ("link", DATA.into()),
             ("columns", page::columns()),
+            ("terms", terms()),
             ("provenance", provenance(done)),
             ("data", in_script(embedded)),
             ("view", in_script(&view)),
