@@ -272,7 +272,7 @@ fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<
     if error_budget > 0.0 {
         for record in last.iter().take(CAPPED) {
             // A longer list loses nothing and gains nothing.
-            let shorter = CAPS.iter().filter(|cap| u64::from(**cap) < record.longest_list);
+            let shorter = CAPS.iter().filter(|cap| u64::from(**cap) < record.lists.longest);
             ids.extend(shorter.map(|cap| format!("{}/cap{cap}", record.strategy)));
         }
     }

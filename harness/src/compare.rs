@@ -276,7 +276,7 @@ impl Run<'_> {
                 times,
             );
             note_drift(&mut record);
-            record.untested = self.untested;
+            record.lists.untested = self.untested;
             self.results.records.push(record);
         }
         if self.args.path {

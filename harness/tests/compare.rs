@@ -34,13 +34,14 @@ fn compare(out: &Path, arguments: &[&str]) -> Results {
 fn assert_lossless(results: &Results, records: usize) {
     assert_eq!(results.records.len(), records);
     for record in &results.records {
-        let what = format!("{} {} {}", record.scene, record.strategy, record.mode.name());
-        assert_eq!(record.missed_pairs, Some(0), "{what}");
-        assert_eq!(record.max_abs_diff, Some(0.0), "{what}");
-        assert_eq!(record.differing_channels, Some(0), "{what}");
-        assert!(record.samples > 1_000, "{what}: {} samples", record.samples);
-        assert!(record.listed_per_sample >= record.contributing_per_sample, "{what}");
-        assert!(record.passes.get("shade").is_some(), "{what}");
+        let what =
+            format!("{} {} {}", record.setting.scene, record.strategy, record.setting.mode.name());
+        assert_eq!(record.lists.missed_pairs, Some(0), "{what}");
+        assert_eq!(record.image.max_abs_diff, Some(0.0), "{what}");
+        assert_eq!(record.image.differing_channels, Some(0), "{what}");
+        assert!(record.lists.samples > 1_000, "{what}: {} samples", record.lists.samples);
+        assert!(record.lists.listed_per_sample >= record.lists.contributing_per_sample, "{what}");
+        assert!(record.times.passes.get("shade").is_some(), "{what}");
     }
 }
 
@@ -72,15 +73,19 @@ fn the_default_scene_is_lossless_in_both_modes() {
     let results = compare(&out, &["--lights", "300", "--spots", "0.3", "--mode", "both"]);
     assert_lossless(&results, 8);
     let culled = &results.records[2];
-    assert!(culled.checked_pairs > Some(1_000), "{:?} pairs", culled.checked_pairs);
-    assert!(culled.listed_per_sample < Some(150.0), "{:?} listed", culled.listed_per_sample);
-    assert_eq!(culled.light_kinds.values().sum::<u64>(), 300);
-    assert!(culled.light_kinds["spot"] > 50);
-    assert!(culled.passes.get("cull").is_some());
+    assert!(culled.lists.checked_pairs > Some(1_000), "{:?} pairs", culled.lists.checked_pairs);
+    assert!(
+        culled.lists.listed_per_sample < Some(150.0),
+        "{:?} listed",
+        culled.lists.listed_per_sample
+    );
+    assert_eq!(culled.setting.light_kinds.values().sum::<u64>(), 300);
+    assert!(culled.setting.light_kinds["spot"] > 50);
+    assert!(culled.times.passes.get("cull").is_some());
     let sparse = &results.records[3];
-    assert!(sparse.passes.get("bounds").is_some());
-    assert!(sparse.histogram.iter().sum::<u64>() > 20, "{:?}", sparse.histogram);
-    assert!(sparse.listed_per_sample < culled.listed_per_sample);
+    assert!(sparse.times.passes.get("bounds").is_some());
+    assert!(sparse.lists.histogram.iter().sum::<u64>() > 20, "{:?}", sparse.lists.histogram);
+    assert!(sparse.lists.listed_per_sample < culled.lists.listed_per_sample);
     for name in ["index.html", "deferred-None.png", "forward-None.exr", HEAT_MAP] {
         assert!(out.join(name).is_file(), "{name}");
     }
@@ -94,11 +99,11 @@ fn all_methods_are_lossless_or_within_what_they_state() {
     let results = compare(folder.path(), &[&arguments[..], &lights].concat());
     assert!(results.records.len() > 40, "{} records", results.records.len());
     for record in results.records.iter().filter(|record| record.strategy != "Clay") {
-        let what = format!("{} {}", record.strategy, record.mode.name());
-        assert!(record.is_lossless(), "{what}: {:?}", record.max_rel_diff);
+        let what = format!("{} {}", record.strategy, record.setting.mode.name());
+        assert!(record.is_lossless(), "{what}: {:?}", record.image.max_rel_diff);
         let is_raster = record.strategy == "RasterSphere";
-        assert_eq!(record.tolerance.is_some(), is_raster, "{what}");
-        assert_eq!(record.missed_pairs, (!is_raster).then_some(0), "{what}");
+        assert_eq!(record.image.tolerance.is_some(), is_raster, "{what}");
+        assert_eq!(record.lists.missed_pairs, (!is_raster).then_some(0), "{what}");
     }
 }
 
@@ -111,13 +116,13 @@ fn laps_repeat_the_path() {
     let path = ["--scene", SMALL, "--path", "--frames", "3", "--laps", "2", "--pictures", "none"];
     let results = compare(folder.path(), &[&arguments[..], &path].concat());
     for record in &results.records {
-        assert_eq!((record.frames, record.poses, record.laps()), (6, Some(3), 2));
-        assert!(record.along_path && record.rounds == 2);
-        assert_eq!(record.passes.get("shade").expect("shade").samples.len(), 6);
+        assert_eq!((record.times.frames, record.setting.poses, record.laps()), (6, Some(3), 2));
+        assert!(record.setting.along_path && record.times.rounds == 2);
+        assert_eq!(record.times.passes.get("shade").expect("shade").samples.len(), 6);
         assert_eq!((record.round_times_ms().len(), record.pose_times_ms().len()), (2, 3));
-        assert_eq!(record.differing_channels, Some(0), "{}", record.strategy);
+        assert_eq!(record.image.differing_channels, Some(0), "{}", record.strategy);
     }
-    let cull = &results.records[1].passes.get("cull").expect("cull").samples;
+    let cull = &results.records[1].times.passes.get("cull").expect("cull").samples;
     let made: Vec<bool> = cull.iter().map(|ms| *ms > 0.0).collect();
     assert_eq!(made, [true, false, false, true, false, false]);
 }
@@ -128,9 +133,9 @@ fn clay_and_zero_lights_run() {
     let arguments = ["--lights", "0", "--strategies", "Clay,DC-I/32x32x8", "--truth", "none"];
     let results = compare(folder.path(), &[&["--scene", SMALL], &arguments[..]].concat());
     assert_eq!(results.records.len(), 2);
-    assert_eq!(results.records[0].max_abs_diff, None);
-    assert_eq!(results.records[1].max_abs_diff, Some(0.0));
-    assert_eq!(results.records[1].list_entries, 0);
+    assert_eq!(results.records[0].image.max_abs_diff, None);
+    assert_eq!(results.records[1].image.max_abs_diff, Some(0.0));
+    assert_eq!(results.records[1].lists.entries, 0);
 }
 
 #[test]
@@ -170,7 +175,10 @@ fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
     let best = verdict(&results, 0.001).expect("a verdict").best;
     assert!(said.starts_with(&format!("Use {} (", best.strategy)), "the answer first: {said}");
     // It judged several poses, several times each.
-    assert!(best.along_path && best.poses == Some(3) && best.frames == 24, "{best:?}");
+    assert!(
+        best.setting.along_path && best.setting.poses == Some(3) && best.times.frames == 24,
+        "{best:?}"
+    );
     let gains = |exact: &&Record| is_surely_faster(best, exact) == Some(true);
     let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
     assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{said}");
@@ -340,8 +348,12 @@ fn lights_without_an_end_are_seen_and_stated() {
     let lamp = floor_file(folder.path(), false);
     let (results, dim, words) = run(&lamp, &[]);
     let record = &results.records[0];
-    assert_eq!((record.lights, record.open_lights), (1, Some(1)));
-    assert!(record.unbounded_errors["rel_mse"] < Some(1e-4), "{:?}", record.unbounded_errors);
+    assert_eq!((record.setting.lights, record.setting.open_lights), (1, Some(1)));
+    assert!(
+        record.image.unbounded_errors["rel_mse"] < Some(1e-4),
+        "{:?}",
+        record.image.unbounded_errors
+    );
     assert!(dim.pixels.iter().all(|pixel| pixel[0] > 1e-5), "a black pixel");
     for place in [words, results.warnings.concat()] {
         assert!(
@@ -351,10 +363,10 @@ fn lights_without_an_end_are_seen_and_stated() {
     }
     let (results, _, words) = run(&lamp, &["--threshold", "0.02"]);
     assert!(words.contains("an end at 1.58 m"), "{words}");
-    assert!(results.records[0].unbounded_errors["rel_mse"] > Some(0.9), "{results:?}");
+    assert!(results.records[0].image.unbounded_errors["rel_mse"] > Some(0.9), "{results:?}");
     let (results, sunny, words) = run(&floor_file(folder.path(), true), &[]);
     assert!(words.contains("1 lights, 1 sun"), "{words}");
-    assert_eq!(results.records[0].light_kinds["sun"], 1);
+    assert_eq!(results.records[0].setting.light_kinds["sun"], 1);
     assert!(results.records.iter().all(Record::is_lossless), "{:?}", results.records);
     assert!(sunny.pixels.iter().zip(&dim.pixels).all(|(sun, dim)| sun[0] > dim[0] + 0.01));
 }

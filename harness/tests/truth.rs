@@ -145,15 +145,15 @@ fn a_study_runs_truths_and_comparisons_and_computes_their_errors_again() {
     let model = names.iter().find(|name| name.starts_with("atrium-models-")).expect("a model");
     let path = folder.path().join("jobs").join(model).join("results.json");
     let read = || Results::read(&path).expect("results");
-    let errors = read().records[0].truth_errors.clone();
+    let errors = read().records[0].image.truth_errors.clone();
     assert!(errors["flip"] > Some(0.0) && errors["bias"].is_some(), "{errors:?}");
     assert!(names.iter().any(|name| name.starts_with("atrium-cost-")), "{names:?}");
     // Once more, from what is stored.
     let mut results = read();
-    results.records[0].truth_errors.clear();
+    results.records[0].image.truth_errors.clear();
     results.write(&path).expect("writes");
     run(&["report", out]);
-    assert_eq!(read().records[0].truth_errors, errors);
+    assert_eq!(read().records[0].image.truth_errors, errors);
     // Nothing is rendered again where all is done.
     let image = folder.path().join("jobs/atrium-truth/truth.exr");
     let written = || std::fs::metadata(&image).and_then(|data| data.modified()).expect("a file");
@@ -176,7 +176,7 @@ fn cones_are_counted_from_every_place() {
     assert_eq!(names, expected);
     let path = folder.path().join("jobs/atrium-a-126/results.json");
     for record in Results::read(&path).expect("results").records {
-        let counted = record.operations.expect("counted");
+        let counted = record.lists.operations.expect("counted");
         let is_diffuse_only = record.strategy.contains("/dif");
         let is_order_kept = counted.specular >= counted.diffuse || record.is_lossy;
         assert!(is_order_kept && counted.diffuse > 0, "{counted:?}");
@@ -191,7 +191,7 @@ fn cones_are_counted_from_every_place() {
         );
         let seen = counted.perceptible_listed.expect("counted");
         assert!(record.is_lossy || seen == counted.perceptible, "{}: {counted:?}", record.strategy);
-        assert_eq!(record.lights, 126);
+        assert_eq!(record.setting.lights, 126);
         assert!(record.is_lossy || record.is_lossless(), "{}", record.strategy);
     }
 }

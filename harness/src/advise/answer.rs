@@ -63,19 +63,19 @@ fn first_line(best: &Record) -> String {
         best.strategy,
         about(best),
         time(best),
-        report::lights(best.lights),
-        ms(best.assign_ms),
-        ms(best.shade_ms),
+        report::lights(best.setting.lights),
+        ms(best.times.assign_ms),
+        ms(best.times.shade_ms),
     );
     if let Some(interval) = best.interval_ms() {
-        let statistic = if best.along_path { "mean" } else { "median" };
+        let statistic = if best.setting.along_path { "mean" } else { "median" };
         let (low, high) = (ms(interval.low), ms(interval.high));
         let _ = write!(text, ", {statistic} between {low} and {high}");
     }
     text += ". ";
-    let views = if best.along_path { "these views" } else { "this view" };
+    let views = if best.setting.along_path { "these views" } else { "this view" };
     text += &match (loss(best), error_of(best)) {
-        (None, _) => match best.differing_channels {
+        (None, _) => match best.image.differing_channels {
             Some(0) => "Its image is that of no culling, bit for bit.".to_owned(),
             Some(_) => "Its image is that of no culling within the tolerance it states.".to_owned(),
             None => "Its image was not compared with that of no culling.".to_owned(),
@@ -87,7 +87,7 @@ fn first_line(best: &Record) -> String {
     };
     if report::needs_built_hierarchy(best) {
         text += " Still lights only: it uses a hierarchy that the CPU builds";
-        if let Some(build) = best.light_build_ms {
+        if let Some(build) = best.times.light_build_ms {
             let _ = write!(text, " in {} ms", ms(build));
         }
         text += ", not counted in this time.";
@@ -148,11 +148,13 @@ fn no_gain(verdict: &Verdict<'_>, error_budget: f64) -> String {
 fn why(verdict: &Verdict<'_>, results: &Results) -> String {
     let best = verdict.best;
     if !best.culls() {
-        let lights = report::lights(best.lights);
+        let lights = report::lights(best.setting.lights);
         return format!("with {lights} no list pays for the passes that make it");
     }
     let mut reasons = Vec::new();
-    if let (Some(listed), Some(reach)) = (best.listed_per_sample, best.contributing_per_sample) {
+    if let (Some(listed), Some(reach)) =
+        (best.lists.listed_per_sample, best.lists.contributing_per_sample)
+    {
         let (listed, reach) = (ms(listed), ms(reach));
         reasons.push(format!("its lists hold {listed} lights per sample where {reach} reach it"));
     }
@@ -164,8 +166,8 @@ fn why(verdict: &Verdict<'_>, results: &Results) -> String {
         reasons.push(format!(
             "against {}, {} and {}",
             next.strategy,
-            part("assigning", next.assign_ms - best.assign_ms),
-            part("shading", next.shade_ms - best.shade_ms)
+            part("assigning", next.times.assign_ms - best.times.assign_ms),
+            part("shading", next.times.shade_ms - best.times.shade_ms)
         ));
     }
     let none = results.records.iter().find(|record| record.is_baseline());

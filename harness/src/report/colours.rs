@@ -52,7 +52,7 @@ fn strategies(results: &Results) -> BTreeMap<&str, String> {
 fn passes(results: &Results) -> BTreeMap<&str, String> {
     let mut classes = BTreeMap::new();
     let mut next: [usize; 4] = [0; 4];
-    for (name, times) in results.records.iter().flat_map(|record| record.passes.iter()) {
+    for (name, times) in results.records.iter().flat_map(|record| record.times.passes.iter()) {
         let (kind, label) = match times.kind {
             PassKind::Scene => (0, "scene"),
             PassKind::Assign => (1, "assign"),

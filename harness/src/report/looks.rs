@@ -19,11 +19,12 @@ pub(super) fn pictures(
 ) -> Html {
     let known =
         |name: &Option<String>| name.as_deref().filter(|name| kept.contains(name)).is_some();
-    let has_one = |record: &Record| known(&record.images.image) || known(&record.images.difference);
+    let has_one =
+        |record: &Record| known(&record.image.files.image) || known(&record.image.files.difference);
     if !comparison.records.iter().any(|(_, record)| has_one(record)) {
         return html!("<p class=\"note\">No pictures were kept.</p>\n");
     }
-    let baseline = comparison.baseline().and_then(|record| record.images.image.as_deref());
+    let baseline = comparison.baseline().and_then(|record| record.image.files.image.as_deref());
     let all = || comparison.records.iter().map(|(_, record)| *record);
     let mut shown: Vec<&Record> = all().filter(|record| !record.is_baseline()).collect();
     if shown.is_empty() {
@@ -42,15 +43,15 @@ pub(super) fn pictures(
 }
 
 fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Html {
-    let images = &record.images;
+    let images = &record.image.files;
     let known = |name: Option<&'_ str>| name.filter(|name| kept.contains(name)).map(str::to_owned);
     let image = known(images.image.as_deref());
     let reference = known(baseline).or_else(|| known(images.baseline.as_deref()));
     let difference = known(images.difference.as_deref());
     let pair = PicturePair {
-        scene: &record.scene,
+        scene: &record.setting.scene,
         name: &record.strategy,
-        size: [record.width, record.height],
+        size: [record.setting.width, record.setting.height],
         image: image.as_deref(),
         reference: reference.as_deref(),
         reference_name: "no culling",
@@ -66,7 +67,7 @@ fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Htm
     }
     let heat = known(images.heat_map.as_deref());
     pair.main()
-        + pair.difference(record.differing_channels == Some(0))
+        + pair.difference(record.image.differing_channels == Some(0))
         + heat_map(record, heat.as_deref())
 }
 
@@ -76,7 +77,7 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
         return Html::default();
     }
     let alternative = format!("Lights in the list of each pixel, {}", record.strategy);
-    let mean = record.listed_per_sample.map_or_else(String::new, |listed| {
+    let mean = record.lists.listed_per_sample.map_or_else(String::new, |listed| {
         format!("{} lists {} lights per pixel on average.", record.strategy, significant(listed))
     });
     html!(
@@ -84,8 +85,8 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
          <figcaption><b>Lights per pixel.</b> {}\
          <div class=\"heat-scale\" aria-hidden=\"true\"><span>0</span><i class=\"heat-ramp\"></i>\
          <span>150</span><i class=\"heat-above\"></i><span>more</span></div></figcaption></figure>\n",
-        record.width,
-        record.height,
+        record.setting.width,
+        record.setting.height,
         picture(heat, &alternative),
         mean
     )
@@ -95,11 +96,11 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
 pub(super) fn list_lengths(comparison: &Comparison<'_>, colours: &Colours<'_>) -> Html {
     let records = comparison.records.iter().map(|(_, record)| *record);
     let all: Vec<Histogram> = records
-        .filter(|record| record.histogram.iter().any(|groups| *groups > 0))
+        .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))
         .map(|record| Histogram {
             title: record.strategy.clone(),
             x_label: "Lights in a list".to_owned(),
-            bins: bins(&record.histogram),
+            bins: bins(&record.lists.histogram),
             class: colours.strategy(record).to_owned(),
             note: String::new(),
         })

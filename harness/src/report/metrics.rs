@@ -79,7 +79,7 @@ fn times<'a>() -> Vec<Metric<'a>> {
                  median, from order statistics of the rounds. A tooltip shows its coverage, which is at \
                  least 95 % from six rounds on.",
             ),
-        figure("span_ms", "span", "ms", Less, |m| m.record.span_ms.and_then(finite), significant)
+        figure("span_ms", "span", "ms", Less, |m| m.record.times.span_ms.and_then(finite), significant)
             .terminal("span")
             .optional()
             .about(
@@ -112,18 +112,18 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
             "How many times as fast as Sphere, which is no culling with the same early exit. This is the gain \
              from the lists only.",
         ),
-        figure("assign_ms", "assign", "ms", Less, |m| finite(m.record.assign_ms), significant)
+        figure("assign_ms", "assign", "ms", Less, |m| finite(m.record.times.assign_ms), significant)
             .terminal("assign")
             .about(
                 "Sum of the passes that make the lists: median over frames, or the mean along a path.",
             ),
-        figure("shade_ms", "shade", "ms", Less, |m| finite(m.record.shade_ms), significant)
+        figure("shade_ms", "shade", "ms", Less, |m| finite(m.record.times.shade_ms), significant)
             .terminal("shade")
             .about(
                 "Time to light every sample with the lights of its list: median over frames, or the mean \
                  along a path.",
             ),
-        figure("frame_ms", "frame", "ms", Less, |m| finite(m.record.frame_ms), significant).about(
+        figure("frame_ms", "frame", "ms", Less, |m| finite(m.record.times.frame_ms), significant).about(
             "Sum of all passes, those that draw the surfaces included: median over frames, or the mean along \
              a path.",
         ),
@@ -132,7 +132,7 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
             "frame span",
             "ms",
             Less,
-            |m| m.record.frame_span_ms.and_then(finite),
+            |m| m.record.times.frame_span_ms.and_then(finite),
             significant,
         )
         .optional()
@@ -151,7 +151,7 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
 
 fn lists<'a>() -> Vec<Metric<'a>> {
     vec![
-        figure("listed", "listed", "/sample", Less, |m| m.record.listed_per_sample, number)
+        figure("listed", "listed", "/sample", Less, |m| m.record.lists.listed_per_sample, number)
             .terminal("listed")
             .about("Mean number of lights in the list that a sample reads."),
         figure(
@@ -159,7 +159,7 @@ fn lists<'a>() -> Vec<Metric<'a>> {
             "contributing",
             "/sample",
             Neither,
-            |m| m.record.contributing_per_sample,
+            |m| m.record.lists.contributing_per_sample,
             number,
         )
         .terminal("contrib.")
@@ -170,12 +170,13 @@ fn lists<'a>() -> Vec<Metric<'a>> {
 }
 
 fn losses<'a>() -> Vec<Metric<'a>> {
-    let largest = |m: &Measured<'_>| match (m.record.max_abs_diff, m.record.differing_channels) {
-        (None, Some(1..)) => Some(f64::INFINITY),
-        (difference, _) => difference,
-    };
+    let largest =
+        |m: &Measured<'_>| match (m.record.image.max_abs_diff, m.record.image.differing_channels) {
+            (None, Some(1..)) => Some(f64::INFINITY),
+            (difference, _) => difference,
+        };
     vec![
-        figure("missed", "missed", "pairs", Zero, |m| m.record.missed_pairs.map(count), number)
+        figure("missed", "missed", "pairs", Zero, |m| m.record.lists.missed_pairs.map(count), number)
             .terminal("missed")
             .about(
                 "(light, sample) pairs that are missing from the lists. If this is not 0, the image is wrong.",
@@ -188,7 +189,7 @@ fn losses<'a>() -> Vec<Metric<'a>> {
             "differing",
             "channels",
             Zero,
-            |m| m.record.differing_channels.map(count),
+            |m| m.record.image.differing_channels.map(count),
             number,
         )
         .about(
@@ -199,11 +200,11 @@ fn losses<'a>() -> Vec<Metric<'a>> {
 
 fn memory<'a>() -> Vec<Metric<'a>> {
     let lists_only = |m: &Measured<'_>| {
-        let is_stored = m.record.memory_bytes.is_none() && m.record.lists_bytes > 0;
-        is_stored.then(|| count(m.record.lists_bytes))
+        let is_stored = m.record.lists.memory_bytes.is_none() && m.record.lists.bytes > 0;
+        is_stored.then(|| count(m.record.lists.bytes))
     };
     vec![
-        figure("memory_bytes", "memory", "MiB", Less, |m| m.record.memory_bytes.map(count), mebibytes)
+        figure("memory_bytes", "memory", "MiB", Less, |m| m.record.lists.memory_bytes.map(count), mebibytes)
             .terminal("memory")
             .optional()
             .about(
@@ -222,7 +223,7 @@ fn memory<'a>() -> Vec<Metric<'a>> {
             "overflow",
             "groups",
             Neither,
-            |m| Some(count(m.record.overflowed_groups)),
+            |m| Some(count(m.record.lists.overflowed_groups)),
             number,
         )
         .terminal("overflow")

@@ -21,7 +21,7 @@ impl Counted {
 
     fn total_ms(self, record: &Record) -> f64 {
         match self {
-            Self::Frame => record.frame_ms,
+            Self::Frame => record.times.frame_ms,
             Self::AssignAndShade => record.assign_and_shade_ms(),
         }
     }
@@ -71,6 +71,7 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
     let total = counted.total_ms(record);
     let is_counted = |(_, times): &(&str, &PassTimes)| counted.counts(times.kind);
     let segments: Vec<Segment> = record
+        .times
         .passes
         .iter()
         .filter(is_counted)
@@ -104,7 +105,7 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
 
 /// The time of a pass: the median, or along a path the mean, in which a frame without the pass counts as 0.
 pub(super) fn time_ms(record: &Record, times: &PassTimes) -> f64 {
-    if !record.along_path || times.samples.is_empty() {
+    if !record.setting.along_path || times.samples.is_empty() {
         return times.median_ms;
     }
     let measured = times.samples.iter().filter(|sample| sample.is_finite());

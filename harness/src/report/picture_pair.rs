@@ -102,9 +102,9 @@ pub(super) fn picture(name: Option<&str>, alternative: &str) -> Html {
 
 /// What is known of the difference of a record's image to that of no culling.
 pub(super) fn verdict(record: &Record) -> String {
-    let channels = number(f64::from(record.width) * f64::from(record.height) * 3.0);
-    let most = record.max_abs_diff.filter(|most| most.is_finite());
-    match (record.differing_channels, most) {
+    let channels = number(f64::from(record.setting.width) * f64::from(record.setting.height) * 3.0);
+    let most = record.image.max_abs_diff.filter(|most| most.is_finite());
+    match (record.image.differing_channels, most) {
         (Some(0), _) => format!("The same in every bit: none of {channels} channels differs."),
         (Some(differing), most) => {
             let most = most.map_or_else(

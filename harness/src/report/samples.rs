@@ -10,7 +10,7 @@ use crate::results::{PassTimes, Record};
 pub(super) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
     let mut strips: Vec<(&Record, &PassTimes, Strip)> = Vec::new();
     for record in records {
-        for (name, times) in record.passes.iter() {
+        for (name, times) in record.times.passes.iter() {
             strips.push((record, times, strip(record, name, times, colours)));
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
     let colours = Colours::new(results);
     let section = |(ix, comparison): (usize, &Comparison<'_>)| {
         let first = comparison.first();
-        let heading = format!("{}, {}", first.scene, first.mode.name());
+        let heading = format!("{}, {}", first.setting.scene, first.setting.mode.name());
         let records: Vec<&Record> = comparison.all().collect();
         let body = result_table(&format!("Results: {heading}"), comparison, |record| {
             colours.strategy(record).to_owned()

@@ -77,14 +77,35 @@ mod tests {
     fn the_words_that_reports_use_are_terms() {
         let (body, count) = list(TERMS);
         let known = [
-            "view sample", "group", "list", "support", "range", "window", "lossless", "contributing",
-            "listed", "efficiency", "early exit", "tie", "path", "pose", "assign", "shade", "missed pair",
+            "view sample",
+            "group",
+            "list",
+            "support",
+            "range",
+            "window",
+            "lossless",
+            "contributing",
+            "listed",
+            "efficiency",
+            "early exit",
+            "tie",
+            "path",
+            "pose",
+            "assign",
+            "shade",
+            "missed pair",
         ];
         for term in known {
-            assert!(body.as_str().contains(&format!("<dt>{term}</dt>")), "docs/terms.md lacks {term}");
+            assert!(
+                body.as_str().contains(&format!("<dt>{term}</dt>")),
+                "docs/terms.md lacks {term}"
+            );
         }
         assert_eq!(count, body.as_str().matches("<dt>").count());
         let bold_lines = TERMS.lines().filter(|line| line.starts_with("**")).count();
-        assert_eq!(count, bold_lines, "a term of docs/terms.md is not written `**term**: definition`");
+        assert_eq!(
+            count, bold_lines,
+            "a term of docs/terms.md is not written `**term**: definition`"
+        );
     }
 }

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::{
     Record, Results, SCHEMA_VERSION,
+    flat::FlatResults,
     lack::lack,
     seal::{sealed, unsealed},
 };
@@ -48,7 +49,7 @@ pub enum ResultsError {
         reason: String,
     },
     /// A file of a version that this program does not know.
-    #[error("{}: schema_version is {found}: it must be {SCHEMA_VERSION}", path.display())]
+    #[error("{}: schema_version is {found}: it must be 1 to {SCHEMA_VERSION}", path.display())]
     Version {
         /// The file.
         path: PathBuf,
@@ -106,16 +107,15 @@ impl Results {
         let bytes = fs::read(path)
             .map_err(|source| ResultsError::Read { path: path.to_owned(), source })?;
         let (value, checksum) = unsealed(&bytes).map_err(fail)?;
-        match value.get("schema_version").and_then(serde_json::Value::as_u64) {
+        // From the text: the order of passes counts.
+        let results = match value.get("schema_version").and_then(serde_json::Value::as_u64) {
+            Some(1) => serde_json::from_slice::<FlatResults>(&bytes).map(Self::from),
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
-                Err(ResultsError::Version { path: path.to_owned(), found })
+                return Err(ResultsError::Version { path: path.to_owned(), found });
             }
-            _ => {
-                // From the text: the order of passes counts.
-                let results = serde_json::from_slice(&bytes).map_err(|e| fail(e.to_string()))?;
-                Ok((results, checksum))
-            }
-        }
+            _ => serde_json::from_slice(&bytes),
+        };
+        Ok((results.map_err(|error| fail(error.to_string()))?, checksum))
     }
 
     /// Gives records of earlier versions the names and the bills of today, and shows what names hide.
@@ -241,7 +241,9 @@ mod tests {
             fs::write(&path, text).expect("writes");
             Results::read(&path).expect_err("refused").to_string()
         };
-        assert!(read(r#"{"schema_version": 2}"#).contains("schema_version is 2: it must be 1"));
+        assert!(
+            read(r#"{"schema_version": 3}"#).contains("schema_version is 3: it must be 1 to 2")
+        );
         assert!(read(r#"{"schema_version": 1}"#).contains("missing field"));
         assert!(read("{").contains("not a results.json"));
         fs::remove_file(&path).expect("removes");

@@ -13,7 +13,9 @@ use crate::{
 /// What is missing from results, or too many in them; `None` where they are what was asked for.
 pub(super) fn lack(results: &Results) -> Option<String> {
     for (ix, record) in results.records.iter().enumerate() {
-        let same = |known: &&Record| known.strategy == record.strategy && known.mode == record.mode;
+        let same = |known: &&Record| {
+            known.strategy == record.strategy && known.setting.mode == record.setting.mode
+        };
         if results.records.iter().take(ix).any(|known| same(&known)) {
             return Some(format!("{} is there twice", name(record)));
         }
@@ -44,7 +46,8 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
     let mut is_asked = vec![false; records.len()];
     for &mode in args.mode.modes() {
         for choice in asked.iter().filter(|choice| has_mode(choice, mode)) {
-            let same = |ix: &usize| records[*ix].mode == mode && stored[*ix].is_same(choice);
+            let same =
+                |ix: &usize| records[*ix].setting.mode == mode && stored[*ix].is_same(choice);
             match (0..records.len()).find(same) {
                 Some(ix) => is_asked[ix] = true,
                 // Of all strategies, those that cannot serve a scene are left out. No culling serves all.
@@ -58,7 +61,7 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
 }
 
 fn name(record: &Record) -> String {
-    format!("{} in {}", record.strategy, record.mode.name())
+    format!("{} in {}", record.strategy, record.setting.mode.name())
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ impl Record {
     fn rename(&mut self) {
         let (parameter, was, is) = match self.strategy.split('/').next() {
             Some("G") => ("box", "lights", "supports"),
-            Some("T-I") if self.planes.is_none() => ("tests", "hs+sat-n", "hs"),
+            Some("T-I") if self.setting.planes.is_none() => ("tests", "hs+sat-n", "hs"),
             _ => return,
         };
         let known = self.strategy_parameters.get(parameter).and_then(Value::as_str);
@@ -46,7 +46,7 @@ mod tests {
         let mut record = results.records.into_iter().next().unwrap();
         record.strategy = strategy.to_owned();
         record.strategy_parameters.insert(parameter.to_owned(), value.into());
-        record.planes = None;
+        record.setting.planes = None;
         record
     }
 
@@ -82,6 +82,8 @@ mod tests {
             far_m: Some(40.0),
             far_from: PlaneSource::Scene,
         };
-        assert_eq!(renamed(Record { planes: Some(planes), ..old() }), "T-I/28x28/bvh");
+        let mut with_far_plane = old();
+        with_far_plane.setting.planes = Some(planes);
+        assert_eq!(renamed(with_far_plane), "T-I/28x28/bvh");
     }
 }

@@ -126,7 +126,7 @@ pub(super) fn cases_at<'a>(
     let mut cases: Vec<Case<'a>> = Vec::new();
     for &(place, _) in places {
         for entry in entries(done, scene, place) {
-            let lights = entry.record.lights;
+            let lights = entry.record.setting.lights;
             match cases.iter_mut().find(|case| case.place == place && case.lights == lights) {
                 Some(case) => case.entries.push(entry),
                 None => cases.push(Case { place, lights, entries: vec![entry] }),

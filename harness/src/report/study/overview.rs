@@ -38,14 +38,15 @@ fn rankings(done: &Done, scene: &str) -> Vec<Results> {
 
 /// The records at a count of lights.
 fn at<'a>(entries: &[Entry<'a>], lights: u64) -> Vec<Entry<'a>> {
-    entries.iter().filter(|entry| entry.record.lights == lights).copied().collect()
+    entries.iter().filter(|entry| entry.record.setting.lights == lights).copied().collect()
 }
 
 /// The still comparisons that stand beside a ranking along the path: examples.
 fn examples(done: &Done, scene: &str) -> Vec<Results> {
     let still = entries(done, scene, "main");
-    let along = |results: &&Results| results.records.iter().any(|record| record.along_path);
-    let example = |results: &Results| merged(done, &at(&still, results.records.first()?.lights));
+    let along = |results: &&Results| results.records.iter().any(|record| record.setting.along_path);
+    let example =
+        |results: &Results| merged(done, &at(&still, results.records.first()?.setting.lights));
     rankings(done, scene).iter().filter(along).filter_map(example).collect()
 }
 
@@ -92,7 +93,7 @@ fn panel(
     let comparison = comparison(results)?;
     let first = comparison.first();
     let most = comparison.records.iter().map(|(_, r)| *r).max_by_key(|r| poses(r))?;
-    let count = first.lights;
+    let count = first.setting.lights;
     let lights = format!("{} lights", number(count as f64));
     let title = format!("{lights}, {}", stand(most));
     let mut fewer: Vec<String> = Vec::new();
@@ -142,7 +143,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = comparison.ranks();
     let lead = Lead::of_comparison(comparison)?;
     let leader = lead.leader();
-    let lights = super::super::finding::lights(comparison.first().lights);
+    let lights = super::super::finding::lights(comparison.first().setting.lights);
     let time = match lead.is_tie() {
         true => {
             let times = span(&lead.records, |record| Some(record.assign_and_shade_ms()));
@@ -194,7 +195,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
         let Some(lead) = Lead::of_comparison(&comparison).map(|lead| lead.headline()) else {
             continue;
         };
-        most = most.max(Some(comparison.first().lights));
+        most = most.max(Some(comparison.first().setting.lights));
         match leads.iter_mut().find(|(known, _)| *known == lead) {
             Some((_, scenes)) => scenes.push(scene),
             None => leads.push((lead, vec![scene])),
@@ -212,7 +213,7 @@ pub(super) fn ties(done: &Done, scene: &str) -> Vec<String> {
     let said = |results: &Results| {
         let comparison = comparison(results)?;
         let tie = tie(&comparison.ranks())?;
-        let lights = super::super::finding::lights(comparison.first().lights);
+        let lights = super::super::finding::lights(comparison.first().setting.lights);
         Some(format!("{scene}, {lights}: {tie}."))
     };
     rankings(done, scene).iter().filter_map(said).collect()

@@ -67,7 +67,7 @@ impl<'a> Shots<'a> {
     /// Keeps the pictures of a record; the key by which the page opens them, where there are any.
     pub(super) fn keep(&mut self, entry: Entry<'_>, wanted: Wanted) -> Option<String> {
         let Entry { job, record } = entry;
-        let images = &record.images;
+        let images = &record.image.files;
         let image = match wanted {
             // Under the exposure of the truth, as the truth itself.
             Wanted::Truth => {
@@ -96,18 +96,18 @@ impl<'a> Shots<'a> {
         };
         let key = format!("{}:{}", job.name, record.strategy);
         let errors = match wanted {
-            Wanted::Pair => &record.errors,
-            Wanted::Unbounded => &record.unbounded_errors,
-            Wanted::Truth => &record.truth_errors,
+            Wanted::Pair => &record.image.errors,
+            Wanted::Unbounded => &record.image.unbounded_errors,
+            Wanted::Truth => &record.image.truth_errors,
         };
         let name = match wanted {
-            Wanted::Truth => record.area_model.as_ref().unwrap_or(&record.strategy),
+            Wanted::Truth => record.setting.area_model.as_ref().unwrap_or(&record.strategy),
             _ => &record.strategy,
         };
         let pair = PicturePair {
-            scene: &record.scene,
+            scene: &record.setting.scene,
             name,
-            size: [record.width, record.height],
+            size: [record.setting.width, record.setting.height],
             image: Some(&image),
             reference: reference.as_deref(),
             reference_name: text,
@@ -213,8 +213,10 @@ impl<'a> Shots<'a> {
 
 /// A shot beside what it should look like, with its time and its errors.
 fn viewer(record: &Record, pair: &PicturePair<'_>, errors: &Errors) -> Html {
-    let threshold =
-        record.threshold.map_or_else(String::new, |threshold| format!(", threshold {threshold}"));
+    let threshold = record
+        .setting
+        .threshold
+        .map_or_else(String::new, |threshold| format!(", threshold {threshold}"));
     let mut figures = html!("<li>{} ms</li>", significant(record.assign_and_shade_ms()));
     for (id, error) in errors {
         if let Some(error) = error.filter(|error| error.is_finite()) {

@@ -175,15 +175,17 @@ pub(super) fn full_union(done: &Done, scene: &str) -> Answer {
         let of = |tests: &str| records.iter().find(|record| tests_of(record) == Some(tests));
         let (Some(best), Some(full)) = (of(BEST), of(FULL)) else { continue };
         all += 2;
-        let shade = full.shade_ms / best.shade_ms;
+        let shade = full.times.shade_ms / best.times.shade_ms;
         good += usize::from((shade - 1.0).abs() <= ABOUT);
-        good += usize::from(Order::of_figures(best.assign_ms, full.assign_ms) == Order::Less);
+        good += usize::from(
+            Order::of_figures(best.times.assign_ms, full.times.assign_ms) == Order::Less,
+        );
         figures.push(format!(
             "{name}: shade {} and {} ms, assign {} and {} ms",
-            significant(best.shade_ms),
-            significant(full.shade_ms),
-            significant(best.assign_ms),
-            significant(full.assign_ms)
+            significant(best.times.shade_ms),
+            significant(full.times.shade_ms),
+            significant(best.times.assign_ms),
+            significant(full.times.assign_ms)
         ));
     }
     if all == 0 {

@@ -33,12 +33,12 @@ impl<'a> Spreads<'a> {
             let why = format!("only {} lights were measured", number(lights as f64));
             return Err(Answer::undecided(&why));
         }
-        let own = || path.iter().map(|entry| entry.record).filter(|r| r.lights == lights);
+        let own = || path.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
         let mut all: Vec<(&str, Spread)> =
             own().filter_map(|r| Some((r.strategy.as_str(), Spread::of(r)?))).collect();
         // The paper's own strategy comes before what stands in for it.
         all.sort_by_key(|(id, _)| stand_in(id).is_some());
-        let most = own().max_by_key(|record| record.frames);
+        let most = own().max_by_key(|record| record.times.frames);
         let basis = most.map_or_else(String::new, |record| {
             format!("at {} lights, {}", number(lights as f64), stand(record))
         });
