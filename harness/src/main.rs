@@ -6,15 +6,15 @@ use std::{path::Path, process::ExitCode};
 
 use harness::{
     advise::advise,
-    again::again,
-    cdi::cdi,
     cli::{self, Invocation, Listing},
     compare::compare,
+    deep_image_run::cdi,
     error::HarnessError,
     fit_ltc::fit_ltc,
     interrupted,
     messages::{print, say_error},
     registry::{STRATEGIES, StrategyEntry},
+    stored_report::report_stored,
     study::study,
     truth::truth,
 };
@@ -44,7 +44,7 @@ fn run() -> Result<(), HarnessError> {
         Invocation::List(Listing::Adapters) => adapters()?,
         Invocation::Compare(args) => compare(&args, command)?,
         Invocation::Study(args) => study(&args, &command)?,
-        Invocation::Report(args) => again(&args)?,
+        Invocation::Report(args) => report_stored(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
         Invocation::FitLtc(args) => fit_ltc(&args)?,
         Invocation::Truth(args) => truth(&args, command)?,

@@ -21,11 +21,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::{
-    cdi::measure,
+    bench::Bench,
     checks::check_options,
     choice::choices,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
-    compare::Bench,
+    compare::compare_on,
+    deep_image_run::measure,
     error::HarnessError,
     messages::say,
     out_folder::OutFolder,
@@ -157,7 +158,7 @@ fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError>
                 .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
         }
         let results = match asked {
-            Asked::Compare(args) => bench.compare(&args, job.command.clone())?.0,
+            Asked::Compare(args) => compare_on(bench, &args, job.command.clone())?.0,
             Asked::Truth(args) => render(bench, &args, job.command.clone())?,
             Asked::Cdi(args) => measure(bench, &args, job.command.clone())?,
         };

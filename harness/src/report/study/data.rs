@@ -3,7 +3,7 @@
 use super::super::format::number;
 use crate::results::{Record, Results};
 use crate::study::{Done, Job};
-use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
+use crate::{registry::STRATEGIES, report::colours::STRATEGY_COLOURS};
 
 /// A record with the job that it comes from.
 #[derive(Clone, Copy)]
