@@ -1,56 +1,47 @@
 //! `lightbench compare`: the main job.
 
-use std::{path::Path, sync::Arc};
+use std::path::Path;
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use scenes::Scene;
-use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
+use shading::{EDGE, HdrImage, LightBvh, Mode};
 
 use crate::{
-    checks::{check_area_options, check_modes, checked, has_mode, remove_stale, served},
+    bench::Bench,
+    checks::{check_area_options, check_options, checked, has_mode, remove_stale, served},
     choice::{Choice, choices},
-    cli::{CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
-    described::{describe, note_faults},
+    cli::{CompareArgs, MAX_CHECKS},
+    described::note_faults,
     drift::note_drift,
     error::HarnessError,
-    errors::ImagePair,
+    image_errors::ImagePair,
     machine::machine,
     measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
-    messages::{say, say_error},
-    out_folder::{OutFolder, leave_all},
+    messages::say,
+    out_folder::OutFolder,
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{BASELINE, Machine, Results, Truth, Untested},
+    results::{BASELINE, Results, Truth, TruthLevel, Untested},
+    schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
 };
 
-/// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
-pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
-/// The same along a path.
+/// Frames on the clock along a path: on a GPU, and on a software adapter.
 const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames before the clock, likewise.
 const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 
-/// A device with the scene that was drawn last.
-pub struct Bench {
-    gpu: Gpu,
-    machine: Machine,
-    stage: Option<(String, Stage)>,
-    triangles: Option<(String, Scene, WorldTriangles)>,
-}
-
 /// Runs a comparison, writes its report, and returns what to print. `command` is the command
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
-    // What is wrong with the words shows before a device is opened.
-    check_modes(args, &choices(args)?)?;
+    // Check the options before a device is opened.
+    check_options(args, &choices(args)?)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
-    let (results, pictures) = bench.compare(args, command)?;
+    let (results, pictures) = compare_on(&mut bench, args, command)?;
     write(&results, &pictures, &args.out)
 }
 
@@ -71,98 +62,40 @@ fn write(
     ))
 }
 
-impl Bench {
-    /// Opens a device.
-    pub fn open(adapter: Option<&str>) -> Result<Self, HarnessError> {
-        let gpu = Gpu::open(adapter)?;
-        end_on_device_error(&gpu);
-        let machine = machine(&gpu);
-        say(format!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver));
-        Ok(Self { gpu, machine, stage: None, triangles: None })
-    }
-
-    /// The machine that results come from.
-    pub fn machine(&self) -> &Machine {
-        &self.machine
-    }
-
-    /// The device.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// The stage that arguments ask for; the scene is opened once while it stays the same.
-    pub fn stage(&mut self, args: &StageArgs) -> Result<&mut Stage, HarnessError> {
-        let bounce = args.bounce.is_on();
-        let key = format!("{} {} {} {bounce}", args.scene, args.scene_scale, args.replicate);
-        let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
-            Some((key, mut stage)) => {
-                stage.set_up(&self.gpu, args)?;
-                self.stage.insert((key, stage))
-            }
-            None => {
-                let stage = Stage::new(&self.gpu, args)?;
-                describe(&stage);
-                self.stage.insert((key, stage))
-            }
-        };
-        Ok(stage)
-    }
-
-    /// A scene and its triangles on the GPU; opened once while it stays the same.
-    pub fn triangles(
-        &mut self,
-        scene: &str,
-        scale: f64,
-    ) -> Result<(&Scene, &WorldTriangles), HarnessError> {
-        let key = format!("{scene} {scale}");
-        let known = self.triangles.take().filter(|(known, ..)| *known == key);
-        let (_, scene, triangles) = match known {
-            Some(known) => self.triangles.insert(known),
-            None => {
-                let scene = scenes::open(scene)?.scaled(scale)?;
-                let triangles = WorldTriangles::new(&self.gpu, &scene)?;
-                self.triangles.insert((key, scene, triangles))
-            }
-        };
-        Ok((scene, triangles))
-    }
-
-    /// Runs a comparison; returns its results and the pictures that they name.
-    pub fn compare(
-        &mut self,
-        args: &CompareArgs,
-        command: Vec<String>,
-    ) -> Result<(Results, Pictures), HarnessError> {
-        let choices = choices(args)?;
-        check_modes(args, &choices)?;
-        let gpu = self.gpu.clone();
-        let choices = checked(choices, &gpu)?;
-        let machine = machine(&gpu);
-        let stage = self.stage(&args.stage)?;
-        check_area_options(args, stage)?;
-        stage.area_model = args.area_model.unwrap_or_default();
-        stage.compensation = args.compensate.map(|lights| lights as f32);
-        // What a strategy cannot serve shows before anything long begins.
-        let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
-        let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
-        let mut run = Run {
-            results: Results::new(machine, command, truth),
-            args,
-            plan: plan(&gpu, args),
-            gpu,
-            stage,
-            pictures: Vec::new(),
-            untested: None,
-        };
-        run.follow_path();
-        run.results.warnings.extend(left_out);
-        run.warn(&choices);
-        remove_stale(&args.out)?;
-        run.look()?;
-        run.measure_all(&choices)?;
-        Ok((run.results, run.pictures))
-    }
+/// Runs a comparison on an open device; returns its results and the pictures that they name.
+pub fn compare_on(
+    bench: &mut Bench,
+    args: &CompareArgs,
+    command: Vec<String>,
+) -> Result<(Results, Pictures), HarnessError> {
+    let choices = choices(args)?;
+    check_options(args, &choices)?;
+    let gpu = bench.gpu().clone();
+    let choices = checked(choices, &gpu)?;
+    let machine = machine(&gpu);
+    let stage = bench.stage(&args.stage)?;
+    check_area_options(args, stage)?;
+    stage.area_model = args.area_model.unwrap_or_default();
+    stage.compensation = args.compensate.map(|lights| lights as f32);
+    // Refuse strategies that cannot serve the scene before any long work starts.
+    let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
+    let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
+    let mut run = Run {
+        results: Results::new(machine, command, truth),
+        args,
+        plan: plan(&gpu, args),
+        gpu,
+        stage,
+        pictures: Vec::new(),
+        untested: None,
+    };
+    run.follow_path();
+    run.results.warnings.extend(left_out);
+    run.warn(&choices);
+    remove_stale(&args.out)?;
+    run.look()?;
+    run.measure_all(&choices)?;
+    Ok((run.results, run.pictures))
 }
 
 /// The frames asked for, or the defaults of the kind of device.
@@ -175,7 +108,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
         checks: args.checks.unwrap_or(MAX_CHECKS),
         seed: args.stage.seed,
-        cut: args.cut.into(),
+        cut: args.cut,
         operations: args.operations,
     }
 }
@@ -240,8 +173,8 @@ impl Run<'_> {
         }
         if self.stage.view.far_m.is_none() && choices.iter().any(Choice::tests_corners) {
             self.results.warnings.push(
-                "the view has no far plane: lights are tested against the tiles of T-I, and against the \
-                 last slices of DC-I and SC-I, only by HS, because these have no far corners"
+                "the view has no far plane: the tiles of T-I and the last slices of DC-I and SC-I have no \
+                 far corners, so only HS tests lights against them"
                     .to_owned(),
             );
         }
@@ -255,7 +188,7 @@ impl Run<'_> {
 
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
         let lights = self.stage.lights.lights().to_vec();
-        let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
+        let bvh = (self.args.truth == TruthLevel::Full).then(|| LightBvh::new(&lights));
         let modes = self.args.mode.modes();
         let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
@@ -263,7 +196,7 @@ impl Run<'_> {
             let mut served = choices.to_vec();
             served.retain(|choice| has_mode(choice, mode));
             for choice in choices.iter().filter(|choice| !has_mode(choice, mode)) {
-                let words = format!("{} has no mode {}", choice.family(), mode.name());
+                let words = format!("{} cannot run in mode {}", choice.family(), mode.name());
                 self.results.warnings.push(words);
                 bar.inc(per_method);
             }
@@ -357,13 +290,4 @@ fn progress_bar(total: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
-}
-
-/// An error that no call returned is the device's: one line, exit code 1, no panic.
-fn end_on_device_error(gpu: &Gpu) {
-    gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
-        say_error(format!("device: {error}"));
-        leave_all();
-        std::process::exit(1);
-    }));
 }

@@ -44,7 +44,7 @@ pub(crate) fn mebibytes(bytes: f64) -> String {
 }
 
 /// A factor, without its sign: `14.2`.
-pub(super) fn factor(value: f64) -> String {
+pub(crate) fn factor(value: f64) -> String {
     significant(value)
 }
 

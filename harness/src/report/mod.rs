@@ -3,6 +3,8 @@
 //! Both show the same columns (`metrics`), computed from the same comparisons: the
 //! records that differ in nothing but the strategy.
 
+pub(crate) mod colours;
+mod column;
 pub(crate) mod comparison;
 pub(crate) mod finding;
 pub(crate) mod fit;
@@ -10,14 +12,22 @@ pub(crate) mod format;
 pub(crate) mod frames;
 pub(crate) mod html;
 pub(crate) mod lead;
+mod looks;
 mod loss;
 mod markdown;
 pub(crate) mod markup;
-mod metrics;
+pub(crate) mod metrics;
 pub(crate) mod page;
+pub(crate) mod panels;
+pub(crate) mod pass_bars;
+pub(crate) mod picture_pair;
 pub(crate) mod rank;
 pub(crate) mod raster;
-pub(crate) mod table;
+mod samples;
+pub(crate) mod section;
+mod table;
+pub(crate) mod terminal;
+pub(crate) mod terms;
 
 pub use finding::{finding, lights, notices};
 pub use format::significant;
@@ -26,4 +36,5 @@ pub use lead::needs_built_hierarchy;
 pub use loss::error_words;
 pub use markdown::render_markdown;
 pub use rank::{indistinguishable, is_surely_faster, listed};
-pub use table::{TABLE_WIDTH, render_table};
+pub use table::TABLE_WIDTH;
+pub use terminal::render_table;

@@ -4,7 +4,7 @@ use super::job::Job;
 use super::manifest::Done;
 use crate::{
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     results::{Results, TruthImage},
     stored::Store,
 };

@@ -4,7 +4,7 @@ use super::job::Job;
 use super::manifest::Done;
 use crate::report::format::number;
 use crate::results::{Record, Results};
-use crate::{registry::STRATEGIES, report::page::STRATEGY_COLOURS};
+use crate::{registry::STRATEGIES, report::colours::STRATEGY_COLOURS};
 
 /// A record with the job that it comes from.
 #[derive(Clone, Copy)]

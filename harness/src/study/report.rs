@@ -11,7 +11,7 @@ use super::list;
 use super::manifest::Done;
 use super::page::frame;
 use crate::error::HarnessError;
-use crate::report::table::push_wrapped;
+use crate::report::terminal::push_wrapped;
 use crate::results::write_atomically;
 
 /// Writes the report of a study into a folder: `index.html`, `charts/*.svg` and `study-data.json`. Returns

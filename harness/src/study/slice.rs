@@ -7,7 +7,7 @@ use super::{
     page::{figure::Charts, part::Part, shots::Shots},
     scene::StudyScene,
 };
-use crate::{cli::StudyArgs, compare::Bench, error::HarnessError, report::markup::Html};
+use crate::{bench::Bench, cli::StudyArgs, error::HarnessError, report::markup::Html};
 
 /// A study: its jobs, and how its page shows their results.
 pub(crate) trait Study: Sync {

@@ -5,7 +5,7 @@ use crate::study::against_truth::MODELS;
 use crate::study::manifest::Done;
 use crate::{
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     results::{Results, Vpls},
     stored::Store,
 };

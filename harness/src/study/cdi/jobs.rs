@@ -5,8 +5,8 @@ use crate::study::against_truth::{MODELS, TRUTH};
 use crate::study::job::{Job, Settings};
 use crate::study::scene::StudyScene;
 use crate::{
+    bench::Bench,
     cli::{Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
     results::{DeepImages, Vpls},
 };

@@ -21,7 +21,7 @@ use super::{
     scene::StudyScene,
     slice::Study,
 };
-use crate::{cli::StudyArgs, compare::Bench, error::HarnessError};
+use crate::{bench::Bench, cli::StudyArgs, error::HarnessError};
 
 /// The study of compound deep images.
 pub(crate) struct Cdi;

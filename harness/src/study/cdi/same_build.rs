@@ -1,6 +1,6 @@
 //! Whether the build of the deep images shows in the image.
 
-use crate::errors::ERROR_METRICS;
+use crate::image_errors::ERROR_METRICS;
 use crate::report::format::{ABSENT, difference};
 use crate::report::markup::{Html, html};
 use crate::study::against_truth::MODELS;

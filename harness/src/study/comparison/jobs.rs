@@ -11,8 +11,8 @@ use super::frame_jobs;
 use crate::study::job::{Job, Settings};
 use crate::study::scene::StudyScene;
 use crate::{
+    bench::Bench,
     cli::{Invocation, Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
 };
 

@@ -17,7 +17,7 @@ use super::{
     scene::StudyScene,
     slice::Study,
 };
-use crate::{cli::StudyArgs, compare::Bench, error::HarnessError, report::markup::Html};
+use crate::{bench::Bench, cli::StudyArgs, error::HarnessError, report::markup::Html};
 
 /// The greatest relMSE at which a lossy knob is called cheap.
 const CHEAP_REL_MSE: f64 = 1e-2;

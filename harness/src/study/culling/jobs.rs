@@ -10,8 +10,8 @@
 //! few of their processors: there no culling takes most of a second per frame. Laps, the same poses
 //! again, show which methods tie.
 
+use crate::bench::Bench;
 use crate::cli::{Size, StudyArgs};
-use crate::compare::Bench;
 use crate::error::HarnessError;
 use crate::study::job::{Job, Settings};
 use crate::study::scene::StudyScene;

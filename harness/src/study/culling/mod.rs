@@ -12,7 +12,7 @@ use super::{
     scene::StudyScene,
     slice::Study,
 };
-use crate::{cli::StudyArgs, compare::Bench, error::HarnessError};
+use crate::{bench::Bench, cli::StudyArgs, error::HarnessError};
 
 /// The culling survey.
 pub(crate) struct Culling;

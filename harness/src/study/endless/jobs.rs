@@ -7,8 +7,8 @@ use scenes::Aabb;
 use crate::study::job::{Job, Settings};
 use crate::study::scene::StudyScene;
 use crate::{
+    bench::Bench,
     cli::{Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
 };
 

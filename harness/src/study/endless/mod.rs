@@ -15,7 +15,7 @@ use super::{
     scene::StudyScene,
     slice::Study,
 };
-use crate::{cli::StudyArgs, compare::Bench, error::HarnessError};
+use crate::{bench::Bench, cli::StudyArgs, error::HarnessError};
 
 /// The study of many polygon lights.
 pub(crate) struct Endless;

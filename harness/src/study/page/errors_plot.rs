@@ -1,7 +1,7 @@
 //! Charts of errors against times, one panel a metric, with the frontier of what nothing beats in both.
 
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
-use crate::errors::{ERROR_METRICS, ErrorMetric};
+use crate::image_errors::{ERROR_METRICS, ErrorMetric};
 use crate::report::format::{difference, significant};
 use crate::report::markup::{Html, html};
 use crate::results::{Errors, Record};

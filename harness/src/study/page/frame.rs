@@ -8,9 +8,10 @@ use super::shots::Shots;
 use crate::chart::CHART_CSS;
 use crate::report::finding::clock_notice;
 use crate::report::format::short_adapter;
-use crate::report::html::{PAGE, STYLE, fill, in_script};
-use crate::report::markup::{Html, html};
+use crate::report::html::{PAGE, SCRIPT, STYLE, fill, in_script};
+use crate::report::markup::{Html, html, with_names_whole};
 use crate::report::rank::listed;
+use crate::report::terms::terms;
 use crate::report::{page, raster};
 use crate::results::{DeviceType, Results, TruthLevel};
 use crate::study::claims;
@@ -19,15 +20,6 @@ use crate::study::slice::Study;
 
 /// The page's own rules, beside those of a comparison's page.
 pub(crate) const STUDY_STYLE: &str = include_str!("study.css");
-
-/// The page's programs: those of a comparison's page that it shares, and its own.
-pub(crate) const SCRIPTS: [&str; 5] = [
-    include_str!("../../report/report.js"),
-    include_str!("../../report/bars.js"),
-    include_str!("../../report/lists.js"),
-    include_str!("../../report/pictures.js"),
-    include_str!("study.js"),
-];
 
 /// More data than this lie beside the page and not in it, bytes.
 const MOST_DATA: usize = 8_000_000;
@@ -79,6 +71,7 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     }
     body += sections.into_iter().collect();
     body += study.overall(done);
+    body += shots.templates();
     let notices = notices(study, done, shots.left_out);
     words.extend(notices.iter().cloned());
     let data = serde_json::to_string(&json!({
@@ -94,7 +87,7 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
         &[
             ("title", title(done).into()),
             ("style", Html::trusted(style)),
-            ("headline", page::with_names_whole(&headline)),
+            ("headline", with_names_whole(&headline)),
             ("findings", page::paragraphs("finding", &others)),
             ("notices", page::notices(&notices)),
             ("comparisons", body),
@@ -102,10 +95,11 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
             ("file", DATA.into()),
             ("link", DATA.into()),
             ("columns", page::columns()),
+            ("terms", terms()),
             ("provenance", provenance(done)),
             ("data", in_script(embedded)),
             ("view", in_script(&view)),
-            ("script", Html::trusted(SCRIPTS.join("\n"))),
+            ("script", Html::trusted(SCRIPT)),
         ],
     );
     Page { html, charts, data, words }

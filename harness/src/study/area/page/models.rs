@@ -1,6 +1,6 @@
 //! Models of area lights against the truth: errors, times, and what each gets wrong.
 
-use crate::errors::ERROR_METRICS;
+use crate::image_errors::ERROR_METRICS;
 use crate::report::format::{ABSENT, difference, percent, significant};
 use crate::report::markup::Html;
 use crate::report::rank::listed;

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use image::{ImageFormat, RgbImage, imageops};
 
-use crate::errors::{ImagePair, TILE_PX, worst_tile_at};
+use crate::image_errors::{ImagePair, TILE_PX, worst_tile_at};
 use crate::report::format::significant;
 use crate::report::markup::{Html, html};
 use crate::study::against_truth::{MODELS, truth_of};

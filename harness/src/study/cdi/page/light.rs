@@ -1,7 +1,7 @@
 //! Indirect light by virtual point lights against the path-traced image: errors by how ranges are found,
 //! and pictures. [`verdicts`](crate::study::cdi::verdicts) judges the errors.
 
-use crate::errors::ERROR_METRICS;
+use crate::image_errors::ERROR_METRICS;
 use crate::report::format::{ABSENT, difference, number, percent, significant};
 use crate::report::markup::{Html, html};
 use crate::results::{Record, TruthImage, Vpls};

@@ -3,7 +3,7 @@
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::report::format::{ABSENT, number, significant};
 use crate::report::markup::{Html, html};
-use crate::report::page;
+use crate::report::metrics::interval;
 use crate::report::rank::{first, listed, ranks};
 use crate::results::Record;
 use crate::study::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
@@ -51,7 +51,7 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] 
         rows.push(vec![
             name(family),
             size(best).into(),
-            Html::from(significant(best.assign_and_shade_ms())) + page::interval(best),
+            Html::from(significant(best.assign_and_shade_ms())) + interval(best),
             if same.is_empty() { ABSENT.into() } else { listed(&same).into() },
             number(records.len() as f64).into(),
             stand(best).into(),
