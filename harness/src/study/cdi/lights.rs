@@ -11,8 +11,8 @@ pub(crate) const RULES: [(&str, &str, &str); 6] = [
     ("average", "strategy-0", "rays, average"),
     ("maximum", "strategy-1", "rays, maximum"),
     ("random", "strategy-3", "random"),
-    ("random-discard", "strategy-4", "random, lights that meet nothing left out"),
-    ("constant-discard", "strategy-6", "constant, lights that meet nothing left out"),
+    ("random-discard", "strategy-4", "random, without lights whose rays hit nothing"),
+    ("constant-discard", "strategy-6", "constant, without lights whose rays hit nothing"),
     ("infinite", "strategy-none", "infinite"),
 ];
 
