@@ -5,7 +5,8 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule, StrategyWesl,
+    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule,
+    StrategyWesl,
     frame::{entry, storage_entry},
     kernel::MAX_WORKGROUPS,
 };
