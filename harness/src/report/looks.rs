@@ -11,6 +11,9 @@ use super::picture_pair::{PicturePair, picture, verdict};
 use crate::chart::{Histogram, histograms_svg};
 use crate::results::Record;
 
+/// More histograms than this are folded.
+const MOST_OPEN: usize = 6;
+
 /// The viewer of a comparison's pictures, of those that were kept.
 pub(super) fn pictures(
     comparison: &Comparison<'_>,
@@ -110,11 +113,13 @@ pub(super) fn list_lengths(comparison: &Comparison<'_>, colours: &Colours<'_>) -
     }
     // Charts escape their text themselves.
     let drawing = Html::trusted(histograms_svg("Lists by length", &all));
+    let open = if all.len() > MOST_OPEN { "" } else { " open" };
     html!(
-        "<figure class=\"lengths\"><figcaption><h3>Lists by length</h3></figcaption>\n\
+        "<details class=\"lengths\"{}><summary><h3>Lists by length</h3></summary>\n\
          <p class=\"note\">Groups that at least one pixel reads, counted by the number of lights in their list.\
          </p>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Lists by length\">{}</div>\
-         </figure>\n",
+         </details>\n",
+        open,
         drawing
     )
 }

@@ -169,7 +169,11 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     if let Some(faster) = comparison.speedup(leader) {
         text += &format!(". No culling takes {} times as long", significant(faster));
     }
-    Some(text + ".")
+    text += ".";
+    if let Some(hierarchy) = lead.hierarchy() {
+        text += &format!(" {hierarchy}");
+    }
+    Some(text)
 }
 
 fn ms(record: &Record) -> String {
