@@ -1,31 +1,19 @@
-//! The clusters' modules, linked without a GPU: they validate, and their uniform has the same size and the
-//! same offsets in Rust and in WESL.
+//! The shaders of clusters, linked without a GPU: they validate, and the uniforms that they share with Rust
+//! have the same size and offsets. The froxels' uniform is checked in the shaders of HG too.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-use std::mem::offset_of;
-
-use assign::{Bounds, CullSettings, Culler, Facing, GroupShape, LightKinds, LightSource};
+use assign::{
+    Bounds, CullSettings, Culler, FIRST_STRATEGY_BINDING, Facing, GroupShape, LightKinds,
+    LightSource, conformance::LinkedModule, struct_layout,
+};
 use assign_clustered::{
-    BINS_WESL, ClustersUniform, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL, Normals, Occupancy,
-    gather_source,
+    BINS_WESL, EXPLICIT_WESL, FroxelsUniform, GLOSSY_BINS_WESL, HybridShader, IMPLICIT_WESL,
+    NormalBinsUniform, Normals, Occupancy, gather_source,
 };
 
-fn validated(what: &str, source: &str) -> naga::Module {
-    let module = naga::front::wgsl::parse_str(source)
-        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
-    // What WebGPU has without any optional feature.
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
-    module
-}
-
 /// The culling kernel around a module of clusters, validated.
-fn kernel(bounds: Bounds, sparse: bool, source: LightSource, kinds: LightKinds) -> naga::Module {
+fn kernel(bounds: Bounds, sparse: bool, source: LightSource, kinds: LightKinds) -> LinkedModule {
     let (shape, module) = match bounds {
         Bounds::Implicit => (GroupShape::Frustum, IMPLICIT_WESL),
         Bounds::Explicit => (GroupShape::Box, EXPLICIT_WESL),
@@ -34,7 +22,7 @@ fn kernel(bounds: Bounds, sparse: bool, source: LightSource, kinds: LightKinds) 
     let settings = CullSettings { source, ..CullSettings::default() };
     let source = Culler::kernel_source(shape, settings, sparse, module, kinds)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
-    validated(&what, &source)
+    LinkedModule::new(&what, &source)
 }
 
 #[test]
@@ -50,7 +38,7 @@ fn kernels_validate() {
 }
 
 #[test]
-fn kernels_that_know_normals_validate() {
+fn kernels_with_normals_or_cuts_validate() {
     for source in [LightSource::Linear, LightSource::Hierarchy] {
         for kinds in LightKinds::ALL {
             let settings = CullSettings { source, ..CullSettings::default() };
@@ -61,56 +49,70 @@ fn kernels_that_know_normals_validate() {
                 (Facing::WhereDiffuse, EXPLICIT_WESL),
             ] {
                 let source = Culler::facing_kernel_source(settings, facing, module, kinds);
-                validated(&format!("{facing:?}, {settings:?}, {kinds:?}"), &source.unwrap());
+                LinkedModule::new(
+                    &format!("{facing:?}, {settings:?}, {kinds:?}"),
+                    &source.unwrap(),
+                );
             }
         }
     }
 }
 
 #[test]
-fn gathering_validates() {
+fn the_pass_bounds_validates() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
         for occupancy in [Occupancy::Dense, Occupancy::Sparse] {
             let what = format!("{bounds:?}, {occupancy:?}");
-            validated(&what, &gather_source(bounds, occupancy, Normals::None, false).unwrap());
+            LinkedModule::new(
+                &what,
+                &gather_source(bounds, occupancy, Normals::None, false).unwrap(),
+            );
         }
     }
     for glossy in [false, true] {
         let what = format!("with normals, glossy {glossy}");
         let (bounds, occupancy, normals) = (Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6));
-        validated(&what, &gather_source(bounds, occupancy, normals, glossy).unwrap());
+        LinkedModule::new(&what, &gather_source(bounds, occupancy, normals, glossy).unwrap());
     }
 }
 
-/// Name and offset of every field of a Rust struct, in its order.
-macro_rules! fields {
-    ($name:ty: $($field:ident),+) => {
-        vec![$((stringify!($field), offset_of!($name, $field))),+]
-    };
+/// Every shader that reads the froxels: kernels and passes of clusters, and those of HG.
+fn froxel_shaders() -> Vec<(String, LinkedModule)> {
+    let mut shaders = Vec::new();
+    for kinds in [LightKinds::ALL[0], LightKinds::ALL[3]] {
+        let module = kernel(Bounds::Implicit, false, LightSource::Linear, kinds);
+        shaders.push((format!("cull, {kinds:?}"), module));
+    }
+    let (explicit, sparse) = (Bounds::Explicit, Occupancy::Sparse);
+    for normals in [Normals::None, Normals::Bins(6)] {
+        let what = format!("bounds, {normals:?}");
+        let source = gather_source(explicit, sparse, normals, false).unwrap();
+        let module = LinkedModule::new(&what, &source);
+        shaders.push((what, module));
+    }
+    // `sort` reads only lists.
+    for shader in [HybridShader::Occupancy, HybridShader::Scatter, HybridShader::Reserve] {
+        let what = format!("HG, {shader:?}");
+        let module = LinkedModule::new(&what, &shader.source(LightKinds::ALL[3]).unwrap());
+        shaders.push((what, module));
+    }
+    shaders
 }
 
 #[test]
-fn clusters() {
-    let module = kernel(Bounds::Implicit, false, LightSource::Linear, LightKinds::default());
-    let variable = module
-        .global_variables
-        .iter()
-        .map(|(_, variable)| variable)
-        .find(|v| v.space == naga::AddressSpace::Uniform && v.binding.is_some_and(is_first))
-        .expect("the uniform of the clusters");
-    let naga::TypeInner::Struct { members, span } = &module.types[variable.ty].inner else {
-        panic!("not a struct");
-    };
-    let wesl: Vec<_> =
-        members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
-    let rust = fields!(ClustersUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential, surfaces_only, bin_side,
-        specular_limit);
-    assert_eq!(wesl, rust, "fields of WESL, then of Rust");
-    assert_eq!(*span as usize, size_of::<ClustersUniform>());
+fn froxels_have_one_layout_in_all_shaders_and_in_rust() {
+    let rust = struct_layout!(FroxelsUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
+        near_m, far_m, exponential, surfaces_only);
+    for (what, module) in froxel_shaders() {
+        assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING), rust, "{what}: WESL, then Rust");
+    }
 }
 
-/// The first binding that is a strategy's own.
-fn is_first(at: naga::ResourceBinding) -> bool {
-    at.binding == assign::FIRST_STRATEGY_BINDING
+#[test]
+fn normal_bins_have_one_layout_in_wesl_and_rust() {
+    let rust = struct_layout!(NormalBinsUniform: side, specular_limit);
+    let (bounds, occupancy, normals) = (Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6));
+    let source = gather_source(bounds, occupancy, normals, true).unwrap();
+    let module = LinkedModule::new("bounds", &source);
+    assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING + 2), rust, "WESL, then Rust");
 }

@@ -1,4 +1,4 @@
-//! T-I and T-E: tiles on the axis of bounds.
+//! T-I and T-E: tiles with implicit and with explicit bounds.
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
@@ -9,10 +9,11 @@ use bytemuck::bytes_of;
 
 use crate::{
     tile_bounds::TileBounds,
+    tile_wesl::{EXPLICIT_WESL, IMPLICIT_WESL},
     tiles::{TileSize, TilesUniform},
 };
 
-/// Tiles, each with a list of lights.
+/// Tiles that each have a list of lights.
 #[derive(Debug)]
 pub struct Tiled {
     size: TileSize,
@@ -22,16 +23,8 @@ pub struct Tiled {
     culler: Culler,
 }
 
-/// The WESL module of tiles bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: &str =
-    concat!(include_str!("shaders/tiles.wesl"), include_str!("shaders/implicit.wesl"));
-
-/// The WESL module of tiles bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: &str =
-    concat!(include_str!("shaders/tiles.wesl"), include_str!("shaders/explicit.wesl"));
-
 impl Tiled {
-    /// Makes the strategy; `size` is checked.
+    /// Makes the strategy. Checks `size`.
     pub fn new(
         gpu: &Gpu,
         size: TileSize,
@@ -62,7 +55,7 @@ impl Tiled {
                     settings,
                     sparse: false,
                     facing: Facing::Unknown,
-                    // SAFETY: it has no loop.
+                    // SAFETY: the module of tiles has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(module) },
                     bindings: &bindings,
@@ -92,7 +85,7 @@ impl Assignment for Tiled {
                 return Err(AssignError::Unsupported {
                     strategy: id,
                     asked: "look-ups at any depth".into(),
-                    reason: "its lists are made for the opaque surfaces in the depth buffer".into(),
+                    reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
                 });
             }
             let missing = || AssignError::Missing { strategy: id, missing: "depth" };

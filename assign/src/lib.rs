@@ -1,26 +1,26 @@
 //! Light assignment: which lights may reach which view samples.
 //!
-//! A strategy is three things: a set of *groups* of view samples, a function from a view sample
-//! to its group, and for each group the list of lights that may reach it. Each strategy crate
-//! implements [`Assignment`]; this crate holds what they share.
+//! A strategy is three things: a set of *groups* of view samples, a function from a view sample to
+//! its group, and, for each group, the list of lights that may reach it. Each strategy crate
+//! implements [`Assignment`]. This crate holds what they share.
 //!
 //! # A frame
 //!
-//! 1. The renderer fills a [`Frame`]: the [`View`], the [`LightBuffer`] and what the strategy
-//!    [`needs`](Assignment::needs).
-//! 2. [`Assignment::prepare`] sizes buffers (outside the clock), [`Assignment::record`] records
-//!    named passes (inside it).
-//! 3. Shading calls `list_of(group_of(sample))`, spliced in through [`Lookup`], and sums the
-//!    lights of the list in ascending index: the same order whatever the strategy, so images
-//!    compare bit for bit.
+//! 1. The renderer fills a [`Frame`]: the [`View`], the [`LightBuffer`] and whatever the strategy
+//!    [needs](Assignment::needs).
+//! 2. [`Assignment::prepare`] sizes buffers and is not timed. [`Assignment::record`] records named
+//!    passes, which are timed.
+//! 3. Shading calls `list_of(group_of(sample))`, which [`Lookup`] supplies, and sums the list's
+//!    lights in ascending index. The order is the same for every strategy, so images can be
+//!    compared bit for bit.
 //!
 //! # Promises
 //!
-//! Lists hold every light whose support holds one of the group's samples, in ascending index,
-//! without repeats. A list that does not fit becomes the list of all lights, is counted, and the
-//! pool grows before a later frame. No input makes a strategy drop a light silently;
-//! the module `conformance` (feature `conformance`) checks that of any strategy, and rejects
-//! faulty ones.
+//! A group's list holds every light whose support contains one of the group's samples, in ascending
+//! index, without repeats. If a list does not fit into the entry pool, the group reads the list of
+//! all lights, the overflow is counted, and the pool grows before a later frame. No input makes a
+//! strategy drop a light silently. The module `conformance` (feature `conformance`) checks this for
+//! any strategy and rejects faulty ones.
 
 mod assignment;
 mod compiled;
@@ -33,9 +33,12 @@ mod error;
 mod everything;
 mod frame;
 mod gpu;
+mod groups;
 pub mod intersect;
+pub mod kernel;
 mod light;
 mod light_buffer;
+mod light_fault;
 mod light_nodes;
 mod light_order;
 mod light_record;
@@ -48,21 +51,23 @@ mod readback;
 mod reuse;
 mod shader;
 mod spot_ramp;
+mod strategy_module;
 mod sun;
 mod view;
+mod window;
 
-pub use assignment::{Assignment, Lookup, StrategyModule};
-pub use cull::{Culler, CullerDescriptor, Facing, GroupShape, Groups};
+pub use assignment::{Assignment, Lookup};
+pub use cull::{Culler, CullerDescriptor};
 pub use cull_settings::{AreaBounds, Bounds, CullSettings, FrustumTests, LightSource};
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
 pub use gpu::Gpu;
-pub use light::{
-    Light, LightFault, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE,
-};
+pub use groups::{Facing, GroupShape, Groups};
+pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};
 pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
+pub use light_fault::LightFault;
 pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
 pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere};
@@ -78,5 +83,7 @@ pub use readback::Readback;
 pub use reuse::Reuse;
 pub use shader::Shader;
 pub use spot_ramp::SpotRamp;
+pub use strategy_module::{StrategyModule, StrategyWesl};
 pub use sun::{MAX_IRRADIANCE, MAX_SUNS, Sun, Suns};
 pub use view::{DepthMapping, Projection, View, ViewError, ViewUniform, Viewport};
+pub use window::{MIN_DISTANCE_2, fall_off, range_window};

@@ -4,23 +4,27 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::{AssignError, Gpu, LightKinds, compiled::ModuleKey};
+use crate::{AssignError, Gpu, LightKinds, StrategyWesl, compiled::ModuleKey};
 
-/// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
+/// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
+/// to WGSL.
 ///
-/// It starts with the contract's own modules: `package::view`, `package::sample`,
-/// `package::lights`, `package::volume`, `package::lists` and, for kernels that make lists,
+/// It starts with the contract's modules: `package::view`, `package::sample`, `package::lights`,
+/// `package::volume`, `package::window`, `package::lists` and, for kernels that make lists,
 /// `package::reserve`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug)]
 pub struct Shader<'a> {
     modules: Vec<(String, Cow<'a, str>)>,
     flags: Vec<(String, bool)>,
 }
 
 impl<'a> Shader<'a> {
-    /// The contract's modules; lists are read from bind group `lists_group`. The flag `lanes_reserve`
-    /// is off: `package::reserve` may reserve one list a workgroup at once, and with the flag on one a
-    /// lane of workgroups of 256.
+    /// The contract's modules, which read lists from bind group `lists_group`. These flags start
+    /// off:
+    ///
+    /// - `lanes_reserve`: with it, every lane of workgroups of 256 may reserve a list at once
+    ///   (`package::reserve`); without it, one lane per workgroup.
+    /// - `hard_cut`: with it, lights end at their range without a window (`package::window`).
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         Self { modules: Vec::new(), flags: Vec::new() }
@@ -29,13 +33,15 @@ impl<'a> Shader<'a> {
             .module("package::sample", include_str!("shaders/sample.wesl"))
             .module("package::lights", include_str!("shaders/lights.wesl"))
             .module("package::volume", include_str!("shaders/volume.wesl"))
+            .module("package::window", include_str!("shaders/window.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
+            .flag("hard_cut", false)
             .light_kinds(LightKinds::default())
     }
 
-    /// Compiles what lights of these kinds take.
+    /// Compiles the code for lights of these kinds.
     pub fn light_kinds(self, kinds: LightKinds) -> Self {
         self.flag("spots", kinds.spots).flag("areas", kinds.areas)
     }
@@ -47,14 +53,23 @@ impl<'a> Shader<'a> {
         self
     }
 
-    /// Sets a flag that `@if` reads. A flag that a module reads and nothing sets is an error.
+    /// Mounts a strategy: its modules, the main one as `package::strategy`, and its flags.
+    pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
+        let StrategyWesl { main, imports, flags } = wesl.into();
+        let shader = self.module("package::strategy", main);
+        let shader =
+            imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source));
+        flags.iter().fold(shader, |shader, (name, value)| shader.flag(name, *value))
+    }
+
+    /// Sets a flag that `@if` reads. Linking fails if a module reads a flag that is not set.
     pub fn flag(mut self, name: &str, value: bool) -> Self {
         self.flags.retain(|(known, _)| known != name);
         self.flags.push((name.to_owned(), value));
         self
     }
 
-    /// Links `root` and what it imports; keeps all its entry points.
+    /// Links `root` and everything that it imports. Keeps all its entry points.
     pub fn link(&self, root: &str) -> Result<String, AssignError> {
         let fail = |reason: String| AssignError::Shader { module: root.to_owned(), reason };
         let mut resolver = VirtualResolver::new();
@@ -75,20 +90,20 @@ impl<'a> Shader<'a> {
         compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
-    /// Links `root` and makes a shader module of it, once per device. Every index is checked on the GPU,
-    /// and on Vulkan, Metal and DX12 every loop is counted, so that none is endless.
+    /// Links `root` and makes a shader module from it, once per device. The GPU checks every index.
+    /// On Vulkan, Metal and DX12 it also counts loop rounds, so that no loop is endless.
     pub fn create(&self, gpu: &Gpu, root: &str) -> Result<wgpu::ShaderModule, AssignError> {
-        self.module_of(gpu, root, true, |descriptor| gpu.device.create_shader_module(descriptor))
+        self.make_module(gpu, root, true, |descriptor| gpu.device.create_shader_module(descriptor))
     }
 
-    /// As [`create`](Self::create), but loops are not counted. Counters keep a loop from being
-    /// unrolled: on an H200 they made the passes `bounds` and `shade` of SC-E/48x48x40 27 % and 9 %
-    /// slower, and `cull` of SC-E/48x48x40/bvh 19 %.
+    /// As [`create`](Self::create), but without loop counters. Counters prevent unrolling: on an
+    /// H200 they made the passes `bounds` and `shade` of SC-E/48x48x40 27 % and 9 % slower, and
+    /// `cull` of SC-E/48x48x40/bvh 19 %.
     ///
     /// # Safety
     ///
-    /// Every loop of `root`, and of whatever it imports, must end by itself, whatever its buffers
-    /// hold: a driver may answer an endless loop with anything.
+    /// Every loop of `root` and of its imports must end by itself, whatever the buffers hold. An
+    /// endless loop is undefined behaviour in the driver.
     #[allow(unsafe_code, reason = "the one way to a module without loop counters")]
     pub unsafe fn create_uncounted(
         &self,
@@ -99,20 +114,26 @@ impl<'a> Shader<'a> {
             force_loop_bounding: false,
             ..wgpu::ShaderRuntimeChecks::checked()
         };
-        self.module_of(gpu, root, false, |descriptor| {
-            // SAFETY: loop counters alone are left out, and the caller vouches for the loops.
+        self.make_module(gpu, root, false, |descriptor| {
+            // SAFETY: only loop counters are omitted, and the caller guarantees that the loops end.
             unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
         })
     }
 
-    fn module_of(
+    fn make_module(
         &self,
         gpu: &Gpu,
         root: &str,
         counted: bool,
         make: impl FnOnce(wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule,
     ) -> Result<wgpu::ShaderModule, AssignError> {
-        let key = ModuleKey { shader: self.to_static(), root: root.to_owned(), counted };
+        let modules = self.modules.iter();
+        let key = ModuleKey {
+            modules: modules.map(|(path, source)| (path.clone(), source.to_string())).collect(),
+            flags: self.flags.clone(),
+            root: root.to_owned(),
+            counted,
+        };
         gpu.compiled.module(key, || {
             let source = self.link(root)?;
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -128,12 +149,54 @@ impl<'a> Shader<'a> {
             }
         })
     }
+}
 
-    /// A copy that owns its sources.
-    fn to_static(&self) -> Shader<'static> {
-        let owned = |(path, source): &(String, Cow<'a, str>)| {
-            (path.clone(), Cow::Owned(source.clone().into_owned()))
+#[cfg(test)]
+mod tests {
+    use crate::{Gpu, Shader, storage_entry, uniform_entry};
+
+    fn shader(constant: u32) -> Shader<'static> {
+        let source = format!(
+            "const N: u32 = {constant}u;
+             @group(0) @binding(0) var<storage, read_write> out: array<u32>;
+             @compute @workgroup_size(64) fn one() {{ out[0] = N; }}
+             @compute @workgroup_size(64) fn two() {{ out[1] = N; }}"
+        );
+        Shader::new(1).module("package::root", source)
+    }
+
+    #[test]
+    fn equal_inputs_are_compiled_once_and_different_ones_are_not_shared() {
+        let gpu = Gpu::noop().expect("a noop device");
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let layout = gpu.bind_group_layout("out", &[storage_entry(0, stages, false)]);
+        assert_eq!(layout, gpu.bind_group_layout("same", &[storage_entry(0, stages, false)]));
+        let wider = [storage_entry(0, stages, false), uniform_entry(1, stages)];
+        let wider = gpu.bind_group_layout("wider", &wider);
+        assert_ne!(layout, wider);
+
+        let make =
+            |gpu: &Gpu, constant| shader(constant).create(gpu, "package::root").expect("links");
+        let module = make(&gpu, 1);
+        assert_eq!(module, make(&gpu, 1));
+        assert_ne!(module, make(&gpu, 2));
+        assert_ne!(
+            module,
+            shader(1).flag("other", true).create(&gpu, "package::root").expect("links")
+        );
+        #[allow(unsafe_code, reason = "it has no loop")]
+        // SAFETY: it has no loop.
+        let uncounted = unsafe { shader(1).create_uncounted(&gpu, "package::root") };
+        assert_ne!(module, uncounted.expect("links"));
+
+        let pipeline = |module: &_, entry_point, layout: &_, zero| {
+            gpu.compute_pipeline(module, entry_point, &[Some(layout)], zero)
         };
-        Shader { modules: self.modules.iter().map(owned).collect(), flags: self.flags.clone() }
+        let one = pipeline(&module, "one", &layout, true);
+        assert_eq!(one, pipeline(&module, "one", &layout, true));
+        assert_ne!(one, pipeline(&module, "two", &layout, true));
+        assert_ne!(one, pipeline(&module, "one", &wider, true));
+        assert_ne!(one, pipeline(&module, "one", &layout, false));
+        assert_ne!(one, pipeline(&make(&gpu, 2), "one", &layout, true));
     }
 }

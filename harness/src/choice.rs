@@ -9,7 +9,7 @@ use serde_json::Value;
 use shading::RASTER_SPHERE_TOLERANCE;
 
 use crate::{
-    cli::{CliError, CompareArgs, SourceChoice},
+    cli::{CliError, CompareArgs},
     registry::{Axis, Method, STRATEGIES, Spec, StrategyEntry},
 };
 
@@ -50,15 +50,9 @@ pub fn choices(args: &CompareArgs) -> Result<Vec<Choice>, CliError> {
         if let Some(tests) = args.test.filter(|_| !choice.says.0) {
             choice.spec.settings.tests = tests;
         }
-        let sources: &[LightSource] = match args.source {
-            _ if choice.says.1 || !choice.entry.axes.contains(&Axis::Source) => {
-                &[choice.spec.settings.source]
-            }
-            SourceChoice::Linear => &[LightSource::Linear],
-            SourceChoice::Bvh => &[LightSource::Hierarchy],
-            SourceChoice::Both => &[LightSource::Linear, LightSource::Hierarchy],
-        };
-        for source in sources {
+        let is_fixed = choice.says.1 || !choice.entry.axes.contains(&Axis::Source);
+        let fixed = [choice.spec.settings.source];
+        for source in if is_fixed { &fixed } else { args.sources() } {
             choice.spec.settings.source = *source;
             choice.check_bounds()?;
             choices.push(choice.clone());

@@ -42,5 +42,6 @@ pub mod stored;
 pub mod stored_report;
 pub mod study;
 pub mod truth;
+mod truth_level;
 pub mod visible;
 pub mod vpls;

@@ -5,7 +5,7 @@ use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{CompareArgs, LightBox},
+    cli::{CompareArgs, name_of},
     clock::clock_of,
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
@@ -118,8 +118,8 @@ pub fn record(
             height: stage.view.viewport.height,
             along_path: plan.laps > 0,
             poses: (plan.laps > 0).then_some(plan.timed),
-            radii: Some(scenes::Radii::from(args.stage.radii).name().to_owned()),
-            light_places: Some(places(args.stage.light_box).to_owned()),
+            radii: Some(args.stage.radii.name().to_owned()),
+            light_places: Some(name_of(&args.stage.light_box)),
             threshold: args.stage.threshold,
             cut: Some(plan.cut.name().to_owned()),
             vpls: stage.vpls.clone(),
@@ -182,14 +182,6 @@ pub fn record(
 /// the light ends at once.
 fn loses_edges(choice: &Choice, cut: Cut) -> bool {
     choice.tolerance().is_some() && cut == Cut::Hard
-}
-
-fn places(light_box: LightBox) -> &'static str {
-    match light_box {
-        LightBox::Core => "core",
-        LightBox::Bounds => "bounds",
-        LightBox::Cylinders => "cylinders",
-    }
 }
 
 /// What a reader of the record has to know.

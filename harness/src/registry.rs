@@ -6,9 +6,8 @@ use assign::{
     Bounds::{Explicit, Implicit},
     CullSettings, Everything, Gpu,
 };
-use assign_cdi::HybridGrid;
 use assign_clustered::{
-    Clustered, Normals,
+    Clustered, HybridGrid, Normals,
     Occupancy::{Dense, Sparse},
     SpecularCut,
 };

@@ -57,6 +57,8 @@ pub use times::Times;
 pub use truth_image::TruthImage;
 pub use untested::Untested;
 
+pub use crate::truth_level::TruthLevel;
+
 /// The version of `results.json` that this program writes. It reads version 1 too, whose records were flat.
 pub const SCHEMA_VERSION: u32 = 2;
 
@@ -107,16 +109,6 @@ pub struct Truth {
     /// Further remarks, one sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
-}
-
-/// How much of a run was checked against the truth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum TruthLevel {
-    /// Every (light, sample) pair, on the CPU in f64.
-    Full,
-    /// Images only.
-    None,
 }
 
 /// A light that took no part in the run.

@@ -40,7 +40,7 @@ pub fn report_stored(args: &ReportArgs) -> Result<String, HarnessError> {
     }
     if args.out.is_some() && args.folders.len() > 1 {
         let value = out.display().to_string();
-        let accepted = "left out where several comparisons are given: each keeps its own report";
+        let accepted = "left out for several comparisons, because each has its own report";
         return Err(CliError::out_of_range("--out", &value, accepted).into());
     }
     let mut text = String::new();

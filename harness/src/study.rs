@@ -22,7 +22,7 @@ use std::time::Instant;
 
 use crate::{
     bench::Bench,
-    checks::check_modes,
+    checks::check_options,
     choice::choices,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
     compare::compare_on,
@@ -60,7 +60,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     if let Some(known) = known.as_ref().filter(|known| known.identity != wanted) {
         let value = out.display().to_string();
         let accepted = format!(
-            "a folder without a study, or with this one; it holds `{}`: give another --out",
+            "a folder without a study or with this study; it holds `{}`: choose another --out",
             known.identity.join(" ")
         );
         return Err(CliError::out_of_range("--out", &value, &accepted).into());
@@ -79,7 +79,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     manifest.jobs.iter().try_for_each(Job::check).map_err(|error| match is_new {
         true => error,
         false => CliError::new(format!(
-            "{}: {error}: another version listed the jobs there; give another --out",
+            "{}: {error}: another version of lightbench listed these jobs; choose another --out",
             out.display()
         )),
     })?;
@@ -126,7 +126,7 @@ fn share<'a>(args: &StudyArgs, manifest: &'a Manifest) -> Result<Vec<&'a Job>, C
         let known: Vec<&str> = known.iter().map(|job| job.name.as_str()).collect();
         let more =
             if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
-        let accepted = format!("words that names of jobs hold, such as {}{more}", known.join(", "));
+        let accepted = format!("words from job names, such as {}{more}", known.join(", "));
         return Err(CliError::out_of_range("--only", &args.only.join(","), &accepted));
     }
     let jobs = chosen.into_iter().enumerate();
@@ -196,7 +196,7 @@ fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError
         .into());
     }
     if results.command != job.command {
-        return again(&format!("{} is of another command", path.display()));
+        return again(&format!("{} belongs to another command", path.display()));
     }
     match lack {
         Some(lack) => again(&format!("{}: {lack}", path.display())),
@@ -224,7 +224,7 @@ impl Job {
     /// Whether its command would be understood.
     fn check(&self) -> Result<(), CliError> {
         let checked = self.asked(Path::new("")).and_then(|asked| match asked {
-            Asked::Compare(args) => check_modes(&args, &choices(&args)?),
+            Asked::Compare(args) => check_options(&args, &choices(&args)?),
             Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
         });
         checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))

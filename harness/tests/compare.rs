@@ -1,4 +1,4 @@
-//! The program as a user runs it, on the adapter of this machine.
+//! Runs the program as a user does, on the adapter of this machine.
 
 use std::{
     path::Path,
@@ -11,13 +11,13 @@ use harness::{
     results::{Record, Results},
 };
 
-/// The scene of the fewest triangles, on which a software adapter spends most of a frame. The default scene
-/// has seven times as many: two tests draw it.
+/// The scene with the fewest triangles: a software adapter spends most of a frame on triangles. The default
+/// scene has seven times as many, so only two tests draw it.
 const SMALL: &str = "town-small";
 
 fn lightbench(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_lightbench"));
-    // As on a server: the Vulkan loader would complain of it.
+    // A server lacks this variable, and the Vulkan loader would print a warning.
     program.env_remove("XDG_RUNTIME_DIR").args(arguments).output().expect("starts")
 }
 
@@ -46,7 +46,7 @@ fn assert_lossless(results: &Results, records: usize) {
 }
 
 #[test]
-fn a_mistake_leaves_an_earlier_report_alone() {
+fn bad_input_leaves_an_earlier_report_untouched() {
     let folder = tempfile::tempdir().expect("a folder");
     let one = ["--scene", SMALL, "--lights", "1", "--strategies", "None", "--truth", "none"];
     compare(folder.path(), &one);
@@ -92,7 +92,7 @@ fn the_default_scene_is_lossless_in_both_modes() {
 }
 
 #[test]
-fn all_methods_are_lossless_or_within_what_they_state() {
+fn all_methods_are_lossless_or_within_their_tolerance() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["--strategies", "all,M/2", "--source", "both", "--mode", "both"];
     let lights = ["--scene", SMALL, "--lights", "200", "--spots", "0.3"];
@@ -107,8 +107,8 @@ fn all_methods_are_lossless_or_within_what_they_state() {
     }
 }
 
-/// Samples are stored lap after lap, every lap takes the same poses, and lists that are kept over
-/// frames are made anew where a lap begins.
+/// Samples are stored lap after lap. Every lap has the same poses. Lists that are reused over frames are made
+/// again when a lap begins.
 #[test]
 fn laps_repeat_the_path() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -153,7 +153,7 @@ fn real_scenes_with_their_own_lights_are_lossless() {
     for (file, lights) in scenes {
         let path = folder.join(file);
         if !path.is_file() {
-            println!("skipped: {} is not there", path.display());
+            println!("skipped: {} does not exist", path.display());
             continue;
         }
         let out = tempfile::tempdir().expect("a folder");
@@ -164,25 +164,28 @@ fn real_scenes_with_their_own_lights_are_lossless() {
 }
 
 #[test]
-fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
+fn advice_starts_with_the_best_method_and_prefers_lossy_ones_only_for_speed() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("UTF-8");
     let small = ["advise", "--error-budget", "0.001", "--size", "64x36", "--lights", "60"];
     let output = lightbench(&[&small[..], &["--out", out]].concat());
-    let said = String::from_utf8_lossy(&output.stdout);
+    let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let results = Results::read(&folder.path().join("results.json")).expect("results.json");
     let best = verdict(&results, 0.001).expect("a verdict").best;
-    assert!(said.starts_with(&format!("Use {} (", best.strategy)), "the answer first: {said}");
-    // It judged several poses, several times each.
+    assert!(
+        text.starts_with(&format!("Use {} (", best.strategy)),
+        "the first line must name the best method: {text}"
+    );
+    // It measured several poses, several times each.
     assert!(
         best.setting.along_path && best.setting.poses == Some(3) && best.times.frames == 24,
         "{best:?}"
     );
     let gains = |exact: &&Record| is_surely_faster(best, exact) == Some(true);
     let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
-    assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{said}");
-    // A view that the user placed is one view, and lights come from files as they do elsewhere.
+    assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{text}");
+    // --camera gives one view, so --poses is refused; --lights-from works as in `compare`.
     let refused = lightbench(&["advise", "--poses", "3", "--camera", "0,1,0:1,1,0"]);
     assert_eq!(refused.status.code(), Some(2));
     assert_refused(&["advise", "--lights-from", "gone.glb", "--out", out], &["gone.glb"]);
@@ -192,15 +195,19 @@ fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
 fn assert_refused(arguments: &[&str], wanted: &[&str]) {
     let output = lightbench(arguments);
     let stderr = String::from_utf8_lossy(&output.stderr);
-    // Beside the error: what was found so far.
+    // These lines may stand beside the error.
     let known = ["adapter  ", "scene    ", "lights   ", "warning  "];
     let is_known = |line: &&str| known.iter().any(|prefix| line.starts_with(prefix));
-    let said: Vec<&str> = stderr.lines().filter(|line| !is_known(line)).collect();
+    let errors: Vec<&str> = stderr.lines().filter(|line| !is_known(line)).collect();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
-    assert_eq!(said.len(), 1, "{arguments:?}: {stderr}");
-    assert!(said[0].starts_with("lightbench: "), "{arguments:?}: {stderr}");
+    assert_eq!(errors.len(), 1, "{arguments:?}: {stderr}");
+    assert!(errors[0].starts_with("lightbench: "), "{arguments:?}: {stderr}");
     for part in wanted {
-        assert!(said[0].contains(part), "{arguments:?}: {:?} lacks {part:?}", said[0]);
+        assert!(
+            errors[0].contains(part),
+            "{arguments:?}: {:?} does not contain {part:?}",
+            errors[0]
+        );
     }
 }
 
@@ -273,12 +280,12 @@ fn bad_input_gets_one_line_and_exit_code_2() {
     ] {
         assert_refused(&arguments, &wanted);
     }
-    // No error left a folder behind, nor anything in one.
+    // No error left a folder or a file.
     assert!(!folder.path().join("new").exists());
 }
 
 #[test]
-fn lists_and_help_teach() {
+fn list_and_help_print_their_text() {
     let text = |arguments: &[&str]| {
         let output = lightbench(arguments);
         assert!(output.status.success(), "{arguments:?}");
@@ -290,7 +297,7 @@ fn lists_and_help_teach() {
     assert!(text(&["--help"]).contains("How to read the result"));
 }
 
-/// A floor of 10 m under a camera, one lamp of 0.05 cd without a range, and perhaps a sun.
+/// A floor of 10 m under a camera, one lamp of 0.05 cd without a range, and a sun if `has_sun`.
 fn floor_file(folder: &Path, has_sun: bool) -> String {
     let corners: [[f32; 3]; 4] = [[-5., 0., -5.], [-5., 0., 5.], [5., 0., 5.], [5., 0., -5.]];
     let mut bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
@@ -329,10 +336,10 @@ fn image_of_none(out: &Path) -> shading::HdrImage {
     shading::HdrImage::read_exr(&out.join("deferred-None.exr")).expect("an image")
 }
 
-/// A dim lamp without a range lights its floor as it would without an end, and the run says where it
-/// ends; a sun lights it once, whatever the method.
+/// A dim lamp without a range lights its floor almost as if it had no end, and a note says where it ends. A
+/// sun lights the floor once with every method.
 #[test]
-fn lights_without_an_end_are_seen_and_stated() {
+fn lights_without_a_range_are_visible_and_noted() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("run");
     let few = ["--lights", "0", "--strategies", "None,SC-E/16x16x4,RasterSphere"];

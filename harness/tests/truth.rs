@@ -79,28 +79,28 @@ fn points_are_as_shading_has_them_and_shadows_take_light_away() {
 }
 
 #[test]
-fn what_makes_no_truth_is_refused() {
+fn options_that_give_no_truth_image_are_refused() {
     let refused = |arguments: &[&str], wanted: &str| {
         let output = lightbench(&[&["truth"], arguments].concat());
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{stderr}");
         assert!(stderr.contains(wanted) && stderr.lines().count() == 1, "{stderr}");
     };
-    refused(&["--bounces", "1"], "--bounces is 1: it must be 0, or given with --shadows");
+    refused(&["--bounces", "1"], "--bounces is 1: it must be 0 without --shadows");
     refused(
         &["--bounces", "17", "--shadows"],
         "--bounces is 17: it must be a whole number from 0 to 16",
     );
     refused(
         &["--bounces", "1", "--shadows", "--matte-bounces"],
-        "--matte-bounces: it must be given with --primary and --bounces 1",
+        "--matte-bounces has no effect here: it needs --primary and --bounces 1",
     );
     refused(&["--samples", "0"], "--samples is 0: it must be a whole number from 1 to 65,536");
     refused(&["--strategies", "None"], "--strategies");
 }
 
 #[test]
-fn whoever_leaves_out_emitted_light_is_told() {
+fn a_note_says_that_emitted_light_is_left_out() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("lamp.gltf");
     // A triangle that emits.

@@ -15,7 +15,7 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
         return format!("{why}\n");
     }
     let Some(verdict) = verdict(results, error_budget) else {
-        return format!("Nothing stayed within the error budget: relMSE {error_budget}.\n");
+        return format!("No strategy stayed within the error budget, relMSE {error_budget}.\n");
     };
     let mut text = first_line(verdict.best) + "\n";
     if let Some(moving) = verdict.moving {
@@ -45,15 +45,18 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
     }
     let _ = writeln!(text, "Why: {}.", why(&verdict, results));
     if results.machine.device_type == DeviceType::Cpu {
-        let _ = writeln!(text, "A software adapter took these times: a GPU may rank otherwise.");
+        let _ = writeln!(
+            text,
+            "These are times of a software adapter: a GPU may rank the strategies differently."
+        );
     }
     text
 }
 
-/// That nothing can be said, and why; `None` where the methods were put to a test.
+/// Why there is no advice; `None` if the methods were tested.
 fn untested(results: &Results) -> Option<String> {
     let why = results.records.iter().find_map(Record::untested_words)?;
-    Some(format!("Nothing can be said: {why}, so no method was put to a test."))
+    Some(format!("No advice: {why}, so no method was tested."))
 }
 
 /// `Use ID (what it is): its time and parts. What its image is. What its lights must be.`
@@ -117,7 +120,7 @@ fn loss(record: &Record) -> Option<String> {
     Some(if errors.is_empty() {
         "it may lose light".to_owned()
     } else {
-        format!("it errs by {errors}")
+        format!("its error is {errors}")
     })
 }
 
@@ -129,7 +132,7 @@ fn tie(verdict: &Verdict<'_>) -> String {
         .map(|record| format!("{} ({})", record.strategy, time(record)))
         .collect();
     let reasons = match verdict.reasons.is_empty() {
-        true => "it is the fastest of them by a little".to_owned(),
+        true => "it is slightly the fastest of them".to_owned(),
         false => report::listed(&verdict.reasons),
     };
     format!("It ties with {}; preferred because {reasons}.", report::listed(&tied))
@@ -137,7 +140,7 @@ fn tie(verdict: &Verdict<'_>) -> String {
 
 /// Says that the budget buys nothing.
 fn no_gain(verdict: &Verdict<'_>, error_budget: f64) -> String {
-    let none = format!("No lossy setting within relMSE {error_budget} is surely faster");
+    let none = format!("No lossy setting within relMSE {error_budget} is certainly faster");
     match verdict.lossy {
         Some(lossy) => format!("{none}: the fastest is {}, {}.", lossy.strategy, time(lossy)),
         None => format!("{none}: none stays within it."),
@@ -149,14 +152,14 @@ fn why(verdict: &Verdict<'_>, results: &Results) -> String {
     let best = verdict.best;
     if !best.culls() {
         let lights = report::lights(best.setting.lights);
-        return format!("with {lights} no list pays for the passes that make it");
+        return format!("with {lights} the passes that make lists cost more than lists save");
     }
     let mut reasons = Vec::new();
     if let (Some(listed), Some(reach)) =
         (best.lists.listed_per_sample, best.lists.contributing_per_sample)
     {
         let (listed, reach) = (ms(listed), ms(reach));
-        reasons.push(format!("its lists hold {listed} lights per sample where {reach} reach it"));
+        reasons.push(format!("its lists hold {listed} lights per sample, and {reach} reach it"));
     }
     if let Some(next) = verdict.next.filter(|next| next.culls()) {
         let part = |name: &str, gain: f64| {

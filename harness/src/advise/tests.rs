@@ -78,7 +78,7 @@ fn a_lossy_setting_that_gains_nothing_is_never_named() {
     assert!(fastest.assign_and_shade_ms() < results.records[0].assign_and_shade_ms());
     assert_eq!(named(&results, 0.001), "SC-E/48x48x40");
     let text = answer(&results, 0.001);
-    assert!(text.contains("No lossy setting within relMSE 0.001 is surely faster"), "{text}");
+    assert!(text.contains("No lossy setting within relMSE 0.001 is certainly faster"), "{text}");
 
     // One that loses nothing in this view may lose light in another.
     let mut harmless = around("SC-E/48x48x40/cap64", 0.99, 0.1, 1 << 10);

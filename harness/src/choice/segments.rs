@@ -164,7 +164,7 @@ impl Choice {
             format!("segments that are {}", accepted.join(", or "))
         };
         CliError::new(format!(
-            "strategy {}: {segment:?} is not understood: {} takes {accepted}",
+            "strategy {}: {segment:?} is unknown: {} takes {accepted}",
             self.id, self.entry.family
         ))
     }

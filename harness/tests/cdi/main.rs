@@ -267,7 +267,7 @@ fn light_of_long_range_leaks_and_light_of_short_range_lacks() {
 }
 
 #[test]
-fn what_does_not_go_together_is_refused() {
+fn contradicting_options_are_refused() {
     for (line, wanted) in [
         ("--vpls 64 --primary", "--primary"),
         ("--vpls 64 --lights 10", "--lights"),
@@ -277,24 +277,33 @@ fn what_does_not_go_together_is_refused() {
         ("--vpls 64 --random-ranges 5,1", "--random-ranges is 5,1: it must be LOW,HIGH in metres"),
         ("--vpls 64 --directions 0x4", "--directions is 0x4: it must be STACKSxSLICES"),
         ("--ranges random", "--vpls"),
-        ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges: it must be given with"),
+        ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges has no effect here"),
         (
             "--vpls 64 --random-ranges 1,2",
-            "--random-ranges would change nothing: it must be given with --vpls N and --ranges random",
+            "--random-ranges has no effect here: it needs --vpls N above 0 and --ranges random",
         ),
         (
             "--vpls 64 --ranges random --correct-rays",
-            "--correct-rays would change nothing: it must be given with --vpls N and --ranges average",
+            "--correct-rays has no effect here: it needs --vpls N above 0 and --ranges average",
         ),
         (
             "--vpls 64 --constant-range 3",
-            "--constant-range: it must be given with --ranges constant",
+            "--constant-range has no effect here: it needs --vpls N above 0 and --ranges constant",
         ),
-        ("study cdi --quick --only no-such-job", "--only is no-such-job: it must be words that"),
-        ("cdi --build per-direction --oversampling 2", "--oversampling is 2: it must be 1 where"),
-        ("truth --primary --indirect", "--indirect: it must be given with --bounces 1"),
+        (
+            "study cdi --quick --only no-such-job",
+            "--only is no-such-job: it must be words from job names",
+        ),
+        (
+            "cdi --build per-direction --oversampling 2",
+            "--oversampling is 2: it must be 1 for --build per-direction",
+        ),
+        ("truth --primary --indirect", "--indirect has no effect here: it needs --bounces 1"),
         ("cdi --casts 12", "--casts is 12: it must be none, or sizes from 16 to 2,048"),
-        ("cdi --directions 64x64", "stacks x slices is 64 x 64: it must be 1 to 1024 together"),
+        (
+            "cdi --directions 64x64",
+            "directions (stacks x slices) is 64 x 64: it must be 1 to 1024 in all",
+        ),
     ] {
         let output = lightbench(&line.split_whitespace().collect::<Vec<_>>());
         let stderr = String::from_utf8_lossy(&output.stderr);
