@@ -105,7 +105,7 @@ impl LightingInputs {
         let table = match options.area.table().filter(|_| options.kinds.areas) {
             None => None,
             Some(masking) => {
-                let table = ltc::Table::of(masking)?;
+                let table = ltc::Table::load(masking)?;
                 let bytes = table.as_bytes();
                 let buffer = gpu.storage("LTC table", bytes.len() as u64)?;
                 gpu.queue.write_buffer(&buffer, 0, bytes);

@@ -51,7 +51,7 @@ pub(crate) const TEXTURE_FLAGS: [&str; 4] =
     ["base_color_texture", "metallic_roughness_texture", "normal_texture", "emissive_texture"];
 
 impl MaterialKey {
-    fn of(material: &Material) -> Self {
+    fn new(material: &Material) -> Self {
         let textures = material.textures();
         let moved = |t: &&TextureRef| t.uv_transform != glam::Affine2::IDENTITY;
         Self {
@@ -79,7 +79,7 @@ pub(crate) struct Materials {
 
 impl Materials {
     pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, ShadingError> {
-        let keys: Vec<MaterialKey> = scene.materials.iter().map(MaterialKey::of).collect();
+        let keys: Vec<MaterialKey> = scene.materials.iter().map(MaterialKey::new).collect();
         let records: Vec<MaterialRecord> = scene.materials.iter().map(record).collect();
         let factors = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("materials"),

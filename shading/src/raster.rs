@@ -89,7 +89,7 @@ pub(crate) struct Shown {
 }
 
 impl Shown {
-    fn of(scene: &SceneGpu) -> Self {
+    fn from_scene(scene: &SceneGpu) -> Self {
         Self { emissive: scene.has_emissive(), dielectrics: scene.has_dielectrics() }
     }
 }
@@ -138,7 +138,7 @@ fn pipeline(
     pass: RasterPass<'_>,
     key: DrawKey,
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
-    let shown = Shown::of(scene);
+    let shown = Shown::from_scene(scene);
     let shader = shader(pass, key, shown);
     // SAFETY: forward lighting's loops count up to the number of suns and to the length of a list,
     // which is a `u32` read once; the strategy's author vouches for its look-up. The other passes have

@@ -102,7 +102,7 @@ impl RasterSpheres {
         }
         // A fragment adds one light.
         for light in lights.lights() {
-            LightTotals::of(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
+            LightTotals::count(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);

@@ -140,7 +140,7 @@ impl Renderer {
             }
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights))?;
-        self.lights = LightTotals::of(lights.lights());
+        self.lights = LightTotals::count(lights.lights());
         Ok(())
     }
 

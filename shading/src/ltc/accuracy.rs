@@ -58,7 +58,7 @@ pub fn accuracy_cases(count: usize, seed: u64, degrees: f64) -> Vec<AccuracyCase
 
 impl Accuracy {
     /// Of lobes that `entry` gives for a roughness and a cosine of the view; all 0 without cases.
-    pub fn of(cases: &[AccuracyCase], entry: impl Fn(f64, f64) -> Entry) -> Self {
+    pub fn measure(cases: &[AccuracyCase], entry: impl Fn(f64, f64) -> Entry) -> Self {
         let error = |case: &AccuracyCase| {
             let entry = entry(case.roughness, case.cos_view);
             let covered = ltc_integral(&entry.inverse(), &case.rectangle);
@@ -119,7 +119,7 @@ mod tests {
     fn in_a_furnace_a_surface_reflects_what_its_brdf_does() {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
-        let (table, polynomial) = (Table::of(Masking::Correlated).unwrap(), Polynomial::ggx());
+        let (table, polynomial) = (Table::load(Masking::Correlated).unwrap(), Polynomial::ggx());
         let mut worst = [0.0_f64; 3];
         // On texels and between them, from below the least roughness on.
         for roughness in [0.02, 0.05, 0.1, 0.1825, 0.2, 0.3, 0.45, 0.6, 0.7, 0.85, 1.0] {

@@ -56,7 +56,7 @@ pub(super) fn fit_masked(
     start: Option<DVec3>,
 ) -> Fit {
     let lobe = Lobe::seen_under(roughness, cos_view).masked(masking);
-    let seen = Mean::of(&lobe);
+    let seen = Mean::integrate(&lobe);
     let is_round = cos_view >= 1.0;
     let start = start.unwrap_or_else(|| {
         let width = lobe.alpha().ln();
@@ -95,7 +95,7 @@ struct Mean {
 }
 
 impl Mean {
-    fn of(lobe: &Lobe) -> Self {
+    fn integrate(lobe: &Lobe) -> Self {
         let (mut albedo, mut fresnel, mut direction) = (0.0, 0.0, DVec3::ZERO);
         for (u, t) in grid(ALBEDO_SIDE / 2, ALBEDO_SIDE) {
             // Finer towards normals at right angles to the view, where the lobe's tail is.
@@ -228,7 +228,7 @@ mod tests {
         for (x, y) in TEXELS {
             let (roughness, cos_view) = place(x, y);
             let lobe = Lobe::seen_under(roughness, cos_view);
-            let seen = Mean::of(&lobe);
+            let seen = Mean::integrate(&lobe);
             let truth = integrate(&sky, lobe.to_eye, roughness, 1e-5).value;
             let off = seen.albedo - truth.specular;
             assert!(off.abs() < 5e-5, "{x}, {y}: A off {off:e}");

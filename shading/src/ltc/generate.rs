@@ -61,7 +61,7 @@ pub fn generate(
     }
     let table = Table::fit(Masking::Correlated, size, &progress)?;
     let hammon = Table::fit(Masking::Hammon, size, &progress)?;
-    let polynomial = Polynomial::of(&table);
+    let polynomial = Polynomial::fit(&table);
     if let Some(dir) = out_dir {
         write(&dir.join("ggx.bin"), |path| fs::write(path, table.to_bytes()))?;
         write(&dir.join("ggx_hammon.bin"), |path| fs::write(path, hammon.to_bytes()))?;
@@ -72,9 +72,9 @@ pub fn generate(
     }
     let cases = accuracy_cases(CASES, SEED, ACCURACY_DEGREES);
     Ok(FitReport {
-        table: Accuracy::of(&cases, |roughness, cos| table.look_up(roughness, cos)),
-        hammon: Accuracy::of(&cases, |roughness, cos| hammon.look_up(roughness, cos)),
-        polynomial: Accuracy::of(&cases, |roughness, cos| polynomial.entry(roughness, cos)),
+        table: Accuracy::measure(&cases, |roughness, cos| table.look_up(roughness, cos)),
+        hammon: Accuracy::measure(&cases, |roughness, cos| hammon.look_up(roughness, cos)),
+        polynomial: Accuracy::measure(&cases, |roughness, cos| polynomial.entry(roughness, cos)),
         rms_errors: polynomial.rms_errors(&table),
         difference: Table::ggx()?.difference(&table),
     })
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(table.size(), 8);
         let hammon = Table::from_bytes(&fs::read(dir.join("ggx_hammon.bin")).unwrap()).unwrap();
         assert!(hammon.difference(&table).integrals > 1e-3, "both maskings give one table");
-        let polynomial = Polynomial::of(&table);
+        let polynomial = Polynomial::fit(&table);
         let text = |name| fs::read_to_string(dir.join(name)).unwrap();
         assert_eq!(text("polynomial_coefficients.rs"), polynomial.to_rust());
         assert_eq!(text("ltc_polynomial.wesl"), polynomial.to_wesl());

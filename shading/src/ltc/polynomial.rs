@@ -40,7 +40,7 @@ impl Polynomial {
     }
 
     /// Fits the entries of a table, all alike in weight.
-    pub fn of(table: &Table) -> Self {
+    pub fn fit(table: &Table) -> Self {
         // Normal equations: sums of products of terms, and of terms and values.
         let mut products = [[0.0; TERMS]; TERMS];
         let mut values = [[0.0; 6]; TERMS];
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn the_committed_files_are_those_of_the_committed_table() {
-        let polynomial = Polynomial::of(&Table::ggx().unwrap());
+        let polynomial = Polynomial::fit(&Table::ggx().unwrap());
         assert_eq!(polynomial.to_rust(), include_str!("polynomial_coefficients.rs"));
         assert_eq!(polynomial.to_wesl(), LTC_POLYNOMIAL_WESL);
         assert_eq!(polynomial, Polynomial::ggx());

@@ -89,7 +89,7 @@ impl Table {
     ///
     /// As of [`Self::from_bytes`], if the file was not what [`Self::to_bytes`] wrote.
     pub fn ggx() -> Result<Self, ShadingError> {
-        Self::of(Masking::Correlated)
+        Self::load(Masking::Correlated)
     }
 
     /// The table of GGX with a masking, 64 x 64.
@@ -97,7 +97,7 @@ impl Table {
     /// # Errors
     ///
     /// As of [`Self::from_bytes`], if the file was not what [`Self::to_bytes`] wrote.
-    pub fn of(masking: Masking) -> Result<Self, ShadingError> {
+    pub fn load(masking: Masking) -> Result<Self, ShadingError> {
         Self::from_bytes(match masking {
             Masking::Correlated => include_bytes!("ggx.bin"),
             Masking::Hammon => include_bytes!("ggx_hammon.bin"),

@@ -42,7 +42,7 @@ impl Triangles {
     pub(super) fn new(corners: Vec<[Vec3; 3]>) -> Self {
         let farthest = corners.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs().max_element()));
         let slack = farthest * BOX_SLACK;
-        let distinct = DistinctTriangles::of(&corners);
+        let distinct = DistinctTriangles::find(&corners);
         let firsts = distinct.firsts.iter();
         let boxes: Vec<Aabb> = firsts
             .map(|ix| {

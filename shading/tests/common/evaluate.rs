@@ -57,7 +57,7 @@ pub(crate) fn evaluate(
     let samples = area.samples();
     let numbers = gpu.uniform("lighting", 16);
     gpu.queue.write_buffer(&numbers, 0, bytemuck::bytes_of(&[0, samples, 0, 0]));
-    let table = shading::ltc::Table::of(area.table().unwrap_or_default()).unwrap();
+    let table = shading::ltc::Table::load(area.table().unwrap_or_default()).unwrap();
     let looked_up = gpu.storage("table", table.as_bytes().len() as u64).unwrap();
     gpu.queue.write_buffer(&looked_up, 0, table.as_bytes());
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
