@@ -1,4 +1,4 @@
-//! Materials and textures on the GPU. Each material binds the textures it has, and no other.
+//! Materials and textures on the GPU. Each material binds only the textures that it has.
 
 use std::collections::HashMap;
 
@@ -33,7 +33,7 @@ pub struct MaterialRecord {
     pub uv_transforms: [[f32; 4]; 8],
 }
 
-/// What a material's shader is compiled for.
+/// The properties of a material that its shader is compiled for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct MaterialKey {
     /// Base colour, metallic-roughness, normal, emissive.
@@ -42,7 +42,7 @@ pub(crate) struct MaterialKey {
     pub(crate) mask: bool,
     pub(crate) double_sided: bool,
     pub(crate) unlit: bool,
-    /// Whether the mesh that is drawn has colours.
+    /// Whether the drawn mesh has vertex colours.
     pub(crate) vertex_colors: bool,
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct Materials {
     layouts: HashMap<[bool; 4], wgpu::BindGroupLayout>,
     pub(crate) factors: wgpu::Buffer,
     pub(crate) has_emissive: bool,
-    /// Whether any reflects other than glTF's plain dielectric does.
+    /// Whether any material has a reflectance other than that of glTF's default dielectric.
     pub(crate) has_dielectrics: bool,
 }
 

@@ -1,14 +1,16 @@
-//! The truth: the BRDF itself, integrated over a polygon by adaptive quadrature.
+//! The truth: integrates the BRDF itself over a polygon by adaptive quadrature.
 //!
-//! The polygon is clipped to the horizon, cut along the axes so that no piece spans more than a
-//! right angle, and each piece fanned into triangles. A triangle of unit vectors is integrated by
-//! Radon's rule of seven points (exact to degree 5) over its flat chord, each point pushed out to
-//! the sphere. Triangles are split in four: first until they are no larger than the lobe is narrow,
-//! or than they are far from its peak, so that no peak stays unseen; then the one of the largest
-//! error, until the sum of all errors is small.
+//! The polygon is clipped to the horizon and cut along the axes, so that no piece spans more than a
+//! right angle. Each piece is divided into triangles around a vertex. Radon's rule of seven points
+//! (exact to degree 5) integrates over the flat chord of a triangle of unit vectors, with each
+//! point projected to the sphere.
 //!
-//! The error of a triangle is the change that its last split made, shared by the four parts. The
-//! error that remains is far smaller where the integrand is smooth.
+//! Triangles are split in four. First, each is split until it is no larger than the width of the
+//! lobe or than its distance from the lobe's peak, so that no peak is missed. Then the triangle of
+//! the largest error is split, until the sum of all errors is small.
+//!
+//! The error of a triangle is the change made by its last split, divided among the four parts.
+//! Where the integrand is smooth, the actual error is far smaller.
 
 use std::{cmp::Ordering, collections::BinaryHeap, f64::consts::PI};
 
@@ -19,9 +21,9 @@ use super::{
     polygon::{clip, clip_at},
 };
 
-/// Triangles at most: a bound on time, never met at the tolerances of the tests.
+/// The most triangles. It bounds the time; tests never reach it.
 const MAX_TRIANGLES: usize = 400_000;
-/// An integral below this counts as this one in its relative error.
+/// The relative error of an integral below this is computed as if it had this value.
 const SMALLEST: f64 = 1e-9;
 
 /// Integrals over a polygon of unit radiance, each times the cosine of incidence.
@@ -66,22 +68,22 @@ impl Integrals {
     }
 }
 
-/// What a quadrature found.
+/// The result of a quadrature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The integrals.
     pub value: Integrals,
-    /// Bounds of their errors, absolute.
+    /// Absolute bounds of their errors.
     pub error: Integrals,
-    /// Triangles that the polygon was cut into.
+    /// The number of triangles into which the polygon was cut.
     pub triangles: usize,
 }
 
 /// Integrates the BRDF of a perceptual roughness, seen from the unit direction `to_eye`, over the
-/// part of a convex polygon above the horizon. Vertices in the shading frame, in order.
+/// part of a convex polygon above the horizon. Vertices are in the shading frame, in order.
 ///
-/// Each error is at most `tolerance` times its integral, or times 1e-9 where that is larger; a
-/// tolerance below 1e-10 counts as that.
+/// Each error is at most `tolerance` times its integral, or times 1e-9 if that is larger. A
+/// tolerance below 1e-10 counts as 1e-10.
 pub fn integrate(vertices: &[DVec3], to_eye: DVec3, roughness: f64, tolerance: f64) -> Estimate {
     let integrand = Integrand::new(Lobe::new(roughness, to_eye));
     let tolerance = tolerance.max(1e-10);
@@ -163,7 +165,7 @@ impl Ord for Triangle {
     }
 }
 
-/// What is integrated, and where it peaks.
+/// The integrand, and the direction of its peak.
 struct Integrand {
     lobe: Lobe,
     peak: DVec3,
@@ -173,8 +175,8 @@ struct Integrand {
 impl Integrand {
     fn new(lobe: Lobe) -> Self {
         let peak = DVec3::new(-lobe.to_eye.x, -lobe.to_eye.y, lobe.to_eye.z);
-        // Half vectors spread by alpha; light directions by twice that, foreshortened across the
-        // plane of incidence.
+        // Half vectors spread by alpha. Light directions spread by twice that, foreshortened across
+        // the plane of incidence.
         let width = 2.0 * lobe.alpha() * lobe.cos_view().max(0.05);
         Self { lobe, peak, width }
     }
@@ -214,7 +216,7 @@ impl Integrand {
     }
 }
 
-/// Splits a triangle until none is larger than the lobe is narrow or than it is far from the peak.
+/// Splits a triangle until none is larger than the lobe's width or its distance from the peak.
 fn refine(
     integrand: &Integrand,
     corners: [DVec3; 3],
@@ -225,7 +227,7 @@ fn refine(
     let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let center = (a + b + c).normalize_or_zero();
     let distance = center.distance(integrand.peak);
-    // A direction that is no number has no peak, and ends the search at once.
+    // A direction that is not a number has no peak, and ends the search at once.
     let is_wider = size > 0.5 * integrand.width;
     let is_near = size > 0.5 * (integrand.width + distance - size);
     if is_wider && is_near && depth < 24 {
@@ -245,7 +247,7 @@ fn parts([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
-/// The four parts of a triangle; a quarter of the change is the error of each.
+/// The four parts of a triangle. The error of each is a quarter of the change.
 fn split(integrand: &Integrand, whole: &Triangle) -> [Triangle; 4] {
     let split = parts(whole.corners).map(|corners| (corners, integrand.over(corners)));
     let sum = split.iter().fold(Integrals::default(), |sum, (_, value)| sum.plus(*value));
@@ -282,7 +284,7 @@ mod tests {
 
     #[test]
     fn it_agrees_with_samples_of_the_area_preserving_map() {
-        // Beside the peak and across it, across the horizon, at a grazing view.
+        // Beside the peak and across it, across the horizon, and at a grazing view.
         for (corner, x, y, cos_view, roughness) in [
             (DVec3::new(-1.5, -0.5, 1.0), DVec3::X, DVec3::Y, 0.7, 0.3),
             (DVec3::new(-1.5, -0.5, -0.5), DVec3::Z, DVec3::Y, 0.2, 0.5),
@@ -327,7 +329,7 @@ mod tests {
 
     #[test]
     fn no_peak_stays_unseen() {
-        // A mirror's reflection, a tenth of a degree wide, anywhere in the sky.
+        // The reflection of a mirror, a tenth of a degree wide, anywhere in the sky.
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         for step in 0..400 {
