@@ -167,7 +167,7 @@ mod tests {
     /// Boxes that give obvhs no choice. Without growth, a hundred thousand of them take 8 s and
     /// more.
     #[test]
-    fn ties_do_not_make_builds_slow_or_deep() {
+    fn equal_choices_do_not_make_builds_slow_or_deep() {
         const COUNT: u32 = 100_000;
         let along = |ix: u32| Vec3::new(ix as f32, 0.0, 0.0);
         let cases: [(&str, Vec<Aabb>); 6] = [

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thousand_are_the_first_of_ten_thousand() {
+    fn fewer_lights_are_the_first_of_more() {
         let few = scatter_lights(&spec(1_000)).expect("valid");
         let many = scatter_lights(&spec(10_000)).expect("valid");
         assert_eq!(few[..], many[..1_000]);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn every_light_is_usable_and_inside() {
+    fn every_light_is_valid_and_inside_the_box() {
         let spec = LightSpec { radius_scale: 1e-6, area_share: 0.5, ..spec(5_000) };
         for light in scatter_lights(&spec).expect("valid") {
             light.check().expect("usable");
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_specs_name_the_field() {
+    fn errors_name_the_faulty_field() {
         let bad = |spec: LightSpec| scatter_lights(&spec).expect_err("bad").to_string();
         let base = spec(1);
         let error = bad(LightSpec { count: MAX_LIGHTS + 1, ..base });

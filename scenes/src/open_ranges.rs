@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn one_lamp_lights_the_whole_scene_however_dim() {
+    fn even_a_dim_lamp_lights_the_whole_scene() {
         for intensity in [1e-12_f32, 0.05, 1.0, 1e6] {
             for diagonal_m in [0.1, 10.0, 1e4] {
                 let range_m = ranges(&[intensity], diagonal_m)[0];
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_takes_at_most_what_is_stated() {
+    fn the_window_removes_at_most_the_stated_light() {
         let lost = |x: f64| (1.0 - (1.0 - x.powi(4)).max(0.0).powi(2)) / (x * x);
         let most = (1..2000).map(|i| lost(f64::from(i) / 1000.0)).fold(0.0, f64::max);
         assert!(most <= LOST && most > LOST - 1e-3, "{most}");

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_own_sun_comes_first() {
+    fn the_scenes_brightest_sun_is_chosen_first() {
         let mut scene = atrium(1);
         let sun =
             |x: f32, irradiance| Sun { direction: Vec3::new(x, -1.0, 0.2).normalize(), irradiance };
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_own_spot_comes_first() {
+    fn the_scenes_brightest_spot_is_chosen_next() {
         let mut scene = atrium(1);
         let spot = |intensity: f32| Light {
             shape: LightShape::Spot { direction: Vec3::X, inner_angle: 0.1, outer_angle: 0.5 },

@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unknown_names_list_the_nearest() {
+    fn unknown_names_list_similar_ids() {
         let error = open("Atrum").expect_err("no such scene").to_string();
         assert!(error.contains("nearest: atrium"), "{error}");
         let error = open("xyz").expect_err("no such scene").to_string();

@@ -316,7 +316,7 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn copies_stand_beside_the_first() {
+    fn copies_stand_beside_the_original() {
         let mut one = crate::atrium(1);
         one.lights = vec![Light::point(Vec3::Y, 1.0, Vec3::ONE)];
         let four = one.clone().replicated(2).expect("in range");

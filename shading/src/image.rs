@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn difference_sees_one_bit() {
+    fn difference_detects_one_bit() {
         let mut image = grey(0.5);
         assert_eq!(image.difference(&grey(0.5)).unwrap(), ImageDifference::default());
         image.pixels[3][1] = f32::from_bits(0.5_f32.to_bits() + 1);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn not_a_number_differs() {
+    fn nan_counts_as_a_difference() {
         let difference = grey(f32::NAN).difference(&grey(f32::NAN)).unwrap();
         assert_eq!(difference.max_abs, f64::INFINITY);
     }

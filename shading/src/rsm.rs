@@ -109,7 +109,7 @@ mod tests {
 
     /// Every point of the box inside the cone lands in the image, between near and far.
     #[test]
-    fn the_view_holds_what_the_light_reaches() {
+    fn the_view_contains_everything_the_light_reaches() {
         let (min, max) = (Vec3::new(-3.0, 0.0, -2.0), Vec3::new(4.0, 5.0, 6.0));
         let toward = |eye: Vec3| (Vec3::new(0.5, 2.5, 2.0) - eye).normalize();
         let far = Vec3::new(-200.0, 340.0, 110.0);
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_map_is_refused() {
+    fn lights_without_a_map_are_refused() {
         let bounds = (Vec3::ZERO, Vec3::ONE);
         let message = |light: Light, bounds| rsm_view(&light, 64, bounds).unwrap_err().to_string();
         let lamp = Light::point(Vec3::ONE, 1.0, Vec3::ONE);

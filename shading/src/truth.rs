@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn below_the_horizon_nothing_is_missed_of_those_who_know_normals() {
+    fn strategies_that_know_normals_miss_nothing_below_the_horizon() {
         let lights = lights(10);
         let bvh = LightBvh::new(&lights);
         let none = snapshot(&[&[], &[]]);

@@ -4,7 +4,7 @@ use super::*;
 use crate::{Vertex, bvh::TriangleBvh};
 
 #[test]
-fn it_is_made_quickly_and_has_enough_triangles() {
+fn it_is_built_fast_and_has_enough_triangles() {
     let start = Instant::now();
     let scene = atrium(1);
     let seconds = start.elapsed().as_secs_f64();

@@ -70,7 +70,7 @@ fn drop_channels_without_node(json: &mut Value, warnings: &mut Warnings) {
     if dropped > 0 {
         warnings.add(format!(
             "animations: {dropped} channels that move no node are not played \
-             (KHR_animation_pointer is not read)"
+             (KHR_animation_pointer is not supported)"
         ));
     }
 }

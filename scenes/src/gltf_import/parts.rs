@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn absolute_names_of_every_system_are_told() {
+    fn absolute_names_of_every_system_are_recognised() {
         for name in ["/etc/passwd", "\\\\server\\x", "\\x", "C:\\x.bin", "c:x.bin"] {
             assert!(is_absolute(Path::new(name)), "{name}");
         }
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn only_regular_files_are_read_and_only_what_is_wanted() {
+    fn only_regular_files_are_read_and_only_as_many_bytes_as_asked() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         fs::write(folder.path().join("x.bin"), [7; 100]).expect("writes");
         let part = read_part(folder.path(), Path::new("x.bin"), 10).expect("there");

@@ -107,7 +107,7 @@ fn the_atriums_path_climbs_and_crosses_edges() {
 
 /// A path at one height is no tour, and a camera that stands still shows only one kind of view.
 #[test]
-fn level_and_still_paths_are_no_tours() {
+fn level_and_still_paths_are_not_tours() {
     let mut scene = atrium(1);
     let first = scene.path.pose(0, 48);
     let level = |ix| {
@@ -182,7 +182,7 @@ fn a_loop_of_one_point_stays_there() {
 
 /// A stretch of a bent loop never counts as clear if it cannot be sampled closely enough.
 #[test]
-fn a_loop_whose_margin_is_too_small_to_look_for_stays_level() {
+fn a_loop_with_too_small_a_margin_to_sample_stays_level() {
     let scene = atrium(1);
     let bvh = TriangleBvh::new(&scene, scene.bounds);
     let level = ring();

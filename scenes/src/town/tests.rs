@@ -7,7 +7,7 @@ use glam::Vec3;
 const SMALL: TownSize = TownSize::Small;
 
 #[test]
-fn it_is_made_quickly_of_little_and_draws_much() {
+fn it_is_built_fast_from_few_meshes_and_draws_many() {
     let start = Instant::now();
     let scene = town(1, TownSize::Full);
     let seconds = start.elapsed().as_secs_f64();
@@ -30,7 +30,7 @@ fn the_seed_decides_everything() {
 }
 
 #[test]
-fn bounds_are_finite_and_hold_every_triangle() {
+fn bounds_are_finite_and_contain_every_triangle() {
     let scene = town(1, SMALL);
     assert!(scene.bounds.min.is_finite() && scene.bounds.max.is_finite());
     let held = scene.bounds.grown(1e-3);

@@ -118,7 +118,7 @@ mod tests {
 
     /// A white furnace: the reflection of a dielectric and of a metal under light from everywhere.
     #[test]
-    fn in_a_furnace_a_surface_reflects_what_its_brdf_does() {
+    fn a_white_furnace_reflects_as_the_brdf_does() {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         let (table, polynomial) = (Table::load(Masking::Correlated).unwrap(), Polynomial::ggx());

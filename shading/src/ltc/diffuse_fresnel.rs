@@ -19,7 +19,7 @@ mod tests {
     use crate::ltc::integrate;
 
     #[test]
-    fn it_is_the_integral_over_the_hemisphere() {
+    fn c_matches_the_integral_over_the_hemisphere() {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         for step in 0..=10 {

@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fit_from_scratch_is_the_committed_entry() {
+    fn a_fit_from_scratch_matches_the_committed_entry() {
         use rayon::prelude::*;
         let table = Table::ggx().unwrap();
         TEXELS.into_par_iter().for_each(|(x, y)| {
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn the_albedos_are_the_integrals_over_the_hemisphere() {
+    fn the_albedos_match_the_integrals_over_the_hemisphere() {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         for (x, y) in TEXELS {

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_done_is_named() {
+    fn sizes_and_folders_that_fail_are_named() {
         let refusal = generate(None, 1, |_| ()).unwrap_err().to_string();
         assert_eq!(refusal, "LTC table: size is 1: it must be 2 to 1024 texels each way");
         let file = tempfile::NamedTempFile::new().unwrap();

@@ -124,7 +124,7 @@ mod tests {
 
     /// On a mirror both maskings are 1 / (4 cos cos), and they are equal where both cosines are 1.
     #[test]
-    fn the_approximate_masking_agrees_where_it_must() {
+    fn the_approximate_masking_agrees_on_mirrors_and_at_the_normal() {
         for (roughness, cos_view, same) in [(0.0, 0.7, true), (0.6, 1.0, true), (0.6, 0.3, false)] {
             let exact = Lobe::seen_under(roughness, cos_view);
             let mirror = exact.to_eye * DVec3::new(-1.0, 1.0, 1.0);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lobe_is_the_reference_s_specular_term() {
+    fn the_lobe_matches_the_references_specular_term() {
         for roughness in [0.0, 0.2, 0.7] {
             for cos_view in [0.02, 0.5, 1.0] {
                 let lobe = Lobe::seen_under(roughness, cos_view);

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn the_angle_is_right_to_single_precision() {
+    fn the_angle_is_precise_to_single_precision() {
         for step in 1..=1000 {
             let angle = f64::from(step) / 1000.0 * std::f64::consts::FRAC_PI_2;
             let sum = edge(DVec3::ZERO, DVec3::X, DVec3::new(angle.cos(), angle.sin(), 0.0));
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_hemisphere_is_one_whatever_the_lobe() {
+    fn a_whole_hemisphere_gives_one_for_every_lobe() {
         // The lobe's own horizon equals the surface's here, so nothing of it is cut off.
         let wide = rectangle(DVec3::Z * 1e-9, DVec3::X, DVec3::Y);
         assert!((cosine_integral(&wide) - 1.0).abs() < 1e-6);
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn neither_sense_nor_start_nor_odd_vertices_matter() {
+    fn winding_start_and_collinear_vertices_do_not_matter() {
         let vertices = rectangle(DVec3::new(-1.0, 0.2, 0.3), DVec3::Z, DVec3::Y);
         let whole = ltc_integral(&stretched(), &vertices);
         let mut turned = vertices;
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_integral_of_the_transformed_density() {
+    fn ltc_integral_matches_the_integral_of_the_transformed_density() {
         // Compare with the midpoint rule, over a rectangle across the horizon and across the lobe's
         // own.
         let inverse = stretched();
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_integral_by_quadrature() {
+    fn cosine_integral_matches_quadrature() {
         let vertices = rectangle(DVec3::new(0.3, 0.2, 0.4), DVec3::X, DVec3::new(0.0, 0.5, 0.5));
         let truth = integrate(&vertices, DVec3::Z, 0.5, 1e-6);
         let closed = cosine_integral(&vertices);

@@ -200,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_committed_files_are_those_of_the_committed_table() {
+    fn the_committed_polynomials_match_the_committed_table() {
         let polynomial = Polynomial::fit(&Table::ggx().unwrap());
         assert_eq!(polynomial.to_rust(), include_str!("polynomial_coefficients.rs"));
         assert_eq!(polynomial.to_wesl(), LTC_POLYNOMIAL_WESL);
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_makes_a_lobe_whatever_its_place() {
+    fn every_entry_gives_a_valid_lobe() {
         for (roughness, cos) in [(0.0, 0.0), (1.0, 0.0), (-1.0, 2.0), (9.0, -3.0), (f64::NAN, 0.5)]
         {
             let entry = Polynomial::ggx().entry(roughness, cos);

@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn it_agrees_with_samples_of_the_area_preserving_map() {
+    fn quadrature_matches_samples_of_the_area_preserving_map() {
         // Beside the peak and across it, across the horizon, and at a grazing view.
         for (corner, x, y, cos_view, roughness) in [
             (DVec3::new(-1.5, -0.5, 1.0), DVec3::X, DVec3::Y, 0.7, 0.3),
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_bound_what_a_finer_quadrature_changes() {
+    fn errors_bound_the_change_of_a_finer_quadrature() {
         let polygon = [[-3.0, -1.0], [1.0, -2.0], [2.0, 1.0], [-1.0, 2.0]];
         for height in [0.1, 1.0] {
             let polygon = polygon.map(|[x, y]| DVec3::new(x, y, height + 0.03 * x));
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn no_peak_stays_unseen() {
+    fn no_peak_is_missed() {
         // The reflection of a mirror, a tenth of a degree wide, anywhere in the sky.
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_ends_at_once() {
+    fn nan_inputs_end_at_once() {
         let above =
             [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 1.0), DVec3::new(0.1, 1.0, 1.0)];
         let odd = [

@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_covers_nothing_is_none() {
+    fn an_invisible_rectangle_is_none() {
         assert!(SphericalRectangle::new(DVec3::X, DVec3::Y, DVec3::X).is_none());
         assert!(SphericalRectangle::new(DVec3::Z, DVec3::ZERO, DVec3::X).is_none());
         assert!(SphericalRectangle::new(DVec3::NAN, DVec3::Y, DVec3::X).is_none());

@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_table_is_refused() {
+    fn an_invalid_file_is_refused() {
         let good = Table::fit(Masking::Correlated, 2, |_| ()).unwrap().to_bytes();
         let with = |at: usize, bytes: &[u8]| {
             let mut file = good.clone();

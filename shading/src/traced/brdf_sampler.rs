@@ -92,7 +92,7 @@ mod tests {
     use crate::traced::Numbers;
 
     #[test]
-    fn directions_come_as_often_as_their_density_says() {
+    fn direction_counts_match_densities() {
         let normal = DVec3::new(0.3, 0.8, -0.5).normalize();
         for (roughness, metallic) in [(0.3, 0.0), (0.6, 1.0), (1.0, 0.4)] {
             let dielectric = Default::default();

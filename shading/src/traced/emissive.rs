@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn triangles_are_drawn_as_often_as_their_density_says() {
+    fn draw_counts_match_densities() {
         let mut emissive = EmissiveTriangles::default();
         let corners = |size: f64| [DVec3::ZERO, DVec3::X * size, DVec3::Y * size];
         // The areas are 2 and 8 square metres, and the brightnesses 1, 0 and 3.

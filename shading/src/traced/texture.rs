@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn filters_are_the_sampler_s() {
+    fn filters_follow_the_sampler() {
         let mut texture = TextureRef::new(0);
         texture.sampler.mag = Filter::Nearest;
         let at = |texture: &TextureRef, u: f32, level: f32| {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_is_that_of_the_longest_step() {
+    fn the_longest_step_decides_the_level() {
         let mut texture = TextureRef::new(0);
         let level = |texture: &TextureRef, x: f32, y: f32| {
             ramp().level(texture, [Vec2::new(x, 0.0), Vec2::new(0.0, y)])
