@@ -13,7 +13,8 @@ use rayon::prelude::*;
 
 use super::{
     Warnings, draco::DracoMesh, file::File, influence::Influence, materials::Materials,
-    mesh_limits::check_meshes, repeats, tangents, warnings::kept_name,
+    mesh_limits::check_meshes, repeats, tangents, triangle_list::triangle_list,
+    warnings::kept_name,
 };
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
@@ -199,24 +200,7 @@ impl<'a> Job<'a> {
         }
         // A compressed strip is stored as triangles.
         let mode = if self.draco.is_some() { Mode::Triangles } else { mode };
-        Ok(match mode {
-            Mode::TriangleStrip => indices
-                .windows(3)
-                .enumerate()
-                .flat_map(|(ix, w)| {
-                    let odd = ix % 2;
-                    [w[0], w[1 + odd], w[2 - odd]]
-                })
-                .collect(),
-            Mode::TriangleFan => {
-                indices.windows(2).skip(1).flat_map(|w| [w[0], w[1], indices[0]]).collect()
-            }
-            _ => {
-                let mut indices = indices;
-                indices.truncate(indices.len() / 3 * 3);
-                indices
-            }
-        })
+        Ok(triangle_list(mode, indices))
     }
 
     /// The vertices with the attributes that the file has. The others stay zero.

@@ -33,6 +33,7 @@ mod skins;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod triangle_list;
 mod walk;
 mod warnings;
 

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn winding_start_and_collinear_vertices_do_not_matter() {
+    fn winding_start_and_degenerate_vertices_do_not_matter() {
         let vertices = rectangle(DVec3::new(-1.0, 0.2, 0.3), DVec3::Z, DVec3::Y);
         let whole = ltc_integral(&stretched(), &vertices);
         let mut turned = vertices;

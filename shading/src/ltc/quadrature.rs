@@ -17,6 +17,7 @@ use std::{cmp::Ordering, collections::BinaryHeap, f64::consts::PI};
 use glam::DVec3;
 
 use super::{
+    integrals::Integrals,
     lobe::Lobe,
     polygon::{clip, clip_at},
 };
@@ -25,48 +26,6 @@ use super::{
 const MAX_TRIANGLES: usize = 400_000;
 /// The relative error of an integral below this is computed as if it had this value.
 const SMALLEST: f64 = 1e-9;
-
-/// Integrals over a polygon of unit radiance, each times the cosine of incidence.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Integrals {
-    /// D V, the specular lobe at a Fresnel term of 1.
-    pub specular: f64,
-    /// D V times Schlick's `(1 - v.h)^5`.
-    pub specular_fresnel: f64,
-    /// 1 / pi: the form factor.
-    pub diffuse: f64,
-    /// `(1 - v.h)^5 / pi`.
-    pub diffuse_fresnel: f64,
-}
-
-impl Integrals {
-    /// Radiance that the specular lobe reflects, for a reflectance at normal incidence.
-    pub fn specular_reflected(&self, f0: f64) -> f64 {
-        f0 * (self.specular - self.specular_fresnel) + self.specular_fresnel
-    }
-
-    /// Radiance that is reflected diffusely, for an albedo and a reflectance at normal incidence.
-    pub fn diffuse_reflected(&self, albedo: f64, f0: f64) -> f64 {
-        albedo * (1.0 - f0) * (self.diffuse - self.diffuse_fresnel)
-    }
-
-    fn map(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self {
-            specular: f(self.specular, other.specular),
-            specular_fresnel: f(self.specular_fresnel, other.specular_fresnel),
-            diffuse: f(self.diffuse, other.diffuse),
-            diffuse_fresnel: f(self.diffuse_fresnel, other.diffuse_fresnel),
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        self.map(other, |a, b| a + b)
-    }
-
-    fn largest(self) -> f64 {
-        self.specular.max(self.specular_fresnel).max(self.diffuse).max(self.diffuse_fresnel)
-    }
-}
 
 /// The result of a quadrature.
 #[derive(Clone, Copy, Debug, PartialEq)]
