@@ -9,8 +9,8 @@ use scenes::Scene;
 use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
-    checks::{check_area_options, check_modes, checked, has_mode, remove_stale, served},
-    choice::{Choice, choices},
+    checks::{check_area_options, check_modes, checked, remove_stale, served},
+    choice::Choice,
     cli::{CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
     described::{describe, note_faults},
     drift::note_drift,
@@ -23,9 +23,10 @@ use crate::{
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{BASELINE, Machine, Results, Truth, Untested},
+    results::{Machine, Results, Truth, Untested},
     sight::untested,
     stage::Stage,
+    strategy::BASELINE,
 };
 
 /// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
@@ -47,7 +48,7 @@ pub struct Bench {
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // What is wrong with the words shows before a device is opened.
-    check_modes(args, &choices(args)?)?;
+    check_modes(args, &args.choices()?)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (results, pictures) = bench.compare(args, command)?;
@@ -134,7 +135,7 @@ impl Bench {
         args: &CompareArgs,
         command: Vec<String>,
     ) -> Result<(Results, Pictures), HarnessError> {
-        let choices = choices(args)?;
+        let choices = args.choices()?;
         check_modes(args, &choices)?;
         let gpu = self.gpu.clone();
         let choices = checked(choices, &gpu)?;
@@ -261,9 +262,10 @@ impl Run<'_> {
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
         for &mode in modes {
             let mut served = choices.to_vec();
-            served.retain(|choice| has_mode(choice, mode));
-            for choice in choices.iter().filter(|choice| !has_mode(choice, mode)) {
-                let words = format!("{} has no mode {}", choice.family(), mode.name());
+            served.retain(|choice| choice.refuses_mode(mode).is_none());
+            for choice in choices {
+                let Some(why) = choice.refuses_mode(mode) else { continue };
+                let words = format!("{} has no mode {}: {why}", choice.id(), mode.name());
                 self.results.warnings.push(words);
                 bar.inc(per_method);
             }

@@ -20,7 +20,7 @@ use crate::{
     list_lengths::ListLengths,
     painter::Painter,
     pass_samples::PassSamples,
-    registry::Method,
+    strategy::Method,
     results::{Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,

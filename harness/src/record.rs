@@ -90,8 +90,8 @@ pub fn record(
         path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
         scene_scale: args.stage.scene_scale,
         triangles: stage.scene.triangle_count(),
-        strategy: choice.id().to_owned(),
-        strategy_parameters: choice.parameters(),
+        strategy: choice.id().clone(),
+        strategy_parameters: choice.id().parameters(),
         mode,
         lights: count,
         light_kinds: stage

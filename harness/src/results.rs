@@ -53,15 +53,6 @@ use passes::nan_from_null;
 /// The version of `results.json` that this program writes and reads.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// The id of the strategy without culling, which the others are compared with.
-pub const BASELINE: &str = "None";
-
-/// The id of no culling with the early exit that all methods but [`BASELINE`] have.
-pub const EARLY_EXIT: &str = "Sphere";
-
-/// The id of the control, which draws the surfaces without lights: a cost, not a competitor.
-pub const CONTROL: &str = "Clay";
-
 /// One run of `lightbench compare`: the root of `results.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
@@ -159,7 +150,7 @@ pub struct Record {
     /// Triangles drawn, instances counted each.
     pub triangles: u64,
     /// The strategy's id with its parameters: `DC-I/64x64x24`.
-    pub strategy: String,
+    pub strategy: crate::strategy::StrategyId,
     /// The strategy's parameters, by name.
     #[serde(default)]
     pub strategy_parameters: BTreeMap<String, serde_json::Value>,

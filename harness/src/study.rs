@@ -23,7 +23,6 @@ use std::time::Instant;
 use crate::{
     cdi::measure,
     checks::check_modes,
-    choice::choices,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
     compare::Bench,
     error::HarnessError,
@@ -223,7 +222,7 @@ impl Job {
     /// Whether its command would be understood.
     fn check(&self) -> Result<(), CliError> {
         let checked = self.asked(Path::new("")).and_then(|asked| match asked {
-            Asked::Compare(args) => check_modes(&args, &choices(&args)?),
+            Asked::Compare(args) => check_modes(&args, &args.choices()?),
             Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
         });
         checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))

@@ -192,8 +192,8 @@ fn names_of_foreign_results_are_text() {
             for (ix, record) in results.records.iter_mut().enumerate() {
                 record.scene = ODD.into();
                 record.strategy = match ix % 3 {
-                    0 => format!("{}/{ODD}", record.strategy),
-                    1 => format!("{ODD}/{}", record.strategy),
+                    0 => format!("{}/{ODD}", record.strategy).into(),
+                    1 => format!("{ODD}/{}", record.strategy).into(),
                     _ => record.strategy.clone(),
                 };
                 let odd = || Some(ODD.to_owned());

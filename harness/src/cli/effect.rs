@@ -6,7 +6,7 @@
 use clap::{ArgMatches, parser::ValueSource};
 
 use super::{CdiArgs, CliError, CompareArgs, Invocation, StageArgs};
-use crate::choice::{Choice, choices};
+use crate::choice::Choice;
 
 /// Options, when they change something, and what they belong to.
 struct Rule<A> {
@@ -96,7 +96,7 @@ fn check_strategies(args: &CompareArgs, matches: &ArgMatches) -> Result<(), CliE
         return Ok(());
     }
     // What is wrong with an id is said where the strategies are chosen.
-    let Ok(choices) = choices(args) else { return Ok(()) };
+    let Ok(choices) = args.choices() else { return Ok(()) };
     type Applies = fn(&Choice) -> bool;
     let rules: [(&str, Applies, &str); 3] = [
         ("test", Choice::takes_tests, "tests frusta and names no tests of its own"),

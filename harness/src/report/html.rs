@@ -11,6 +11,7 @@ use super::format::{number, short_adapter};
 use super::markup::Html;
 use super::page;
 use super::{finding, frames, notices};
+use crate::chart::page_colours;
 use crate::results::{Results, ResultsError, write_atomically};
 
 pub(super) const PAGE: &str = include_str!("report.html");
@@ -53,7 +54,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
         PAGE,
         &[
             ("title", title(results).into()),
-            ("style", Html::trusted(STYLE)),
+            ("style", Html::trusted(STYLE.to_owned() + &page_colours())),
             ("headline", headline),
             ("findings", others),
             ("notices", page::notices(&notices(results))),

@@ -54,7 +54,7 @@ impl<'a> Lead<'a> {
         if doubt != Doubt::None {
             records.truncate(1);
         }
-        let names = records.iter().map(|record| record.strategy.clone()).collect();
+        let names = records.iter().map(|record| record.strategy.to_string()).collect();
         Some(Self { records, names, ranked: ranked.len(), doubt })
     }
 
@@ -141,7 +141,7 @@ impl<'a> Lead<'a> {
 /// Whether a method reads a hierarchy over the lights that was built beforehand: its time holds for
 /// lights that stand still.
 pub fn needs_built_hierarchy(record: &Record) -> bool {
-    record.strategy.split('/').any(|segment| segment == HIERARCHY)
+    record.strategy.is_bvh()
 }
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` where

@@ -10,26 +10,13 @@ use super::metrics::{Better, METRICS, Metric};
 use super::rank::{ALIKE, Ranked, competes};
 use crate::results::{Clock, DeviceType, PassKind, Record, Results, TruthLevel};
 
-/// Colours that the style sheet has for strategies other than no culling.
-pub(super) const STRATEGY_COLOURS: usize = 9;
-
-/// Colours that it has for the passes of one kind.
+/// Colours that the style sheet has for the passes of one kind.
 const PASS_COLOURS: usize = 4;
 
-/// The style class of each strategy, by id: the same in every table and chart.
+/// The style class of each strategy, by id: its family's, as in every table and chart.
 pub(super) fn strategy_classes(results: &Results) -> BTreeMap<&str, String> {
-    let mut classes = BTreeMap::new();
-    let mut next = 0;
-    for record in &results.records {
-        classes.entry(record.strategy.as_str()).or_insert_with(|| {
-            if record.is_baseline() || record.is_control() {
-                return "strategy-none".to_owned();
-            }
-            next += 1;
-            format!("strategy-{}", (next - 1) % STRATEGY_COLOURS)
-        });
-    }
-    classes
+    let ids = results.records.iter().map(|record| &record.strategy);
+    ids.map(|id| (id.as_str(), id.class())).collect()
 }
 
 /// The style class of each pass, by name: a hue per kind, a shade per pass.

@@ -5,9 +5,8 @@
 
 use super::{Record, Results};
 use crate::{
-    checks::has_mode,
-    choice::{Choice, choices},
     cli::{self, CompareArgs, Invocation},
+    strategy::StrategyId,
 };
 
 /// What is missing from results, or too many in them; `None` where they are what was asked for.
@@ -36,15 +35,15 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
     if records.is_empty() {
         return Some("it has no records".to_owned());
     }
-    let Ok(asked) = choices(args) else { return None };
-    let stored: Option<Vec<Choice>> =
-        records.iter().map(|record| Choice::parse(&record.strategy).ok()).collect();
+    let Ok(asked) = args.choices() else { return None };
     // Strategies of another version cannot be told apart here.
-    let stored = stored?;
+    if records.iter().any(|record| StrategyId::parse(&record.strategy).is_err()) {
+        return None;
+    }
     let mut is_asked = vec![false; records.len()];
     for &mode in args.mode.modes() {
-        for choice in asked.iter().filter(|choice| has_mode(choice, mode)) {
-            let same = |ix: &usize| records[*ix].mode == mode && stored[*ix].is_same(choice);
+        for choice in asked.iter().filter(|choice| choice.refuses_mode(mode).is_none()) {
+            let same = |ix: &usize| records[*ix].mode == mode && records[*ix].strategy == choice.id().as_str();
             match (0..records.len()).find(same) {
                 Some(ix) => is_asked[ix] = true,
                 // Of all strategies, those that cannot serve a scene are left out. No culling serves all.
@@ -69,7 +68,7 @@ mod tests {
         let mut results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
         results.command = line.split(' ').map(str::to_owned).collect();
         let record = results.records[0].clone();
-        let records = ids.iter().map(|id| Record { strategy: (*id).to_owned(), ..record.clone() });
+        let records = ids.iter().map(|id| Record { strategy: (*id).into(), ..record.clone() });
         results.records = records.collect();
         results
     }
@@ -85,7 +84,7 @@ mod tests {
         assert!(said(&whole[1..]).contains("None in deferred is missing"));
         assert!(said(&[whole[0]; 5]).contains("None in deferred is there twice"));
         let other = ["None", "SC-E/48x48x40", "T-E/28x28/hs", "T-E/28x28", "M"];
-        assert!(said(&other).contains("sc-e/bvh in deferred is missing"));
+        assert!(said(&other).contains("SC-E/48x48x40/bvh in deferred is missing"));
         let more = [&whole[..], &["G/20x20x20"]].concat();
         assert!(said(&more).contains("G/20x20x20 in deferred is not what"));
         // Each mode has its records.

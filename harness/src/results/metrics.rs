@@ -39,7 +39,7 @@ struct RecordMetrics {
 impl Results {
     fn metrics(&self, of: String) -> Metrics {
         let one = |record: &super::Record| RecordMetrics {
-            strategy: record.strategy.clone(),
+            strategy: record.strategy.to_string(),
             mode: record.mode,
             errors: record.errors.clone(),
             unbounded_errors: record.unbounded_errors.clone(),
@@ -57,7 +57,7 @@ impl Results {
             .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
         let Some(known) = known.filter(|known| known.of == of) else { return };
         for (record, metrics) in self.records.iter_mut().zip(known.records) {
-            if record.strategy != metrics.strategy || record.mode != metrics.mode {
+            if record.strategy != metrics.strategy.as_str() || record.mode != metrics.mode {
                 continue;
             }
             record.errors = metrics.errors;

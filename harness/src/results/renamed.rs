@@ -30,7 +30,7 @@ impl Record {
         let mut segments: Vec<&str> = self.strategy.split('/').collect();
         segments.retain(|segment| *segment != was);
         segments.insert(segments.len().min(2), is);
-        self.strategy = segments.join("/");
+        self.strategy = segments.join("/").into();
         self.strategy_parameters.insert(parameter.to_owned(), is.into());
     }
 }
@@ -44,7 +44,7 @@ mod tests {
         let example = include_str!("example.json");
         let results: Results = serde_json::from_str(example).unwrap();
         let mut record = results.records.into_iter().next().unwrap();
-        record.strategy = strategy.to_owned();
+        record.strategy = strategy.into();
         record.strategy_parameters.insert(parameter.to_owned(), value.into());
         record.planes = None;
         record
@@ -55,7 +55,7 @@ mod tests {
         let once = record.clone();
         record.rename();
         assert_eq!(record, once, "renaming again changes nothing");
-        record.strategy
+        record.strategy.to_string()
     }
 
     #[test]

@@ -27,7 +27,10 @@ impl Results {
             all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);
         }
         for record in &mut self.records {
-            all.extend([&mut record.scene, &mut record.scene_hash, &mut record.strategy]);
+            all.extend([&mut record.scene, &mut record.scene_hash]);
+            if let std::borrow::Cow::Owned(shown) = visible(&record.strategy) {
+                record.strategy = shown.into();
+            }
             let known = [
                 &mut record.path_hash,
                 &mut record.area_model,

@@ -65,7 +65,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
         path_hash: None,
         scene_scale: 1.0,
         triangles: 262_144,
-        strategy: strategy.to_owned(),
+        strategy: strategy.into(),
         strategy_parameters: BTreeMap::new(),
         mode,
         lights: 1_000,

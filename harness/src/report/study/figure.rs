@@ -2,6 +2,7 @@
 
 use super::super::markup::{Html, html};
 use crate::chart::{BarChart, Histogram, XyChart, histograms_svg, histograms_svg_file};
+use crate::strategy::StrategyId;
 
 /// The charts of a page: each is drawn twice, for the page and for a file of its own.
 #[derive(Default)]
@@ -132,5 +133,5 @@ pub(super) fn dotted(class: &str, name: impl Into<Html>) -> Html {
 
 /// A strategy's name with the dot of its colour.
 pub(super) fn name(id: &str) -> Html {
-    dotted(&super::data::class(id), super::super::page::with_names_whole(id))
+    dotted(&StrategyId::read(id).class(), super::super::page::with_names_whole(id))
 }

@@ -8,7 +8,7 @@ use super::super::lead::{Lead, span};
 use super::super::markup::{Html, html};
 use super::super::page;
 use super::super::rank::{Ratio, first, listed, ranks, tie};
-use super::data::{Entry, class, counts, entries, poses, stand};
+use super::data::{Entry, counts, entries, poses, stand};
 use super::figure::{Charts, panels, part};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::{PassKind, Record, Results, mean};
@@ -95,7 +95,7 @@ fn panel(
     let lights = format!("{} lights", number(count as f64));
     let title = format!("{lights}, {}", stand(most));
     let classes: BTreeMap<&str, String> =
-        comparison.records.iter().map(|(_, r)| (r.strategy.as_str(), class(&r.strategy))).collect();
+        comparison.records.iter().map(|(_, r)| (r.strategy.as_str(), r.strategy.class())).collect();
     let mut fewer: Vec<String> = Vec::new();
     for (_, record) in &comparison.records {
         if poses(record) != poses(most) {
@@ -150,8 +150,8 @@ fn bar(record: &Record, classes: &BTreeMap<&str, String>) -> BarRow {
         .map(|segment| format!("\n{} {} ms", segment.name, significant(segment.value)))
         .collect();
     BarRow {
-        name: record.strategy.clone(),
-        class: class(&record.strategy),
+        name: record.strategy.to_string(),
+        class: record.strategy.class(),
         segments,
         value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
         tip: format!("{}{parts}", record.strategy),

@@ -96,8 +96,8 @@ impl<'a> Shots<'a> {
             Wanted::Truth => &record.truth_errors,
         };
         let name = match wanted {
-            Wanted::Truth => record.area_model.as_ref().unwrap_or(&record.strategy),
-            _ => &record.strategy,
+            Wanted::Truth => record.area_model.as_deref().unwrap_or(&record.strategy),
+            _ => record.strategy.as_str(),
         };
         let shot = json!({
             "scene": record.scene,
