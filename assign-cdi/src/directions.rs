@@ -18,6 +18,16 @@ pub enum Spread {
     Squares,
 }
 
+impl Spread {
+    /// `stacks` or `squares`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StacksAndSlices => "stacks",
+            Self::Squares => "squares",
+        }
+    }
+}
+
 /// The most directions.
 pub const MAX_DIRECTIONS: u32 = 1024;
 

@@ -33,6 +33,17 @@ pub enum Primary {
     Given,
 }
 
+impl Primary {
+    /// `normal`, `reflected` or `given`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Reflected => "reflected",
+            Self::Given => "given",
+        }
+    }
+}
+
 /// The rays of a point: the primary one, and the others evenly around it (Archer et al. 2019,
 /// section 3.2). Rays without a hit are left out; without any hit the range is [`f32::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         CullSettings::default(),
     )?;
     let module = Shader::new(1)
-        .module("package::strategy", strategy.lookup().module.source())
+        .strategy(strategy.lookup().module)
         .module("package::shade", SHADE)
         .create(&gpu, "package::shade")?;
     let mut bindings = FrameBindings::new(&gpu);

@@ -1,80 +1,43 @@
-//! DC-I, DC-E, SC-I and SC-E: clusters on the axes of bounds, occupancy and normals.
+//! DC-I, DC-E, SC-I and SC-E: clusters by bounds, by occupancy and by normals.
 
 use assign::{
-    AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
-    FIRST_STRATEGY_BINDING, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes,
-    SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu,
+    GroupShape, Groups, LightLists, Lookup, Needs, Passes, SampleDomain, StrategyModule, entry,
+    storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
-    Normals, SpecularCut,
-    clusters::{ClusterSize, ClustersUniform},
+    Normals, Occupancy, SpecularCut,
+    cluster_wesl::cluster_wesl,
+    froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform},
     gather::{Gather, Images},
+    normal_bins::{BINS_BINDING, NormalBinsUniform, group_count},
 };
 
-/// Which clusters get a list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Occupancy {
-    /// All.
-    Dense,
-    /// Those that hold a sample.
-    Sparse,
-}
+/// Binding of the marks: `clusters.wesl`.
+const MARKS_BINDING: u32 = FROXELS_BINDING + 1;
 
-/// Clusters, each with a list of lights.
+/// Clusters that each have a list of lights.
 #[derive(Debug)]
 pub struct Clustered {
-    size: ClusterSize,
+    size: FroxelSize,
     bounds: Bounds,
     occupancy: Occupancy,
     normals: Normals,
     cut: SpecularCut,
     settings: CullSettings,
-    clusters: wgpu::Buffer,
+    froxels: wgpu::Buffer,
+    bins: wgpu::Buffer,
     gather: Option<Gather>,
     culler: Culler,
 }
 
-/// The WESL module of clusters bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: &str = concat!(
-    include_str!("shaders/clusters.wesl"),
-    include_str!("shaders/by_cluster.wesl"),
-    include_str!("shaders/implicit.wesl"),
-);
-
-/// The WESL module of clusters bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: &str = concat!(
-    include_str!("shaders/clusters.wesl"),
-    include_str!("shaders/by_cluster.wesl"),
-    include_str!("shaders/explicit.wesl"),
-    "const WORDS: u32 = 6u;\n",
-);
-
-/// The WESL module of clusters bounded by the samples in them and split by their normals:
-/// `group_of`, `group_bounds`, `group_facing` and `group_reflection`.
-pub const BINS_WESL: &str = concat!(
-    include_str!("shaders/clusters.wesl"),
-    include_str!("shaders/by_bin.wesl"),
-    include_str!("shaders/explicit.wesl"),
-    include_str!("shaders/reflection_of_bin.wesl"),
-    "const WORDS: u32 = 12u;\n",
-);
-
-/// [`BINS_WESL`] of clusters that know how their samples reflect as well: `group_gloss`.
-pub const GLOSSY_BINS_WESL: &str = concat!(
-    include_str!("shaders/clusters.wesl"),
-    include_str!("shaders/by_bin.wesl"),
-    include_str!("shaders/explicit.wesl"),
-    include_str!("shaders/gloss_of_bin.wesl"),
-    "const WORDS: u32 = 15u;\n",
-);
-
 impl Clustered {
-    /// Makes the strategy; `size` is checked.
+    /// Makes the strategy without normals and without a cut. Checks `size`.
     pub fn new(
         gpu: &Gpu,
-        size: ClusterSize,
+        size: FroxelSize,
         bounds: Bounds,
         occupancy: Occupancy,
         settings: CullSettings,
@@ -83,11 +46,11 @@ impl Clustered {
         Self::with_normals(gpu, size, bounds, occupancy, normals, cut, settings)
     }
 
-    /// Makes the strategy with clusters split by normals, and with a cut of specular light. Only sparse
-    /// clusters with explicit bounds can have either. All parameters are checked.
+    /// Makes the strategy with clusters split by normals and with a cut of specular light. Only sparse clusters
+    /// with explicit bounds can have either. Checks all parameters.
     pub fn with_normals(
         gpu: &Gpu,
-        size: ClusterSize,
+        size: FroxelSize,
         bounds: Bounds,
         occupancy: Occupancy,
         normals: Normals,
@@ -107,20 +70,20 @@ impl Clustered {
             return Err(AssignError::Unsupported {
                 strategy: family(bounds, occupancy).into(),
                 asked,
-                reason: "only sparse clusters with explicit bounds, SC-E, are split by normals \
-                         or leave specular light out"
-                    .into(),
+                reason:
+                    "only sparse clusters with explicit bounds, SC-E, can be split by normals or \
+                         leave out specular light"
+                        .into(),
             });
         }
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-        let clusters = uniform_entry(FIRST_STRATEGY_BINDING, stages);
-        let boxes = storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true);
-        let (module, bindings) = match bounds {
-            Bounds::Implicit => (IMPLICIT_WESL, vec![clusters]),
-            Bounds::Explicit if glossy => (GLOSSY_BINS_WESL, vec![clusters, boxes]),
-            Bounds::Explicit if normals.is_some() => (BINS_WESL, vec![clusters, boxes]),
-            Bounds::Explicit => (EXPLICIT_WESL, vec![clusters, boxes]),
-        };
+        let mut bindings = vec![uniform_entry(FROXELS_BINDING, stages)];
+        if bounds == Bounds::Explicit {
+            bindings.push(storage_entry(MARKS_BINDING, stages, true));
+        }
+        if normals.is_some() {
+            bindings.push(uniform_entry(BINS_BINDING, stages));
+        }
         let sparse = occupancy == Occupancy::Sparse;
         let reads_samples = sparse || bounds == Bounds::Explicit;
         Ok(Self {
@@ -130,7 +93,8 @@ impl Clustered {
             normals,
             cut,
             settings,
-            clusters: gpu.uniform("clusters", size_of::<ClustersUniform>() as u64),
+            froxels: gpu.uniform("froxels", size_of::<FroxelsUniform>() as u64),
+            bins: gpu.uniform("normal bins", size_of::<NormalBinsUniform>() as u64),
             gather: match reads_samples {
                 true => Some(Gather::new(gpu, bounds, occupancy, normals, glossy)?),
                 false => None,
@@ -143,9 +107,9 @@ impl Clustered {
                     settings,
                     sparse,
                     facing: cut.facing(normals),
-                    // SAFETY: it has no loop.
-                    #[allow(unsafe_code, reason = "it has no loop")]
-                    module: unsafe { StrategyModule::new(module) },
+                    // SAFETY: the modules of clusters have no loop.
+                    #[allow(unsafe_code, reason = "they have no loop")]
+                    module: unsafe { StrategyModule::new(cluster_wesl(bounds, normals, glossy)) },
                     bindings: &bindings,
                 },
             )?,
@@ -188,18 +152,17 @@ impl Assignment for Clustered {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let mut clusters =
-            ClustersUniform::new(self.size, self.normals, frame.view, frame.lights.bounds())?;
-        let count = clusters.group_count();
+        let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.lights.bounds())?;
+        let count = group_count(self.size, &froxels, self.normals)?;
         let mut groups = Groups::All(count);
-        let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.clusters)];
+        let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
         let id = self.id();
         if let Some(gather) = &mut self.gather {
             if frame.samples == SampleDomain::AnyDepth {
                 return Err(AssignError::Unsupported {
                     strategy: id,
                     asked: "look-ups at any depth".into(),
-                    reason: "its lists are made for the opaque surfaces in the depth buffer".into(),
+                    reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
                 });
             }
             let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
@@ -214,17 +177,21 @@ impl Assignment for Clustered {
                     true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
                 },
             };
-            clusters.surfaces_only = 1;
-            clusters.specular_limit = self.cut.limit();
-            gather.prepare(gpu, frame, images, &self.clusters, count)?;
+            froxels.surfaces_only = 1;
+            gather.prepare(gpu, frame, images, [&self.froxels, &self.bins], count)?;
             if self.occupancy == Occupancy::Sparse {
                 groups = Groups::Live { count, live: gather.live() };
             }
             if self.bounds == Bounds::Explicit {
-                resources.push(entry(FIRST_STRATEGY_BINDING + 1, gather.marks()));
+                resources.push(entry(MARKS_BINDING, gather.marks()));
             }
         }
-        gpu.queue.write_buffer(&self.clusters, 0, bytes_of(&clusters));
+        gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
+        if self.normals.is_some() {
+            let bins = NormalBinsUniform::new(self.normals, self.cut);
+            gpu.queue.write_buffer(&self.bins, 0, bytes_of(&bins));
+            resources.push(entry(BINS_BINDING, &self.bins));
+        }
         self.culler.prepare(gpu, frame, groups, &resources)
     }
 
@@ -253,6 +220,7 @@ impl Assignment for Clustered {
 
     fn memory_bytes(&self) -> u64 {
         let gather = self.gather.as_ref().map_or(0, Gather::bytes);
-        self.clusters.size() + gather + self.culler.memory_bytes()
+        let bins = if self.normals.is_some() { self.bins.size() } else { 0 };
+        self.froxels.size() + bins + gather + self.culler.memory_bytes()
     }
 }

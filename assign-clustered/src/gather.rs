@@ -1,27 +1,36 @@
-//! The pass `bounds`: which clusters hold samples, and the boxes around those samples and their
+//! The pass `bounds`: finds which clusters hold samples, and the boxes around those samples and their
 //! normals.
 
 use assign::{
-    AssignError, Bounds, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, LiveGroups, Passes,
-    Shader, View, entry, storage_entry, uniform_entry,
+    AssignError, Bounds, Frame, FrameBindings, Gpu, LiveGroups, Passes, Shader, View, entry,
+    storage_entry, uniform_entry,
 };
 
-use crate::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL, Normals, Occupancy};
+use crate::{
+    Normals, Occupancy,
+    bindings::{TEXELS, texture, texture_layout},
+    cluster_wesl::cluster_wesl,
+    froxels::FROXELS_BINDING,
+    normal_bins::BINS_BINDING,
+};
 
-/// Bind group of the pass's own resources, and of the clusters' uniform.
+/// Bind group of the pass's own resources, and of the uniforms of froxels and bins.
 const GATHER_GROUP: u32 = 1;
+/// Bind group of the live groups.
 const LIVE_GROUP: u32 = 2;
 
-/// Width and height of the pixels that one workgroup reads: `BLOCK_PX` of `gather.wesl`.
+/// Width and height of the block that one workgroup reads, pixels: `BLOCK_PX` of `gather.wesl`.
 const BLOCK_PX: u32 = 32;
 
-/// Marks that one workgroup clears at least; more where the dispatch would be too wide.
+/// Words of the marks that one workgroup clears, at least. It clears more if the dispatch would be too wide.
 const CLEARED: u64 = 256;
+/// The most workgroups along one axis of a dispatch.
 const MAX_DISPATCH: u64 = 65_535;
 
-/// Reads the depth buffer once, and where asked to normals and base colours.
+/// Reads the depth buffer once; also normals and base colours if it was made for them.
 #[derive(Debug)]
 pub(crate) struct Gather {
+    /// Words of the marks per group: `WORDS` of `marks.wesl`.
     words: u64,
     frame: FrameBindings,
     layout: wgpu::BindGroupLayout,
@@ -45,27 +54,27 @@ impl Gather {
     ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let mut entries = vec![
-            texture_entry(0, wgpu::TextureSampleType::Depth),
+            texture_layout(0, wgpu::TextureSampleType::Depth),
             storage_entry(1, stages, false),
-            uniform_entry(FIRST_STRATEGY_BINDING, stages),
+            uniform_entry(FROXELS_BINDING, stages),
         ];
         if normals.is_some() {
-            entries.push(texture_entry(2, TEXELS));
+            entries.push(texture_layout(2, TEXELS));
+            entries.push(uniform_entry(BINS_BINDING, stages));
         }
         if glossy {
-            entries.push(texture_entry(3, TEXELS));
+            entries.push(texture_layout(3, TEXELS));
         }
         let layout = gpu.bind_group_layout("gather", &entries);
         let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
         let frame = FrameBindings::new(gpu);
         let shader = gather_shader(bounds, occupancy, normals, glossy);
-        // SAFETY: loops count up to a constant, to the length of a buffer by a step of at least one
-        // workgroup, or over slices, of which there are 1,024 at most, or over cells, of which an edge
-        // has 3 at most.
+        // SAFETY: a loop counts up to a constant, or to the length of a buffer by a step of at least one
+        // workgroup, or over slices, at most 1,024, or over cells along an edge, at most 3.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::gather") }?;
         let layouts = [Some(frame.layout()), Some(&layout), Some(&live_layout)];
-        // The kernel writes the workgroup memory that it reads.
+        // Workgroup memory need not start as zero: the kernel writes it before it reads it.
         let pipeline = |entry_point| gpu.compute_pipeline(&module, entry_point, &layouts, false);
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
         Ok(Self {
@@ -88,13 +97,14 @@ impl Gather {
         })
     }
 
-    /// Sizes buffers for `count` groups and binds them: outside the clock.
+    /// Sizes buffers for `count` groups and binds them: outside the clock. `uniforms` are those of froxels and
+    /// of bins.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
         images: Images<'_>,
-        clusters: &wgpu::Buffer,
+        uniforms: [&wgpu::Buffer; 2],
         count: u32,
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
@@ -102,19 +112,17 @@ impl Gather {
         if self.marks.size() < marks * 4 {
             self.marks = gpu.storage("cluster marks", marks * 4)?;
         }
-        // The kernel clears the whole buffer, which may be that of a larger view.
+        // The kernel clears the whole buffer, which may have grown for a larger view.
         self.clear_workgroups = (self.marks.size() / 4).div_ceil(CLEARED).min(MAX_DISPATCH) as u32;
         self.live.prepare(gpu, count)?;
-        let texture = |binding, view| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::TextureView(view),
-        };
         let mut entries = vec![
             texture(0, images.depth),
             entry(1, &self.marks),
-            entry(FIRST_STRATEGY_BINDING, clusters),
+            entry(FROXELS_BINDING, uniforms[0]),
         ];
-        entries.extend(images.normals.map(|view| texture(2, view)));
+        if let Some(normals) = images.normals {
+            entries.extend([texture(2, normals), entry(BINS_BINDING, uniforms[1])]);
+        }
         entries.extend(images.base_color.map(|view| texture(3, view)));
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("gather"),
@@ -153,7 +161,7 @@ impl Gather {
         &self.live
     }
 
-    /// Explicit bounds: words of each group, see `gather.wesl`.
+    /// What it found in each group: `marks.wesl` says what the words hold.
     pub(crate) fn marks(&self) -> &wgpu::Buffer {
         &self.marks
     }
@@ -163,25 +171,10 @@ impl Gather {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Images<'a> {
     pub(crate) depth: &'a wgpu::TextureView,
-    /// Where the strategy was made with normals.
+    /// Present if the strategy was made with normals.
     pub(crate) normals: Option<&'a wgpu::TextureView>,
-    /// Where it was made with a specular threshold.
+    /// Present if it was made with a specular threshold.
     pub(crate) base_color: Option<&'a wgpu::TextureView>,
-}
-
-const TEXELS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
-
-fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
 }
 
 /// The pass's shader.
@@ -191,20 +184,11 @@ fn gather_shader<'a>(
     normals: Normals,
     glossy: bool,
 ) -> Shader<'a> {
-    let strategy = match bounds {
-        Bounds::Implicit => IMPLICIT_WESL,
-        Bounds::Explicit if glossy => GLOSSY_BINS_WESL,
-        Bounds::Explicit if normals.is_some() => BINS_WESL,
-        Bounds::Explicit => EXPLICIT_WESL,
-    };
     Shader::new(GATHER_GROUP)
         .module("package::gather", include_str!("shaders/gather.wesl"))
         .module("package::live", LiveGroups::WESL)
-        .module("package::strategy", strategy)
-        .flag("explicit_bounds", bounds == Bounds::Explicit)
+        .strategy(cluster_wesl(bounds, normals, glossy))
         .flag("sparse", occupancy == Occupancy::Sparse)
-        .flag("normals", normals.is_some())
-        .flag("glossy", glossy)
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.

@@ -1,10 +1,10 @@
-//! Clustered light assignment: screen tiles cut into depth slices.
+//! Light assignment by froxels: screen tiles cut into depth slices.
 //!
 //! # Idea
 //!
-//! A cluster is a tile of pixels and a slice of view depth; every view sample lies in exactly
-//! one. Slices grow exponentially with depth, so clusters stay about as deep as they are wide
-//! (Olsson et al. 2012; Enhuber 2019, section 3.2).
+//! A froxel is a tile of pixels and a slice of view depth; every view sample lies in exactly one. In a
+//! perspective view slices grow exponentially with depth, so froxels stay about as deep as they are wide
+//! (Olsson et al. 2012; Enhuber 2019, section 3.2). A cluster is a froxel with a list of lights.
 //!
 //! | id | which clusters get a list | bounds of a cluster |
 //! |---|---|---|
@@ -13,69 +13,100 @@
 //! | `SC-I` | those that hold a sample (sparse) | its whole frustum |
 //! | `SC-E` | those that hold a sample (sparse) | the box around the samples |
 //!
+//! [`HybridGrid`], `HG`, shares the froxels but works from the other side: lights add themselves to the froxels
+//! that they touch. `hybrid/mod.rs` describes it. The rest of this page is about clusters.
+//!
 //! # Phases
 //!
-//! 1. `bounds` (all but DC-I): reads the depth buffer once. Each workgroup collects the clusters of
-//!    32 x 32 pixels, and the boxes around their samples, in a hash table in workgroup memory, then
-//!    merges them into global memory, one set of atomics a cluster and block. The first block to
-//!    meet a cluster appends it to the clusters that live.
-//! 2. `cull`: one workgroup per cluster, all or the live ones, tests lights against the cluster's
-//!    frustum (HS and SAT-N by default) or box (NP) and writes its list.
+//! 1. `bounds` (all but DC-I) reads the depth buffer once. Each workgroup reads 32 x 32 pixels, and collects
+//!    their clusters and the boxes around their samples in a hash table in workgroup memory. Then it merges the
+//!    table into global memory, with one set of atomics per cluster and block. The first workgroup to meet a
+//!    cluster appends it to the live clusters.
+//! 2. `cull` gives each cluster one workgroup: every cluster, or only the live ones. It tests lights against
+//!    the cluster's frustum (by default HS and SAT-N) or box (NP), and writes the cluster's list.
 //!
-//! Worked example: of clusters 0 to 7 a view's samples lie in 2, 5 and 6. Dense culls eight, sparse
-//! appends `[5, 2, 6]`, in any order, and culls three; the lists of the others are never looked up.
+//! Worked example: a view's samples lie in clusters 2, 5 and 6 of clusters 0 to 7. Dense strategies cull all
+//! eight clusters. Sparse ones append `[5, 2, 6]`, in any order, and cull three; shading never looks up the
+//! lists of the others.
 //!
 //! # Normals
 //!
-//! SC-E can split clusters by shading normals as well ([`Normals`]; `SC-E/48x48x40/n6`, Swarbrick 2025,
-//! sections 3.4 and 4.2): a group is then a cluster and a bin, a cell of a face of the cube around the
-//! unit sphere, and only those that hold samples get a list. `bounds` also reads the normals and keeps
-//! a box of each group's, `cull` also leaves out lights that rise above the horizon of no normal in
-//! the cone around it (`facing.wesl`). Nothing is lost: such lights add exactly nothing.
+//! SC-E can also split clusters by shading normals ([`Normals`]; `SC-E/48x48x40/n6`; Swarbrick 2025, sections
+//! 3.4 and 4.2). A group is then a cluster and a bin of normals, and only groups that hold samples get a list.
+//! A bin is a cell of a face of the cube around the unit sphere.
 //!
-//! A specular threshold (`/s0.001`) leaves out the specular term of area lights whose upper bound over
-//! the group stays below it (`gloss.wesl`). `bounds` then keeps the range of roughness and the greatest
-//! reflectance at normal incidence too. That is lossy by what is left out, light by light.
+//! - `bounds` also reads the normals and keeps a box around the normals of each group.
+//! - `cull` also leaves out lights that lie below the horizon of every normal in the cone around that box
+//!   (`facing.wesl`). This loses nothing, because such lights add exactly nothing.
 //!
-//! Two more cuts are Swarbrick's own, as baselines, and lossy too ([`SpecularCut`]). `/n54/cone45` tests
-//! whether a bin's normals mirror the light's middle to the eye, give or take a lobe of 45 degrees
-//! (`reflected.wesl`), and looks only at lights whose diffuse term does not reach. `/dif` lists a light only
-//! where its diffuse term reaches the group; of a listed light, specular light is drawn out to its full range.
+//! A specular threshold (`/s0.001`) leaves out the specular term of area lights whose upper bound over the group
+//! stays below it (`gloss.wesl`). `bounds` then also keeps the range of roughness and the greatest reflectance
+//! at normal incidence. This is lossy: it drops up to the threshold per light.
+//!
+//! Two more cuts are Swarbrick's own; they are baselines, and lossy too ([`SpecularCut`]):
+//!
+//! - `/n54/cone45` applies to lights whose diffuse term does not reach the group. It keeps such a light only if a
+//!   bin's normals mirror the light's middle to the eye, within a lobe of 45 degrees (`reflected.wesl`).
+//! - `/dif` lists a light only if its diffuse term reaches the group. Shading then draws the specular term of a
+//!   listed light out to the light's full range.
 //!
 //! # Cost
 //!
-//! `bounds` grows with pixels, `cull` with clusters that get a list times lights. Memory is 8 bytes
-//! a cluster, 24 more with explicit bounds (4 with sparse implicit ones), and 4 bytes a listed
-//! light. With normals it is 60 bytes a cluster and bin, whether it holds samples or not, and 72 with a
-//! specular threshold: 1.99 million groups at 1920x1080 with 54 bins and 48x48x40, 119 MB.
+//! `bounds` grows with pixels. `cull` grows with lights times clusters that get a list.
 //!
-//! Figures, ms, of 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
-//! `results/h200-all/sponza-1.6.json`, whose command is in `results/README.md`): DC-I/128x128x64
-//! 0.322 to assign and 0.182 to shade; DC-E/64x64x40 0.085 and 0.138; SC-I/48x48x40 0.107 and 0.153;
-//! SC-E/48x48x40 0.094 and 0.132, through the hierarchy 0.054 and 0.132.
+//! | memory | bytes |
+//! |---|---|
+//! | per cluster | 8 |
+//! | more per cluster, explicit bounds | 24 |
+//! | more per cluster, sparse with implicit bounds | 4 |
+//! | per cluster and bin, with normals, whether it holds samples or not | 60 |
+//! | per cluster and bin, with a specular threshold | 72 |
+//! | per listed light | 4 |
+//!
+//! With 54 bins, 48x48x40 has 1.99 million groups at 1920x1080, which take 119 MB.
+//!
+//! Measured for 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25; `results/h200-all/sponza-1.6.json`,
+//! whose command is in `results/README.md`):
+//!
+//! | strategy | assign, ms | shade, ms |
+//! |---|---|---|
+//! | DC-I/128x128x64 | 0.322 | 0.182 |
+//! | DC-E/64x64x40 | 0.085 | 0.138 |
+//! | SC-I/48x48x40 | 0.107 | 0.153 |
+//! | SC-E/48x48x40 | 0.094 | 0.132 |
+//! | SC-E/48x48x40/bvh | 0.054 | 0.132 |
 //!
 //! # Where it fails
 //!
-//! Dense: empty clusters are culled as well, and most of a dense grid shows no surface. Implicit:
-//! deep slices far away, and wide ones where the tile is large, list lights that no visible sample
-//! meets. A near plane much closer than the first surface spends slices on nothing: they grow with
-//! `log(far / near)`. Normals: surfaces of many directions make many groups, each culled on its own,
-//! and neighbours that read other lists; where lights rise above most horizons it buys nothing.
+//! - Dense strategies also cull empty clusters, and most of a dense grid shows no surface.
+//! - Implicit bounds are loose for slices far away, which are deep, and for large tiles, whose clusters are wide.
+//!   Such clusters list lights that reach no visible sample.
+//! - A near plane much closer than the first surface spends slices on nothing: the octaves to cover grow with
+//!   `log(far / near)`.
+//! - With normals, surfaces of many directions make many groups. Each is culled on its own, and neighbouring
+//!   pixels read different lists. If lights rise above most horizons, normals save nothing.
+//! - A surface whose depth equals the cleared depth cannot be told from background. Its samples get all lights.
 //!
-//! DC-I serves look-ups at any depth, transparent layers and volumes included. The others serve
-//! the opaque surfaces in the depth buffer alone, and refuse the rest. A surface whose depth equals
-//! the cleared one cannot be told from background: its samples get all lights.
+//! DC-I serves look-ups at any depth, including transparent layers and volumes. The others serve only the opaque
+//! surfaces in the depth buffer, and refuse any other look-up.
 
+mod bindings;
+mod cluster_wesl;
 mod clustered;
-mod clusters;
+mod froxels;
 mod gather;
+mod hybrid;
+mod normal_bins;
 mod normals;
+mod occupancy;
 mod specular_cut;
 
-pub use clustered::{
-    BINS_WESL, Clustered, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL, Occupancy,
-};
-pub use clusters::{ClusterSize, ClustersUniform, UNBOUNDED};
+pub use cluster_wesl::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL};
+pub use clustered::Clustered;
+pub use froxels::{FroxelSize, FroxelsUniform, UNBOUNDED};
 pub use gather::gather_source;
+pub use hybrid::{HYBRID_WESL, HybridGrid, HybridShader};
+pub use normal_bins::NormalBinsUniform;
 pub use normals::Normals;
+pub use occupancy::Occupancy;
 pub use specular_cut::{PAPERS_LOBE_DEGREES, SpecularCut};

@@ -1,18 +1,17 @@
-//! How a cluster's samples are split by the directions of their shading normals.
+//! How shading normals split a cluster's samples.
 
 use assign::AssignError;
 
 /// Whether clusters are split by shading normals, and into how many bins.
 ///
-/// A bin is a cell of a face of the cube around the unit sphere, k x k cells a face: 6, 24 or 54
-/// bins (Swarbrick 2025, section 4.2). One bin keeps clusters whole, and still knows the cone of the
-/// normals in each.
+/// A bin is a cell of a face of the cube around the unit sphere, with k x k cells per face: 6, 24 or 54 bins
+/// (Swarbrick 2025, section 4.2). One bin keeps clusters whole, and still knows the cone of their normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Normals {
-    /// Clusters know nothing of normals.
+    /// Clusters are not split, and nothing is known of their normals.
     #[default]
     None,
-    /// So many bins a cluster: 1, 6, 24 or 54.
+    /// This number of bins per cluster: 1, 6, 24 or 54.
     Bins(u32),
 }
 
@@ -34,7 +33,7 @@ impl Normals {
         self != Self::None
     }
 
-    /// Groups a cluster.
+    /// Groups per cluster.
     pub fn bins(self) -> u32 {
         match self {
             Self::None => 1,
@@ -42,12 +41,12 @@ impl Normals {
         }
     }
 
-    /// Cells along an edge of a face; 0 where normals are not told apart.
+    /// Cells along an edge of a face; 0 if one bin takes all normals.
     pub(crate) fn side(self) -> u32 {
         (self.bins() / 6).isqrt()
     }
 
-    /// What an id says of it: `/n6`, or nothing.
+    /// Its segment of an id: `/n6`, or nothing.
     pub(crate) fn segment(self) -> String {
         match self {
             Self::None => String::new(),

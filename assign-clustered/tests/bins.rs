@@ -1,21 +1,24 @@
-//! Bins of normals on the adapter: every direction lies in one, whose cone holds it, and is gathered into
-//! that one however the G-buffer rounds it.
+//! Bins of normals on the adapter: every direction lies in a bin whose cone holds it, and the pass `bounds` puts
+//! it into that bin however the G-buffer rounds it.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use assign::{Gpu, Shader, View, entry, storage_entry, uniform_entry};
-use assign_clustered::{BINS_WESL, ClusterSize, ClustersUniform, Normals};
-use bytemuck::{bytes_of, cast_slice};
+use assign::{
+    Gpu, Shader,
+    conformance::{Bound, download, run_kernel, upload},
+    kernel::Slot,
+};
+use assign_clustered::{BINS_WESL, NormalBinsUniform, Normals, SpecularCut};
 use glam::Vec3;
 
 const DRIVER: &str = "
-import package::strategy::{
+import package::strategy::normal_bins::{
   bin_count, bin_of, bin_of_cell, cells_near, cone_of_bin, greatest_of, NORMAL_MIN,
 };
 
-// A direction, and the same as the G-buffer rounds it.
+// Pairs: a direction, and that direction as the G-buffer rounds it.
 @group(2) @binding(0) var<storage, read> normals: array<vec4f>;
-// The bin; whether its cone holds the direction; whether the rounded one is gathered into it.
+// The bin; whether its cone holds the direction; whether the rounded direction is gathered into it.
 @group(2) @binding(1) var<storage, read_write> found: array<vec4u>;
 
 @compute @workgroup_size(64)
@@ -44,10 +47,10 @@ fn find(@builtin(global_invocation_id) id: vec3u) {
 
 struct Finder {
     gpu: Gpu,
-    pipeline: wgpu::ComputePipeline,
+    module: wgpu::ShaderModule,
 }
 
-/// What is found of a direction: its bin, whether the bin's cone holds it, whether it is gathered.
+/// The bin of a direction, whether the bin's cone holds it, and whether its rounded form is gathered there.
 type Found = (u32, bool, bool);
 
 impl Finder {
@@ -59,71 +62,37 @@ impl Finder {
             .module("package::driver", DRIVER)
             .module("package::facing", facing)
             .module("package::bounds", bounds)
-            .module("package::strategy", BINS_WESL)
+            .strategy(BINS_WESL)
             .create(&gpu, "package::driver")
             .unwrap();
-        let stages = wgpu::ShaderStages::COMPUTE;
-        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries };
-            gpu.device.create_bind_group_layout(&descriptor)
-        };
-        let clusters = layout(&[uniform_entry(4, stages)]);
-        let own = layout(&[storage_entry(0, stages, true), storage_entry(1, stages, false)]);
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[None, Some(&clusters), Some(&own)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: None,
-            layout: Some(&layout),
-            module: &module,
-            entry_point: Some("find"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Self { gpu, pipeline }
+        Self { gpu, module }
     }
 
-    /// Looks directions up, each with its rounded one.
+    /// Finds the bins of directions, each given with its rounded form.
     fn find(&self, bins: u32, normals: &[[Vec3; 2]]) -> Vec<Found> {
         let gpu = &self.gpu;
-        let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 64]);
-        let size: ClusterSize = "32x32x8".parse().unwrap();
-        let clusters = ClustersUniform::new(size, Normals::Bins(bins), &view, None).unwrap();
-        let uniform = gpu.uniform("clusters", size_of::<ClustersUniform>() as u64);
-        gpu.queue.write_buffer(&uniform, 0, bytes_of(&clusters));
+        let bins = NormalBinsUniform::new(Normals::Bins(bins), SpecularCut::None);
+        let uniform = upload(gpu, "normal bins", &[bins]).unwrap();
         let vectors: Vec<[f32; 4]> =
             normals.iter().flatten().map(|v| v.extend(0.0).to_array()).collect();
-        let input = gpu.storage("normals", size_of_val(&vectors[..]) as u64).unwrap();
-        gpu.queue.write_buffer(&input, 0, cast_slice(&vectors));
-        let bytes = 16 * normals.len() as u64;
-        let output = gpu.storage("found", bytes).unwrap();
-        let group = |index, entries: &[wgpu::BindGroupEntry<'_>]| {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout: &self.pipeline.get_bind_group_layout(index),
-                entries,
-            })
-        };
-        let groups =
-            [group(1, &[entry(4, &uniform)]), group(2, &[entry(0, &input), entry(1, &output)])];
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(1, &groups[0], &[]);
-            pass.set_bind_group(2, &groups[1], &[]);
-            pass.dispatch_workgroups(normals.len().div_ceil(64) as u32, 1, 1);
-        }
-        gpu.queue.submit([encoder.finish()]);
-        let words = gpu.read(&output, bytes).unwrap();
-        let found = cast_slice::<u8, [u32; 4]>(&words).iter();
-        found.map(|&[bin, holds, gathered, _]| (bin, holds == 1, gathered == 1)).collect()
+        let input = upload(gpu, "normals", &vectors).unwrap();
+        let output = upload(gpu, "found", &vec![[0_u32; 4]; normals.len()]).unwrap();
+        let groups = [
+            Bound::Nothing,
+            Bound::Buffers(&[(6, Slot::Uniform, &uniform)]),
+            Bound::Buffers(&[(0, Slot::Read, &input), (1, Slot::Write, &output)]),
+        ];
+        let workgroups = normals.len().div_ceil(64) as u32;
+        run_kernel(gpu, &self.module, "find", &groups, workgroups);
+        let found: Vec<[u32; 4]> = download(gpu, &output, normals.len()).unwrap();
+        found
+            .into_iter()
+            .map(|[bin, holds, gathered, _]| (bin, holds == 1, gathered == 1))
+            .collect()
     }
 }
 
-/// A half float at its worst: cut off, and flushed to 0 where too small for a normal one.
+/// The worst rounding to half floats: mantissas are cut off, and subnormal numbers become 0.
 fn cut_off(normal: Vec3) -> Vec3 {
     let cut = |x: f32| {
         let kept = f32::from_bits(x.to_bits() & !0x1fff);
@@ -132,7 +101,7 @@ fn cut_off(normal: Vec3) -> Vec3 {
     Vec3::new(cut(normal.x), cut(normal.y), cut(normal.z))
 }
 
-/// Directions on a lattice over the faces of the cube, many beside a border of some cell.
+/// Directions on a lattice over the faces of the cube. Many lie next to a border between cells.
 fn directions() -> Vec<Vec3> {
     let mut coordinates: Vec<f32> = (-20..=20).map(|i| i as f32 / 20.0).collect();
     for border in [-1.0_f32, -1.0 / 3.0, 0.0, 1.0 / 3.0, 1.0] {
@@ -170,7 +139,7 @@ fn every_direction_lies_in_a_bin_that_it_is_gathered_into() {
 }
 
 #[test]
-fn what_turns_by_more_than_the_slack_is_noticed() {
+fn directions_turned_by_more_than_the_slack_miss_their_bin() {
     let finder = Finder::new();
     let turned = |n: Vec3| [n, (n + 4e-3 * n.any_orthonormal_vector()).normalize()];
     let normals: Vec<[Vec3; 2]> = directions().into_iter().map(turned).collect();

@@ -102,7 +102,7 @@ impl TileBounds {
 fn bounds_shader<'a>() -> Shader<'a> {
     Shader::new(BOUNDS_GROUP)
         .module("package::tile_bounds", include_str!("shaders/tile_bounds.wesl"))
-        .module("package::strategy", EXPLICIT_WESL)
+        .strategy(EXPLICIT_WESL)
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.

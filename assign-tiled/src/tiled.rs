@@ -3,7 +3,7 @@
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
     FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs,
-    Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    Passes, SampleDomain, StrategyModule, StrategyWesl, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -22,13 +22,15 @@ pub struct Tiled {
     culler: Culler,
 }
 
-/// The WESL module of tiles bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: &str =
-    concat!(include_str!("shaders/tiles.wesl"), include_str!("shaders/implicit.wesl"));
+/// The WESL of tiles bounded by their frusta: `group_of` and `group_bounds`.
+pub const IMPLICIT_WESL: StrategyWesl<'static> = tiles_wesl(&[("explicit_bounds", false)]);
 
-/// The WESL module of tiles bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: &str =
-    concat!(include_str!("shaders/tiles.wesl"), include_str!("shaders/explicit.wesl"));
+/// The WESL of tiles bounded by the samples in them: `group_of` and `group_bounds`.
+pub const EXPLICIT_WESL: StrategyWesl<'static> = tiles_wesl(&[("explicit_bounds", true)]);
+
+const fn tiles_wesl(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'static> {
+    StrategyWesl { main: include_str!("shaders/tiles.wesl"), imports: &[], flags }
+}
 
 impl Tiled {
     /// Makes the strategy; `size` is checked.

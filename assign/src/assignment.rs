@@ -1,6 +1,6 @@
 //! The one trait behind which every strategy stands.
 
-use crate::{AssignError, Frame, Gpu, LightLists, Needs, Passes};
+use crate::{AssignError, Frame, Gpu, LightLists, Needs, Passes, StrategyModule};
 
 /// A strategy: groups of view samples, a function from a sample to its group, and a list of
 /// lights for each group.
@@ -39,30 +39,10 @@ pub trait Assignment {
     fn memory_bytes(&self) -> u64;
 }
 
-/// A strategy's WESL, and its author's word that every loop in it ends.
-#[derive(Clone, Copy, Debug)]
-pub struct StrategyModule(&'static str);
-
-impl StrategyModule {
-    /// # Safety
-    ///
-    /// Every loop must end by itself, whatever the buffers hold: the shaders that the module is
-    /// linked into count no loops ([`Shader::create_uncounted`](crate::Shader::create_uncounted)).
-    #[allow(unsafe_code, reason = "the author's word")]
-    pub const unsafe fn new(source: &'static str) -> Self {
-        Self(source)
-    }
-
-    /// The WESL.
-    pub const fn source(self) -> &'static str {
-        self.0
-    }
-}
-
 /// What a renderer splices into its own shading shader.
 ///
-/// Mount the source of `module` as `package::strategy` (see [`Shader`](crate::Shader)) and call
-/// `list_of(group_of(sample))`; bind [`Assignment::bind_group`] at the group that the shader was
+/// Mount `module` with [`Shader::strategy`](crate::Shader::strategy), import
+/// `package::strategy::group_of` and call `list_of(group_of(sample))`; bind [`Assignment::bind_group`] at the group that the shader was
 /// made for.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {

@@ -9,7 +9,7 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-use crate::{AssignError, Shader};
+use crate::AssignError;
 
 /// What a compute pipeline is made from. Layouts and modules are equal where they are the same object,
 /// so both must come from this store to be found again.
@@ -24,8 +24,13 @@ struct PipelineKey {
 /// What a shader module is made from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ModuleKey {
-    pub(crate) shader: Shader<'static>,
+    /// Path and source of every WESL module.
+    pub(crate) modules: Vec<(String, String)>,
+    /// Name and value of every flag.
+    pub(crate) flags: Vec<(String, bool)>,
+    /// Path of the module that is linked.
     pub(crate) root: String,
+    /// Whether its loops are counted.
     pub(crate) counted: bool,
 }
 
@@ -128,54 +133,4 @@ fn find_or_make<K: Eq + Hash, V: Clone>(
 /// Every value in the store is whole, even where another thread has panicked.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::{Gpu, Shader, storage_entry, uniform_entry};
-
-    fn shader(constant: u32) -> Shader<'static> {
-        let source = format!(
-            "const N: u32 = {constant}u;
-             @group(0) @binding(0) var<storage, read_write> out: array<u32>;
-             @compute @workgroup_size(64) fn one() {{ out[0] = N; }}
-             @compute @workgroup_size(64) fn two() {{ out[1] = N; }}"
-        );
-        Shader::new(1).module("package::root", source)
-    }
-
-    #[test]
-    fn what_is_the_same_is_compiled_once_and_what_differs_is_not_shared() {
-        let gpu = Gpu::noop().expect("a noop device");
-        let stages = wgpu::ShaderStages::COMPUTE;
-        let layout = gpu.bind_group_layout("out", &[storage_entry(0, stages, false)]);
-        assert_eq!(layout, gpu.bind_group_layout("again", &[storage_entry(0, stages, false)]));
-        let wider = [storage_entry(0, stages, false), uniform_entry(1, stages)];
-        let wider = gpu.bind_group_layout("wider", &wider);
-        assert_ne!(layout, wider);
-
-        let make =
-            |gpu: &Gpu, constant| shader(constant).create(gpu, "package::root").expect("links");
-        let module = make(&gpu, 1);
-        assert_eq!(module, make(&gpu, 1));
-        assert_ne!(module, make(&gpu, 2));
-        assert_ne!(
-            module,
-            shader(1).flag("other", true).create(&gpu, "package::root").expect("links")
-        );
-        #[allow(unsafe_code, reason = "it has no loop")]
-        // SAFETY: it has no loop.
-        let uncounted = unsafe { shader(1).create_uncounted(&gpu, "package::root") };
-        assert_ne!(module, uncounted.expect("links"));
-
-        let pipeline = |module: &_, entry_point, layout: &_, zero| {
-            gpu.compute_pipeline(module, entry_point, &[Some(layout)], zero)
-        };
-        let one = pipeline(&module, "one", &layout, true);
-        assert_eq!(one, pipeline(&module, "one", &layout, true));
-        assert_ne!(one, pipeline(&module, "two", &layout, true));
-        assert_ne!(one, pipeline(&module, "one", &wider, true));
-        assert_ne!(one, pipeline(&module, "one", &layout, false));
-        assert_ne!(one, pipeline(&make(&gpu, 2), "one", &layout, true));
-    }
 }

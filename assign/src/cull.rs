@@ -4,9 +4,10 @@
 //! resources it reads. The driver supplies the kernel (`cull.wesl`), the tests and the lists.
 
 use crate::{
-    AreaBounds, AssignError, CullSettings, Frame, FrameBindings, Gpu, LightKinds, LightLists,
-    LightSource, ListsBindings, LiveGroups, Lookup, Passes, Shader, StrategyModule,
+    AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
+    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule, StrategyWesl,
     frame::{entry, storage_entry},
+    kernel::MAX_WORKGROUPS,
 };
 
 /// Bind group of the lists inside the driver's own kernels.
@@ -14,63 +15,6 @@ const LISTS_GROUP: u32 = 1;
 
 /// Bind group of what is culled: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
-
-/// Workgroups a dispatch may have along one axis; each takes several groups where there are more.
-const MAX_DISPATCH: u32 = 65_535;
-
-/// The shape of a strategy's groups, and with it the test.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GroupShape {
-    /// A pixel rectangle and a depth range: `bounds_frustum.wesl`.
-    Frustum,
-    /// A box along the world's axes: `bounds_box.wesl`.
-    Box,
-    /// A box along axes of its own: `bounds_oriented_box.wesl`.
-    OrientedBox,
-}
-
-/// What the kernel knows of how a group's surfaces face.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Facing {
-    /// Nothing.
-    #[default]
-    Unknown,
-    /// A cone around their normals, of groups that are boxes: the strategy's module has
-    /// `group_facing(group: u32) -> NormalCone`, and lights that rise above no horizon are left
-    /// out (`facing.wesl`).
-    Horizon,
-    /// The same, and how they reflect: `group_gloss(group: u32) -> Gloss`. Specular terms of area
-    /// lights that add less than a threshold are left out (`gloss.wesl`). Lossy.
-    HorizonAndGloss,
-    /// How groups mirror light in the terms of Swarbrick 2025: `group_reflection(group: u32) ->
-    /// Reflection`, of groups that are boxes. Where a light's diffuse term does not reach, its specular
-    /// one is left out unless it is mirrored to the eye (`reflected.wesl`). Lossy.
-    ReflectedCone,
-    /// Nothing, and a light's specular term is left out where its diffuse term does not reach. Lossy.
-    WhereDiffuse,
-}
-
-/// Which groups get a list in a frame.
-#[derive(Clone, Copy, Debug)]
-pub enum Groups<'a> {
-    /// All of them: their number.
-    All(u32),
-    /// Those that the strategy's own pass appended.
-    Live {
-        /// Number of all groups, live or not.
-        count: u32,
-        /// The live ones.
-        live: &'a LiveGroups,
-    },
-}
-
-impl Groups<'_> {
-    fn count(&self) -> u32 {
-        match self {
-            Self::All(count) | Self::Live { count, .. } => *count,
-        }
-    }
-}
 
 /// What a strategy hands to [`Culler::new`].
 #[derive(Clone, Copy, Debug)]
@@ -188,7 +132,7 @@ impl Culler {
     fn bind_source(&mut self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) {
         let mut entries = Vec::new();
         self.dispatch = match groups {
-            Groups::All(count) => Dispatch::Workgroups(count.min(MAX_DISPATCH)),
+            Groups::All(count) => Dispatch::Workgroups(count.min(MAX_WORKGROUPS)),
             Groups::Live { live, .. } => {
                 entries.push(entry(0, live.buffer()));
                 Dispatch::Indirect(live.buffer().clone())
@@ -206,30 +150,30 @@ impl Culler {
     }
 
     /// The linked WGSL of the kernel, for a scene with lights of these kinds.
-    pub fn kernel_source(
+    pub fn kernel_source<'a>(
         shape: GroupShape,
         settings: CullSettings,
         sparse: bool,
-        module: &str,
+        wesl: impl Into<StrategyWesl<'a>>,
         kinds: LightKinds,
     ) -> Result<String, AssignError> {
         let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        kernel_shader(variant, module, kinds).link("package::cull")
+        kernel_shader(variant, wesl.into(), kinds).link("package::cull")
     }
 
     /// The linked WGSL of the kernel of live groups that are boxes and know how they face.
-    pub fn facing_kernel_source(
+    pub fn facing_kernel_source<'a>(
         settings: CullSettings,
         facing: Facing,
-        module: &str,
+        wesl: impl Into<StrategyWesl<'a>>,
         kinds: LightKinds,
     ) -> Result<String, AssignError> {
         let variant = Variant { shape: GroupShape::Box, settings, sparse: true, facing };
-        kernel_shader(variant, module, kinds).link("package::cull")
+        kernel_shader(variant, wesl.into(), kinds).link("package::cull")
     }
 
     fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
-        let shader = kernel_shader(self.variant, self.module.source(), kinds);
+        let shader = kernel_shader(self.variant, self.module.wesl(), kinds);
         // SAFETY: the driver's loops count up, without wrapping, to a number that is no greater than
         // the length of a buffer and does not change meanwhile, test the next of finitely many
         // nodes, clear a bit of a word a round, or try to take what fits from a pool that only
@@ -291,7 +235,7 @@ impl Culler {
     }
 }
 
-fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Shader<'a> {
+fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, kinds: LightKinds) -> Shader<'a> {
     let bounds = match variant.shape {
         GroupShape::Frustum => include_str!("shaders/bounds_frustum.wesl"),
         GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
@@ -302,7 +246,7 @@ fn kernel_shader<'a>(variant: Variant, module: &'a str, kinds: LightKinds) -> Sh
         .module("package::cull", include_str!("shaders/cull.wesl"))
         .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
-        .module("package::strategy", module)
+        .strategy(wesl)
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
         .module("package::reflected", include_str!("shaders/reflected.wesl"))
         .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))

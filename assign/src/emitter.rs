@@ -8,7 +8,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::light::LightFault;
+use crate::light_fault::LightFault;
 
 /// The most vertices of a polygon.
 pub const MAX_VERTICES: usize = 10;

@@ -6,9 +6,8 @@
 //! polygon, cut by its plane where one-sided. Culling and shading read the same `range`.
 
 use glam::{DVec3, Vec3};
-use thiserror::Error;
 
-use crate::emitter::Emitter;
+use crate::{emitter::Emitter, light_fault::LightFault};
 
 /// What a light is, beside its position, range and intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,29 +50,6 @@ pub struct Light {
     pub intensity: Vec3,
     /// What kind of light it is.
     pub shape: LightShape,
-}
-
-/// Why a light cannot be used. Such a light is left out and counted, never uploaded.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum LightFault {
-    /// A field is NaN or infinite.
-    #[error("{field} is {value}: it must be finite")]
-    NotFinite {
-        /// The field's name.
-        field: &'static str,
-        /// The offending value.
-        value: f32,
-    },
-    /// A field lies outside its range.
-    #[error("{field} is {value}: it must be {accepted}")]
-    OutOfRange {
-        /// The field's name.
-        field: &'static str,
-        /// The offending value.
-        value: f32,
-        /// What would be accepted.
-        accepted: &'static str,
-    },
 }
 
 impl Light {

@@ -4,14 +4,14 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::{AssignError, Gpu, LightKinds, compiled::ModuleKey};
+use crate::{AssignError, Gpu, LightKinds, StrategyWesl, compiled::ModuleKey};
 
 /// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
 ///
 /// It starts with the contract's own modules: `package::view`, `package::sample`,
 /// `package::lights`, `package::volume`, `package::lists` and, for kernels that make lists,
 /// `package::reserve`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug)]
 pub struct Shader<'a> {
     modules: Vec<(String, Cow<'a, str>)>,
     flags: Vec<(String, bool)>,
@@ -29,9 +29,11 @@ impl<'a> Shader<'a> {
             .module("package::sample", include_str!("shaders/sample.wesl"))
             .module("package::lights", include_str!("shaders/lights.wesl"))
             .module("package::volume", include_str!("shaders/volume.wesl"))
+            .module("package::window", include_str!("shaders/window.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
+            .flag("hard_cut", false)
             .light_kinds(LightKinds::default())
     }
 
@@ -45,6 +47,15 @@ impl<'a> Shader<'a> {
         self.modules.retain(|(known, _)| known != path);
         self.modules.push((path.to_owned(), source.into()));
         self
+    }
+
+    /// Mounts a strategy: its modules, the main one as `package::strategy`, and its flags.
+    pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
+        let StrategyWesl { main, imports, flags } = wesl.into();
+        let shader = self.module("package::strategy", main);
+        let shader =
+            imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source));
+        flags.iter().fold(shader, |shader, (name, value)| shader.flag(name, *value))
     }
 
     /// Sets a flag that `@if` reads. A flag that a module reads and nothing sets is an error.
@@ -112,7 +123,13 @@ impl<'a> Shader<'a> {
         counted: bool,
         make: impl FnOnce(wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule,
     ) -> Result<wgpu::ShaderModule, AssignError> {
-        let key = ModuleKey { shader: self.to_static(), root: root.to_owned(), counted };
+        let modules = self.modules.iter();
+        let key = ModuleKey {
+            modules: modules.map(|(path, source)| (path.clone(), source.to_string())).collect(),
+            flags: self.flags.clone(),
+            root: root.to_owned(),
+            counted,
+        };
         gpu.compiled.module(key, || {
             let source = self.link(root)?;
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -128,12 +145,54 @@ impl<'a> Shader<'a> {
             }
         })
     }
+}
 
-    /// A copy that owns its sources.
-    fn to_static(&self) -> Shader<'static> {
-        let owned = |(path, source): &(String, Cow<'a, str>)| {
-            (path.clone(), Cow::Owned(source.clone().into_owned()))
+#[cfg(test)]
+mod tests {
+    use crate::{Gpu, Shader, storage_entry, uniform_entry};
+
+    fn shader(constant: u32) -> Shader<'static> {
+        let source = format!(
+            "const N: u32 = {constant}u;
+             @group(0) @binding(0) var<storage, read_write> out: array<u32>;
+             @compute @workgroup_size(64) fn one() {{ out[0] = N; }}
+             @compute @workgroup_size(64) fn two() {{ out[1] = N; }}"
+        );
+        Shader::new(1).module("package::root", source)
+    }
+
+    #[test]
+    fn what_is_the_same_is_compiled_once_and_what_differs_is_not_shared() {
+        let gpu = Gpu::noop().expect("a noop device");
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let layout = gpu.bind_group_layout("out", &[storage_entry(0, stages, false)]);
+        assert_eq!(layout, gpu.bind_group_layout("again", &[storage_entry(0, stages, false)]));
+        let wider = [storage_entry(0, stages, false), uniform_entry(1, stages)];
+        let wider = gpu.bind_group_layout("wider", &wider);
+        assert_ne!(layout, wider);
+
+        let make =
+            |gpu: &Gpu, constant| shader(constant).create(gpu, "package::root").expect("links");
+        let module = make(&gpu, 1);
+        assert_eq!(module, make(&gpu, 1));
+        assert_ne!(module, make(&gpu, 2));
+        assert_ne!(
+            module,
+            shader(1).flag("other", true).create(&gpu, "package::root").expect("links")
+        );
+        #[allow(unsafe_code, reason = "it has no loop")]
+        // SAFETY: it has no loop.
+        let uncounted = unsafe { shader(1).create_uncounted(&gpu, "package::root") };
+        assert_ne!(module, uncounted.expect("links"));
+
+        let pipeline = |module: &_, entry_point, layout: &_, zero| {
+            gpu.compute_pipeline(module, entry_point, &[Some(layout)], zero)
         };
-        Shader { modules: self.modules.iter().map(owned).collect(), flags: self.flags.clone() }
+        let one = pipeline(&module, "one", &layout, true);
+        assert_eq!(one, pipeline(&module, "one", &layout, true));
+        assert_ne!(one, pipeline(&module, "two", &layout, true));
+        assert_ne!(one, pipeline(&module, "one", &wider, true));
+        assert_ne!(one, pipeline(&module, "one", &layout, false));
+        assert_ne!(one, pipeline(&make(&gpu, 2), "one", &layout, true));
     }
 }

@@ -76,8 +76,9 @@ fn every_permutation_of_the_kernel_validates() {
     for (shape, bounds, settings, sparse) in permutations() {
         for kinds in LightKinds::ALL {
             let what = format!("{shape:?}, {settings:?}, sparse {sparse}, {kinds:?}");
-            let source = Culler::kernel_source(shape, settings, sparse, &strategy(bounds), kinds)
-                .unwrap_or_else(|e| panic!("{what}: {e}"));
+            let source =
+                Culler::kernel_source(shape, settings, sparse, strategy(bounds).as_str(), kinds)
+                    .unwrap_or_else(|e| panic!("{what}: {e}"));
             let module = validate(&source).unwrap_or_else(|e| panic!("{what}: {e}"));
             let mut entry_points: Vec<_> = module.entry_points.iter().map(|e| &e.name).collect();
             entry_points.sort();
@@ -101,7 +102,8 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
     let (_, bounds, settings, sparse) = permutations()[0];
     let strategy = strategy(bounds);
     let kinds = LightKinds::default();
-    let source = Culler::kernel_source(FRUSTUM.0, settings, sparse, &strategy, kinds).unwrap();
+    let source =
+        Culler::kernel_source(FRUSTUM.0, settings, sparse, strategy.as_str(), kinds).unwrap();
     let module = validate(&source).unwrap();
     let is_it = |name: &Option<String>| name.as_deref().is_some_and(|n| n.ends_with("CAREFUL"));
     let (_, careful) = module.constants.iter().find(|(_, c)| is_it(&c.name)).unwrap();
@@ -121,8 +123,13 @@ fn area_bounds_change_only_kernels_with_area_lights() {
         for kinds in LightKinds::ALL {
             let source = |area_bounds| {
                 let settings = CullSettings { area_bounds, ..settings };
-                let linked =
-                    Culler::kernel_source(shape, settings, sparse, &strategy(bounds), kinds);
+                let linked = Culler::kernel_source(
+                    shape,
+                    settings,
+                    sparse,
+                    strategy(bounds).as_str(),
+                    kinds,
+                );
                 let source = linked.unwrap();
                 validate(&source).unwrap();
                 source
@@ -140,7 +147,9 @@ fn flags_change_the_kernel() {
     for (shape, bounds, settings, sparse) in permutations() {
         for kinds in LightKinds::ALL {
             let module = strategy(bounds);
-            sources.push(Culler::kernel_source(shape, settings, sparse, &module, kinds).unwrap());
+            sources.push(
+                Culler::kernel_source(shape, settings, sparse, module.as_str(), kinds).unwrap(),
+            );
         }
     }
     let count = sources.len();
@@ -153,7 +162,12 @@ fn flags_change_the_kernel() {
 fn a_strategy_of_the_wrong_shape_is_rejected() {
     let boxes = strategy(BOXES[0].1);
     let settings = CullSettings::default();
-    let linked =
-        Culler::kernel_source(GroupShape::Frustum, settings, false, &boxes, LightKinds::default());
+    let linked = Culler::kernel_source(
+        GroupShape::Frustum,
+        settings,
+        false,
+        boxes.as_str(),
+        LightKinds::default(),
+    );
     assert!(linked.map_err(|e| e.to_string()).and_then(|source| validate(&source)).is_err());
 }

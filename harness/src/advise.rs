@@ -21,8 +21,6 @@ pub use verdict::{METRIC, Verdict, error_of, verdict};
 
 use std::time::Instant;
 
-use clap::ValueEnum;
-
 use crate::{
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
     compare::Bench,
@@ -81,12 +79,6 @@ const CAPPED: usize = 2;
 ///
 /// Whatever a comparison fails with, and a choice of several modes.
 pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, HarnessError> {
-    if args.mode.modes().len() != 1 {
-        let value = args.mode.to_possible_value();
-        let value = value.as_ref().map_or("several", |value| value.get_name());
-        let accepted = "one mode: deferred, deferred-ids, forward or forward-no-prepass";
-        return Err(CliError::out_of_range("--mode", value, accepted).into());
-    }
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
@@ -96,7 +88,7 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let finalists: Vec<String> =
         best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
     if finalists.is_empty() {
-        return Err(CliError::new("advise: no strategy showed the image of no culling").into());
+        return Err(CliError::new("advise: no strategy gave the image of no culling").into());
     }
     let parameters = search.round("parameters", &finalists.join(","), &[], 0)?;
 
@@ -149,7 +141,7 @@ impl<'a> Search<'a> {
         let all: Vec<u32> = (0..poses.unwrap_or(0)).collect();
         if let Some(why) = untested(&gpu, stage, &all, poses.unwrap_or(0))? {
             let why = why.words(u64::from(stage.lights.count()), poses.is_some());
-            let message = format!("advise: nothing can be said: {why}");
+            let message = format!("advise: no advice for this view: {why}");
             return Err(CliError::new(message + " (--camera, --lights)").into());
         }
         Ok(Self { args, bench, shared: AdviseArgs::shared_words(command), poses })
@@ -188,7 +180,7 @@ impl<'a> Search<'a> {
         option(more);
         option(&["--out", &out.to_string_lossy()]);
         let Invocation::Compare(compare) = cli::parse(&words)? else {
-            return Err(CliError::new("advise: a round compares nothing").into());
+            return Err(CliError::new("advise: a round has no strategies to compare").into());
         };
         let stage = self.args.stage.clone();
         let (results, _) =
@@ -266,7 +258,7 @@ fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<
     if error_budget > 0.0 {
         for record in last.iter().take(CAPPED) {
             // A longer list loses nothing and gains nothing.
-            let shorter = CAPS.iter().filter(|cap| u64::from(**cap) < record.longest_list);
+            let shorter = CAPS.iter().filter(|cap| u64::from(**cap) < record.lists.longest);
             ids.extend(shorter.map(|cap| format!("{}/cap{cap}", record.strategy)));
         }
     }

@@ -121,7 +121,7 @@ fn json_files(folder: &Path) -> Vec<String> {
 pub fn pictures(results: &Results, folder: &Path) -> Pictures {
     let mut pictures = Pictures::new();
     for record in &results.records {
-        let images = &record.images;
+        let images = &record.image.files;
         let names = [&images.image, &images.baseline, &images.difference, &images.heat_map];
         for name in names.into_iter().flatten() {
             if pictures.iter().all(|(known, _)| known != name)
@@ -140,7 +140,7 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
     let mut store = Store::new(folder);
     for record in &mut results.records {
         record.set_times();
-        let images = &record.images;
+        let images = &record.image.files;
         let raw = images.raw.as_deref();
         let Some(image) = store.image(raw)? else { continue };
         let exposure = images.exposure.unwrap_or(1.0) as f32;
@@ -153,10 +153,10 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
             stored(errors(&ImagePair { image: &image, reference, exposure }))
         };
         if let Some(baseline) = baseline.filter(|_| !keeps_errors(record)) {
-            record.errors = against(&baseline);
+            record.image.errors = against(&baseline);
         }
         if let Some(unbounded) = unbounded {
-            record.unbounded_errors = against(&unbounded);
+            record.image.unbounded_errors = against(&unbounded);
         }
     }
     Ok(())
@@ -164,7 +164,7 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
 
 /// Whether a record's errors come from images that are not kept, or from none.
 fn keeps_errors(record: &Record) -> bool {
-    record.along_path || record.is_control()
+    record.setting.along_path || record.is_control()
 }
 
 #[cfg(test)]

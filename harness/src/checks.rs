@@ -1,4 +1,4 @@
-//! What is checked before anything long begins.
+//! Checks that run before any long work starts.
 
 use std::path::Path;
 
@@ -15,47 +15,73 @@ use crate::{
     strategy::Method,
 };
 
-/// The most frames of a method on the clock, laps and poses together.
+/// The most timed frames per method: laps times poses.
 const MAX_SAMPLES: u32 = 100_000;
 
-/// Poses of a lap where the command line names none, at most.
+/// The most poses per lap where the command line gives no number.
 const MOST_POSES: u32 = 1_200;
 
-/// An error where laps are asked for without a path or too often, or where no choice can be measured
-/// in any of the modes.
-pub(crate) fn check_modes(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
+/// Refuses options that contradict each other or have no effect, and modes in which no strategy can run.
+pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
+    check_effect(args, choices)?;
     if let Some(checks) = args.checks.filter(|_| !args.path) {
-        let accepted = "given with --path: a camera that stands still has one pose";
+        let accepted = "left out without --path, because a still camera has one pose";
         return Err(CliError::out_of_range("--checks", &checks.to_string(), accepted));
     }
     if let Some(laps) = args.laps {
         let refuse =
             |accepted: &str| Err(CliError::out_of_range("--laps", &laps.to_string(), accepted));
         if !args.path {
-            return refuse("given with --path: a camera that stands still takes no laps");
+            return refuse("left out without --path, because a still camera makes no laps");
         }
         let most = MAX_SAMPLES / args.frames.unwrap_or(MOST_POSES);
         if laps > most.max(1) {
-            return refuse(&format!("at most {} with as many --frames", most.max(1)));
+            return refuse(&format!("at most {} for this number of --frames", most.max(1)));
         }
     }
     if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
-        let accepted =
-            "given with --path: from a still camera lists are right however old they are";
+        let accepted = "combined with --path: for a still camera old lists are always right";
         return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
     }
     let modes = args.mode.modes();
     let is_served = |choice: &Choice| modes.iter().any(|&mode| choice.refuses_mode(mode).is_none());
     if let Some(choice) = choices.first().filter(|_| !choices.iter().any(is_served)) {
         let family = choice.row().family;
-        let accepted = format!("deferred for {family}, which has no such mode");
+        let accepted = format!("deferred for {family}, which has no other mode");
         let names: Vec<&str> = modes.iter().map(|mode| mode.name()).collect();
         return Err(CliError::out_of_range("--mode", &names.join(" and "), &accepted));
     }
     Ok(())
 }
 
-/// The choices with their parameters checked, none twice.
+/// Refuses options of strategies that apply to none of them.
+fn check_effect(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
+    type Applies = fn(&Choice) -> bool;
+    let rules: [(&str, bool, Applies, &str); 3] = [
+        (
+            "test",
+            args.test.is_some(),
+            Choice::takes_tests,
+            "tests lights against frusta and whose id names no tests",
+        ),
+        (
+            "source",
+            args.source.is_some(),
+            Choice::takes_source,
+            "can read lights from both sources and whose id names none",
+        ),
+        ("operations", args.operations, Choice::has_groups, "has lists"),
+    ];
+    match rules.into_iter().find(|(_, given, applies, _)| *given && !choices.iter().any(applies)) {
+        Some((option, .., what)) => Err(CliError::without_effect(
+            option,
+            &format!("a strategy in --strategies that {what}"),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Checks the parameters of all choices and removes repeated ones.
 pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError> {
     let mut checked: Vec<Choice> = Vec::new();
     for choice in choices {
@@ -70,18 +96,16 @@ pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, Ha
             if !choice.is_named {
                 continue;
             }
-            let accepted = "given once each";
-            return Err(
-                CliError::out_of_range("--strategies", &format!("{id} twice"), accepted).into()
-            );
+            let message = format!("--strategies names {id} twice: it must name each strategy once");
+            return Err(CliError::new(message).into());
         }
         checked.push(choice);
     }
     Ok(checked)
 }
 
-/// The choices that can serve the scene on this device, and what to say of those that cannot: an
-/// error where one was named.
+/// The choices that can serve the scene on this device, and a warning for each other one of `all`. An
+/// error where the user named a choice that cannot.
 pub(crate) fn served(
     choices: Vec<Choice>,
     gpu: &Gpu,
@@ -100,9 +124,9 @@ pub(crate) fn served(
                     }
                     if choice.is_specular_cut() && stage.has_dielectrics() {
                         return Err(CliError::new(format!(
-                            "{}: its bound on lost light holds for dielectrics that reflect 0.04, and \
-                             materials of the scene reflect otherwise (KHR_materials_ior, \
-                             KHR_materials_specular): leave the segment out",
+                            "{}: remove the segment that cuts specular light. Its bound on lost light \
+                             holds for dielectrics of reflectance 0.04, and the scene has other ones \
+                             (KHR_materials_ior, KHR_materials_specular)",
                             choice.id()
                         ))
                         .into());
@@ -127,7 +151,7 @@ pub(crate) fn served(
     Ok((served, left_out))
 }
 
-/// An error where an option of area lights was given and no light is one: only the scene's file tells.
+/// Refuses options of area lights where no light is an area light. Only the scene's file tells.
 pub(crate) fn check_area_options(args: &CompareArgs, stage: &Stage) -> Result<(), CliError> {
     let given = [
         ("--area-model", args.area_model.map(|model| model.to_string())),
@@ -136,15 +160,16 @@ pub(crate) fn check_area_options(args: &CompareArgs, stage: &Stage) -> Result<()
     let has_areas = stage.lights.kinds().areas || stage.lights.count() == 0;
     match given.into_iter().find_map(|(option, value)| Some((option, value?))) {
         Some((option, value)) if !has_areas => {
-            let accepted = "given with area lights: there are none; --areas SHARE scatters some";
+            let accepted =
+                "left out, because no light is an area light (--areas SHARE scatters some)";
             Err(CliError::out_of_range(option, &value, accepted))
         }
         _ => Ok(()),
     }
 }
 
-/// Removes an earlier run's report: it would stand beside this run's pictures if this one is
-/// interrupted.
+/// Removes the report of an earlier run. If this run is interrupted, the old report must not stand beside
+/// the new pictures.
 pub(crate) fn remove_stale(out: &Path) -> Result<(), ResultsError> {
     for stale in ["index.html", "results.json", "metrics.json"].map(|name| out.join(name)) {
         if stale.is_file() {

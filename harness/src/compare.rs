@@ -9,9 +9,9 @@ use scenes::Scene;
 use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
 
 use crate::{
-    checks::{check_area_options, check_modes, checked, remove_stale, served},
+    checks::{check_area_options, check_options, checked, remove_stale, served},
     choice::Choice,
-    cli::{CompareArgs, MAX_CHECKS, StageArgs, TruthChoice},
+    cli::{CompareArgs, MAX_CHECKS, StageArgs},
     described::{describe, note_faults},
     drift::note_drift,
     error::HarnessError,
@@ -23,7 +23,7 @@ use crate::{
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{Machine, Results, Truth, Untested},
+    results::{Machine, Results, Truth, TruthLevel, Untested},
     sight::untested,
     stage::Stage,
     strategy::BASELINE,
@@ -47,8 +47,8 @@ pub struct Bench {
 /// Runs a comparison, writes its report, and returns what to print. `command` is the command
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
-    // What is wrong with the words shows before a device is opened.
-    check_modes(args, &args.choices()?)?;
+    // Check the options before a device is opened.
+    check_options(args, &args.choices()?)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (results, pictures) = bench.compare(args, command)?;
@@ -136,7 +136,7 @@ impl Bench {
         command: Vec<String>,
     ) -> Result<(Results, Pictures), HarnessError> {
         let choices = args.choices()?;
-        check_modes(args, &choices)?;
+        check_options(args, &choices)?;
         let gpu = self.gpu.clone();
         let choices = checked(choices, &gpu)?;
         let machine = machine(&gpu);
@@ -144,9 +144,9 @@ impl Bench {
         check_area_options(args, stage)?;
         stage.area_model = args.area_model.unwrap_or_default();
         stage.compensation = args.compensate.map(|lights| lights as f32);
-        // What a strategy cannot serve shows before anything long begins.
-        let (choices, left_out) = served(choices, &gpu, stage, args.cut.into())?;
-        let truth = Truth { level: args.truth.into(), edge_tolerance: EDGE, notes: Vec::new() };
+        // Refuse strategies that cannot serve the scene before any long work starts.
+        let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
+        let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
         let mut run = Run {
             results: Results::new(machine, command, truth),
             args,
@@ -176,7 +176,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
         checks: args.checks.unwrap_or(MAX_CHECKS),
         seed: args.stage.seed,
-        cut: args.cut.into(),
+        cut: args.cut,
         operations: args.operations,
     }
 }
@@ -241,8 +241,8 @@ impl Run<'_> {
         }
         if self.stage.view.far_m.is_none() && choices.iter().any(Choice::tests_corners) {
             self.results.warnings.push(
-                "the view has no far plane: lights are tested against the tiles of T-I, and against the \
-                 last slices of DC-I and SC-I, only by HS, because these have no far corners"
+                "the view has no far plane: the tiles of T-I and the last slices of DC-I and SC-I have no \
+                 far corners, so only HS tests lights against them"
                     .to_owned(),
             );
         }
@@ -256,7 +256,7 @@ impl Run<'_> {
 
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
         let lights = self.stage.lights.lights().to_vec();
-        let bvh = (self.args.truth == TruthChoice::Full).then(|| LightBvh::new(&lights));
+        let bvh = (self.args.truth == TruthLevel::Full).then(|| LightBvh::new(&lights));
         let modes = self.args.mode.modes();
         let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
@@ -265,7 +265,8 @@ impl Run<'_> {
             served.retain(|choice| choice.refuses_mode(mode).is_none());
             for choice in choices {
                 let Some(why) = choice.refuses_mode(mode) else { continue };
-                let words = format!("{} has no mode {}: {why}", choice.id(), mode.name());
+                let (family, mode) = (choice.row().family, mode.name());
+                let words = format!("{family} cannot run in mode {mode}, because {why}");
                 self.results.warnings.push(words);
                 bar.inc(per_method);
             }
@@ -345,7 +346,7 @@ impl Run<'_> {
                 times,
             );
             note_drift(&mut record);
-            record.untested = self.untested;
+            record.lists.untested = self.untested;
             self.results.records.push(record);
         }
         if self.args.path {

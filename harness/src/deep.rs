@@ -1,20 +1,20 @@
-//! Deep images of a scene, as options ask for them.
+//! Builds the deep images of a scene with the settings of the command line.
 
 use assign::{AssignError, EncoderPasses, Gpu};
 use assign_cdi::{
-    Build, Coverage, DeepImageSettings, DeepImages, Directions, Raster, Spread, Storage, Triangles,
+    Build, Coverage, DeepImageSettings, DeepImages, Directions, Raster, Storage, Triangles,
 };
 
 use crate::{
-    cli::{BuildChoice, DeepArgs, SpreadChoice},
+    cli::{BuildChoice, DeepArgs, name_of},
     error::HarnessError,
     results,
 };
 
-/// Builds in which buffers may grow to what they ask for.
+/// The most builds until the buffers are large enough.
 const MAX_SETTLING: u32 = 8;
 
-/// The settings that options ask for.
+/// The settings on the command line.
 pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
     let visits =
         [BuildChoice::PerDirection, BuildChoice::PerDirectionBatched, BuildChoice::Conservative];
@@ -22,16 +22,12 @@ pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
         return Err(AssignError::Parameter {
             field: "--oversampling".into(),
             value: args.oversampling.to_string(),
-            accepted: format!("1 where --build is {}", args.build.name()),
+            accepted: format!("1 for --build {}", name_of(&args.build)),
         });
     }
     let single = |raster| Build::SinglePass { oversampling: args.oversampling, raster };
     let each = |coverage, at_once| Build::PerDirection { coverage, at_once };
-    let spread = match args.spread {
-        SpreadChoice::Stacks => Spread::StacksAndSlices,
-        SpreadChoice::Squares => Spread::Squares,
-    };
-    let directions = Directions::new(spread, args.directions.stacks, args.directions.slices)?;
+    let directions = Directions::new(args.spread, args.directions.stacks, args.directions.slices)?;
     let settings = DeepImageSettings {
         directions,
         size_px: args.deep_size,
@@ -52,7 +48,7 @@ pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
     Ok(settings)
 }
 
-/// Builds prepared images once, on no clock, and waits for them.
+/// Builds prepared images once, untimed, and waits for them.
 pub fn build(gpu: &Gpu, images: &mut DeepImages) -> Result<(), AssignError> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     images.record(&mut EncoderPasses { encoder: &mut encoder });
@@ -96,7 +92,7 @@ pub fn figures(images: &DeepImages, args: &DeepArgs) -> results::DeepImages {
         spread: args.spread.name().to_owned(),
         size_px: args.deep_size,
         oversampling: args.oversampling,
-        build: args.build.name().to_owned(),
+        build: name_of(&args.build),
         footprint_m: f64::from(images.space().footprint_m),
         samples: u64::from(stats.sample_count),
         fragments: u64::from(stats.fragment_count),

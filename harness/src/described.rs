@@ -53,10 +53,10 @@ pub(crate) fn describe(stage: &Stage) {
     }
     let rejected = stage.lights.rejected();
     for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
-        say(format!("warning  light {} left out: {}", rejected.index, rejected.fault));
+        say(format!("warning  light {} is left out: {}", rejected.index, rejected.fault));
     }
     if rejected.len() > MOST_REJECTED_SHOWN {
         let more = rejected.len() - MOST_REJECTED_SHOWN;
-        say(format!("warning  and {more} more lights left out"));
+        say(format!("warning  {more} more lights are left out"));
     }
 }

@@ -141,14 +141,14 @@ fn is_level(times_ms: &[f64]) -> bool {
 /// Notes on a record that its times drifted while it was measured. A GPU's clock only, and a still
 /// camera only: along a path poses differ in their work, and a software adapter has no clock to raise.
 pub fn note_drift(record: &mut Record) {
-    if record.along_path || record.clock != Clock::GpuTimestamps {
+    if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
         return;
     }
     let Some(why) = unsteady(&record.frames_ms()) else { return };
     let drift = format!(
         "{} in {}: its times are not steady, measure it again: {why}",
         record.strategy,
-        record.mode.name()
+        record.setting.mode.name()
     );
     record.note = Some(match record.note.take() {
         Some(note) => format!("{note}; {drift}"),

@@ -1,4 +1,4 @@
-//! Everything that ends a run, with its exit code.
+//! Errors that end a run, with their exit codes.
 
 use std::io::ErrorKind;
 
@@ -12,7 +12,7 @@ use crate::{
     results::ResultsError,
 };
 
-/// Why a run ended; one line.
+/// The error that ended a run, as one line.
 #[derive(Debug, Error)]
 pub enum HarnessError {
     /// A value on the command line.
@@ -27,8 +27,8 @@ pub enum HarnessError {
     /// A strategy or the device.
     #[error(transparent)]
     Assign(#[from] AssignError),
-    /// Standard output refused what was written to it.
-    #[error("standard output: {0}")]
+    /// Writing to standard output failed.
+    #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     /// The results.
     #[error(transparent)]
@@ -36,20 +36,22 @@ pub enum HarnessError {
 }
 
 impl HarnessError {
-    /// 2 where the input is at fault, else 1: the machine lacks something, or failed.
+    /// 2 for bad input; 1 if the machine lacks something or failed.
     pub fn exit_code(&self) -> u8 {
-        let is_machines = match self {
+        let is_machine_fault = match self {
             Self::Output(_) => true,
-            Self::Assign(error) | Self::Shading(ShadingError::Assign(error)) => is_machines(error),
+            Self::Assign(error) | Self::Shading(ShadingError::Assign(error)) => {
+                is_device_fault(error)
+            }
             Self::Results(ResultsError::Write { source, .. }) => is_full(source.kind()),
             _ => false,
         };
-        if is_machines { 1 } else { BAD_INPUT }
+        if is_machine_fault { 1 } else { BAD_INPUT }
     }
 }
 
-/// Whether no other input would have helped.
-fn is_machines(error: &AssignError) -> bool {
+/// Whether the device failed, so that no other input would help.
+fn is_device_fault(error: &AssignError) -> bool {
     matches!(
         error,
         AssignError::NoAdapter { .. }
@@ -60,7 +62,7 @@ fn is_machines(error: &AssignError) -> bool {
     )
 }
 
-/// Whether there is no room left.
+/// Whether the disk or the quota is full.
 fn is_full(kind: ErrorKind) -> bool {
     use ErrorKind::{FileTooLarge, OutOfMemory, QuotaExceeded, StorageFull, WriteZero};
     matches!(kind, StorageFull | QuotaExceeded | FileTooLarge | OutOfMemory | WriteZero)
@@ -71,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_machine_lacks_is_not_the_inputs_fault() {
+    fn faults_of_the_machine_exit_with_1_and_bad_input_with_2() {
         let written = |kind: ErrorKind| {
             let error = ResultsError::Write { path: "x".into(), source: kind.into() };
             HarnessError::from(error).exit_code()

@@ -41,5 +41,6 @@ pub mod stored;
 pub mod strategy;
 pub mod study;
 pub mod truth;
+mod truth_level;
 pub mod visible;
 pub mod vpls;

@@ -32,12 +32,12 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), HarnessError> {
-    // Where the program lies on this machine says nothing to others.
+    // The results name the program without its path on this machine.
     let arguments = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let command = std::iter::once("lightbench".to_owned()).chain(arguments).collect();
-    let asked = cli::parse(std::env::args_os())?;
-    say_how_to_go_on(&asked);
-    let text = match asked {
+    let invocation = cli::parse(std::env::args_os())?;
+    set_interrupt_message(&invocation);
+    let text = match invocation {
         Invocation::Show(text) => text,
         Invocation::List(Listing::Strategies) => strategy::list(),
         Invocation::List(Listing::Scenes) => scenes(),
@@ -53,15 +53,15 @@ fn run() -> Result<(), HarnessError> {
     print(&text)
 }
 
-/// What an interrupted run says.
-fn say_how_to_go_on(asked: &Invocation) {
+/// Sets the message of an interrupted run.
+fn set_interrupt_message(invocation: &Invocation) {
     let lost = |out: &Path| {
         let out = out.display();
-        format!("{out} has no results of this run: the same command starts it again")
+        format!("{out} has no results of this run; the same command starts again")
     };
-    interrupted::when_interrupted(match asked {
+    interrupted::when_interrupted(match invocation {
         Invocation::Study(args) => format!(
-            "jobs that are done stay in {}: the same command goes on with the others",
+            "{} keeps the finished jobs; the same command runs the remaining ones",
             args.folder().display()
         ),
         Invocation::Compare(args) => lost(&args.out),
@@ -73,14 +73,14 @@ fn say_how_to_go_on(asked: &Invocation) {
     });
 }
 
-/// Keeps the Vulkan loader quiet. One of its layers asks for a Wayland display, and the library that it
-/// asks prints an error where this variable is not set. The device itself is no folder: nothing is there.
+/// Keeps the Vulkan loader quiet. One of its layers asks for a Wayland display, and the Wayland library
+/// prints an error if this variable is not set. The value here is not a folder, so the library finds nothing.
 #[cfg(target_os = "linux")]
 fn quiet_loader() {
     const NAME: &str = "XDG_RUNTIME_DIR";
     let is_set = std::env::var_os(NAME).is_some_and(|folder| Path::new(&folder).is_absolute());
     if !is_set {
-        // SAFETY: no other thread runs yet that could read the environment.
+        // SAFETY: no other thread runs yet, so none can read the environment.
         #[expect(unsafe_code, reason = "the loader reads the environment of this process")]
         unsafe {
             std::env::set_var(NAME, "/dev/null");

@@ -1,9 +1,9 @@
-//! What the program tells a person: lines on standard error, and its product on standard output.
+//! Writes messages to standard error and results to standard output.
 //!
-//! `eprintln!` and `println!` panic where the reader has gone (`2>&1 | head -1`) or the disk behind a
-//! redirection is full. A line for a person must not end hours of measuring, so [`say`] ignores both.
-//! Standard output is the product, so [`print()`] reports a full disk, and takes a closed pipe for a reader
-//! that has read enough.
+//! `eprintln!` and `println!` panic when the reader has gone (`2>&1 | head -1`) or the disk behind a
+//! redirection is full. A message must not end hours of measuring, so [`say`] ignores both errors.
+//! Standard output holds the result, so [`print()`] reports a full disk; a closed pipe means that the reader
+//! has read enough.
 
 use std::io::{self, ErrorKind, Write};
 
@@ -12,14 +12,14 @@ use crate::{
     visible::{visible, visible_lines},
 };
 
-/// Says one line on standard error, or nothing where that is closed or full.
+/// Writes one line to standard error, or nothing if it is closed or full.
 pub fn say(line: impl AsRef<str>) {
-    // One write per line: lines of several threads do not mix.
+    // One write per line, so that lines of several threads do not mix.
     let line = format!("{}\n", visible(line.as_ref()));
     let _ = io::stderr().lock().write_all(line.as_bytes());
 }
 
-/// Says what ended the run: one line, whatever a file's text put into the message.
+/// Writes the error that ended the run as one line, even if text from a file is part of it.
 pub fn say_error(error: impl std::fmt::Display) {
     say(format!("lightbench: {error}"));
 }
@@ -28,7 +28,7 @@ pub fn say_error(error: impl std::fmt::Display) {
 ///
 /// # Errors
 ///
-/// [`HarnessError::Output`] where standard output refuses the text for any reason but a closed pipe.
+/// [`HarnessError::Output`] if the text cannot be written, unless the pipe is closed.
 pub fn print(text: &str) -> Result<(), HarnessError> {
     write_whole(&mut io::stdout().lock(), &visible_lines(text))
 }
@@ -57,10 +57,11 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_pipe_is_enough_and_a_full_disk_is_an_error() {
+    fn print_ignores_a_closed_pipe_and_reports_a_full_disk() {
         assert!(write_whole(&mut Refuses(ErrorKind::BrokenPipe), "text").is_ok());
-        let error = write_whole(&mut Refuses(ErrorKind::StorageFull), "text").expect_err("full");
+        let error = write_whole(&mut Refuses(ErrorKind::StorageFull), "text")
+            .expect_err("the disk is full");
         assert_eq!(error.exit_code(), 1);
-        assert!(error.to_string().starts_with("standard output: "), "{error}");
+        assert!(error.to_string().starts_with("cannot write to standard output: "), "{error}");
     }
 }

@@ -1,10 +1,10 @@
-//! The folder that a run writes into: made where it is missing, and held by one process at a time.
+//! The folder that a run writes to. The run creates it if it is missing, and one process holds it at a time.
 //!
-//! Two runs in one folder would overwrite each other, and spoil each other's times. So a run locks a
-//! file in its folder and writes there who it is. The lock is the system's: it ends with the process,
-//! however that ends, so a file that a killed run left behind stands in nobody's way.
+//! Two runs in one folder would overwrite each other's files and disturb each other's times. So a run locks a
+//! file in its folder and writes its process id, host and command into it. The operating system releases the
+//! lock when the process ends, even when it is killed. A lock file that a killed run left blocks nobody.
 //!
-//! A run that ends without having written anything takes the folders with it that it made.
+//! A run that wrote nothing removes the folders that it created.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read, Write};
@@ -23,7 +23,7 @@ use crate::{
 /// The file that is locked.
 const LOCK: &str = "lightbench.lock";
 
-/// A lock that is removed just as this process takes it is tried again, so often.
+/// The most attempts at a lock file that another process removes while this one takes it.
 const ATTEMPTS: u32 = 16;
 
 /// Folders that this process holds.
@@ -38,11 +38,11 @@ pub struct OutFolder {
 struct Held {
     path: PathBuf,
     lock: File,
-    /// Folders that were made for it, innermost first.
+    /// The folders that this run created, innermost first.
     made: Vec<PathBuf>,
 }
 
-/// Who holds a folder, as its lock says.
+/// The process that holds a folder, as its lock file names it.
 #[derive(Debug, Serialize, Deserialize)]
 struct Holder {
     pid: u32,
@@ -52,11 +52,11 @@ struct Holder {
 }
 
 impl OutFolder {
-    /// Makes a folder where it is missing, holds it, and removes the temporary files of killed runs.
+    /// Creates a missing folder, holds it, and removes the temporary files of killed runs.
     ///
     /// # Errors
     ///
-    /// Where the folder cannot be written to, or another process holds it: the message names both.
+    /// The folder cannot be written to, or another process holds it; the message names both.
     pub fn hold(path: &Path, command: &[String]) -> Result<Self, HarnessError> {
         let made = make(path)?;
         let lock = match lock(path, command) {
@@ -79,7 +79,7 @@ impl Drop for OutFolder {
     }
 }
 
-/// Leaves all folders: for ends of the program that drop nothing.
+/// Releases all folders when the program ends without dropping its values.
 pub fn leave_all() {
     leave(|_| true);
 }
@@ -87,14 +87,14 @@ pub fn leave_all() {
 fn leave(is_left: impl Fn(&Held) -> bool) {
     let mut all = HELD.lock().unwrap_or_else(PoisonError::into_inner);
     for held in all.extract_if(.., |held| is_left(held)) {
-        // Removed while it is locked: whoever opened it meanwhile sees that it is another file by then.
+        // The file is removed while locked: a process that has opened it sees that the path is now free.
         let _ = fs::remove_file(held.path.join(LOCK));
         drop(held.lock);
         remove_empty(&held.made);
     }
 }
 
-/// Makes a folder with those above it; returns those that were missing, innermost first.
+/// Creates a folder and its parents; returns those that were missing, innermost first.
 fn make(path: &Path) -> Result<Vec<PathBuf>, ResultsError> {
     let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     let missing: Vec<PathBuf> =
@@ -106,12 +106,12 @@ fn make(path: &Path) -> Result<Vec<PathBuf>, ResultsError> {
     Ok(missing)
 }
 
-/// Removes folders as long as they are empty.
+/// Removes folders until one is not empty.
 fn remove_empty(folders: &[PathBuf]) {
     let _ = folders.iter().try_for_each(fs::remove_dir);
 }
 
-/// Locks a folder's file and writes there who holds it.
+/// Locks the folder's lock file and writes the holder into it.
 fn lock(folder: &Path, command: &[String]) -> Result<File, HarnessError> {
     let path = folder.join(LOCK);
     let fail = |source| ResultsError::Write { path: path.clone(), source };
@@ -123,7 +123,7 @@ fn lock(folder: &Path, command: &[String]) -> Result<File, HarnessError> {
             .truncate(false)
             .open(&path)
             .map_err(fail)?;
-        // A file system without locks cannot tell: the run goes on without one.
+        // On a file system without locks, the run continues without one.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(held_by(folder, &mut file).into());
         }
@@ -140,7 +140,7 @@ fn lock(folder: &Path, command: &[String]) -> Result<File, HarnessError> {
         file.set_len(0).and_then(|()| file.write_all(text.as_bytes())).map_err(fail)?;
         return Ok(file);
     }
-    Err(fail(io::Error::other("other runs take and leave it all the time")).into())
+    Err(fail(io::Error::other("other runs keep locking and releasing it")).into())
 }
 
 /// Whether an open file is the one at a path: another process may have removed it.
@@ -152,13 +152,13 @@ fn is_still(file: &File, path: &Path) -> bool {
     place(file.metadata()) == place(fs::metadata(path))
 }
 
-/// Where an open file cannot be removed it is the same.
+/// On systems where an open file cannot be removed, it is still the same file.
 #[cfg(not(unix))]
 fn is_still(_: &File, _: &Path) -> bool {
     true
 }
 
-/// The error that names who holds a folder.
+/// The error that names the process that holds a folder.
 fn held_by(folder: &Path, file: &mut File) -> CliError {
     let mut text = String::new();
     let holder: Option<Holder> = match file.read_to_string(&mut text) {
@@ -169,11 +169,11 @@ fn held_by(folder: &Path, file: &mut File) -> CliError {
         || "another lightbench".to_owned(),
         |Holder { pid, host, since, command }| {
             let command = command.join(" ");
-            format!("another lightbench, process {pid} on {host} since {since}, `{command}`,")
+            format!("another lightbench (process {pid} on {host} since {since}, `{command}`)")
         },
     );
     CliError::new(format!(
-        "{}: {who} is writing there: wait until it ends, or give another --out",
+        "{}: {who} is writing to this folder: wait until it ends, or choose another --out",
         folder.display()
     ))
 }
@@ -197,11 +197,11 @@ mod tests {
         }
         drop(held);
         drop(hold(folder.path()).unwrap());
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "files are left in the folder");
     }
 
     #[test]
-    fn what_a_killed_run_left_is_taken_over() {
+    fn a_run_takes_over_the_folder_of_a_killed_run() {
         let folder = tempfile::tempdir().unwrap();
         let left = |name: &str| folder.path().join(name);
         fs::write(left(LOCK), "{\"pid\": 1, cut").unwrap();
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn folders_are_left_as_they_were_where_nothing_was_written() {
+    fn a_run_that_wrote_nothing_removes_the_folders_that_it_created() {
         let folder = tempfile::tempdir().unwrap();
         let deep = folder.path().join("a/b/c");
         drop(hold(&deep).unwrap());

@@ -3,7 +3,7 @@
 use assign::{Assignment, Gpu, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
-use crate::{error::HarnessError, strategy::Method, stage::Stage};
+use crate::{error::HarnessError, stage::Stage, strategy::Method};
 
 /// A method with the pipelines that draw with it.
 pub enum Painter<'a> {

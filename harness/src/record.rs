@@ -5,12 +5,14 @@ use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{CompareArgs, LightBox},
+    cli::{CompareArgs, name_of},
     clock::clock_of,
     error::HarnessError,
     errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
-    results::{Errors, Images, Operations, Record, mean},
+    results::{
+        Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, mean,
+    },
     schedule::rounds,
     stage::Stage,
     visible::visible,
@@ -85,83 +87,90 @@ pub fn record(
     let count = u64::from(stage.lights.count());
     let has_lists = lists.bytes > 0;
     let mut record = Record {
-        scene: visible(&stage.scene.name).into_owned(),
-        scene_hash: stage.scene_hash.clone(),
-        path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
-        scene_scale: args.stage.scene_scale,
-        triangles: stage.scene.triangle_count(),
         strategy: choice.id().clone(),
-        strategy_parameters: choice.id().parameters(),
-        mode,
-        lights: count,
-        light_kinds: stage
-            .light_kinds()
-            .into_iter()
-            .filter(|(_, count)| *count > 0)
-            .map(|(kind, count)| (kind.to_owned(), count))
-            .collect(),
-        area_model: stage.lights.kinds().areas.then(|| stage.area_model.to_string()),
-        operations: lists.operations.map(Operations::from),
-        radius_scale: stage.radius_scale,
-        eye: stage.eye().to_array(),
-        forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
-        planes: Some(stage.planes()),
-        light_box: [stage.light_box.min, stage.light_box.max]
-            .map(|corner| (stage.scene.origin + corner.as_dvec3()).to_array()),
-        own_lights: stage.own_lights as u64,
-        open_lights: stage.open_lights.map(|open| open.count),
-        open_threshold: stage.open_lights.map(|open| open.threshold),
-        width: stage.view.viewport.width,
-        height: stage.view.viewport.height,
-        frames: plan.timed * plan.laps.max(1),
-        warmup_frames: plan.warmup,
-        rounds: if plan.laps > 0 { plan.laps } else { rounds(plan.timed) },
-        along_path: plan.laps > 0,
-        poses: (plan.laps > 0).then_some(plan.timed),
-        radii: Some(scenes::Radii::from(args.stage.radii).name().to_owned()),
-        light_places: Some(places(args.stage.light_box).to_owned()),
-        threshold: args.stage.threshold,
-        cut: Some(plan.cut.name().to_owned()),
         is_lossy: choice.is_lossy(count) || loses_edges(choice, plan.cut),
-        errors: stored(errors.into_iter().map(|(id, all)| (id, mean(&all)))),
-        unbounded_errors: stored(unbounded_errors),
-        truth_errors: Errors::new(),
-        vpls: stage.vpls.clone(),
-        compensation: args.compensate,
-        seed: args.stage.seed,
-        clock: clock_of(gpu),
-        passes: timed.passes,
-        assign_ms: 0.0,
-        shade_ms: 0.0,
-        frame_ms: 0.0,
-        spans: timed.spans,
-        span_ms: None,
-        frame_span_ms: None,
-        groups: lists.groups,
-        occupied_groups: u64::from(lists.counters.occupied_groups),
-        list_entries: match lists.groups {
-            0 if has_lists => count,
-            _ => lists.counters.requested(),
+        setting: Setting {
+            scene: visible(&stage.scene.name).into_owned(),
+            scene_hash: stage.scene_hash.clone(),
+            path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
+            scene_scale: args.stage.scene_scale,
+            triangles: stage.scene.triangle_count(),
+            mode,
+            lights: count,
+            light_kinds: stage
+                .light_kinds()
+                .into_iter()
+                .filter(|(_, count)| *count > 0)
+                .map(|(kind, count)| (kind.to_owned(), count))
+                .collect(),
+            area_model: stage.lights.kinds().areas.then(|| stage.area_model.to_string()),
+            radius_scale: stage.radius_scale,
+            eye: stage.eye().to_array(),
+            forward: (-stage.view.world_to_view.row(2).truncate()).to_array().map(f64::from),
+            planes: Some(stage.planes()),
+            light_box: [stage.light_box.min, stage.light_box.max]
+                .map(|corner| (stage.scene.origin + corner.as_dvec3()).to_array()),
+            own_lights: stage.own_lights as u64,
+            open_lights: stage.open_lights.map(|open| open.count),
+            open_threshold: stage.open_lights.map(|open| open.threshold),
+            width: stage.view.viewport.width,
+            height: stage.view.viewport.height,
+            along_path: plan.laps > 0,
+            poses: (plan.laps > 0).then_some(plan.timed),
+            radii: Some(args.stage.radii.name().to_owned()),
+            light_places: Some(name_of(&args.stage.light_box)),
+            threshold: args.stage.threshold,
+            cut: Some(plan.cut.name().to_owned()),
+            vpls: stage.vpls.clone(),
+            compensation: args.compensate,
+            seed: args.stage.seed,
+            light_order: Some(stage.lights.order().to_string()),
         },
-        longest_list: u64::from(lists.counters.longest.min(choice.cap())),
-        listed_per_sample: truth.map(|t| t.listed_per_sample()),
-        contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
-        missed_pairs: truth.map(|t| t.missed),
-        checked_pairs: truth.map(|t| t.contributing),
-        samples: truth.map_or(0, |t| t.samples),
-        untested: None,
-        max_abs_diff: known(seen.max_abs),
-        max_rel_diff: known(seen.max_rel),
-        differing_channels: seen.compared.then_some(seen.differing_channels),
-        lists_bytes: lists.bytes,
-        memory_bytes: has_lists.then_some(lists.memory_bytes),
-        histogram: lists.lengths.histogram,
-        all_groups: lists.lengths.all_groups,
-        light_order: Some(stage.lights.order().to_string()),
-        light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
-        tolerance: choice.tolerance(),
-        overflowed_groups: u64::from(lists.counters.overflowed_groups),
-        images,
+        times: Times {
+            frames: plan.timed * plan.laps.max(1),
+            warmup_frames: plan.warmup,
+            rounds: if plan.laps > 0 { plan.laps } else { rounds(plan.timed) },
+            clock: clock_of(gpu),
+            passes: timed.passes,
+            assign_ms: 0.0,
+            shade_ms: 0.0,
+            frame_ms: 0.0,
+            spans: timed.spans,
+            span_ms: None,
+            frame_span_ms: None,
+            light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
+        },
+        lists: ListFigures {
+            operations: lists.operations.map(Operations::from),
+            groups: lists.groups,
+            occupied_groups: u64::from(lists.counters.occupied_groups),
+            entries: match lists.groups {
+                0 if has_lists => count,
+                _ => lists.counters.requested(),
+            },
+            longest: u64::from(lists.counters.longest.min(choice.cap())),
+            listed_per_sample: truth.map(|t| t.listed_per_sample()),
+            contributing_per_sample: truth.map(|t| t.contributing_per_sample()),
+            missed_pairs: truth.map(|t| t.missed),
+            checked_pairs: truth.map(|t| t.contributing),
+            samples: truth.map_or(0, |t| t.samples),
+            untested: None,
+            bytes: lists.bytes,
+            memory_bytes: has_lists.then_some(lists.memory_bytes),
+            histogram: lists.lengths.histogram,
+            all_groups: lists.lengths.all_groups,
+            overflowed_groups: u64::from(lists.counters.overflowed_groups),
+        },
+        image: ImageFigures {
+            errors: stored(errors.into_iter().map(|(id, all)| (id, mean(&all)))),
+            unbounded_errors: stored(unbounded_errors),
+            truth_errors: Errors::new(),
+            max_abs_diff: known(seen.max_abs),
+            max_rel_diff: known(seen.max_rel),
+            differing_channels: seen.compared.then_some(seen.differing_channels),
+            tolerance: choice.tolerance(),
+            files: images,
+        },
         note: note(timed.overflowed_frames),
     };
     record.set_times();
@@ -172,14 +181,6 @@ pub fn record(
 /// the light ends at once.
 fn loses_edges(choice: &Choice, cut: Cut) -> bool {
     choice.tolerance().is_some() && cut == Cut::Hard
-}
-
-fn places(light_box: LightBox) -> &'static str {
-    match light_box {
-        LightBox::Core => "core",
-        LightBox::Bounds => "bounds",
-        LightBox::Cylinders => "cylinders",
-    }
 }
 
 /// What a reader of the record has to know.

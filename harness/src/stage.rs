@@ -186,8 +186,8 @@ impl Stage {
     fn note_plain_vpls(&mut self) {
         if self.vpls.is_some() && self.has_dielectrics() {
             self.notes.push(
-                "virtual point lights reflect as plain dielectrics do: KHR_materials_ior and \
-                 KHR_materials_specular change what surfaces show of them, not what they send on"
+                "virtual point lights come from surfaces as if these were plain dielectrics: \
+                 KHR_materials_ior and KHR_materials_specular only change how surfaces reflect their light"
                     .to_owned(),
             );
         }
@@ -254,7 +254,7 @@ impl Lit {
             let origin = scene.origin / args.scene_scale;
             let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale)?;
             if other.lights.is_empty() && other.suns.is_empty() {
-                let accepted = "a file that holds lights (KHR_lights_punctual)";
+                let accepted = "a file with lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
             }
             // The scene that they light decides where they end.
@@ -265,9 +265,12 @@ impl Lit {
             warnings = other.warnings;
             suns.extend(other.suns);
             if suns.len() > MAX_SUNS {
-                let value = format!("{file}: {} directional lights with the scene's", suns.len());
-                let accepted = format!("a file with which they are at most {MAX_SUNS}");
-                return Err(CliError::out_of_range("--lights-from", &value, &accepted).into());
+                let message = format!(
+                    "--lights-from is {file}: with the scene's there are {} directional lights, and at \
+                     most {MAX_SUNS} are possible",
+                    suns.len()
+                );
+                return Err(CliError::new(message).into());
             }
         }
         let own = lights.len();
@@ -275,15 +278,19 @@ impl Lit {
         // The scene's own lights are copied already.
         let total = u64::from(args.lights) * copies_of + lights.len() as u64;
         if total > u64::from(scenes::MAX_LIGHTS) {
-            let value = format!("{} with {copies_of} copies: {total} lights", args.lights);
-            let accepted = format!("at most {} lights together", scenes::MAX_LIGHTS);
-            return Err(CliError::out_of_range("--lights", &value, &accepted).into());
+            let message = format!(
+                "--lights is {} and --replicate makes {copies_of} copies: with the scene's own lights there \
+                 are {total}, and at most {} are possible",
+                args.lights,
+                scenes::MAX_LIGHTS
+            );
+            return Err(CliError::new(message).into());
         }
         let scattered = scatter_lights(&LightSpec {
             count: args.lights,
             seed: args.seed,
             radius_scale: radius_scale as f32,
-            radii: args.radii.into(),
+            radii: args.radii,
             bounds,
             places: match args.light_box {
                 LightBox::Cylinders => Places::Cylinders,
@@ -291,7 +298,7 @@ impl Lit {
             },
             spot_share: args.spots as f32,
             area_share: args.areas as f32,
-            outlines: args.outlines.into(),
+            outlines: args.outlines,
             diffuse_share: args.diffuse_share as f32,
         })?;
         lights.extend(copies(scene, args, &scattered));

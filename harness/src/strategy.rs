@@ -39,4 +39,7 @@ pub use rows::{BASELINE, CONTROL, EARLY_EXIT, RASTER_SPHERE, row, rows};
 pub use table::{list, markdown};
 
 #[cfg(test)]
-pub(crate) use rows::made_up;
+use rows::made_up;
+
+#[cfg(test)]
+mod tests;

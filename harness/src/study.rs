@@ -22,7 +22,7 @@ use std::time::Instant;
 
 use crate::{
     cdi::measure,
-    checks::check_modes,
+    checks::check_options,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
     compare::Bench,
     error::HarnessError,
@@ -124,7 +124,7 @@ fn share<'a>(args: &StudyArgs, manifest: &'a Manifest) -> Result<Vec<&'a Job>, C
         let known: Vec<&str> = known.iter().map(|job| job.name.as_str()).collect();
         let more =
             if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
-        let accepted = format!("words that names of jobs hold, such as {}{more}", known.join(", "));
+        let accepted = format!("words from job names, such as {}{more}", known.join(", "));
         return Err(CliError::out_of_range("--only", &args.only.join(","), &accepted));
     }
     let jobs = chosen.into_iter().enumerate();
@@ -194,7 +194,7 @@ fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError
         .into());
     }
     if results.command != job.command {
-        return again(&format!("{} is of another command", path.display()));
+        return again(&format!("{} belongs to another command", path.display()));
     }
     match lack {
         Some(lack) => again(&format!("{}: {lack}", path.display())),
@@ -222,7 +222,7 @@ impl Job {
     /// Whether its command would be understood.
     fn check(&self) -> Result<(), CliError> {
         let checked = self.asked(Path::new("")).and_then(|asked| match asked {
-            Asked::Compare(args) => check_modes(&args, &args.choices()?),
+            Asked::Compare(args) => check_options(&args, &args.choices()?),
             Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
         });
         checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))

@@ -52,19 +52,19 @@ pub fn truth(args: &TruthArgs, command: Vec<String>) -> Result<String, HarnessEr
     Ok(format!("{summary}{notes}data     {}\n", data.display()))
 }
 
-/// What is wrong with the words shows before a device is opened.
+/// Checks the options before a device is opened.
 fn check(args: &TruthArgs) -> Result<(), CliError> {
     if args.bounces > 0 && !args.shadows {
-        let accepted = "0, or given with --shadows: what is reflected is shadowed";
+        let accepted = "0 without --shadows, because reflected light needs shadows";
         return Err(CliError::out_of_range("--bounces", &args.bounces.to_string(), accepted));
     }
     if args.indirect && args.bounces == 0 {
-        let accepted = "given with --bounces 1 or more: nothing else would be left";
-        return Err(CliError::new(format!("--indirect: it must be {accepted}")));
+        let needs = "--bounces 1 or more, or the image would be black";
+        return Err(CliError::without_effect("indirect", needs));
     }
     if args.matte_bounces && !(args.bounces == 1 && args.stage.bounce.primary) {
-        let accepted = "given with --primary and --bounces 1: it is what --vpls approaches";
-        return Err(CliError::new(format!("--matte-bounces: it must be {accepted}")));
+        let needs = "--primary and --bounces 1, the light that --vpls approximates";
+        return Err(CliError::without_effect("matte-bounces", needs));
     }
     Ok(())
 }
@@ -112,7 +112,7 @@ pub fn render(
     let why = untested(&gpu, stage, &[], 0)?.filter(|why| *why != Untested::OnlySuns);
     if let Some(why) = why {
         let why = why.words(u64::from(stage.lights.count()), false);
-        let warning = format!("NOTHING IS LIT directly: {why}");
+        let warning = format!("NO DIRECT LIGHT: {why}");
         say(format!("warning  {warning}"));
         results.warnings.insert(0, warning);
     }

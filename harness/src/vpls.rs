@@ -11,7 +11,7 @@ use shading::{Renderer, WorldTriangles, rsm_view};
 
 use crate::{
     cdi::triangles_of,
-    cli::{CliError, PrimaryRay, RangeChoice, Span, StageArgs, VplArgs},
+    cli::{RangeChoice, Span, StageArgs, VplArgs, name_of},
     clock::PassClock,
     deep::{figures, settings_of, settle},
     drift::WarmUp,
@@ -67,7 +67,6 @@ impl VplMaker {
         primary: Light,
         args: &StageArgs,
     ) -> Result<Made, HarnessError> {
-        check(&args.bounce)?;
         let bounds = (scene.bounds.min, scene.bounds.max);
         let view = rsm_view(&primary, args.bounce.vpls, bounds)?;
         let map = map_of(gpu, renderer, &view, primary)?;
@@ -103,9 +102,9 @@ impl VplMaker {
         let casts = args.bounce.ranges.casts();
         let figures = Vpls {
             rsm_px: args.bounce.vpls,
-            ranges: args.bounce.ranges.name().to_owned(),
+            ranges: name_of(&args.bounce.ranges),
             rays: if casts { args.bounce.rays } else { 0 },
-            is_reflected: casts && args.bounce.primary_ray == PrimaryRay::Reflected,
+            is_reflected: casts && args.bounce.primary_ray == Primary::Reflected,
             is_corrected: casts && args.bounce.correct_rays,
             range_scale: f64::from(set.range_scale),
             random_m: drawn_span(scene, &args.bounce).map(|span| [span.low_m, span.high_m]),
@@ -168,27 +167,6 @@ fn record(
     record_map(map, view, vpls, passes);
     ranges.record(passes)?;
     vpls.record_keep(passes);
-    Ok(())
-}
-
-/// What options say nothing of each other.
-fn check(args: &VplArgs) -> Result<(), CliError> {
-    let refused = |option: &str, accepted: &str| {
-        let rule = args.ranges.name();
-        Err(CliError::new(format!("{option}: it must be {accepted}, and --ranges is {rule}")))
-    };
-    if args.keep_ranges.is_some() && args.ranges == RangeChoice::Infinite {
-        return refused("--keep-ranges", "given with ranges that end");
-    }
-    if args.random_ranges.is_some() && !args.ranges.draws() {
-        return refused("--random-ranges", "given with --ranges random or random-discard");
-    }
-    if args.constant_range.is_some() && args.ranges != RangeChoice::ConstantDiscard {
-        return refused("--constant-range", "given with --ranges constant-discard");
-    }
-    if args.correct_rays && !args.ranges.measures() {
-        return refused("--correct-rays", "given with --ranges average or maximum");
-    }
     Ok(())
 }
 
@@ -316,10 +294,7 @@ fn rule_of(args: &VplArgs) -> RangeRule {
     RangeRule {
         rays: args.rays,
         combine,
-        primary: match args.primary_ray {
-            PrimaryRay::Normal => Primary::Normal,
-            PrimaryRay::Reflected => Primary::Reflected,
-        },
+        primary: args.primary_ray,
         is_corrected: args.correct_rays,
         ..RangeRule::default()
     }

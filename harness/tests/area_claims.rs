@@ -77,9 +77,9 @@ fn study(turn: Option<(&str, &str, f64)>) -> Done {
     };
     for (model, flip, rel_mse, bias) in ERRORS {
         let mut record = record("None", Mode::Deferred, 0.0, 1.0);
-        record.area_model = Some(model.into());
+        record.setting.area_model = Some(model.into());
         for (metric, error) in [("flip", flip), ("rel_mse", rel_mse), ("bias", bias)] {
-            record.truth_errors.insert(metric.into(), Some(error * factor(model, metric)));
+            record.image.truth_errors.insert(metric.into(), Some(error * factor(model, metric)));
         }
         add(&mut done, MODELS, &model.replace(':', "-"), vec![record]);
     }
@@ -87,15 +87,15 @@ fn study(turn: Option<(&str, &str, f64)>) -> Done {
         let at = format!("{model}@{lights}");
         let time = time * factor(model, "time") * factor(&at, "time");
         let mut record = record("None", Mode::Deferred, 0.0, time);
-        record.frame_ms = time;
-        record.lights = lights;
-        record.area_model = (model != "spots").then(|| model.to_owned());
+        record.times.frame_ms = time;
+        record.setting.lights = lights;
+        record.setting.area_model = (model != "spots").then(|| model.to_owned());
         add(&mut done, "cost", &format!("{lights}-{}", model.replace(':', "-")), vec![record]);
     }
     let bounds = ["SC-E/48x48x40", "SC-E/48x48x40/ball"].map(|id| {
         let mut record = record(id, Mode::Deferred, 0.1, 1.0);
         let more = if id.ends_with("/ball") { 2.0 } else { 1.0 };
-        record.list_entries = (20_000.0 * more * factor(id, "entries")) as u64;
+        record.lists.entries = (20_000.0 * more * factor(id, "entries")) as u64;
         record
     });
     add(&mut done, BOUNDS, "200", bounds.into());

@@ -105,15 +105,15 @@ fn area(folder: &Path) -> Done {
         let file = format!("{}.exr", model.replace(':', "-"));
         image(value).write_exr(&folder.join(&file)).expect("writes");
         let mut record = record("None", Mode::Deferred, 0.0, time);
-        record.area_model = Some(model.into());
-        record.images.raw = Some(file);
+        record.setting.area_model = Some(model.into());
+        record.image.files.raw = Some(file);
         let variant = model.replace(':', "-");
         add(&mut done, "models", &variant, Results { records: vec![record], ..empty() }, folder);
     }
     for lights in [1, 4, 16] {
         for (model, each) in [(None, 0.5), (Some("ltc"), 1.0), (Some("point"), 0.75)] {
             let mut record = record("None", Mode::Deferred, 0.0, each * lights as f64);
-            (record.lights, record.area_model) = (lights, model.map(str::to_owned));
+            (record.setting.lights, record.setting.area_model) = (lights, model.map(str::to_owned));
             let variant = format!("{lights}-{}", model.unwrap_or("spots"));
             add(&mut done, "cost", &variant, Results { records: vec![record], ..empty() }, folder);
         }
@@ -132,11 +132,11 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
     let before = write(&done);
     assert!(!before.page.contains("data-part=\"models\""), "no errors, no table");
     compare_with_truth(&mut done).expect("images");
-    let error = |model: &str, id: &str| of(&done, model).truth_errors[id].expect("finite");
+    let error = |model: &str, id: &str| of(&done, model).image.truth_errors[id].expect("finite");
     assert!((error("ltc", "bias") - 0.01).abs() < 1e-4 && error("ltc", "missing_energy") == 0.0);
     assert!((error("point", "bias") + 0.25).abs() < 0.1, "{}", error("point", "bias"));
     assert!(error("monte-carlo-1", "rel_mse") > 10.0 * error("monte-carlo-16", "rel_mse"));
-    assert!(!of(&done, "ltc").errors.contains_key("flip"), "culling errors are left alone");
+    assert!(!of(&done, "ltc").image.errors.contains_key("flip"), "culling errors are left alone");
 
     let Written { text, page, charts } = write(&done);
     for part in ["models", "model-times", "pictures", "cost"] {
@@ -177,8 +177,8 @@ fn an_image_that_equals_the_truth_has_no_error_and_one_of_another_size_is_named(
     let mut done = area(folder.path());
     image(true_value).write_exr(&folder.path().join("ltc.exr")).expect("writes");
     compare_with_truth(&mut done).expect("images");
-    assert!(of(&done, "ltc").truth_errors.values().all(|error| *error == Some(0.0)));
-    assert!(of(&done, "mrp").truth_errors.values().any(|error| *error > Some(0.0)));
+    assert!(of(&done, "ltc").image.truth_errors.values().all(|error| *error == Some(0.0)));
+    assert!(of(&done, "mrp").image.truth_errors.values().any(|error| *error > Some(0.0)));
     let small = HdrImage { width: 2, height: 1, pixels: vec![[1.0; 3]; 2] };
     small.write_exr(&folder.path().join("ltc.exr")).expect("writes");
     let error = compare_with_truth(&mut done).expect_err("refused").to_string();
@@ -270,11 +270,11 @@ fn endless(turned: &str, folder: &Path) -> Done {
             // The paper has about 10 % more at 16 times the lights.
             let more = if lights > 126 { 1.1 } else { 1.0 };
             let mut record = record(id, Mode::Deferred, assign, shade * far * more);
-            record.lights = lights;
+            record.setting.lights = lights;
             record.is_lossy = flip > 0.0;
             let millions = |terms: f64| (terms * 1e6) as u64;
             let specular = if id.contains("/s0.") { 5.0 } else { DIFFUSE };
-            record.operations = Some(Operations {
+            record.lists.operations = Some(Operations {
                 diffuse: millions(DIFFUSE),
                 specular: millions(specular + outer),
                 outer_specular: millions(outer),
@@ -282,14 +282,14 @@ fn endless(turned: &str, folder: &Path) -> Done {
                 perceptible_listed: Some(millions(seen)),
                 evaluated: None,
             });
-            record.errors.insert("flip".into(), Some(flip));
-            record.images.baseline = Some("None.png".into());
+            record.image.errors.insert("flip".into(), Some(flip));
+            record.image.files.baseline = Some("None.png".into());
             record
         };
         let mut records: Vec<Record> = SETTINGS.iter().map(make).collect();
         let frame_ms = if turned == "without" { 90.0 } else { 19_000.0 };
         let mut none = record("None", Mode::Deferred, 0.0, frame_ms);
-        none.lights = lights;
+        none.setting.lights = lights;
         records.insert(0, none);
         add(&mut done, place, &lights.to_string(), Results { records, ..empty() }, folder);
     }
@@ -331,7 +331,7 @@ fn a_setting_that_the_paper_lacks_decides_nothing_and_a_tie_is_a_tie() {
         let position = results.records[1].clone();
         for record in &mut results.records {
             if record.strategy.ends_with("/n6") {
-                record.passes = position.passes.clone();
+                record.times.passes = position.times.passes.clone();
                 record.set_times();
             }
         }
@@ -386,7 +386,7 @@ fn what_a_cut_loses_is_a_lower_bound_where_lists_flags_were_not_counted() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut done = endless("", folder.path());
     for record in done.results.values_mut().flat_map(|results| &mut results.records) {
-        if let Some(operations) = &mut record.operations {
+        if let Some(operations) = &mut record.lists.operations {
             operations.perceptible = operations.perceptible_listed.unwrap_or(0);
             operations.perceptible_listed = None;
         }

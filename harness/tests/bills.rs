@@ -6,9 +6,9 @@ use assign::{EncoderPasses, Gpu, Passes};
 use harness::choice::Choice;
 use harness::cli::{Invocation, parse};
 use harness::painter::Painter;
-use harness::strategy::{Method, Row, StrategyId, rows};
 use harness::results::{PassKind, is_raster_pass, pass_kind};
 use harness::stage::Stage;
+use harness::strategy::{Method, Row, StrategyId, rows};
 use shading::{Cut, Mode, record_before_lighting};
 
 /// A small stage on the adapter of this machine.

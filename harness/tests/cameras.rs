@@ -158,7 +158,7 @@ fn largest_difference(a: &HdrImage, b: &HdrImage) -> f32 {
 }
 
 #[test]
-fn cameras_show_what_their_file_says_or_the_run_says_that_nothing_was_tested() {
+fn cameras_follow_their_file_and_empty_views_count_as_untested() {
     let bench = Bench::open(None).expect("an adapter");
     let mut runs = Runs { bench, folder: tempfile::tempdir().expect("a folder") };
     let pixels = 64 * 36;
@@ -174,7 +174,7 @@ fn cameras_show_what_their_file_says_or_the_run_says_that_nothing_was_tested() {
     };
     for more in ["", "--camera 0,0.12,0.12:0,0.02,0"] {
         let results = runs.run(&close, &format!("{two} all {more}"));
-        assert_eq!(results.records[1].samples, pixels, "{more}");
+        assert_eq!(results.records[1].lists.samples, pixels, "{more}");
         assert_eq!(lit_pixels(&runs.image()), pixels as usize, "{more}");
         assert!(results.records[1].is_exact(), "{more}: {:?}", results.warnings);
     }
@@ -209,11 +209,15 @@ fn cameras_show_what_their_file_says_or_the_run_says_that_nothing_was_tested() {
         "{}",
         largest_difference(&here, &runs.image())
     );
-    assert!((results.records[0].eye[0] - 1e6).abs() < 1e-3, "{:?}", results.records[0].eye);
+    assert!(
+        (results.records[0].setting.eye[0] - 1e6).abs() < 1e-3,
+        "{:?}",
+        results.records[0].setting.eye
+    );
     let sin = 0.1_f64.sin() / 0.1_f64.cos();
     let pose = format!("1000000,2,1000009:1000000,{},1000008", 2.0 - sin);
     let results = runs.run(&cut, &format!("{two} all --camera {pose}"));
-    assert!(results.records[1].samples > 500 && results.records[1].is_exact(), "{results:?}");
+    assert!(results.records[1].lists.samples > 500 && results.records[1].is_exact(), "{results:?}");
 
     // A view of nothing, and lights that reach nothing that it shows: nothing is exact or ranked.
     cut.place = [0.0; 3];
@@ -225,7 +229,7 @@ fn cameras_show_what_their_file_says_or_the_run_says_that_nothing_was_tested() {
         let results =
             runs.run(&cut, &format!("{two} none --camera={camera} {lights} --truth none"));
         for record in &results.records {
-            assert_eq!(record.untested, Some(why), "{camera}");
+            assert_eq!(record.lists.untested, Some(why), "{camera}");
             assert!(!record.is_exact() && record.shows_no_loss(), "{camera}");
         }
         let said = [finding(&results)[0].clone(), render_table(&results)];
@@ -234,7 +238,7 @@ fn cameras_show_what_their_file_says_or_the_run_says_that_nothing_was_tested() {
         assert!(said[1].contains("NOTHING WAS TESTED"), "{said:?}");
         assert!(harness::advise::verdict(&results, 0.0).is_none(), "{camera}");
         let advice = harness::advise::answer(&results, 0.0);
-        assert!(advice.starts_with("Nothing can be said: "), "{advice}");
+        assert!(advice.starts_with("No advice: "), "{advice}");
     }
 }
 
@@ -258,24 +262,24 @@ fn all_methods_serve_an_orthographic_camera_of_a_file() {
         "--camera #1 --lights 300 --spots 0.3 --strategies all,M/2 --source bvh --pictures none";
     let results = runs.run(&room, more);
     assert!(results.records.len() > 10, "{} records", results.records.len());
-    let far = results.records[0].planes.expect("planes").far_m;
+    let far = results.records[0].setting.planes.expect("planes").far_m;
     assert_eq!(far, Some(60.0));
     for record in results.records.iter().filter(|record| record.strategy != "Clay") {
-        let what = format!("{} {}", record.strategy, record.mode.name());
+        let what = format!("{} {}", record.strategy, record.setting.mode.name());
         assert!(
-            record.is_lossless() && record.untested.is_none(),
+            record.is_lossless() && record.lists.untested.is_none(),
             "{what}: {:?}",
-            record.max_rel_diff
+            record.image.max_rel_diff
         );
-        assert_eq!(record.missed_pairs.unwrap_or(0), 0, "{what}");
+        assert_eq!(record.lists.missed_pairs.unwrap_or(0), 0, "{what}");
     }
     let none = results.records.iter().find(|record| record.is_baseline()).expect("no culling");
-    let (samples, pairs) = (none.samples, none.checked_pairs);
+    let (samples, pairs) = (none.lists.samples, none.lists.checked_pairs);
     assert!(samples > 1_000 && pairs > Some(1_000), "{samples} samples, {pairs:?} pairs");
 }
 
 #[test]
-fn advise_says_that_nothing_can_be_said() {
+fn advise_refuses_a_view_without_surfaces() {
     let folder = tempfile::tempdir().expect("a folder");
     let words = ["advise", "--size", "64x36", "--lights", "9", "--camera=0,500,0:0,501,0"];
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_lightbench"))
@@ -285,5 +289,8 @@ fn advise_says_that_nothing_can_be_said() {
         .expect("starts");
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert!(stderr.contains("advise: nothing can be said: the view shows no surface"), "{stderr}");
+    assert!(
+        stderr.contains("advise: no advice for this view: the view shows no surface"),
+        "{stderr}"
+    );
 }

@@ -1,4 +1,4 @@
-//! The program as a user runs it, on the adapter of this machine.
+//! Runs the program as a user does, on the adapter of this machine.
 
 use std::{
     path::Path,
@@ -11,13 +11,13 @@ use harness::{
     results::{Record, Results},
 };
 
-/// The scene of the fewest triangles, on which a software adapter spends most of a frame. The default scene
-/// has seven times as many: two tests draw it.
+/// The scene with the fewest triangles: a software adapter spends most of a frame on triangles. The default
+/// scene has seven times as many, so only two tests draw it.
 const SMALL: &str = "town-small";
 
 fn lightbench(arguments: &[&str]) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_lightbench"));
-    // As on a server: the Vulkan loader would complain of it.
+    // A server lacks this variable, and the Vulkan loader would print a warning.
     program.env_remove("XDG_RUNTIME_DIR").args(arguments).output().expect("starts")
 }
 
@@ -34,18 +34,19 @@ fn compare(out: &Path, arguments: &[&str]) -> Results {
 fn assert_lossless(results: &Results, records: usize) {
     assert_eq!(results.records.len(), records);
     for record in &results.records {
-        let what = format!("{} {} {}", record.scene, record.strategy, record.mode.name());
-        assert_eq!(record.missed_pairs, Some(0), "{what}");
-        assert_eq!(record.max_abs_diff, Some(0.0), "{what}");
-        assert_eq!(record.differing_channels, Some(0), "{what}");
-        assert!(record.samples > 1_000, "{what}: {} samples", record.samples);
-        assert!(record.listed_per_sample >= record.contributing_per_sample, "{what}");
-        assert!(record.passes.get("shade").is_some(), "{what}");
+        let what =
+            format!("{} {} {}", record.setting.scene, record.strategy, record.setting.mode.name());
+        assert_eq!(record.lists.missed_pairs, Some(0), "{what}");
+        assert_eq!(record.image.max_abs_diff, Some(0.0), "{what}");
+        assert_eq!(record.image.differing_channels, Some(0), "{what}");
+        assert!(record.lists.samples > 1_000, "{what}: {} samples", record.lists.samples);
+        assert!(record.lists.listed_per_sample >= record.lists.contributing_per_sample, "{what}");
+        assert!(record.times.passes.get("shade").is_some(), "{what}");
     }
 }
 
 #[test]
-fn a_mistake_leaves_an_earlier_report_alone() {
+fn bad_input_leaves_an_earlier_report_untouched() {
     let folder = tempfile::tempdir().expect("a folder");
     let one = ["--scene", SMALL, "--lights", "1", "--strategies", "None", "--truth", "none"];
     compare(folder.path(), &one);
@@ -72,38 +73,42 @@ fn the_default_scene_is_lossless_in_both_modes() {
     let results = compare(&out, &["--lights", "300", "--spots", "0.3", "--mode", "both"]);
     assert_lossless(&results, 8);
     let culled = &results.records[2];
-    assert!(culled.checked_pairs > Some(1_000), "{:?} pairs", culled.checked_pairs);
-    assert!(culled.listed_per_sample < Some(150.0), "{:?} listed", culled.listed_per_sample);
-    assert_eq!(culled.light_kinds.values().sum::<u64>(), 300);
-    assert!(culled.light_kinds["spot"] > 50);
-    assert!(culled.passes.get("cull").is_some());
+    assert!(culled.lists.checked_pairs > Some(1_000), "{:?} pairs", culled.lists.checked_pairs);
+    assert!(
+        culled.lists.listed_per_sample < Some(150.0),
+        "{:?} listed",
+        culled.lists.listed_per_sample
+    );
+    assert_eq!(culled.setting.light_kinds.values().sum::<u64>(), 300);
+    assert!(culled.setting.light_kinds["spot"] > 50);
+    assert!(culled.times.passes.get("cull").is_some());
     let sparse = &results.records[3];
-    assert!(sparse.passes.get("bounds").is_some());
-    assert!(sparse.histogram.iter().sum::<u64>() > 20, "{:?}", sparse.histogram);
-    assert!(sparse.listed_per_sample < culled.listed_per_sample);
+    assert!(sparse.times.passes.get("bounds").is_some());
+    assert!(sparse.lists.histogram.iter().sum::<u64>() > 20, "{:?}", sparse.lists.histogram);
+    assert!(sparse.lists.listed_per_sample < culled.lists.listed_per_sample);
     for name in ["index.html", "deferred-None.png", "forward-None.exr", HEAT_MAP] {
         assert!(out.join(name).is_file(), "{name}");
     }
 }
 
 #[test]
-fn all_methods_are_lossless_or_within_what_they_state() {
+fn all_methods_are_lossless_or_within_their_tolerance() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["--strategies", "all,M/2", "--source", "both", "--mode", "both"];
     let lights = ["--scene", SMALL, "--lights", "200", "--spots", "0.3"];
     let results = compare(folder.path(), &[&arguments[..], &lights].concat());
     assert!(results.records.len() > 40, "{} records", results.records.len());
     for record in results.records.iter().filter(|record| record.strategy != "Clay") {
-        let what = format!("{} {}", record.strategy, record.mode.name());
-        assert!(record.is_lossless(), "{what}: {:?}", record.max_rel_diff);
+        let what = format!("{} {}", record.strategy, record.setting.mode.name());
+        assert!(record.is_lossless(), "{what}: {:?}", record.image.max_rel_diff);
         let is_raster = record.strategy == "RasterSphere";
-        assert_eq!(record.tolerance.is_some(), is_raster, "{what}");
-        assert_eq!(record.missed_pairs, (!is_raster).then_some(0), "{what}");
+        assert_eq!(record.image.tolerance.is_some(), is_raster, "{what}");
+        assert_eq!(record.lists.missed_pairs, (!is_raster).then_some(0), "{what}");
     }
 }
 
-/// Samples are stored lap after lap, every lap takes the same poses, and lists that are kept over
-/// frames are made anew where a lap begins.
+/// Samples are stored lap after lap. Every lap has the same poses. Lists that are reused over frames are made
+/// again when a lap begins.
 #[test]
 fn laps_repeat_the_path() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -111,13 +116,13 @@ fn laps_repeat_the_path() {
     let path = ["--scene", SMALL, "--path", "--frames", "3", "--laps", "2", "--pictures", "none"];
     let results = compare(folder.path(), &[&arguments[..], &path].concat());
     for record in &results.records {
-        assert_eq!((record.frames, record.poses, record.laps()), (6, Some(3), 2));
-        assert!(record.along_path && record.rounds == 2);
-        assert_eq!(record.passes.get("shade").expect("shade").samples.len(), 6);
+        assert_eq!((record.times.frames, record.setting.poses, record.laps()), (6, Some(3), 2));
+        assert!(record.setting.along_path && record.times.rounds == 2);
+        assert_eq!(record.times.passes.get("shade").expect("shade").samples.len(), 6);
         assert_eq!((record.round_times_ms().len(), record.pose_times_ms().len()), (2, 3));
-        assert_eq!(record.differing_channels, Some(0), "{}", record.strategy);
+        assert_eq!(record.image.differing_channels, Some(0), "{}", record.strategy);
     }
-    let cull = &results.records[1].passes.get("cull").expect("cull").samples;
+    let cull = &results.records[1].times.passes.get("cull").expect("cull").samples;
     let made: Vec<bool> = cull.iter().map(|ms| *ms > 0.0).collect();
     assert_eq!(made, [true, false, false, true, false, false]);
 }
@@ -128,9 +133,9 @@ fn clay_and_zero_lights_run() {
     let arguments = ["--lights", "0", "--strategies", "Clay,DC-I/32x32x8", "--truth", "none"];
     let results = compare(folder.path(), &[&["--scene", SMALL], &arguments[..]].concat());
     assert_eq!(results.records.len(), 2);
-    assert_eq!(results.records[0].max_abs_diff, None);
-    assert_eq!(results.records[1].max_abs_diff, Some(0.0));
-    assert_eq!(results.records[1].list_entries, 0);
+    assert_eq!(results.records[0].image.max_abs_diff, None);
+    assert_eq!(results.records[1].image.max_abs_diff, Some(0.0));
+    assert_eq!(results.records[1].lists.entries, 0);
 }
 
 #[test]
@@ -148,7 +153,7 @@ fn real_scenes_with_their_own_lights_are_lossless() {
     for (file, lights) in scenes {
         let path = folder.join(file);
         if !path.is_file() {
-            println!("skipped: {} is not there", path.display());
+            println!("skipped: {} does not exist", path.display());
             continue;
         }
         let out = tempfile::tempdir().expect("a folder");
@@ -159,22 +164,28 @@ fn real_scenes_with_their_own_lights_are_lossless() {
 }
 
 #[test]
-fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
+fn advice_starts_with_the_best_method_and_prefers_lossy_ones_only_for_speed() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("UTF-8");
     let small = ["advise", "--error-budget", "0.001", "--size", "64x36", "--lights", "60"];
     let output = lightbench(&[&small[..], &["--out", out]].concat());
-    let said = String::from_utf8_lossy(&output.stdout);
+    let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let results = Results::read(&folder.path().join("results.json")).expect("results.json");
     let best = verdict(&results, 0.001).expect("a verdict").best;
-    assert!(said.starts_with(&format!("Use {} (", best.strategy)), "the answer first: {said}");
-    // It judged several poses, several times each.
-    assert!(best.along_path && best.poses == Some(3) && best.frames == 24, "{best:?}");
+    assert!(
+        text.starts_with(&format!("Use {} (", best.strategy)),
+        "the first line must name the best method: {text}"
+    );
+    // It measured several poses, several times each.
+    assert!(
+        best.setting.along_path && best.setting.poses == Some(3) && best.times.frames == 24,
+        "{best:?}"
+    );
     let gains = |exact: &&Record| is_surely_faster(best, exact) == Some(true);
     let mut exact = results.records.iter().filter(|record| record.is_exact() && record.culls());
-    assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{said}");
-    // A view that the user placed is one view, and lights come from files as they do elsewhere.
+    assert!(best.is_exact() || exact.all(|exact| gains(&exact)), "{text}");
+    // --camera gives one view, so --poses is refused; --lights-from works as in `compare`.
     let refused = lightbench(&["advise", "--poses", "3", "--camera", "0,1,0:1,1,0"]);
     assert_eq!(refused.status.code(), Some(2));
     assert_refused(&["advise", "--lights-from", "gone.glb", "--out", out], &["gone.glb"]);
@@ -184,15 +195,19 @@ fn advice_comes_first_and_names_no_lossy_setting_that_gains_nothing() {
 fn assert_refused(arguments: &[&str], wanted: &[&str]) {
     let output = lightbench(arguments);
     let stderr = String::from_utf8_lossy(&output.stderr);
-    // Beside the error: what was found so far.
+    // These lines may stand beside the error.
     let known = ["adapter  ", "scene    ", "lights   ", "warning  "];
     let is_known = |line: &&str| known.iter().any(|prefix| line.starts_with(prefix));
-    let said: Vec<&str> = stderr.lines().filter(|line| !is_known(line)).collect();
+    let errors: Vec<&str> = stderr.lines().filter(|line| !is_known(line)).collect();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
-    assert_eq!(said.len(), 1, "{arguments:?}: {stderr}");
-    assert!(said[0].starts_with("lightbench: "), "{arguments:?}: {stderr}");
+    assert_eq!(errors.len(), 1, "{arguments:?}: {stderr}");
+    assert!(errors[0].starts_with("lightbench: "), "{arguments:?}: {stderr}");
     for part in wanted {
-        assert!(said[0].contains(part), "{arguments:?}: {:?} lacks {part:?}", said[0]);
+        assert!(
+            errors[0].contains(part),
+            "{arguments:?}: {:?} does not contain {part:?}",
+            errors[0]
+        );
     }
 }
 
@@ -265,12 +280,12 @@ fn bad_input_gets_one_line_and_exit_code_2() {
     ] {
         assert_refused(&arguments, &wanted);
     }
-    // No error left a folder behind, nor anything in one.
+    // No error left a folder or a file.
     assert!(!folder.path().join("new").exists());
 }
 
 #[test]
-fn lists_and_help_teach() {
+fn list_and_help_print_their_text() {
     let text = |arguments: &[&str]| {
         let output = lightbench(arguments);
         assert!(output.status.success(), "{arguments:?}");
@@ -282,7 +297,7 @@ fn lists_and_help_teach() {
     assert!(text(&["--help"]).contains("How to read the result"));
 }
 
-/// A floor of 10 m under a camera, one lamp of 0.05 cd without a range, and perhaps a sun.
+/// A floor of 10 m under a camera, one lamp of 0.05 cd without a range, and a sun if `has_sun`.
 fn floor_file(folder: &Path, has_sun: bool) -> String {
     let corners: [[f32; 3]; 4] = [[-5., 0., -5.], [-5., 0., 5.], [5., 0., 5.], [5., 0., -5.]];
     let mut bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
@@ -321,10 +336,10 @@ fn image_of_none(out: &Path) -> shading::HdrImage {
     shading::HdrImage::read_exr(&out.join("deferred-None.exr")).expect("an image")
 }
 
-/// A dim lamp without a range lights its floor as it would without an end, and the run says where it
-/// ends; a sun lights it once, whatever the method.
+/// A dim lamp without a range lights its floor almost as if it had no end, and a note says where it ends. A
+/// sun lights the floor once with every method.
 #[test]
-fn lights_without_an_end_are_seen_and_stated() {
+fn lights_without_a_range_are_visible_and_noted() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("run");
     let few = ["--lights", "0", "--strategies", "None,SC-E/16x16x4,RasterSphere"];
@@ -340,8 +355,12 @@ fn lights_without_an_end_are_seen_and_stated() {
     let lamp = floor_file(folder.path(), false);
     let (results, dim, words) = run(&lamp, &[]);
     let record = &results.records[0];
-    assert_eq!((record.lights, record.open_lights), (1, Some(1)));
-    assert!(record.unbounded_errors["rel_mse"] < Some(1e-4), "{:?}", record.unbounded_errors);
+    assert_eq!((record.setting.lights, record.setting.open_lights), (1, Some(1)));
+    assert!(
+        record.image.unbounded_errors["rel_mse"] < Some(1e-4),
+        "{:?}",
+        record.image.unbounded_errors
+    );
     assert!(dim.pixels.iter().all(|pixel| pixel[0] > 1e-5), "a black pixel");
     for place in [words, results.warnings.concat()] {
         assert!(
@@ -351,10 +370,10 @@ fn lights_without_an_end_are_seen_and_stated() {
     }
     let (results, _, words) = run(&lamp, &["--threshold", "0.02"]);
     assert!(words.contains("an end at 1.58 m"), "{words}");
-    assert!(results.records[0].unbounded_errors["rel_mse"] > Some(0.9), "{results:?}");
+    assert!(results.records[0].image.unbounded_errors["rel_mse"] > Some(0.9), "{results:?}");
     let (results, sunny, words) = run(&floor_file(folder.path(), true), &[]);
     assert!(words.contains("1 lights, 1 sun"), "{words}");
-    assert_eq!(results.records[0].light_kinds["sun"], 1);
+    assert_eq!(results.records[0].setting.light_kinds["sun"], 1);
     assert!(results.records.iter().all(Record::is_lossless), "{:?}", results.records);
     assert!(sunny.pixels.iter().zip(&dim.pixels).all(|(sun, dim)| sun[0] > dim[0] + 0.01));
 }

@@ -46,17 +46,17 @@ fn frame_ms(turned: &str, mode: Mode, strategy: &str, lights: u64) -> f64 {
 
 fn made(turned: &str, mode: Mode, strategy: &str, lights: u64) -> Record {
     let mut made = record(strategy, mode, 0.0, 1.0);
-    made.lights = lights;
-    made.passes = Passes::default();
+    made.setting.lights = lights;
+    made.times.passes = Passes::default();
     let times = vec![frame_ms(turned, mode, strategy, lights); 8];
-    made.passes.insert("shade", PassTimes::new(PassKind::Shade, times));
+    made.times.passes.insert("shade", PassTimes::new(PassKind::Shade, times));
     made.set_times();
     made.is_lossy = strategy == CAPPED;
-    made.errors.insert("missing_energy".into(), Some(0.0));
-    made.longest_list = if turned == "cap" { 200 } else { 90 };
+    made.image.errors.insert("missing_energy".into(), Some(0.0));
+    made.lists.longest = if turned == "cap" { 200 } else { 90 };
     let lost = if turned == "range" { 0.0 } else { 0.2 };
-    made.unbounded_errors.insert("missing_energy".into(), Some(lost));
-    made.differing_channels = Some(if turned == "tiles" { 5 } else { 0 });
+    made.image.unbounded_errors.insert("missing_energy".into(), Some(lost));
+    made.image.differing_channels = Some(if turned == "tiles" { 5 } else { 0 });
     made
 }
 
@@ -117,7 +117,8 @@ fn few_laps_are_told_from_ties() {
     let two_laps = |turned: &str| {
         let mut done = study(turned);
         for record in done.results.values_mut().flat_map(|results| &mut results.records) {
-            (record.along_path, record.poses, record.frames) = (true, Some(4), 8);
+            (record.setting.along_path, record.setting.poses, record.times.frames) =
+                (true, Some(4), 8);
             record.set_times();
         }
         page(&done)
@@ -147,9 +148,9 @@ fn lossy_rows_state_their_error_and_never_lead() {
     let mut done = study("");
     for results in done.results.values_mut() {
         for record in results.records.iter_mut().filter(|record| record.strategy == CAPPED) {
-            record.errors.insert("rel_mse".into(), Some(0.25));
+            record.image.errors.insert("rel_mse".into(), Some(0.25));
             let times = vec![0.5; 8];
-            record.passes.insert("shade", PassTimes::new(PassKind::Shade, times));
+            record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, times));
             record.set_times();
         }
     }

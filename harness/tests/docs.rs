@@ -81,11 +81,67 @@ fn check_fresh(path: &Path, fresh: &str) {
 }
 
 #[test]
-fn the_tables_of_the_readme_are_those_of_the_results() {
+fn the_full_tables_hold_the_figures_of_the_results() {
+    let path = root().join("docs/sponza.md");
+    let document = std::fs::read_to_string(&path).expect("docs/sponza.md");
+    assert!(document.matches(TABLE).count() >= 3, "docs/sponza.md has its three tables");
+    check_fresh(&path, &refreshed(&document, &root()));
+}
+
+/// Starts the README's short table: one row per strategy, one column per number of lights.
+const TIMES: &str = "<!-- times of ";
+
+/// The light counts of the short table, in the order of its columns.
+const LIGHT_COUNTS: [&str; 3] = ["100", "1000", "10000"];
+
+/// The cells of one row of a Markdown table.
+fn cells(row: &str) -> Vec<&str> {
+    row.split('|').map(str::trim).collect()
+}
+
+/// The time to assign and shade of a strategy, as a Markdown table of results shows it.
+fn time_in<'a>(table: &'a str, strategy: &str) -> Option<&'a str> {
+    let column =
+        cells(table.lines().next()?).iter().position(|head| *head == "assign + shade ms")?;
+    let row = table.lines().map(cells).find(|row| row.get(1) == Some(&strategy))?;
+    row.get(column).copied()
+}
+
+/// The README with the figures of its short table read again from the jobs that the table names. Slow
+/// strategies have a job of their own, whose name ends in `-slow`.
+fn with_fresh_times(readme: &str, root: &Path) -> String {
+    let (before, rest) = readme.split_once(TIMES).expect("README.md has the short table");
+    let (jobs, rest) = rest.split_once(" -->\n").expect("the comment ends");
+    let (table, after) = rest.split_once(END).expect("the table ends");
+    let tables_of = |count: &str| {
+        ["", "-slow"].map(|kind| {
+            let file = root.join(format!("{jobs}-{count}{kind}/results.json"));
+            render_markdown(&Results::read(&file).expect("results"))
+        })
+    };
+    let tables = LIGHT_COUNTS.map(tables_of);
+    let mut fresh = format!("{before}{TIMES}{jobs} -->\n");
+    for (ix, row) in table.lines().enumerate() {
+        if ix < 2 {
+            fresh += &format!("{row}\n");
+            continue;
+        }
+        let [id, name] = [1, 2].map(|column| cells(row)[column]);
+        fresh += &format!("| {id} | {name} |");
+        for tables in &tables {
+            let time = tables.iter().find_map(|table| time_in(table, id.trim_matches('`')));
+            fresh += &format!(" {} |", time.expect("every strategy of the table was measured"));
+        }
+        fresh.push('\n');
+    }
+    fresh + END + after
+}
+
+#[test]
+fn the_short_table_holds_the_figures_of_the_results() {
     let path = root().join("README.md");
     let readme = std::fs::read_to_string(&path).expect("README.md");
-    assert!(readme.matches(TABLE).count() >= 2, "README.md has its tables");
-    check_fresh(&path, &refreshed(&readme, &root()));
+    check_fresh(&path, &with_fresh_times(&readme, &root()));
 }
 
 #[test]
@@ -187,15 +243,16 @@ fn stored_caps_that_tie_are_not_advised() {
         }
         // As if this cap erred by less than the budget, and its median were the least by luck.
         caps += 1;
-        record.errors.insert("rel_mse".into(), Some(0.0005));
-        record.differing_channels = Some(9);
+        record.image.errors.insert("rel_mse".into(), Some(0.0005));
+        record.image.differing_channels = Some(9);
         let exact = turned.records.iter().filter(|r| r.is_exact() && r.culls());
         let best = exact.min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
         let best = best.expect("an exact one").clone();
         let record = &mut turned.records[ix];
-        (record.passes, record.rounds, record.frames) = (best.passes, best.rounds, best.frames);
+        (record.times.passes, record.times.rounds, record.times.frames) =
+            (best.times.passes, best.times.rounds, best.times.frames);
         record.set_times();
-        record.shade_ms -= 1e-6;
+        record.times.shade_ms -= 1e-6;
         let named = &verdict(&turned, 0.001).expect("a verdict").best;
         assert!(named.is_exact(), "{} is named", named.strategy);
     }

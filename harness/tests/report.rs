@@ -52,8 +52,8 @@ fn slower_and_equal_strategies_are_not_called_faster() {
     assert!(text.contains("as long as no culling") && !text.contains("faster"), "{text}");
 
     let mut equal = slower.clone();
-    equal.records[1].assign_ms = 0.0;
-    equal.records[1].shade_ms = equal.records[0].shade_ms * 1.02;
+    equal.records[1].times.assign_ms = 0.0;
+    equal.records[1].times.shade_ms = equal.records[0].times.shade_ms * 1.02;
     let text = &finding(&equal)[0];
     assert!(text.contains("takes as long as no culling to shade 1,000 lights"), "{text}");
 }
@@ -72,10 +72,10 @@ fn copy(record: &harness::results::Record, name: &str, factor: f64) -> harness::
     let mut copy = record.clone();
     copy.strategy = name.into();
     let passes: Vec<_> =
-        record.passes.iter().map(|(name, times)| (name.to_owned(), times.clone())).collect();
+        record.times.passes.iter().map(|(name, times)| (name.to_owned(), times.clone())).collect();
     for (name, mut times) in passes {
         times.samples.iter_mut().for_each(|ms| *ms *= factor);
-        copy.passes.insert(&name, PassTimes::new(times.kind, times.samples));
+        copy.times.passes.insert(&name, PassTimes::new(times.kind, times.samples));
     }
     copy.set_times();
     copy
@@ -108,13 +108,13 @@ fn a_lead_that_rounds_do_not_show_says_so() {
     let mut results = pair();
     results.records.push(copy(&results.records[1], "T-E/28x28", 3.0));
     for record in &mut results.records {
-        record.rounds = 3;
+        record.times.rounds = 3;
     }
     let headline = &finding(&results)[0];
     assert!(headline.contains("3 rounds are too few to rank 2 methods"), "{headline}");
     for record in &mut results.records {
-        record.along_path = true;
-        record.rounds = 1;
+        record.setting.along_path = true;
+        record.times.rounds = 1;
     }
     let headline = &finding(&results)[0];
     assert!(headline.contains("ranked by time only; too few rounds to test ties"), "{headline}");
@@ -126,7 +126,7 @@ fn a_lead_that_rounds_do_not_show_says_so() {
 fn a_built_hierarchy_leads_for_still_lights_only() {
     let mut results = pair();
     results.records[1].strategy = "SC-E/48x48x40/bvh".into();
-    results.records[1].light_build_ms = Some(9.7);
+    results.records[1].times.light_build_ms = Some(9.7);
     let headline = &finding(&results)[0];
     let limit = "(still lights only: uses a hierarchy built in 9.70 ms, not counted in this time)";
     assert!(headline.contains(limit), "{headline}");
@@ -147,7 +147,7 @@ fn a_lossy_method_states_its_errors_wherever_it_is_shown() {
     let mut lossy = copy(&results.records[1], "SC-E/48x48x40/cap64", 0.5);
     spoil(&mut lossy);
     lossy.is_lossy = true;
-    lossy.errors = [("missing_energy", 0.3012), ("rel_mse", 0.21), ("flip", 0.104)]
+    lossy.image.errors = [("missing_energy", 0.3012), ("rel_mse", 0.21), ("flip", 0.104)]
         .map(|(id, error)| (id.to_owned(), Some(error)))
         .into();
     results.records.push(lossy);
@@ -191,7 +191,7 @@ fn odd_runs_still_read_well() {
 
     let mut dark = pair();
     for record in &mut dark.records {
-        record.lights = 0;
+        record.setting.lights = 0;
     }
     assert!(finding(&dark)[0].contains("there is no light to assign"));
 
@@ -205,20 +205,20 @@ fn odd_runs_still_read_well() {
 #[test]
 fn what_was_not_measured_is_not_claimed() {
     let mut results = pair();
-    results.records[1].differing_channels = None;
-    results.records[1].max_abs_diff = None;
+    results.records[1].image.differing_channels = None;
+    results.records[1].image.max_abs_diff = None;
     assert!(finding(&results)[0].ends_with("as fast as no culling."));
-    results.records[1].shade_ms = f64::NAN;
+    results.records[1].times.shade_ms = f64::NAN;
     assert!(!finding(&results)[0].contains("NaN"));
 
     // A record without passes took no time that anyone knows.
     let mut results = pair();
     results.records.remove(0);
-    results.records[0].passes = Default::default();
+    results.records[0].times.passes = Default::default();
     results.records[0].set_times();
     assert!(finding(&results)[0].contains("no time was recorded of DC-I/64x64x24"));
     let mut none = of([record("None", Mode::Deferred, 0.0, 50.0)]);
-    none.records[0].shade_ms = f64::NAN;
+    none.records[0].times.shade_ms = f64::NAN;
     assert!(finding(&none)[0].contains("no time was recorded without culling"));
 }
 
@@ -229,7 +229,7 @@ fn notices_say_what_the_figures_are_not() {
     results.machine.device_type = DeviceType::DiscreteGpu;
     assert!(notices(&results)[0].starts_with("Times are wall-clock times of the host"));
     for record in &mut results.records {
-        record.clock = Clock::GpuTimestamps;
+        record.times.clock = Clock::GpuTimestamps;
     }
     assert!(notices(&results).is_empty());
 
@@ -249,7 +249,7 @@ fn the_terminal_table_is_aligned_and_narrow() {
     spoil(&mut results.records[4]);
     results.records[1].strategy =
         "a strategy with a name that is far too long for its column".into();
-    results.records[2].listed_per_sample = None;
+    results.records[2].lists.listed_per_sample = None;
     let text = render_table(&results);
     for line in text.lines() {
         assert!(line.chars().count() <= TABLE_WIDTH, "{line}");
@@ -285,7 +285,7 @@ fn the_page_holds_everything() {
 fn names_cannot_inject_markup() {
     let mut results = pair();
     results.records[1].strategy = "</script><script>alert(1)</script><b>".into();
-    results.records[1].scene = "{{data}} & \"x\"".to_owned();
+    results.records[1].setting.scene = "{{data}} & \"x\"".to_owned();
     let page = render_html(&results, &[]);
     assert!(!page.contains("<script>alert") && !page.contains("{{data}} & \""));
     assert_eq!(page.matches("id=\"data\"").count(), 1);

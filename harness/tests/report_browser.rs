@@ -43,15 +43,15 @@ fn the_table_shows_the_data() {
     for (ix, record) in results.records.iter().enumerate() {
         let values = [
             ("both_ms", record.assign_and_shade_ms()),
-            ("assign_ms", record.assign_ms),
-            ("shade_ms", record.shade_ms),
-            ("frame_ms", record.frame_ms),
-            ("listed", record.listed_per_sample.expect("measured")),
-            ("contributing", record.contributing_per_sample.expect("measured")),
-            ("missed", record.missed_pairs.expect("measured") as f64),
-            ("max_diff", record.max_abs_diff.expect("measured")),
-            ("lists_bytes", record.lists_bytes as f64),
-            ("overflow", record.overflowed_groups as f64),
+            ("assign_ms", record.times.assign_ms),
+            ("shade_ms", record.times.shade_ms),
+            ("frame_ms", record.times.frame_ms),
+            ("listed", record.lists.listed_per_sample.expect("measured")),
+            ("contributing", record.lists.contributing_per_sample.expect("measured")),
+            ("missed", record.lists.missed_pairs.expect("measured") as f64),
+            ("max_diff", record.image.max_abs_diff.expect("measured")),
+            ("lists_bytes", record.lists.bytes as f64),
+            ("overflow", record.lists.overflowed_groups as f64),
         ];
         for (metric, expected) in values {
             let shown: f64 = column(metric)[ix].0.parse().expect("a number");
@@ -119,17 +119,17 @@ fn odd_results_render() {
     };
     let mut odd = record("DC-I/64x64x24", Mode::Deferred, 5.0, 20.0);
     odd.strategy = "</script><script>throw 1</script> \u{1f4a1} ".repeat(6).into();
-    odd.scene = "a \"scene\" with <b>markup</b> & a long, long name.gltf".to_owned();
-    (odd.assign_ms, odd.frame_ms) = (f64::NAN, f64::NAN);
-    odd.listed_per_sample = None;
-    odd.contributing_per_sample = Some(f64::NAN);
-    (odd.missed_pairs, odd.max_abs_diff) = (None, None);
+    odd.setting.scene = "a \"scene\" with <b>markup</b> & a long, long name.gltf".to_owned();
+    (odd.times.assign_ms, odd.times.frame_ms) = (f64::NAN, f64::NAN);
+    odd.lists.listed_per_sample = None;
+    odd.lists.contributing_per_sample = Some(f64::NAN);
+    (odd.lists.missed_pairs, odd.image.max_abs_diff) = (None, None);
     let mut silent = record("None", Mode::Forward, 0.0, 0.0);
-    silent.passes = Default::default();
-    silent.lights = 0;
+    silent.times.passes = Default::default();
+    silent.setting.lights = 0;
     silent.set_times();
     let mut other_scene = record("None", Mode::Deferred, 0.0, 3.0);
-    other_scene.scene = "Sponza.gltf".to_owned();
+    other_scene.setting.scene = "Sponza.gltf".to_owned();
 
     let several = of(vec![odd, silent, other_scene, record("Clay", Mode::Deferred, 0.0, 1.0)]);
     let Some(dom) = check("several", &several, &[]) else { return };

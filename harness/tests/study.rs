@@ -41,15 +41,14 @@ fn study<'a>(out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
 /// What of a record does not depend on the clock.
 fn timeless(record: &Record) -> Record {
     let nothing = harness::results::Passes::default();
-    let names = record.passes.iter().map(|(name, times)| (name.to_owned(), times.samples.len()));
-    let mut record = Record {
-        note: Some(format!("{:?}", names.collect::<Vec<_>>())),
-        light_build_ms: None,
-        ..record.clone()
-    };
-    record.passes = nothing;
+    let names =
+        record.times.passes.iter().map(|(name, times)| (name.to_owned(), times.samples.len()));
+    let mut record =
+        Record { note: Some(format!("{:?}", names.collect::<Vec<_>>())), ..record.clone() };
+    record.times.light_build_ms = None;
+    record.times.passes = nothing;
     record.set_times();
-    (record.assign_ms, record.shade_ms, record.frame_ms) = (0.0, 0.0, 0.0);
+    (record.times.assign_ms, record.times.shade_ms, record.times.frame_ms) = (0.0, 0.0, 0.0);
     record
 }
 
@@ -173,7 +172,7 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
     other.command.push("--spots".into());
     assert!(refused(&other).contains("--spots"));
     let mut other = sound.clone();
-    other.records[0].scene_hash = "0".into();
+    other.records[0].setting.scene_hash = "0".into();
     assert!(refused(&other).contains("scene_hash"));
 }
 
@@ -224,15 +223,15 @@ fn metrics_are_computed_again_from_the_stored_images() {
     let mut results = Results::read(&path).expect("results");
     let record = &results.records[1];
     assert!(record.is_lossy && !record.is_lossless());
-    let errors = record.errors.clone();
+    let errors = record.image.errors.clone();
     assert!(errors["rel_mse"] > Some(1e-4), "{errors:?}");
     assert!(errors["missing_energy"] > Some(0.0));
     // As if they had never been computed.
-    results.records[1].errors.clear();
+    results.records[1].image.errors.clear();
     results.write(&path).expect("writes");
     let raw = std::fs::read(&path).expect("reads");
     run(&["report", out]);
-    assert_eq!(Results::read(&path).expect("results").records[1].errors, errors);
+    assert_eq!(Results::read(&path).expect("results").records[1].image.errors, errors);
     // They lie beside the raw results, which no report writes, into whatever folder it goes.
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");

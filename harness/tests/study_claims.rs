@@ -94,8 +94,8 @@ fn claims_are_judged_by_path_means_and_say_over_how_many_poses() {
     // From the still camera SC-I leads: the path decides.
     let still = done.results.get_mut("atrium-main-10000").expect("it is there");
     for record in still.records.iter_mut().filter(|r| r.strategy.starts_with("SC-I")) {
-        record.passes = Default::default();
-        record.passes.insert("shade", PassTimes::new(PassKind::Shade, vec![0.1; 8]));
+        record.times.passes = Default::default();
+        record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, vec![0.1; 8]));
         record.set_times();
     }
     assert_eq!(verdict(&write(&done).page, "many"), "holds");
@@ -163,11 +163,11 @@ fn one_lap_does_not_order_what_is_near() {
         let (dense, sparse) = (of(&path.records, "DC-E"), of(&path.records, "SC-E"));
         // SC-E takes 1 % longer than DC-E.
         let mut passes = harness::results::Passes::default();
-        for (name, times) in path.records[dense].passes.iter() {
+        for (name, times) in path.records[dense].times.passes.iter() {
             let longer = times.samples.iter().map(|ms| ms * 1.01).collect();
             passes.insert(name, PassTimes::new(times.kind, longer));
         }
-        path.records[sparse].passes = passes;
+        path.records[sparse].times.passes = passes;
         path.records[sparse].set_times();
         let page = write(&done).page;
         assert_eq!(verdict(&page, "dense"), expected, "{laps} laps");
@@ -184,8 +184,8 @@ fn a_level_start_is_not_linear() {
         let results = done.results.get_mut(&format!("atrium-scaling-{lights}")).expect("a job");
         for record in results.records.iter_mut().filter(|r| r.strategy.starts_with("G/")) {
             let time = (lights as f64 / 1_000.0).max(1.0);
-            record.passes = Default::default();
-            record.passes.insert("shade", PassTimes::new(PassKind::Shade, vec![time; 8]));
+            record.times.passes = Default::default();
+            record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, vec![time; 8]));
             record.set_times();
         }
     }

@@ -58,7 +58,7 @@ fn a_tie_is_said() {
         .expect("it is there")
         .clone();
     for record in results.records.iter_mut().filter(|r| r.strategy.starts_with("DC-E")) {
-        record.passes = best.passes.clone();
+        record.times.passes = best.times.passes.clone();
         record.set_times();
     }
     let Written { text, page, .. } = write(&done);
@@ -109,7 +109,7 @@ fn the_culling_survey_has_a_chart_and_fits_per_mode() {
         for lights in [0, 250, 500] {
             let records = ["Clay", "None", "Sphere", "SC-E/48x48x40/bvh"].map(|id| {
                 let mut record = record(id, kind, 0.0, 3.0 + lights as f64 * 0.1 / id.len() as f64);
-                record.lights = lights;
+                record.setting.lights = lights;
                 record
             });
             maker.add(mode, &lights.to_string(), records.to_vec());
@@ -125,8 +125,8 @@ fn the_culling_survey_has_a_chart_and_fits_per_mode() {
     );
     // Means that are alike have no winner.
     let results = maker.done.results.get_mut("atrium-deferred-500").expect("it is there");
-    let best = results.records[3].passes.clone();
-    results.records[2].passes = best;
+    let best = results.records[3].times.passes.clone();
+    results.records[2].times.passes = best;
     results.records[2].set_times();
     let Written { text, .. } = write(&maker.done);
     assert!(text.contains("deferred Sphere and SC-E/48x48x40/bvh tie ("), "{text}");
@@ -142,16 +142,16 @@ fn odd_records_do_no_harm() {
             0 => results.records.clear(),
             1 => {
                 for record in &mut results.records {
-                    record.passes = Default::default();
+                    record.times.passes = Default::default();
                     record.set_times();
-                    record.lights = 0;
+                    record.setting.lights = 0;
                 }
             }
             2 => {
                 for record in &mut results.records {
-                    (record.assign_ms, record.shade_ms) = (f64::NAN, f64::INFINITY);
+                    (record.times.assign_ms, record.times.shade_ms) = (f64::NAN, f64::INFINITY);
                     record.strategy = "</script><script>throw 1</script>/\u{1f4a1}".into();
-                    record.images.image = Some("../../etc/passwd".into());
+                    record.image.files.image = Some("../../etc/passwd".into());
                 }
             }
             _ => {}
@@ -190,17 +190,17 @@ fn names_of_foreign_results_are_text() {
             results.command.push(ODD.into());
             results.warnings.push(ODD.into());
             for (ix, record) in results.records.iter_mut().enumerate() {
-                record.scene = ODD.into();
+                record.setting.scene = ODD.into();
                 record.strategy = match ix % 3 {
                     0 => format!("{}/{ODD}", record.strategy).into(),
                     1 => format!("{ODD}/{}", record.strategy).into(),
                     _ => record.strategy.clone(),
                 };
                 let odd = || Some(ODD.to_owned());
-                (record.radii, record.cut, record.area_model) = (odd(), odd(), odd());
-                record.truth_errors = record.errors.clone();
-                record.strategy_parameters.insert("tests".into(), ODD.into());
-                record.light_kinds.insert(ODD.into(), 1);
+                (record.setting.radii, record.setting.cut, record.setting.area_model) =
+                    (odd(), odd(), odd());
+                record.image.truth_errors = record.image.errors.clone();
+                record.setting.light_kinds.insert(ODD.into(), 1);
             }
         }
         let page = write(&done).page;

@@ -79,28 +79,28 @@ fn points_are_as_shading_has_them_and_shadows_take_light_away() {
 }
 
 #[test]
-fn what_makes_no_truth_is_refused() {
+fn options_that_give_no_truth_image_are_refused() {
     let refused = |arguments: &[&str], wanted: &str| {
         let output = lightbench(&[&["truth"], arguments].concat());
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{stderr}");
         assert!(stderr.contains(wanted) && stderr.lines().count() == 1, "{stderr}");
     };
-    refused(&["--bounces", "1"], "--bounces is 1: it must be 0, or given with --shadows");
+    refused(&["--bounces", "1"], "--bounces is 1: it must be 0 without --shadows");
     refused(
         &["--bounces", "17", "--shadows"],
         "--bounces is 17: it must be a whole number from 0 to 16",
     );
     refused(
         &["--bounces", "1", "--shadows", "--matte-bounces"],
-        "--matte-bounces: it must be given with --primary and --bounces 1",
+        "--matte-bounces has no effect here: it needs --primary and --bounces 1",
     );
     refused(&["--samples", "0"], "--samples is 0: it must be a whole number from 1 to 65,536");
     refused(&["--strategies", "None"], "--strategies");
 }
 
 #[test]
-fn whoever_leaves_out_emitted_light_is_told() {
+fn a_note_says_that_emitted_light_is_left_out() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("lamp.gltf");
     // A triangle that emits.
@@ -145,15 +145,15 @@ fn a_study_runs_truths_and_comparisons_and_computes_their_errors_again() {
     let model = names.iter().find(|name| name.starts_with("atrium-models-")).expect("a model");
     let path = folder.path().join("jobs").join(model).join("results.json");
     let read = || Results::read(&path).expect("results");
-    let errors = read().records[0].truth_errors.clone();
+    let errors = read().records[0].image.truth_errors.clone();
     assert!(errors["flip"] > Some(0.0) && errors["bias"].is_some(), "{errors:?}");
     assert!(names.iter().any(|name| name.starts_with("atrium-cost-")), "{names:?}");
     // Once more, from what is stored.
     let mut results = read();
-    results.records[0].truth_errors.clear();
+    results.records[0].image.truth_errors.clear();
     results.write(&path).expect("writes");
     run(&["report", out]);
-    assert_eq!(read().records[0].truth_errors, errors);
+    assert_eq!(read().records[0].image.truth_errors, errors);
     // Nothing is rendered again where all is done.
     let image = folder.path().join("jobs/atrium-truth/truth.exr");
     let written = || std::fs::metadata(&image).and_then(|data| data.modified()).expect("a file");
@@ -176,7 +176,7 @@ fn cones_are_counted_from_every_place() {
     assert_eq!(names, expected);
     let path = folder.path().join("jobs/atrium-a-126/results.json");
     for record in Results::read(&path).expect("results").records {
-        let counted = record.operations.expect("counted");
+        let counted = record.lists.operations.expect("counted");
         let is_diffuse_only = record.strategy.contains("/dif");
         let is_order_kept = counted.specular >= counted.diffuse || record.is_lossy;
         assert!(is_order_kept && counted.diffuse > 0, "{counted:?}");
@@ -191,7 +191,7 @@ fn cones_are_counted_from_every_place() {
         );
         let seen = counted.perceptible_listed.expect("counted");
         assert!(record.is_lossy || seen == counted.perceptible, "{}: {counted:?}", record.strategy);
-        assert_eq!(record.lights, 126);
+        assert_eq!(record.setting.lights, 126);
         assert!(record.is_lossy || record.is_lossless(), "{}", record.strategy);
     }
 }

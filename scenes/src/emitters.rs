@@ -6,7 +6,7 @@ use assign::{Emitter, MAX_VERTICES};
 use glam::{DQuat, Vec3};
 use rand::{Rng, RngExt};
 
-use crate::lights::random_direction;
+use crate::random::random_direction;
 
 /// Outlines of scattered area lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,6 +18,17 @@ pub enum Outlines {
     Rectangles,
     /// Polygons of 3 to 10 vertices.
     Polygons,
+}
+
+impl Outlines {
+    /// `both`, `rectangles` or `polygons`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Both => "both",
+            Self::Rectangles => "rectangles",
+            Self::Polygons => "polygons",
+        }
+    }
 }
 
 /// Half the longer side of emitters, as a share of their range.

@@ -1,4 +1,4 @@
-//! Bounds and camera paths fitted to any scene.
+//! A camera path fitted to any scene.
 //!
 //! A path is found in three steps. Points spread over the core look around by casting rays
 //! against the scene's triangles; points inside solids (which see back faces) or close to walls
@@ -12,29 +12,22 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::{Aabb, CameraPath, Pose, Scene, bvh::TriangleBvh, tour::Room};
+use crate::{
+    Aabb, CameraPath, Pose, Scene,
+    bvh::TriangleBvh,
+    extent::MAX_SAMPLES,
+    picture::{AZIMUTHS, Column, picture_score},
+    tour::Room,
+};
 
 /// What a scene looks at before its path is fitted.
 pub(crate) const ORIGIN: Pose = Pose::looking(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y);
 
-/// Shares of the triangles cut off at both ends of an axis that has a backdrop.
-const CORE_SHARE: f64 = 0.02;
-
-/// An axis has a backdrop when the scene is this much longer than its core.
-const BACKDROP_RATIO: f32 = 3.0;
-
-/// With fewer triangles than this, percentiles say nothing.
-const CORE_TRIANGLES: usize = 1000;
-
 /// Points that look around: along x, y and z.
 const GRID: [u32; 3] = [14, 5, 14];
 
-/// Directions that each looks in: azimuths, and elevations in degrees.
-const AZIMUTHS: usize = 24;
+/// Elevations that each looks in at every azimuth, degrees.
 const ELEVATIONS: [f32; 7] = [-36.0, -24.0, -12.0, -2.0, 8.0, 18.0, 28.0];
-
-/// Azimuths to either side of a view's middle that a picture shows: 90 degrees in all.
-const HALF_WINDOW: usize = 3;
 
 /// A point with more empty azimuths than this stands outside.
 const MAX_OPEN: usize = AZIMUTHS / 3;
@@ -45,47 +38,8 @@ const FINALISTS: usize = 40;
 /// Of the scene's own lights, how many a view is rated by.
 const MAX_LAMPS: usize = 256;
 
-/// Scenes of more triangles are judged by a sample of at most that many, evenly chosen.
-const MAX_SAMPLES: u64 = 2_000_000;
-
 /// Knots of a loop: enough to go between two columns and back.
 const KNOTS: usize = 48;
-
-/// The box around all triangles drawn.
-pub(crate) fn bounds(scene: &Scene) -> Aabb {
-    let place = |instance: &crate::Instance| {
-        let model = &scene.models[instance.model as usize];
-        let mesh = &scene.meshes[instance.mesh as usize];
-        mesh.bounds.transformed(&model.object_to_world)
-    };
-    scene.instances.iter().map(place).fold(Aabb::EMPTY, Aabb::union)
-}
-
-/// The box around the part that most triangles belong to: along each axis the whole extent, or,
-/// where that is more than three times as long, the range of the middle 96 % of the triangles'
-/// centroids and a margin.
-pub(crate) fn core_bounds(scene: &Scene) -> Aabb {
-    let whole = scene.bounds;
-    let sample = scene.sampled_triangles(MAX_SAMPLES);
-    let centroids: Vec<Vec3> = sample.map(|[a, b, c]| (a + b + c) / 3.0).collect();
-    if centroids.len() < CORE_TRIANGLES {
-        return whole;
-    }
-    let mut core = whole;
-    let cut = (centroids.len() as f64 * CORE_SHARE) as usize;
-    for axis in 0..3 {
-        let mut along: Vec<f32> = centroids.iter().map(|p| p[axis]).collect();
-        let top = along.len() - 1 - cut;
-        let (_, &mut min, _) = along.select_nth_unstable_by(cut, f32::total_cmp);
-        let (_, &mut max, _) = along.select_nth_unstable_by(top, f32::total_cmp);
-        if whole.size()[axis] > BACKDROP_RATIO * (max - min) && max > min {
-            let margin = 0.05 * (max - min);
-            core.min[axis] = (min - margin).max(whole.min[axis]);
-            core.max[axis] = (max + margin).min(whole.max[axis]);
-        }
-    }
-    core
-}
 
 /// A path through the core that shows a lot of the scene. It starts at the scene's first camera
 /// where there is one.
@@ -315,55 +269,6 @@ fn on_ellipse(eye: Vec3, heading: Vec3, axes: Vec2, angle: f32) -> Vec3 {
     let right = heading.cross(Vec3::Y);
     let (sin, cos) = angle.sin_cos();
     eye + heading * (axes.x * (1.0 - cos)) + right * (axes.y * sin)
-}
-
-/// What one azimuth sees, over all elevations. Distances are shares of the scene's diagonal.
-#[derive(Clone, Copy, Default)]
-struct Column {
-    hits: f32,
-    misses: f32,
-    near: f32,
-    lit: f32,
-    far_sum: f32,
-    log_sum: f32,
-    log_square_sum: f32,
-}
-
-impl Column {
-    fn add(&mut self, distance: f32) {
-        let log = distance.max(1e-3).ln();
-        self.hits += 1.0;
-        self.near += f32::from(distance < 0.04);
-        self.far_sum += distance / (distance + 0.15);
-        self.log_sum += log;
-        self.log_square_sum += log * log;
-    }
-}
-
-/// How good a picture around azimuth `middle` would be: far and varied depth; little that is
-/// very near; some sky, but no more than a third; where the scene has lights, what they reach.
-fn picture_score(columns: &[Column; AZIMUTHS], middle: usize, has_lamps: bool) -> f32 {
-    let mut all = Column::default();
-    for offset in 0..=2 * HALF_WINDOW {
-        let column = &columns[(middle + AZIMUTHS + offset - HALF_WINDOW) % AZIMUTHS];
-        all.hits += column.hits;
-        all.misses += column.misses;
-        all.near += column.near;
-        all.lit += column.lit;
-        all.far_sum += column.far_sum;
-        all.log_sum += column.log_sum;
-        all.log_square_sum += column.log_square_sum;
-    }
-    if all.hits == 0.0 {
-        return 0.0;
-    }
-    let rays = all.hits + all.misses;
-    let mean_log = all.log_sum / all.hits;
-    let spread = (all.log_square_sum / all.hits - mean_log * mean_log).max(0.0).sqrt();
-    let sky = (all.misses / rays - 0.33).max(0.0);
-    let near = all.near / rays;
-    let lit = if has_lamps { 0.02 + all.lit / rays } else { 1.0 };
-    lit * (all.far_sum / rays) * (1.0 + 0.6 * spread) * (1.0 - near) * (1.0 - 1.4 * sky).max(0.0)
 }
 
 /// The radical inverse of `ix` in `base`.

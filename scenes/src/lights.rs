@@ -1,17 +1,16 @@
 //! Lights drawn from a seed.
 
-use std::f64::consts::TAU;
-
 use assign::{Light, LightShape};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rand::{Rng, RngExt, SeedableRng};
-use rand_distr::{Distribution, Gamma, LogNormal};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
 use crate::{
-    Aabb, SceneError,
-    emitters::{Outlines, random_emitter},
+    Aabb, Outlines, Places, Radii, SceneError,
+    emitters::random_emitter,
+    radii::RadiusSource,
+    random::{random_color, random_direction, seed_of},
 };
 
 /// The most lights [`scatter_lights`] makes.
@@ -24,116 +23,11 @@ pub const MIN_RADIUS_M: f32 = 1e-4;
 /// (Watrous 2024, "Light volumes").
 pub const THRESHOLD: f32 = 0.02;
 
-/// Shape and scale of the radii's gamma distribution: mode 0.25, mean 1.0 (Enhuber 2019,
-/// Eq. 4.3).
-const GAMMA: (f64, f64) = (4.0 / 3.0, 0.75);
-
 /// Half angles at which spots end, degrees.
 const SPOT_OUTER_DEGREES: (f64, f64) = (15.0, 60.0);
 
 /// Inner angle of spots as a share of the outer.
 const SPOT_INNER_SHARE: (f64, f64) = (0.5, 0.95);
-
-/// Standard deviation of the logarithm of [`Radii::LogNormal`].
-const LOG_SPREAD: f64 = 1.0;
-
-/// How the radii of scattered lights are distributed; their mean is one metre, scaled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Radii {
-    /// Gamma with mode 0.25 (Enhuber 2019, equation 4.3).
-    #[default]
-    Gamma,
-    /// All alike.
-    Equal,
-    /// Log-normal with a standard deviation of the logarithm of 1: many small, a few very large.
-    LogNormal,
-}
-
-impl Radii {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Gamma, Self::Equal, Self::LogNormal];
-
-    /// `gamma`, `equal` or `log-normal`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gamma => "gamma",
-            Self::Equal => "equal",
-            Self::LogNormal => "log-normal",
-        }
-    }
-}
-
-/// How scattered lights fill their box.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Places {
-    /// Uniformly (Enhuber 2019, section 4.2).
-    #[default]
-    Box,
-    /// In seven upright cylinders, one in the middle and six around it, as high as the box (after
-    /// Watrous 2024, whose seven lie where its scene has room).
-    Cylinders,
-}
-
-/// Cylinders of [`Places::Cylinders`].
-const CYLINDERS: usize = 7;
-
-/// Their radius, and the distance of the outer ones from the middle, as shares of the box's sides.
-const CYLINDER_SHARES: (f64, f64) = (0.09, 0.36);
-
-impl Places {
-    /// A point in the box: each coordinate a share of its side.
-    fn sample(self, rng: &mut impl Rng) -> [f64; 3] {
-        let [x, y, z] = std::array::from_fn(|_| rng.random::<f64>());
-        if self == Self::Box {
-            return [x, y, z];
-        }
-        let cylinder = rng.random_range(0..CYLINDERS);
-        let (radius, away) = CYLINDER_SHARES;
-        let around = TAU * cylinder as f64 / (CYLINDERS - 1) as f64;
-        let away = if cylinder == CYLINDERS - 1 { 0.0 } else { away };
-        let (sin, cos) = (TAU * x).sin_cos();
-        let out = radius * z.sqrt();
-        [0.5 + away * around.cos() + out * cos, y, 0.5 + away * around.sin() + out * sin]
-    }
-}
-
-/// A distribution, ready to draw from.
-enum RadiusSource {
-    Gamma(Gamma<f64>),
-    Equal,
-    LogNormal(LogNormal<f64>),
-}
-
-impl RadiusSource {
-    fn new(radii: Radii) -> Result<Self, SceneError> {
-        let fail = |value: String| SceneError::OutOfRange {
-            field: "distribution of radii",
-            value,
-            accepted: "positive",
-        };
-        Ok(match radii {
-            Radii::Gamma => {
-                let gamma = Gamma::new(GAMMA.0, GAMMA.1);
-                Self::Gamma(gamma.map_err(|_| fail(format!("{GAMMA:?}")))?)
-            }
-            Radii::Equal => Self::Equal,
-            Radii::LogNormal => {
-                let mean_of_log = -0.5 * LOG_SPREAD * LOG_SPREAD;
-                let spread = LogNormal::new(mean_of_log, LOG_SPREAD);
-                Self::LogNormal(spread.map_err(|_| fail(LOG_SPREAD.to_string()))?)
-            }
-        })
-    }
-
-    /// A radius, metres.
-    fn sample(&self, rng: &mut impl Rng) -> f64 {
-        match self {
-            Self::Gamma(gamma) => gamma.sample(rng),
-            Self::Equal => 1.0,
-            Self::LogNormal(spread) => spread.sample(rng),
-        }
-    }
-}
 
 /// What [`scatter_lights`] is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,7 +120,7 @@ pub fn scatter_lights(spec: &LightSpec) -> Result<Vec<Light>, SceneError> {
 
 fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
     // The gamma draw takes a varying number of values and so comes last.
-    let mut rng = Pcg64Mcg::seed_from_u64(stream(spec.seed, ix));
+    let mut rng = Pcg64Mcg::seed_from_u64(seed_of(spec.seed, ix));
     let shares = spec.places.sample(&mut rng);
     let position = Vec3::from_array(std::array::from_fn(|axis| {
         let (min, max) = (spec.bounds.min[axis], spec.bounds.max[axis]);
@@ -242,42 +136,13 @@ fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
     let range_m = (radii.sample(&mut rng) as f32 * spec.radius_scale).max(MIN_RADIUS_M);
     let intensity = color * (THRESHOLD * range_m * range_m);
     if is_area {
-        let mut rng = Pcg64Mcg::seed_from_u64(!stream(spec.seed, ix));
+        let mut rng = Pcg64Mcg::seed_from_u64(!seed_of(spec.seed, ix));
         let emitter = random_emitter(&mut rng, spec.outlines, range_m);
         let emitter = emitter.with_diffuse_share(spec.diffuse_share);
         return Light::area(emitter, position, range_m, intensity);
     }
     let shape = if is_spot { shape } else { LightShape::Point };
     Light { position, range_m, intensity, shape }
-}
-
-/// A well-mixed 64-bit value for one light (splitmix64's finaliser).
-fn stream(seed: u64, ix: u32) -> u64 {
-    let mut z = seed
-        .wrapping_mul(0x9e37_79b9_7f4a_7c15)
-        .wrapping_add(u64::from(ix).wrapping_mul(0xd1b5_4a32_d192_ed03));
-    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ z >> 31
-}
-
-/// A colour whose largest channel is 1: hue uniform, saturation up to 0.85.
-fn random_color(rng: &mut impl Rng) -> Vec3 {
-    let hue = rng.random::<f32>() * 6.0;
-    let saturation = rng.random::<f32>() * 0.85;
-    let channel = |offset: f32| {
-        let k = (offset + hue) % 6.0;
-        1.0 - saturation * k.min(4.0 - k).clamp(0.0, 1.0)
-    };
-    Vec3::new(channel(5.0), channel(3.0), channel(1.0))
-}
-
-/// A unit vector, uniform on the sphere.
-pub(crate) fn random_direction(rng: &mut impl Rng) -> DVec3 {
-    let cos_theta: f64 = 1.0 - 2.0 * rng.random::<f64>();
-    let phi = TAU * rng.random::<f64>();
-    let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-    DVec3::new(sin_theta * phi.cos(), cos_theta, sin_theta * phi.sin()).normalize()
 }
 
 /// A spot of random direction and angles.
@@ -296,6 +161,7 @@ fn random_spot(rng: &mut impl Rng) -> LightShape {
 #[cfg(test)]
 mod tests {
     use assign::LightKind;
+    use glam::DVec3;
 
     use super::*;
 

@@ -1,54 +1,8 @@
 //! Where the camera is, timed by frame number only.
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
-use crate::gltf_import::AnimatedNode;
-
-/// Where a camera is and where it looks. It keeps a direction, because a point that it looks at would
-/// lose its bits far from the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// The camera's position, world space, metres.
-    pub eye: Vec3,
-    /// The unit view direction.
-    forward: Vec3,
-    /// Which way is up in the image; not along the view direction.
-    pub up: Vec3,
-}
-
-impl Pose {
-    /// At `eye`, looking at `target`, with +Y up, or +Z up where it looks straight up or down.
-    pub fn new(eye: Vec3, target: Vec3) -> Self {
-        Self::level(eye, (target - eye).normalize_or(Vec3::NEG_Z))
-    }
-
-    /// At `eye`, looking along the unit vector `forward`, with +Y up, or +Z up where it looks straight
-    /// up or down.
-    pub fn level(eye: Vec3, forward: Vec3) -> Self {
-        let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
-        Self { eye, forward, up }
-    }
-
-    /// At `eye`, looking along the unit vector `forward`, with `up` upwards in the image.
-    pub const fn looking(eye: Vec3, forward: Vec3, up: Vec3) -> Self {
-        Self { eye, forward, up }
-    }
-
-    /// The unit view direction.
-    pub fn forward(&self) -> Vec3 {
-        self.forward
-    }
-
-    /// World to view space: +X right, +Y up, looking down -Z.
-    pub fn world_to_view(&self) -> Mat4 {
-        glam::camera::rh::view::look_to_mat4(self.eye, self.forward, self.up)
-    }
-
-    /// Scaled about the origin.
-    pub fn scaled(self, factor: f32) -> Self {
-        Self { eye: self.eye * factor, ..self }
-    }
-}
+use crate::{Pose, animated_node::AnimatedNode};
 
 /// A smooth way for a camera.
 #[derive(Clone, Debug)]
@@ -120,7 +74,7 @@ impl CameraPath {
                 let count = frame_count.max(1);
                 loop_points(knots, f64::from(frame % count) / f64::from(count)).1
             }
-            _ => pose.eye + pose.forward,
+            _ => pose.eye + pose.forward(),
         };
         [pose.eye, target, pose.up]
     }

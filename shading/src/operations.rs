@@ -3,15 +3,15 @@
 
 use std::{iter::Sum, ops::Add};
 
-use assign::{Assignment, EncoderPasses, Frame, Passes, entry, storage_entry, uniform_entry};
+use assign::{Assignment, Frame, entry, storage_entry, uniform_entry};
 use bytemuck::pod_collect_to_vec;
 
 use crate::{
     LightingOptions, Renderer, ShadingError,
-    lighting::{MODEL_BINDING, TEXELS, compute_pipeline, texture, texture_entry},
+    gbuffer_inputs::GBufferInputs,
     lighting_inputs::LightingInputs,
-    raster::LISTS_GROUP,
-    shaders,
+    pixel_pass::PixelPass,
+    shaders::{LISTS_GROUP, lighting_modules},
 };
 
 /// Terms of lights at samples, summed over an image.
@@ -86,52 +86,22 @@ pub fn count_operations(
     let shown = gpu.uniform("exposure", 16);
     gpu.queue.write_buffer(&shown, 0, bytemuck::bytes_of(&[exposure, 0.0, 0.0, 0.0]));
     let stages = wgpu::ShaderStages::COMPUTE;
-    let targets = &renderer.targets;
-    let mut entries = vec![
-        texture_entry(0, wgpu::TextureSampleType::Depth),
-        texture_entry(1, TEXELS),
-        texture_entry(2, TEXELS),
-        storage_entry(COUNTS_BINDING, stages, false),
-        uniform_entry(EXPOSURE_BINDING, stages),
-    ];
-    let mut resources = vec![
-        texture(0, &targets.depth),
-        texture(1, &targets.base_color),
-        texture(2, &targets.normal),
-        entry(COUNTS_BINDING, &counts),
-        entry(EXPOSURE_BINDING, &shown),
-    ];
     let inputs = LightingInputs::new(gpu, options)?;
-    entries.extend(LightingInputs::layout(inputs.bound(), stages));
+    let mut layout =
+        vec![storage_entry(COUNTS_BINDING, stages, false), uniform_entry(EXPOSURE_BINDING, stages)];
+    layout.extend(LightingInputs::layout(inputs.bound(), stages));
+    let mut resources = vec![entry(COUNTS_BINDING, &counts), entry(EXPOSURE_BINDING, &shown)];
     resources.extend(inputs.entries());
-    let model_ids = strategy.needs().models;
-    if model_ids {
-        entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
-        resources.push(texture(MODEL_BINDING, &targets.model_ids));
-    }
-    let layout = gpu.bind_group_layout("operations", &entries);
-    let lookup = strategy.lookup();
-    let module = options
-        .set_flags(shaders::lighting(LISTS_GROUP))
-        .module("package::strategy", lookup.module.source())
-        .flag("model_ids", model_ids)
-        .create(gpu, "package::operations")?;
-    let layouts = [renderer.frame.layout(), lookup.layout, &layout];
-    let pipeline = compute_pipeline(gpu, &layouts, &module, "count_operations");
-    let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("operations"),
-        layout: &layout,
-        entries: &resources,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    EncoderPasses { encoder: &mut encoder }.compute("operations", &mut |pass| {
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
-        pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
-        pass.set_bind_group(2, &images, &[]);
-        pass.dispatch_workgroups(viewport.width.div_ceil(8), viewport.height.div_ceil(8), 1);
-    });
-    gpu.queue.submit([encoder.finish()]);
+    let pass = PixelPass {
+        name: "operations",
+        entry_point: "count_operations",
+        shader: options.set_flags(lighting_modules(LISTS_GROUP)),
+        images: GBufferInputs::of_sample(strategy.needs().models),
+        layout,
+        resources,
+        strategy: Some(strategy),
+    };
+    pass.submit(renderer, viewport)?;
     let counts: Vec<[[u32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&counts, bytes)?);
     let terms = |[diffuse, specular, outer, _]: [u32; 4]| Terms {
         diffuse: diffuse.into(),

@@ -1,14 +1,18 @@
 //! What the GPU saw: each pixel's position, normal and group, copied to the CPU for the truth.
 
-use assign::{Assignment, EncoderPasses, Frame, Passes, View, entry, storage_entry};
+use assign::{Assignment, Frame, Passes, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
 
 use crate::{
     Renderer, ShadingError,
-    lighting::{MODEL_BINDING, TEXELS, compute_pipeline, texture, texture_entry},
-    raster::LISTS_GROUP,
-    shaders,
+    gbuffer_inputs::GBufferInputs,
+    pixel_pass::PixelPass,
+    shaders::{LISTS_GROUP, lighting_modules},
 };
+
+/// Bindings of `probe.wesl`.
+const SEEN_BINDING: u32 = 8;
+const GROUPS_BINDING: u32 = 9;
 
 /// The view samples of a frame with the groups a strategy put them in.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,46 +55,19 @@ pub fn probe(
     let seen = gpu.storage("probe samples", pixels * 32)?;
     let groups = gpu.storage("probe groups", pixels * 4)?;
     let stages = wgpu::ShaderStages::COMPUTE;
-    let mut entries = vec![
-        texture_entry(0, wgpu::TextureSampleType::Depth),
-        texture_entry(1, TEXELS),
-        storage_entry(2, stages, false),
-        storage_entry(3, stages, false),
-    ];
-    let mut resources = vec![
-        texture(0, &renderer.targets.depth),
-        texture(1, &renderer.targets.normal),
-        entry(2, &seen),
-        entry(3, &groups),
-    ];
-    let model_ids = strategy.needs().models;
-    if model_ids {
-        entries.push(texture_entry(MODEL_BINDING, wgpu::TextureSampleType::Uint));
-        resources.push(texture(MODEL_BINDING, &renderer.targets.model_ids));
-    }
-    let layout = gpu.bind_group_layout("probe", &entries);
-    let lookup = strategy.lookup();
-    let module = shaders::lighting(LISTS_GROUP)
-        .module("package::strategy", lookup.module.source())
-        .flag("model_ids", model_ids)
-        .create(gpu, "package::probe")?;
-    let pipeline =
-        compute_pipeline(gpu, &[renderer.frame.layout(), lookup.layout, &layout], &module, "probe");
-    let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("probe"),
-        layout: &layout,
-        entries: &resources,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let viewport = frame.view.viewport;
-    EncoderPasses { encoder: &mut encoder }.compute("probe", &mut |pass| {
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
-        pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
-        pass.set_bind_group(2, &images, &[]);
-        pass.dispatch_workgroups(viewport.width.div_ceil(8), viewport.height.div_ceil(8), 1);
-    });
-    gpu.queue.submit([encoder.finish()]);
+    let pass = PixelPass {
+        name: "probe",
+        entry_point: "probe",
+        shader: lighting_modules(LISTS_GROUP),
+        images: GBufferInputs::of_sample(strategy.needs().models),
+        layout: vec![
+            storage_entry(SEEN_BINDING, stages, false),
+            storage_entry(GROUPS_BINDING, stages, false),
+        ],
+        resources: vec![entry(SEEN_BINDING, &seen), entry(GROUPS_BINDING, &groups)],
+        strategy: Some(strategy),
+    };
+    pass.submit(renderer, frame.view.viewport)?;
     let seen: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&seen, pixels * 32)?);
     let groups: Vec<u32> = pod_collect_to_vec(&gpu.read(&groups, pixels * 4)?);
     let mut samples = Samples::default();

@@ -5,12 +5,11 @@ use std::collections::HashMap;
 use assign::{DepthMapping, FrameBindings, Gpu, Shader};
 
 use crate::{
-    ShadingError,
+    LightingOptions, ShadingError,
     geometry::{DrawKey, SceneGpu},
-    lighting::LightingOptions,
     lighting_inputs::Bound,
     materials::TEXTURE_FLAGS,
-    shaders,
+    shaders::{LISTS_GROUP, lighting_modules},
     targets::{
         BASE_COLOR_FORMAT, DEPTH_FORMAT, DIELECTRIC_FORMAT, EMISSIVE_FORMAT, MODEL_FORMAT,
         NORMAL_FORMAT, RADIANCE_FORMAT,
@@ -55,9 +54,6 @@ pub(crate) struct Lists<'a> {
     pub(crate) lookup: assign::Lookup<'a>,
     pub(crate) options: LightingOptions,
 }
-
-/// Bind group of the lists in lighting shaders.
-pub(crate) const LISTS_GROUP: u32 = 1;
 
 /// The pipelines of one pass. Cloning shares them.
 #[derive(Clone, Debug)]
@@ -109,7 +105,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
         RasterPass::ModelIds => wanted == "write_model_ids",
     };
     let shades = is("gbuffer") || is("forward");
-    let mut shader = shaders::lighting(LISTS_GROUP)
+    let mut shader = lighting_modules(LISTS_GROUP)
         .flag("gbuffer", is("gbuffer"))
         .flag("forward", is("forward"))
         .flag("clay", is("clay"))
@@ -126,10 +122,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
         shader = shader.flag(flag, material.textures[slot]);
     }
     if let RasterPass::Forward { lists, .. } = pass {
-        shader = lists
-            .options
-            .set_flags(shader)
-            .module("package::strategy", lists.lookup.module.source());
+        shader = lists.options.set_flags(shader).strategy(lists.lookup.module);
     }
     shader
 }

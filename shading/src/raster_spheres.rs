@@ -10,11 +10,10 @@ use wgpu::util::DeviceExt;
 
 use crate::{
     AreaModel, Cut, LightingOptions, Renderer, ShadingError,
-    lighting::{TEXELS, texture, texture_entry},
+    gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
-    raster::LISTS_GROUP,
-    shaders,
+    shaders::{LISTS_GROUP, lighting_modules},
     targets::{DEPTH_FORMAT, RADIANCE_FORMAT},
 };
 
@@ -33,7 +32,8 @@ pub struct RasterSpheres {
     triangles: wgpu::Buffer,
     vertex_count: u32,
     options: LightingOptions,
-    inputs: wgpu::BindGroup,
+    images: GBufferInputs,
+    inputs: LightingInputs,
 }
 
 impl RasterSpheres {
@@ -58,41 +58,22 @@ impl RasterSpheres {
             }
             .into());
         }
-        let emissive = renderer.scene.has_emissive();
-        let mut entries = vec![
-            texture_entry(0, wgpu::TextureSampleType::Depth),
-            texture_entry(1, TEXELS),
-            texture_entry(2, TEXELS),
-        ];
-        entries.extend(emissive.then(|| texture_entry(3, TEXELS)));
-        let dielectrics = renderer.scene.has_dielectrics();
-        entries.extend(dielectrics.then(|| texture_entry(4, TEXELS)));
-        for entry in &mut entries {
-            entry.visibility = wgpu::ShaderStages::FRAGMENT;
-        }
-        let layout = gpu.bind_group_layout("raster spheres", &entries);
+        let images = GBufferInputs::of_scene(&renderer.scene);
         let inputs = LightingInputs::new(gpu, options)?;
         let stages = wgpu::ShaderStages::FRAGMENT;
-        let entries: Vec<_> = LightingInputs::layout(inputs.bound(), stages).collect();
-        let inputs_layout = gpu.bind_group_layout("raster spheres", &entries);
-        let entries: Vec<_> = inputs.entries().collect();
-        let inputs = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("raster spheres"),
-            layout: &inputs_layout,
-            entries: &entries,
-        });
+        let mut entries = images.layout(stages);
+        entries.extend(LightingInputs::layout(inputs.bound(), stages));
+        let layout = gpu.bind_group_layout("raster spheres", &entries);
         let module = options
-            .set_flags(shaders::lighting(LISTS_GROUP))
-            .flag("emissive", emissive)
-            .flag("dielectrics", dielectrics)
+            .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
             .create(gpu, "package::raster_spheres")?;
         let pipeline = |vertex, fragment, volumes| {
-            pipeline(renderer, [&layout, &inputs_layout], &module, [vertex, fragment], volumes)
+            pipeline(renderer, &layout, &module, [vertex, fragment], volumes)
         };
         let triangles = sphere();
         Ok(Self {
             volumes: pipeline("vertex_volume", "fragment_volume", true),
-            first: (emissive || !suns.is_empty())
+            first: (images.emissive || !suns.is_empty())
                 .then(|| pipeline("vertex_all", "fragment_first", false)),
             vertex_count: triangles.len() as u32,
             triangles: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -102,6 +83,7 @@ impl RasterSpheres {
             }),
             layout,
             options,
+            images,
             inputs,
         })
     }
@@ -123,14 +105,9 @@ impl RasterSpheres {
             LightTotals::of(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
         }
         let targets = &renderer.targets;
-        let mut entries = vec![
-            texture(0, &targets.depth),
-            texture(1, &targets.base_color),
-            texture(2, &targets.normal),
-        ];
-        entries.extend(targets.emissive.as_ref().map(|view| texture(3, view)));
-        entries.extend(targets.dielectric.as_ref().map(|view| texture(4, view)));
-        let images = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let mut entries = self.images.entries(targets);
+        entries.extend(self.inputs.entries());
+        let group = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("raster spheres"),
             layout: &self.layout,
             entries: &entries,
@@ -158,8 +135,7 @@ impl RasterSpheres {
             let [x, y, width, height] = [port.x, port.y, port.width, port.height].map(|v| v as f32);
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
             pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
-            pass.set_bind_group(1, &images, &[]);
-            pass.set_bind_group(2, &self.inputs, &[]);
+            pass.set_bind_group(PIXELS_GROUP, &group, &[]);
             if let Some(first) = &self.first {
                 pass.set_pipeline(first);
                 pass.draw(0..3, 0..1);
@@ -174,7 +150,7 @@ impl RasterSpheres {
 
 fn pipeline(
     renderer: &Renderer,
-    [images, inputs]: [&wgpu::BindGroupLayout; 2],
+    pixels: &wgpu::BindGroupLayout,
     module: &wgpu::ShaderModule,
     [vertex, fragment]: [&str; 2],
     volumes: bool,
@@ -182,7 +158,7 @@ fn pipeline(
     let device = &renderer.gpu.device;
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(fragment),
-        bind_group_layouts: &[Some(renderer.frame.layout()), Some(images), Some(inputs)],
+        bind_group_layouts: &[Some(renderer.frame.layout()), None, Some(pixels)],
         immediate_size: 0,
     });
     let add = wgpu::BlendComponent {

@@ -2,14 +2,17 @@
 
 use assign::Shader;
 
+/// Bind group of the lists in lighting shaders.
+pub(crate) const LISTS_GROUP: u32 = 1;
+
 /// The contract's modules and the pipeline's, for a shader of one's own: `package::lighting`
-/// and `package::brdf` among them. All flags off; mount a look-up as `package::strategy`.
+/// and `package::brdf` among them. All flags off; mount a look-up with `Shader::strategy`.
 pub fn lighting_shader<'a>() -> Shader<'a> {
-    lighting(crate::raster::LISTS_GROUP)
+    lighting_modules(LISTS_GROUP)
 }
 
 /// The contract's modules and the pipeline's; all flags off.
-pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
+pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
     let flags = [
         "gbuffer",
         "forward",
@@ -60,6 +63,7 @@ pub(crate) fn lighting<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::scene", include_str!("shaders/scene.wesl"))
         .module("package::material", include_str!("shaders/material.wesl"))
         .module("package::geometry", include_str!("shaders/geometry.wesl"))
+        .module("package::gbuffer", include_str!("shaders/gbuffer.wesl"))
         .module("package::deferred", include_str!("shaders/deferred.wesl"))
         .module("package::operations", include_str!("shaders/operations.wesl"))
         .module("package::probe", include_str!("shaders/probe.wesl"))

@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-use assign::{EncoderPasses, Gpu, Passes, entry};
-use bytemuck::pod_collect_to_vec;
+use assign::{
+    Gpu, Shader,
+    conformance::{Bound, download, run_kernel, upload},
+    kernel::Slot,
+};
 use shading::ltc::{
     ACCURACY_DEGREES, Accuracy, LTC_POLYNOMIAL_WESL, Masking, Polynomial, Table, accuracy_cases,
 };
@@ -72,48 +75,33 @@ fn the_table_of_the_approximate_masking_is_another_and_farther_off() {
     assert!(exact.median < hammon.median && hammon.median < 3.0 * exact.median);
 }
 
+const EVALUATE: &str = "
+import package::polynomial::ltc_entry_polynomial;
+
+@group(0) @binding(0) var<storage, read> places: array<vec2f>;
+@group(0) @binding(1) var<storage, read_write> entries: array<array<vec4f, 2>>;
+
+@compute @workgroup_size(64)
+fn evaluate(@builtin(global_invocation_id) id: vec3u) {
+  if id.x < arrayLength(&places) {
+    entries[id.x] = ltc_entry_polynomial(places[id.x].x, places[id.x].y);
+  }
+}
+";
+
 /// What the WESL module gives for each pair of roughness and y.
 fn on_the_gpu(places: &[[f32; 2]]) -> Vec<[[f32; 4]; 2]> {
     let gpu = Gpu::open(None).expect("an adapter: scripts/test installs the software one");
-    let source = format!(
-        "{LTC_POLYNOMIAL_WESL}
-        @group(0) @binding(0) var<storage, read_write> places: array<vec2f>;
-        @group(0) @binding(1) var<storage, read_write> entries: array<array<vec4f, 2>>;
-        @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) {{
-          if id.x < arrayLength(&places) {{
-            entries[id.x] = ltc_entry_polynomial(places[id.x].x, places[id.x].y);
-          }}
-        }}"
-    );
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("polynomials"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("polynomials"),
-        layout: None,
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let inputs = gpu.storage("places", size_of_val(places) as u64).unwrap();
-    gpu.queue.write_buffer(&inputs, 0, bytemuck::cast_slice(places));
-    let bytes = places.len() as u64 * 32;
-    let outputs = gpu.storage("entries", bytes).unwrap();
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("polynomials"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[entry(0, &inputs), entry(1, &outputs)],
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    EncoderPasses { encoder: &mut encoder }.compute("polynomials", &mut |pass| {
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups((places.len() as u32).div_ceil(64), 1, 1);
-    });
-    gpu.queue.submit([encoder.finish()]);
-    pod_collect_to_vec(&gpu.read(&outputs, bytes).unwrap())
+    let module = Shader::new(1)
+        .module("package::polynomial", LTC_POLYNOMIAL_WESL)
+        .module("package::evaluate", EVALUATE)
+        .create(&gpu, "package::evaluate")
+        .unwrap();
+    let inputs = upload(&gpu, "places", places).unwrap();
+    let outputs = upload(&gpu, "entries", &vec![[[0.0_f32; 4]; 2]; places.len()]).unwrap();
+    let groups = [Bound::Buffers(&[(0, Slot::Read, &inputs), (1, Slot::Write, &outputs)])];
+    run_kernel(&gpu, &module, "evaluate", &groups, (places.len() as u32).div_ceil(64));
+    download(&gpu, &outputs, places.len()).unwrap()
 }
 
 #[test]

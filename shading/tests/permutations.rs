@@ -4,17 +4,26 @@
 
 use std::collections::BTreeSet;
 
-/// A strategy's look-up: name, WESL, bindings.
-type LookUp = (&'static str, &'static str, &'static [u32]);
+use assign::StrategyWesl;
 
-const LOOK_UPS: [LookUp; 2] = [
-    ("no culling", include_str!("../../assign/src/shaders/everything.wesl"), &[0, 1]),
-    ("DC-I", assign_clustered::IMPLICIT_WESL, &[0, 1, 4]),
-];
+/// A strategy's look-up: name, WESL, bindings.
+type LookUp = (&'static str, StrategyWesl<'static>, &'static [u32]);
+
+const NO_CULLING: StrategyWesl<'static> = StrategyWesl {
+    main: include_str!("../../assign/src/shaders/everything.wesl"),
+    imports: &[],
+    flags: &[],
+};
+
+const LOOK_UPS: [LookUp; 2] =
+    [("no culling", NO_CULLING, &[0, 1]), ("DC-I", assign_clustered::IMPLICIT_WESL, &[0, 1, 4])];
 
 /// In the order of their bindings: slot i has bindings 2i and 2i + 1.
 const TEXTURES: [&str; 4] =
     ["base_color_texture", "metallic_roughness_texture", "normal_texture", "emissive_texture"];
+
+/// Bindings of `gbuffer.wesl`, in group 2.
+const G_BUFFER: [u32; 6] = [0, 1, 2, 3, 5, 11];
 
 type Flags = BTreeSet<&'static str>;
 
@@ -74,8 +83,8 @@ fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
     for flag in flags {
         shader = shader.flag(flag, true);
     }
-    if let Some((_, module, _)) = look_up {
-        shader = shader.module("package::strategy", module);
+    if let Some((_, wesl, _)) = look_up {
+        shader = shader.strategy(wesl);
     }
     let source = shader.link(root).unwrap_or_else(|e| panic!("{what}: {e}"));
     let module = naga::front::wgsl::parse_str(&source)
@@ -140,7 +149,8 @@ fn raster_spheres() {
         let emissive = flags.contains("emissive");
         let has_suns = flags.contains("suns");
         let expected = if emissive { vec![0, 1, 2, 3] } else { vec![0, 1, 2] };
-        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
+        let images = linked.bindings.iter().filter(|b| b.0 == 2 && G_BUFFER.contains(&b.1));
+        let images: Vec<u32> = images.map(|b| b.1).collect();
         assert_eq!(images, expected, "{flags:?}");
         let entry_points = if emissive || has_suns { 4 } else { 2 };
         assert_eq!(linked.entry_points.len(), entry_points, "{flags:?}");
@@ -234,9 +244,9 @@ fn probe() {
     for look_up in LOOK_UPS {
         // It asks for the group, and reads no list.
         let own: Vec<u32> = look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
-        check_compute("probe", &Flags::new(), look_up, &own, &[0, 1, 2, 3]);
+        check_compute("probe", &Flags::new(), look_up, &own, &[0, 2, 8, 9]);
         let model_ids = ["model_ids"].into();
-        check_compute("probe", &model_ids, look_up, &own, &[0, 1, 2, 3, 5]);
+        check_compute("probe", &model_ids, look_up, &own, &[0, 2, 5, 8, 9]);
     }
 }
 
@@ -245,8 +255,10 @@ fn surfaces() {
     for flags in subsets(&["emissive"]) {
         let linked = link("package::surfaces", &flags, None);
         let emissive = flags.contains("emissive");
-        let expected = if emissive { vec![0, 1, 2, 3, 4, 5, 6, 7] } else { vec![0, 1, 2, 4, 5, 6] };
-        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 1).map(|b| b.1).collect();
+        let mut expected = vec![0, 1, 2, 12, 13, 14];
+        expected.extend(if emissive { vec![3, 15] } else { Vec::new() });
+        expected.sort_unstable();
+        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 2).map(|b| b.1).collect();
         assert_eq!(images, expected, "{flags:?}");
         assert_eq!(linked.entry_points, ["surfaces".to_owned()].into(), "{flags:?}");
     }
@@ -323,8 +335,8 @@ fn flags_of_rare_materials() {
     for flags in with_suns(with_areas(vec![["dielectrics"].into()])) {
         check_compute("deferred", &flags, LOOK_UPS[0], LOOK_UPS[0].2, &[0, 1, 2, 4, 6, 11]);
         let spheres = link("package::raster_spheres", &flags, None);
-        assert!(spheres.bindings.contains(&(1, 4)), "{flags:?}");
+        assert!(spheres.bindings.contains(&(2, 11)), "{flags:?}");
     }
     let surfaces = link("package::surfaces", &["dielectrics"].into(), None);
-    assert!(surfaces.bindings.contains(&(1, 8)) && surfaces.bindings.contains(&(1, 9)));
+    assert!(surfaces.bindings.contains(&(2, 11)) && surfaces.bindings.contains(&(2, 16)));
 }

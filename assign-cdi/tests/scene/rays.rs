@@ -3,12 +3,15 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 #![allow(dead_code, reason = "each test uses a part")]
 
-use assign::{EncoderPasses, Gpu, Shader, entry, storage_entry};
+use assign::{
+    EncoderPasses, Gpu, Shader,
+    conformance::{Bound, download, run_kernel},
+    kernel::Slot,
+};
 use assign_cdi::{
     DeepImageSettings, DeepImages, Directions, RAY_CAST_WESL, RangeCaster, RangePoints, RangeRule,
     Spread,
 };
-use bytemuck::{cast_slice, pod_collect_to_vec};
 use glam::{Vec3, Vec4};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -31,45 +34,18 @@ pub(crate) fn cast_with(gpu: &Gpu, images: &DeepImages, rays: &[Ray], ray_cast: 
         .module("package::ray_cast", ray_cast.to_owned())
         .module("package::cast", include_str!("cast.wesl"));
     let module = shader.create(gpu, "package::cast").unwrap();
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[storage_entry(0, stages, true), storage_entry(1, stages, false)],
-    });
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(images.layout()), Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("cast_rays"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
     let words: Vec<Vec4> = rays
         .iter()
         .flat_map(|ray| [ray.origin, ray.direction, ray.normal].map(|v| v.extend(0.0)))
         .collect();
     let input = upload(gpu, &words);
     let output = gpu.storage("lengths", rays.len() as u64 * 4).unwrap();
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &layout,
-        entries: &[entry(0, &input), entry(1, &output)],
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, images.bind_group().unwrap(), &[]);
-        pass.set_bind_group(1, &group, &[]);
-        pass.dispatch_workgroups((rays.len() as u32).div_ceil(64), 1, 1);
-    }
-    gpu.queue.submit([encoder.finish()]);
-    pod_collect_to_vec(&gpu.read(&output, rays.len() as u64 * 4).unwrap())
+    let groups = [
+        Bound::Group(images.layout(), images.bind_group().unwrap()),
+        Bound::Buffers(&[(0, Slot::Read, &input), (1, Slot::Write, &output)]),
+    ];
+    run_kernel(gpu, &module, "cast_rays", &groups, (rays.len() as u32).div_ceil(64));
+    download(gpu, &output, rays.len()).unwrap()
 }
 
 pub(crate) fn cast(gpu: &Gpu, images: &DeepImages, rays: &[Ray]) -> Vec<f32> {
@@ -77,10 +53,7 @@ pub(crate) fn cast(gpu: &Gpu, images: &DeepImages, rays: &[Ray]) -> Vec<f32> {
 }
 
 pub(crate) fn upload<T: bytemuck::NoUninit>(gpu: &Gpu, words: &[T]) -> wgpu::Buffer {
-    let bytes: &[u8] = cast_slice(words);
-    let buffer = gpu.storage("words", bytes.len() as u64).unwrap();
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    buffer
+    assign::conformance::upload(gpu, "words", words).unwrap()
 }
 
 /// Length of a ray among triangles, beyond 0.1 mm: of that of its own surface.
@@ -140,5 +113,5 @@ pub(crate) fn ranges_of(gpu: &Gpu, images: &DeepImages, rays: &[Ray], rule: Rang
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     caster.record(images, &mut EncoderPasses { encoder: &mut encoder }).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    pod_collect_to_vec(&gpu.read(&ranges_m, rays.len() as u64 * 4).unwrap())
+    download(gpu, &ranges_m, rays.len()).unwrap()
 }

@@ -49,8 +49,10 @@ mod check;
 pub mod faulty;
 mod flat_depth;
 mod lights;
+mod linked;
 mod reaching;
 mod rig;
+mod run_kernel;
 mod session;
 mod stage;
 mod views;
@@ -61,7 +63,9 @@ use std::sync::OnceLock;
 pub use cases::{CASES, Case};
 use faulty::{Fault, Faulty};
 pub use flat_depth::flat_depth;
+pub use linked::{LinkedModule, StructLayout};
 use rig::Rig;
+pub use run_kernel::{Bound, download, run_kernel, upload};
 pub use violation::{
     Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
 };

@@ -164,7 +164,7 @@ impl Rig {
         let lookup = strategy.lookup();
         let module = Shader::new(LISTS_GROUP)
             .module("package::probe", include_str!("probe.wesl"))
-            .module("package::strategy", lookup.module.source())
+            .strategy(lookup.module)
             .create(&self.gpu, "package::probe")?;
         let layouts = [Some(frame.layout()), Some(lookup.layout), Some(&self.probe_layout)];
         Ok(self.gpu.compute_pipeline(&module, "look_up", &layouts, true))

@@ -5,9 +5,10 @@ use std::f32::consts::FRAC_PI_4;
 
 use assign::intersect::{LightVolume, MirrorGroup, NormalCone, SeenGroup};
 use assign::{
-    Frame, FrameBindings, Gpu, Light, LightBuffer, LightKinds, Shader, View, entry, storage_entry,
+    Frame, FrameBindings, Gpu, Light, LightBuffer, LightKinds, Shader, View,
+    conformance::{Bound, download, run_kernel, upload},
+    kernel::Slot,
 };
-use bytemuck::cast_slice;
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -205,47 +206,17 @@ fn wesl(view: &View, pairs: &[Pair]) -> Vec<(bool, bool, f32)> {
             ]
         })
         .collect();
-    let input = gpu.storage("pairs", size_of_val(&records[..]) as u64).unwrap();
-    gpu.queue.write_buffer(&input, 0, cast_slice(&records));
-    let bytes = 8 * pairs.len() as u64;
-    let output = gpu.storage("found", bytes).unwrap();
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[storage_entry(0, stages, true), storage_entry(1, stages, false)],
-    });
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(frame.layout()), Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("test_pair"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &layout,
-        entries: &[entry(0, &input), entry(1, &output)],
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, frame.bind_group(), &[]);
-        pass.set_bind_group(1, &bind_group, &[]);
-        pass.dispatch_workgroups(pairs.len() as u32, 1, 1);
-    }
-    gpu.queue.submit([encoder.finish()]);
-    let found = gpu.read(&output, bytes).unwrap();
-    let found = cast_slice::<u8, [u32; 2]>(&found).iter();
-    found
-        .map(|&[flags, specular]| (flags & 1 == 1, flags & 2 == 2, f32::from_bits(specular)))
-        .collect()
+    let input = upload(&gpu, "pairs", &records).unwrap();
+    let output = upload(&gpu, "found", &vec![[0_u32; 2]; pairs.len()]).unwrap();
+    let groups = [
+        Bound::Group(frame.layout(), frame.bind_group().unwrap()),
+        Bound::Buffers(&[(0, Slot::Read, &input), (1, Slot::Write, &output)]),
+    ];
+    run_kernel(&gpu, &module, "test_pair", &groups, pairs.len() as u32);
+    let found: Vec<[u32; 2]> = download(&gpu, &output, pairs.len()).unwrap();
+    let answer =
+        |[flags, specular]: [u32; 2]| (flags & 1 == 1, flags & 2 == 2, f32::from_bits(specular));
+    found.into_iter().map(answer).collect()
 }
 
 /// The horizon's test differs where the mirror changes its mind between half the slack and one and a

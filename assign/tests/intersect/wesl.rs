@@ -2,9 +2,9 @@
 
 use assign::{
     Frame, FrameBindings, FrustumTests, Gpu, Light, LightBuffer, LightKinds, LightShape, Shader,
-    entry, storage_entry,
+    conformance::{Bound, download, run_kernel, upload},
+    kernel::Slot,
 };
-use bytemuck::cast_slice;
 use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
@@ -87,8 +87,7 @@ fn record(shape: &Shape) -> [[f32; 4]; RECORD] {
 /// One compiled permutation.
 struct Tester {
     gpu: Gpu,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
+    module: wgpu::ShaderModule,
 }
 
 impl Tester {
@@ -111,30 +110,7 @@ impl Tester {
             .light_kinds(kinds)
             .create(gpu, "package::driver")
             .unwrap();
-        let stages = wgpu::ShaderStages::COMPUTE;
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: None,
-            entries: &[
-                storage_entry(0, stages, true),
-                storage_entry(1, stages, false),
-                storage_entry(2, stages, true),
-            ],
-        });
-        let frame = FrameBindings::new(gpu);
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(frame.layout()), Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: None,
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("test_group"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Self { gpu: gpu.clone(), pipeline, layout }
+        Self { gpu: gpu.clone(), module }
     }
 
     /// Whether each light reaches the group, and the box around it.
@@ -143,35 +119,25 @@ impl Tester {
         let light_buffer = LightBuffer::new(gpu, lights).unwrap();
         assert!(light_buffer.rejected().is_empty());
         frame.update(gpu, &Frame::new(&group.view, &light_buffer)).unwrap();
-        let record = record(&group.shape);
-        let bytes: &[u8] = cast_slice(&record);
-        let record = gpu.storage("record", bytes.len() as u64).unwrap();
-        gpu.queue.write_buffer(&record, 0, bytes);
+        let record = upload(gpu, "record", &record(&group.shape)).unwrap();
         let corners: Vec<[f32; 4]> = lights
             .iter()
             .map(box_of)
             .flat_map(|(min, max)| [min.extend(0.0).to_array(), max.extend(0.0).to_array()])
             .collect();
-        let boxes = gpu.storage("boxes", 16 * corners.len() as u64).unwrap();
-        gpu.queue.write_buffer(&boxes, 0, cast_slice(&corners));
-        let hit_bytes = 4 * lights.len() as u64;
-        let hits = gpu.storage("hits", hit_bytes).unwrap();
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &self.layout,
-            entries: &[entry(0, &record), entry(1, &hits), entry(2, &boxes)],
-        });
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, frame.bind_group(), &[]);
-            pass.set_bind_group(1, &bind_group, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-        }
-        gpu.queue.submit([encoder.finish()]);
-        let bytes = gpu.read(&hits, hit_bytes).unwrap();
-        cast_slice::<u8, u32>(&bytes).iter().map(|hit| (hit & 1 != 0, hit & 2 != 0)).collect()
+        let boxes = upload(gpu, "boxes", &corners).unwrap();
+        let hits = upload(gpu, "hits", &vec![0_u32; lights.len()]).unwrap();
+        let groups = [
+            Bound::Group(frame.layout(), frame.bind_group().unwrap()),
+            Bound::Buffers(&[
+                (0, Slot::Read, &record),
+                (1, Slot::Write, &hits),
+                (2, Slot::Read, &boxes),
+            ]),
+        ];
+        run_kernel(gpu, &self.module, "test_group", &groups, 1);
+        let hits: Vec<u32> = download(gpu, &hits, lights.len()).unwrap();
+        hits.into_iter().map(|hit| (hit & 1 != 0, hit & 2 != 0)).collect()
     }
 }
 

@@ -14,7 +14,7 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
         return format!("{why}\n");
     }
     let Some(verdict) = verdict(results, error_budget) else {
-        return format!("Nothing stayed within the error budget: relMSE {error_budget}.\n");
+        return format!("No strategy stayed within the error budget, relMSE {error_budget}.\n");
     };
     let mut text = first_line(verdict.best) + "\n";
     if let Some(moving) = verdict.moving {
@@ -44,15 +44,18 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
     }
     let _ = writeln!(text, "Why: {}.", why(&verdict, results));
     if results.machine.device_type == DeviceType::Cpu {
-        let _ = writeln!(text, "A software adapter took these times: a GPU may rank otherwise.");
+        let _ = writeln!(
+            text,
+            "These are times of a software adapter: a GPU may rank the strategies differently."
+        );
     }
     text
 }
 
-/// That nothing can be said, and why; `None` where the methods were put to a test.
+/// Why there is no advice; `None` if the methods were tested.
 fn untested(results: &Results) -> Option<String> {
     let why = results.records.iter().find_map(Record::untested_words)?;
-    Some(format!("Nothing can be said: {why}, so no method was put to a test."))
+    Some(format!("No advice: {why}, so no method was tested."))
 }
 
 /// `Use ID (what it is): its time and parts. What its image is. What its lights must be.`
@@ -62,19 +65,19 @@ fn first_line(best: &Record) -> String {
         best.strategy,
         about(best),
         time(best),
-        report::lights(best.lights),
-        ms(best.assign_ms),
-        ms(best.shade_ms),
+        report::lights(best.setting.lights),
+        ms(best.times.assign_ms),
+        ms(best.times.shade_ms),
     );
     if let Some(interval) = best.interval_ms() {
-        let statistic = if best.along_path { "mean" } else { "median" };
+        let statistic = if best.setting.along_path { "mean" } else { "median" };
         let (low, high) = (ms(interval.low), ms(interval.high));
         let _ = write!(text, ", {statistic} between {low} and {high}");
     }
     text += ". ";
-    let views = if best.along_path { "these views" } else { "this view" };
+    let views = if best.setting.along_path { "these views" } else { "this view" };
     text += &match (loss(best), error_of(best)) {
-        (None, _) => match best.differing_channels {
+        (None, _) => match best.image.differing_channels {
             Some(0) => "Its image is that of no culling, bit for bit.".to_owned(),
             Some(_) => "Its image is that of no culling within the tolerance it states.".to_owned(),
             None => "Its image was not compared with that of no culling.".to_owned(),
@@ -86,7 +89,7 @@ fn first_line(best: &Record) -> String {
     };
     if report::needs_built_hierarchy(best) {
         text += " Still lights only: it uses a hierarchy that the CPU builds";
-        if let Some(build) = best.light_build_ms {
+        if let Some(build) = best.times.light_build_ms {
             let _ = write!(text, " in {} ms", ms(build));
         }
         text += ", not counted in this time.";
@@ -113,7 +116,7 @@ fn loss(record: &Record) -> Option<String> {
     Some(if errors.is_empty() {
         "it may lose light".to_owned()
     } else {
-        format!("it errs by {errors}")
+        format!("its error is {errors}")
     })
 }
 
@@ -125,7 +128,7 @@ fn tie(verdict: &Verdict<'_>) -> String {
         .map(|record| format!("{} ({})", record.strategy, time(record)))
         .collect();
     let reasons = match verdict.reasons.is_empty() {
-        true => "it is the fastest of them by a little".to_owned(),
+        true => "it is slightly the fastest of them".to_owned(),
         false => report::listed(&verdict.reasons),
     };
     format!("It ties with {}; preferred because {reasons}.", report::listed(&tied))
@@ -133,7 +136,7 @@ fn tie(verdict: &Verdict<'_>) -> String {
 
 /// Says that the budget buys nothing.
 fn no_gain(verdict: &Verdict<'_>, error_budget: f64) -> String {
-    let none = format!("No lossy setting within relMSE {error_budget} is surely faster");
+    let none = format!("No lossy setting within relMSE {error_budget} is certainly faster");
     match verdict.lossy {
         Some(lossy) => format!("{none}: the fastest is {}, {}.", lossy.strategy, time(lossy)),
         None => format!("{none}: none stays within it."),
@@ -144,13 +147,15 @@ fn no_gain(verdict: &Verdict<'_>, error_budget: f64) -> String {
 fn why(verdict: &Verdict<'_>, results: &Results) -> String {
     let best = verdict.best;
     if !best.culls() {
-        let lights = report::lights(best.lights);
-        return format!("with {lights} no list pays for the passes that make it");
+        let lights = report::lights(best.setting.lights);
+        return format!("with {lights} the passes that make lists cost more than lists save");
     }
     let mut reasons = Vec::new();
-    if let (Some(listed), Some(reach)) = (best.listed_per_sample, best.contributing_per_sample) {
+    if let (Some(listed), Some(reach)) =
+        (best.lists.listed_per_sample, best.lists.contributing_per_sample)
+    {
         let (listed, reach) = (ms(listed), ms(reach));
-        reasons.push(format!("its lists hold {listed} lights per sample where {reach} reach it"));
+        reasons.push(format!("its lists hold {listed} lights per sample, and {reach} reach it"));
     }
     if let Some(next) = verdict.next.filter(|next| next.culls()) {
         let part = |name: &str, gain: f64| {
@@ -160,8 +165,8 @@ fn why(verdict: &Verdict<'_>, results: &Results) -> String {
         reasons.push(format!(
             "against {}, {} and {}",
             next.strategy,
-            part("assigning", next.assign_ms - best.assign_ms),
-            part("shading", next.shade_ms - best.shade_ms)
+            part("assigning", next.times.assign_ms - best.times.assign_ms),
+            part("shading", next.times.shade_ms - best.times.shade_ms)
         ));
     }
     let none = results.records.iter().find(|record| record.is_baseline());

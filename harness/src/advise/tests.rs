@@ -7,14 +7,14 @@ fn record(strategy: &str, times_ms: &[f64], bytes: u64) -> Record {
         serde_json::from_str(include_str!("../results/example.json")).expect("the example");
     let mut record = example.records[0].clone();
     record.strategy = strategy.into();
-    record.passes = Default::default();
-    record.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
-    record.frames = times_ms.len() as u32;
-    record.rounds = record.frames;
-    record.along_path = false;
-    (record.lists_bytes, record.memory_bytes) = (bytes, Some(bytes));
-    record.light_build_ms = Some(9.7);
-    (record.missed_pairs, record.max_abs_diff, record.differing_channels) =
+    record.times.passes = Default::default();
+    record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
+    record.times.frames = times_ms.len() as u32;
+    record.times.rounds = record.times.frames;
+    record.setting.along_path = false;
+    (record.lists.bytes, record.lists.memory_bytes) = (bytes, Some(bytes));
+    record.times.light_build_ms = Some(9.7);
+    (record.lists.missed_pairs, record.image.max_abs_diff, record.image.differing_channels) =
         (Some(0), Some(0.0), Some(0));
     record.set_times();
     record
@@ -35,10 +35,10 @@ fn around(strategy: &str, ms: f64, spread: f64, bytes: u64) -> Record {
 fn lossy(strategy: &str, ms: f64, spread: f64, rel_mse: f64) -> Record {
     let mut record = around(strategy, ms, spread, 1 << 20);
     record.is_lossy = true;
-    record.missed_pairs = Some(802_864);
-    record.differing_channels = Some(90);
-    record.max_abs_diff = Some(0.2);
-    record.errors = [("rel_mse", rel_mse), ("missing_energy", 0.3), ("flip", 0.01)]
+    record.lists.missed_pairs = Some(802_864);
+    record.image.differing_channels = Some(90);
+    record.image.max_abs_diff = Some(0.2);
+    record.image.errors = [("rel_mse", rel_mse), ("missing_energy", 0.3), ("flip", 0.01)]
         .map(|(id, error)| (id.to_owned(), Some(error)))
         .into();
     record
@@ -79,7 +79,7 @@ fn a_lossy_setting_that_gains_nothing_is_never_named() {
     assert!(fastest.assign_and_shade_ms() < results.records[0].assign_and_shade_ms());
     assert_eq!(named(&results, 0.001), "SC-E/48x48x40");
     let text = answer(&results, 0.001);
-    assert!(text.contains("No lossy setting within relMSE 0.001 is surely faster"), "{text}");
+    assert!(text.contains("No lossy setting within relMSE 0.001 is certainly faster"), "{text}");
 
     // One that loses nothing in this view may lose light in another.
     let mut harmless = around("SC-E/48x48x40/cap64", 0.99, 0.1, 1 << 10);
@@ -97,7 +97,7 @@ fn a_lossy_setting_that_gains_nothing_is_never_named() {
     // Where no rounds tell, a gain is not shown.
     let mut along = of(vec![record("SC-E/48x48x40", &[1.0], 1), {
         let mut lossy = lossy("SC-E/48x48x40/cap64", 0.5, 0.0, 0.0005);
-        lossy.rounds = 7;
+        lossy.times.rounds = 7;
         lossy
     }]);
     assert_eq!(named(&along, 0.001), "SC-E/48x48x40");
@@ -162,12 +162,14 @@ fn what_ties_with_a_best_chosen_for_memory_does_not_come_next() {
 fn an_image_that_was_not_compared_is_not_called_the_same() {
     let mut results = of(vec![around("SC-E/48x48x40", 1.0, 0.02, 1 << 20)]);
     assert!(answer(&results, 0.0).contains("bit for bit"));
-    (results.records[0].differing_channels, results.records[0].max_abs_diff) = (None, None);
+    (results.records[0].image.differing_channels, results.records[0].image.max_abs_diff) =
+        (None, None);
     assert!(!answer(&results, 0.0).contains("bit for bit"));
     // Nor one that differs as much as its method states of itself.
-    results.records[0].differing_channels = Some(9);
-    (results.records[0].max_abs_diff, results.records[0].max_rel_diff) = (Some(1e-6), Some(1e-6));
-    results.records[0].tolerance = Some(1e-3);
+    results.records[0].image.differing_channels = Some(9);
+    (results.records[0].image.max_abs_diff, results.records[0].image.max_rel_diff) =
+        (Some(1e-6), Some(1e-6));
+    results.records[0].image.tolerance = Some(1e-3);
     assert!(!answer(&results, 0.0).contains("bit for bit"));
 }
 
@@ -203,7 +205,7 @@ fn the_last_round_holds_what_the_answer_needs() {
     all.push(around("None", 90.0, 0.0, 1));
     all.push(around("Sphere", 1.5, 0.0, 1));
     let mut other = vec![around("T-E/16x16/bvh", 1.05, 0.0, 1)];
-    all.iter_mut().chain(&mut other).for_each(|record| record.longest_list = 20);
+    all.iter_mut().chain(&mut other).for_each(|record| record.lists.longest = 20);
     let (families, parameters) = (of(all), of(other));
     let exact = last_ids(&families, &parameters, 0.0);
     assert!(exact.contains(&"Sphere".to_owned()) && !exact.contains(&"None".to_owned()));

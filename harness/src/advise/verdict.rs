@@ -38,7 +38,7 @@ pub struct Verdict<'a> {
 pub fn error_of(record: &Record) -> Option<f64> {
     match record.is_lossless() {
         true => Some(0.0),
-        false => record.errors.get(METRIC).copied().flatten(),
+        false => record.image.errors.get(METRIC).copied().flatten(),
     }
 }
 
@@ -47,7 +47,7 @@ pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
     let mut within: Vec<&Record> = results
         .records
         .iter()
-        .filter(|record| !record.is_control() && record.untested.is_none())
+        .filter(|record| !record.is_control() && record.lists.untested.is_none())
         .filter(|record| record.assign_and_shade_ms().is_finite())
         .filter(|record| error_of(record).is_some_and(|error| error <= error_budget))
         .collect();
@@ -113,7 +113,7 @@ fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> 
         };
     keep(&mut left, "it loses nothing", &|record| f64::from(u8::from(!record.is_exact())), 1.0);
     keep(&mut left, "it errs less", &|record| error_of(record).unwrap_or(f64::INFINITY), 1.0);
-    let memory = |record: &Record| record.memory_bytes.unwrap_or(record.lists_bytes) as f64;
+    let memory = |record: &Record| record.lists.memory_bytes.unwrap_or(record.lists.bytes) as f64;
     keep(&mut left, "it needs less memory", &memory, ALIKE_MEMORY);
     keep(&mut left, "it is simpler", &complexity, 1.0);
     left.first().map(|best| (*best, reasons))

@@ -63,9 +63,14 @@ const FONT: &str = "system-ui, -apple-system, \"Segoe UI\", Roboto, \"Helvetica 
 fn classes() -> impl Iterator<Item = (String, Colour)> {
     let named = |(class, colour): &Named| ((*class).to_owned(), *colour);
     let families = rows().map(|row| (row.class(), row.colour));
-    [NO_FAMILY].iter().chain(&SERIES).chain(&PASSES).map(named).collect::<Vec<_>>().into_iter().chain(
-        families.filter(|(class, _)| class != NO_FAMILY.0),
-    )
+    [NO_FAMILY]
+        .iter()
+        .chain(&SERIES)
+        .chain(&PASSES)
+        .map(named)
+        .collect::<Vec<_>>()
+        .into_iter()
+        .chain(families.filter(|(class, _)| class != NO_FAMILY.0))
 }
 
 /// The rules by which a page colours strategies, passes and series: each class sets `--colour`.

@@ -7,12 +7,12 @@ use glam::DVec3;
 /// The most frames of a path.
 const MAX_FRAMES: u32 = 100_000;
 
-/// Where a camera is and what it looks at: `0,2,10:0,1,0`.
+/// The camera's position and a point that it looks at: `0,2,10:0,1,0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraPose {
     /// The camera's position in the coordinates of the scene's file, metres.
     pub eye: [f64; 3],
-    /// A point that it looks at, not the eye.
+    /// A point that it looks at, different from the eye.
     pub target: [f64; 3],
 }
 
@@ -20,7 +20,7 @@ impl CameraPose {
     /// The unit view direction.
     pub fn forward(&self) -> DVec3 {
         let along = DVec3::from(self.target) - DVec3::from(self.eye);
-        // Points as far apart as f32 reaches: their distance squared still fits.
+        // In f64 even the squared distance of points at the limits of f32 is finite.
         along.normalize_or(DVec3::NEG_Z)
     }
 }
@@ -43,7 +43,7 @@ impl FromStr for CameraPose {
             .and_then(|(eye, target)| Some(Self { eye: point(eye)?, target: point(target)? }))
             .filter(|pose| pose.eye != pose.target)
             .ok_or_else(|| {
-                "eye and target as x,y,z:x,y,z, six finite numbers in metres, two different points"
+                "eye and target as x,y,z:x,y,z: six finite numbers in metres, two different points"
                     .to_owned()
             })
     }
@@ -52,7 +52,7 @@ impl FromStr for CameraPose {
 /// Where the camera stands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Camera {
-    /// At a pose of one's own: `0,2,10:0,1,0`.
+    /// At a pose: `0,2,10:0,1,0`.
     Pose(CameraPose),
     /// At a frame of the scene's path: `path:300/1200`.
     OnPath {
@@ -61,9 +61,9 @@ pub enum Camera {
         /// Frames of the whole path.
         count: u32,
     },
-    /// Where a camera of the scene's file stands, by its place among them, from 0: `#1`.
+    /// A camera of the scene's file by its number, from 0: `#1`.
     Numbered(u32),
-    /// The same by name.
+    /// A camera of the scene's file by its name.
     Named(String),
 }
 
@@ -77,10 +77,10 @@ impl FromStr for Camera {
         if let Some(number) = text.strip_prefix('#') {
             let number = number.parse().map(Self::Numbered);
             return number.map_err(|_| {
-                "#N, the place of a camera among those of the scene's file, from 0".to_owned()
+                "#N, where N is the number of a camera in the scene's file, from 0".to_owned()
             });
         }
-        // A number first and commas: a pose was meant.
+        // Text that starts with a number and holds commas is meant as a pose.
         let is_number =
             text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
         match text.parse() {
@@ -102,7 +102,7 @@ fn on_path(place: &str) -> Result<Camera, String> {
         .and_then(|(at, count)| Some((frame(at)?, frame(count)?)))
         .filter(|(at, count)| at < count && *count <= MAX_FRAMES)
         .map(|(frame, count)| Camera::OnPath { frame, count })
-        .ok_or_else(|| "path:FRAME/COUNT, the frame below the count of at most 100,000".into())
+        .ok_or_else(|| "path:FRAME/COUNT, with FRAME below COUNT and COUNT at most 100,000".into())
 }
 
 #[cfg(test)]
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn poses_frames_numbers_and_names_are_told_apart() {
+    fn poses_frames_numbers_and_names_are_distinguished() {
         let camera = |text: &str| text.parse::<Camera>();
         let named = |name: &str| Ok(Camera::Named(name.to_owned()));
         assert_eq!(camera("path:3/12"), Ok(Camera::OnPath { frame: 3, count: 12 }));

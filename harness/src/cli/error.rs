@@ -1,4 +1,4 @@
-//! One line for whatever is wrong with a command line.
+//! Errors of the command line, one line each.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use thiserror::Error;
@@ -9,7 +9,7 @@ use crate::visible::visible;
 /// The exit code of bad input.
 pub const BAD_INPUT: u8 = 2;
 
-/// Bad input: one line that names the option, the value and what would be accepted.
+/// Bad input: one line that names the option, the value and the accepted values.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct CliError {
@@ -17,9 +17,14 @@ pub struct CliError {
 }
 
 impl CliError {
-    /// An error of one line: line breaks and other control characters are escaped.
+    /// An error of one line. Line breaks and other control characters are escaped.
     pub fn new(message: impl AsRef<str>) -> Self {
         Self { message: visible(message.as_ref()).into_owned() }
+    }
+
+    /// `--option has no effect here: it needs ...`.
+    pub fn without_effect(option: &str, needs: &str) -> Self {
+        Self::new(format!("--{option} has no effect here: it needs {needs}"))
     }
 
     /// `option is value: it must be accepted`.
@@ -27,12 +32,16 @@ impl CliError {
         Self::new(format!("{option} is {}: it must be {accepted}", shown(value)))
     }
 
-    /// `no strategy called name`, with the nearest of the known names or, where none is near,
-    /// all of them.
+    /// `there is no strategy called name`, with the nearest known names, or with all of them where none
+    /// is near.
     pub fn unknown(what: &str, name: &str, known: &[&str]) -> Self {
         let hint = did_you_mean(name, known);
-        let hint = if hint.is_empty() { format!(": known are {}", known.join(", ")) } else { hint };
-        Self::new(format!("no {what} called {}{hint}", shown(name)))
+        let hint = if hint.is_empty() {
+            format!(": the known names are {}", known.join(", "))
+        } else {
+            hint
+        };
+        Self::new(format!("there is no {what} called {}{hint}", shown(name)))
     }
 
     /// [`BAD_INPUT`].
@@ -46,7 +55,7 @@ impl CliError {
             Some(ContextValue::Strings(texts)) if !texts.is_empty() => Some(texts.join(", ")),
             _ => None,
         };
-        // `--frames <N>` is an option and its placeholder: only the option is of use here.
+        // `--frames <N>` is an option and its placeholder. The message shows only the option.
         let option = text(ContextKind::InvalidArg).map(|arg| match arg.split_once(' ') {
             Some((option, _)) => option.to_owned(),
             None => arg,
@@ -68,9 +77,9 @@ impl CliError {
                 Self::out_of_range(option, &value, &format!("one of {valid}"))
             }
             ErrorKind::UnknownArgument => Self::new(format!(
-                "no option called {option}{}",
+                "there is no option called {option}{}",
                 suggested(ContextKind::SuggestedArg)
-                    .unwrap_or_else(|| ": `lightbench --help` lists them".to_owned())
+                    .unwrap_or_else(|| ": `lightbench --help` lists all options".to_owned())
             )),
             ErrorKind::InvalidSubcommand => {
                 let name = text(ContextKind::InvalidSubcommand).unwrap_or_default();
@@ -78,14 +87,7 @@ impl CliError {
                     program.get_subcommands().map(clap::Command::get_name).collect();
                 Self::unknown("command", &name, &known)
             }
-            ErrorKind::MissingRequiredArgument => Self::new(match option {
-                "--vpls" => "options of virtual point lights need some: give --vpls",
-                "<DIR|FILE.json>..." => {
-                    "report needs a folder of a comparison or a study, or a file of results"
-                }
-                "<STUDY>" => "study needs which one: comparison, culling, area, endless or cdi",
-                _ => "list needs what to list: strategies, scenes or adapters",
-            }),
+            ErrorKind::MissingRequiredArgument => Self::new(missing(option, program)),
             ErrorKind::ArgumentConflict => Self::new(conflict(error, option, program)),
             ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues => {
                 Self::new(format!("{option} takes one value"))
@@ -103,7 +105,26 @@ fn one_of(valid: &Option<String>) -> String {
     valid.as_ref().map(|valid| format!(": one of {valid}")).unwrap_or_default()
 }
 
-/// What contradicts what: an option and another, or an option and the command that stands after it.
+/// Names a missing argument of a command and what it accepts, or a missing option.
+fn missing(option: &str, program: &clap::Command) -> String {
+    for command in program.get_subcommands() {
+        if let Some(argument) = command.get_positionals().find(|arg| arg.to_string() == option) {
+            let name = command.get_name();
+            let values = argument.get_possible_values();
+            let values: Vec<&str> = values.iter().map(|value| value.get_name()).collect();
+            return match argument.get_help() {
+                Some(help) if values.is_empty() => format!("{name} needs {option}: {help}"),
+                _ => format!("{name} needs {option}: one of {}", values.join(", ")),
+            };
+        }
+    }
+    match option {
+        "--vpls" => "options of virtual point lights need --vpls N".to_owned(),
+        _ => format!("{option} is missing"),
+    }
+}
+
+/// Names two options that exclude each other, or an option that stands before a command.
 fn conflict(error: &clap::Error, option: &str, program: &clap::Command) -> String {
     let bare = |text: &String| text.split([' ', '=']).next().unwrap_or_default().to_owned();
     let others: Vec<String> = match error.get(ContextKind::PriorArg) {
@@ -118,15 +139,15 @@ fn conflict(error: &clap::Error, option: &str, program: &clap::Command) -> Strin
         return format!("{option} is given twice: it must be given once");
     }
     match others.split_last() {
-        None => format!("{option} does not go together with the other options"),
-        Some((last, [])) => format!("{option} and {last} do not go together"),
+        None => format!("{option} cannot be combined with the other options"),
+        Some((last, [])) => format!("{option} and {last} cannot be combined"),
         Some((last, first)) => {
-            format!("{option} goes together neither with {} nor with {last}", first.join(", "))
+            format!("{option} can be combined neither with {} nor with {last}", first.join(", "))
         }
     }
 }
 
-/// Options that stand before a command: it may have them, or not know them.
+/// Options that stand before a command: the command lacks one of them, or they must stand after it.
 fn before_command(options: &[String], command: &str, program: &clap::Command) -> String {
     let known = program.find_subcommand(command);
     let has = |option: &&String| {
@@ -135,13 +156,11 @@ fn before_command(options: &[String], command: &str, program: &clap::Command) ->
     };
     if let Some(unknown) = options.iter().find(|option| !has(option)) {
         return format!(
-            "the command {command} has no option {unknown}: `lightbench help {command}` lists its options"
+            "{command} has no option {unknown}: `lightbench help {command}` lists its options"
         );
     }
     let options = options.join(" ");
-    format!(
-        "{options}: options stand after the command, as in `lightbench {command} {options} ...`"
-    )
+    format!("options must stand after the command: `lightbench {command} {options} ...`")
 }
 
 fn shown(value: &str) -> &str {

@@ -1,13 +1,14 @@
-//! Names that someone may have meant.
+//! Finds known names that are close to a misspelt one.
 
-/// How alike a name must be to be offered, by Jaro-Winkler.
+/// The least Jaro-Winkler similarity of a name that is offered.
 const NEAR: f64 = 0.7;
 
-/// At most so many names are offered.
+/// The most names that are offered.
 const OFFERED: usize = 3;
 
 /// The known names nearest to a name, nearest first, at most three; empty where none is near.
-/// Case does not count, and a known name that starts with the given one is always near.
+///
+/// Case is ignored. A known name that starts with the given one is always near.
 pub fn nearest(name: &str, known: &[&str]) -> Vec<String> {
     let name = name.trim().to_lowercase();
     if name.is_empty() {
@@ -17,12 +18,12 @@ pub fn nearest(name: &str, known: &[&str]) -> Vec<String> {
         .iter()
         .map(|known| {
             let lower = known.to_lowercase();
-            let likeness = strsim::jaro_winkler(&lower, &name);
-            (if lower.starts_with(&name) { 1.0 + likeness } else { likeness }, *known)
+            let similarity = strsim::jaro_winkler(&lower, &name);
+            (if lower.starts_with(&name) { 1.0 + similarity } else { similarity }, *known)
         })
-        .filter(|(likeness, _)| *likeness >= NEAR)
+        .filter(|(similarity, _)| *similarity >= NEAR)
         .collect();
-    // Stable: names that are as near as each other stay in the order of the registry.
+    // The sort is stable: equally near names stay in the order of the registry.
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
     near.into_iter().take(OFFERED).map(|(_, known)| known.to_owned()).collect()
 }
@@ -53,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn far_names_are_not() {
+    fn far_names_are_not_offered() {
         assert!(nearest("quaternion", &KNOWN).is_empty());
         assert!(nearest("", &KNOWN).is_empty());
         assert!(nearest("None", &[]).is_empty());

@@ -1,4 +1,4 @@
-//! From the words of a command line to what is asked for.
+//! Parses the words of a command line into an [`Invocation`].
 
 use std::ffi::OsString;
 
@@ -6,7 +6,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, error::ErrorKind};
 
 use super::{Cli, CliError, Command, Invocation, effect};
 
-/// Understands a command line, program name first.
+/// Parses a command line. The first word is the program's name.
 ///
 /// # Errors
 ///
@@ -16,28 +16,30 @@ where
     I: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
-    let (asked, matches) = parse_words(arguments)?;
+    let (invocation, matches) = parse_words(arguments)?;
     if let Some(matches) = matches {
-        effect::check(&asked, &matches)?;
+        effect::check(&invocation, &matches)?;
     }
-    Ok(asked)
+    Ok(invocation)
 }
 
-/// Understands the command line of stored results, which may hold options without effect: versions before
-/// this one took them. It is reported, not run.
+/// Parses the command line of stored results.
+///
+/// Earlier versions accepted options without effect, so this does too: the command is only reported, not
+/// run.
 ///
 /// # Errors
 ///
-/// As [`parse`], but for options without effect.
+/// As [`parse`], except for options without effect.
 pub fn parse_stored<I, T>(arguments: I) -> Result<Invocation, CliError>
 where
     I: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
-    parse_words(arguments).map(|(asked, _)| asked)
+    parse_words(arguments).map(|(invocation, _)| invocation)
 }
 
-/// What is asked for, and which options were given; `None` of help.
+/// The invocation, and the options as given; `None` for help.
 fn parse_words<I, T>(arguments: I) -> Result<(Invocation, Option<ArgMatches>), CliError>
 where
     I: IntoIterator<Item = T>,
@@ -57,7 +59,7 @@ where
         Ok(cli) => cli,
         Err(error) => return shown(error),
     };
-    let asked = match cli.command {
+    let invocation = match cli.command {
         Some(Command::List { what }) => Invocation::List(what),
         Some(Command::Compare(args)) => Invocation::Compare(args),
         Some(Command::Study(args)) => Invocation::Study(args),
@@ -68,5 +70,5 @@ where
         Some(Command::Cdi(args)) => Invocation::Cdi(args),
         None => Invocation::Compare(cli.compare),
     };
-    Ok((asked, Some(matches)))
+    Ok((invocation, Some(matches)))
 }

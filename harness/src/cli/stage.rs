@@ -6,6 +6,8 @@ use scenes::{Outlines, Radii};
 
 use super::{
     camera::Camera,
+    headings::{RANGES, SCATTERED, SCENE},
+    named::named,
     values::{self, FarPlane, Size},
     vpl::VplArgs,
 };
@@ -13,101 +15,118 @@ use super::{
 /// What is drawn: the options that comparisons and truth images share.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct StageArgs {
-    /// A scene's name (see `lightbench list scenes`) or a .gltf or .glb file
-    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
+    /// Scene to draw: a name from `lightbench list scenes`, or a .gltf or .glb file
+    #[arg(long, display_order = 1, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
     pub scene: String,
 
-    /// Factor on the scene's size and its own lights, 1e-6 to 1e6; scattered lights keep theirs
-    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale)]
-    pub scene_scale: f64,
-
-    /// Draw the scene N x N times beside itself, with its lights and those scattered in it, 1 to 64
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies)]
-    pub replicate: u32,
-
-    /// Lights to scatter in addition to the scene's own, 0 to 16,777,216
-    #[arg(long, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
+    /// Lights to scatter, in addition to the scene's own; 0 to 16,777,216
+    #[arg(long, display_order = 2, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
     pub lights: u32,
 
-    /// Add the lights that another .gltf or .glb file holds
-    #[arg(long, value_name = "FILE", value_parser = values::text)]
+    /// Add the lights of another .gltf or .glb file
+    #[arg(long, display_order = 3, value_name = "FILE", value_parser = values::text)]
     pub lights_from: Option<String>,
 
-    /// Leave out the lights that the scene's file holds
-    #[arg(long)]
-    pub no_own_lights: bool,
-
-    /// Where lights are scattered
-    #[arg(long, value_name = "BOX", default_value = "core")]
-    pub light_box: LightBox,
-
-    /// Factor on the radii of scattered lights, 1e-6 to 1e6; at 1 their mean is one metre
-    /// [default: 1 in a scene of 10 to 60 m, smaller and larger in proportion]
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale)]
-    pub radius_scale: Option<f64>,
-
-    /// Distribution of the radii of scattered lights, of mean one metre each
-    #[arg(long, value_name = "NAME", default_value = "gamma")]
-    pub radii: RadiiChoice,
-
-    /// Share of spots among the scattered lights, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
-    pub spots: f64,
-
-    /// Share of area lights among the scattered lights, 0 to 1, with that of spots at most 1
-    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share)]
-    pub areas: f64,
-
-    /// Outlines of the scattered area lights
-    #[arg(long, value_name = "WHICH", default_value = "both")]
-    pub outlines: OutlinesChoice,
-
-    /// Where the diffuse light of scattered area lights ends, as a share of the range of their
-    /// specular light, above 0 and at most 1
-    #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part)]
-    pub diffuse_share: f64,
-
-    /// End every light where its intensity over squared distance (candela over square metres: lux) falls
-    /// to this, 1e-9 to 1e9 [default: ranges as they are; scattered lights have 0.02, lights whose
-    /// file gives no range 0.02 or less, so that dim ones are seen]
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold)]
-    pub threshold: Option<f64>,
-
-    /// Give every area light the range of Swarbrick 2025 (listing 4.1): where its flux, times 4.4 and spread
-    /// over a hemisphere, falls to this irradiance, its diffuse light ends, 1e-9 to 1e9
-    #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold)]
-    pub influence: Option<f64>,
-
-    /// Order of the lights in their buffer, for all methods alike: given (as they come), morton (along a
-    /// space-filling curve) or bvh (as the leaves of a hierarchy)
-    #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order)]
-    pub light_order: LightOrder,
-
     /// Image size in pixels, each side 1 to 16,384
-    #[arg(long, value_name = "WxH", default_value = "640x360", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        display_order = 4,
+        value_name = "WxH",
+        default_value = "640x360",
+        allow_hyphen_values = true
+    )]
     pub size: Size,
 
-    /// Where the camera is and a point that it looks at, in metres; or path:F/N for frame F of N along
-    /// the scene's path; or a camera of the scene's file by its name, or by its place among them as
-    /// '#0', '#1', ...
-    /// [default: the file's first camera, else the start of the scene's path]
-    #[arg(long, value_name = "X,Y,Z:X,Y,Z|path:F/N|NAME|#N", allow_hyphen_values = true)]
+    /// Camera position and a point that it looks at, in metres; or a camera of the scene
+    ///
+    /// X,Y,Z:X,Y,Z is the position and the point that the camera looks at. path:F/N is frame F of N along the
+    /// scene's path. NAME or #N is a camera of the scene's file, by its name or its number from 0. [default:
+    /// the file's first camera, else the start of the scene's path]
+    #[arg(long, display_order = 5, value_name = "POSE", allow_hyphen_values = true)]
     pub camera: Option<Camera>,
 
+    /// Factor on the size of the scene and of its own lights, 1e-6 to 1e6
+    ///
+    /// Scattered lights keep their size.
+    #[arg(long, value_name = "X", default_value = "1", allow_hyphen_values = true, value_parser = values::scale, help_heading = SCENE, hide_short_help = true)]
+    pub scene_scale: f64,
+
+    /// Draw N x N copies of the scene side by side, with all their lights; 1 to 64
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies, help_heading = SCENE, hide_short_help = true)]
+    pub replicate: u32,
+
     /// View depth of the near plane in metres, 1e-6 to 1e6
-    /// [default: that of the file's camera, else a 500th of the size of the scene, or half the depth
-    /// of the nearest surface in view where that would be cut away]
-    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = values::scale)]
+    ///
+    /// [default: that of the file's camera; else 1/500 of the size of the scene, or half the depth of the
+    /// nearest visible surface where the near plane would cut it away]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = values::scale, help_heading = SCENE, hide_short_help = true)]
     pub near: Option<f64>,
 
     /// View depth of the far plane in metres, 1e-6 to 1e9, or infinite
+    ///
     /// [default: that of the file's camera, else just beyond the scene's bounds]
-    #[arg(long, value_name = "M|infinite", allow_hyphen_values = true)]
+    #[arg(long, value_name = "METRES|infinite", allow_hyphen_values = true, help_heading = SCENE, hide_short_help = true)]
     pub far: Option<FarPlane>,
 
+    /// Leave out the scene's own lights
+    #[arg(long, help_heading = SCENE, hide_short_help = true)]
+    pub no_own_lights: bool,
+
     /// Seed of the scattered lights
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed)]
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::seed, help_heading = SCATTERED, hide_short_help = true)]
     pub seed: u64,
+
+    /// Where to scatter lights
+    #[arg(long, value_name = "BOX", default_value = "core", help_heading = SCATTERED, hide_short_help = true)]
+    pub light_box: LightBox,
+
+    /// Share of spots among the scattered lights, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share, help_heading = SCATTERED, hide_short_help = true)]
+    pub spots: f64,
+
+    /// Share of area lights among the scattered lights, 0 to 1; together with --spots at most 1
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true, value_parser = values::share, help_heading = SCATTERED, hide_short_help = true)]
+    pub areas: f64,
+
+    /// Outlines of the scattered area lights
+    #[arg(long, value_name = "WHICH", default_value = "both", value_parser = named(OUTLINES, Outlines::name), help_heading = SCATTERED, hide_short_help = true)]
+    pub outlines: Outlines,
+
+    /// Range of a scattered area light's diffuse term / range of its specular term, above 0 and at most 1
+    #[arg(long, value_name = "SHARE", default_value = "1", allow_hyphen_values = true, value_parser = values::part, help_heading = SCATTERED, hide_short_help = true)]
+    pub diffuse_share: f64,
+
+    /// Factor on the radii of scattered lights, 1e-6 to 1e6
+    ///
+    /// At 1 their mean is one metre. [default: 1 in a scene of 10 to 60 m, smaller or larger in proportion
+    /// in other scenes]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::scale, help_heading = SCATTERED, hide_short_help = true)]
+    pub radius_scale: Option<f64>,
+
+    /// Distribution of the radii of scattered lights; each has a mean of one metre
+    #[arg(long, value_name = "NAME", default_value = "gamma", value_parser = named(RADII, Radii::name), help_heading = SCATTERED, hide_short_help = true)]
+    pub radii: Radii,
+
+    /// End every light at the distance where intensity / distance^2 falls to X (candela / m^2 = lux); 1e-9
+    /// to 1e9
+    ///
+    /// [default: every light keeps its range. Scattered lights have the range of X = 0.02. A light without a
+    /// range in its file gets the range of X = 0.02 or of a smaller X, so that dim lights stay visible]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = values::threshold, help_heading = RANGES, hide_short_help = true)]
+    pub threshold: Option<f64>,
+
+    /// Give every area light the range of Swarbrick 2025 (listing 4.1), from the irradiance X; 1e-9 to 1e9
+    ///
+    /// The diffuse light ends where 4.4 times the flux, spread over a hemisphere, falls to X.
+    #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold, help_heading = RANGES, hide_short_help = true)]
+    pub influence: Option<f64>,
+
+    /// Order of the lights in their buffer: given, morton or bvh
+    ///
+    /// All strategies use the same order. given keeps the order of the scene. morton follows a space-filling
+    /// curve. bvh is the order of the leaves of a hierarchy.
+    #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order, help_heading = RANGES, hide_short_help = true)]
+    pub light_order: LightOrder,
 
     /// Indirect light.
     #[command(flatten)]
@@ -117,52 +136,22 @@ pub struct StageArgs {
 /// Where lights are scattered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LightBox {
-    /// The box of the scene without far-off parts
+    /// The box around the scene without its far-off parts
     Core,
-    /// The box of everything in the scene
+    /// The box around everything in the scene
     Bounds,
-    /// Seven upright cylinders in the box of the scene without far-off parts
+    /// Seven upright cylinders in the core box
     Cylinders,
 }
 
-/// Outlines of scattered area lights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum OutlinesChoice {
-    /// Half of each
-    Both,
-    /// Rectangles
-    Rectangles,
-    /// Polygons of 3 to 10 vertices
-    Polygons,
-}
+const OUTLINES: [(Outlines, &str); 3] = [
+    (Outlines::Both, "Half rectangles, half polygons"),
+    (Outlines::Rectangles, "Rectangles"),
+    (Outlines::Polygons, "Polygons of 3 to 10 vertices"),
+];
 
-impl From<OutlinesChoice> for Outlines {
-    fn from(choice: OutlinesChoice) -> Self {
-        match choice {
-            OutlinesChoice::Both => Self::Both,
-            OutlinesChoice::Rectangles => Self::Rectangles,
-            OutlinesChoice::Polygons => Self::Polygons,
-        }
-    }
-}
-
-/// How the radii of scattered lights are distributed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum RadiiChoice {
-    /// Gamma with mode 0.25, as in the comparison paper
-    Gamma,
-    /// All alike
-    Equal,
-    /// Many small, a few very large
-    LogNormal,
-}
-
-impl From<RadiiChoice> for Radii {
-    fn from(choice: RadiiChoice) -> Self {
-        match choice {
-            RadiiChoice::Gamma => Self::Gamma,
-            RadiiChoice::Equal => Self::Equal,
-            RadiiChoice::LogNormal => Self::LogNormal,
-        }
-    }
-}
+const RADII: [(Radii, &str); 3] = [
+    (Radii::Gamma, "Gamma distribution of mode 0.25, as in the comparison paper"),
+    (Radii::Equal, "All equal"),
+    (Radii::LogNormal, "Log-normal: many small radii and a few very large ones"),
+];

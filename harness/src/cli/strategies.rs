@@ -1,8 +1,6 @@
 //! The strategies that a command line asks for.
 
-use assign::LightSource;
-
-use super::{CliError, CompareArgs, SourceChoice};
+use super::{CliError, CompareArgs};
 use crate::{
     choice::Choice,
     strategy::{IdError, rows},
@@ -32,14 +30,10 @@ impl CompareArgs {
         }
         let mut choices = Vec::new();
         for choice in asked {
-            let sources: &[Option<LightSource>] = match self.source {
-                _ if !choice.takes_source() => &[None],
-                SourceChoice::Linear => &[Some(LightSource::Linear)],
-                SourceChoice::Bvh => &[Some(LightSource::Hierarchy)],
-                SourceChoice::Both => &[Some(LightSource::Linear), Some(LightSource::Hierarchy)],
-            };
-            for source in sources {
-                choices.push(choice.with(self.test, *source)?);
+            // A strategy that takes no source is there once.
+            let count = if choice.takes_source() { usize::MAX } else { 1 };
+            for source in self.sources().iter().take(count) {
+                choices.push(choice.with(self.test, Some(*source))?);
             }
         }
         Ok(choices)
@@ -100,7 +94,10 @@ mod tests {
     fn unknown_families_and_contradictions_are_errors() {
         let error = |line: &[&str]| choices(line).expect_err("an error").to_string();
         let unknown = error(&["--strategies", "DCI"]);
-        assert!(unknown.contains("no strategy called DCI") && unknown.contains("DC-I"), "{unknown}");
+        assert!(
+            unknown.contains("no strategy called DCI") && unknown.contains("DC-I"),
+            "{unknown}"
+        );
         let ball = error(&["--strategies", "SC-E/ball", "--source", "bvh"]);
         assert!(ball.contains("\"ball\"") && ball.contains("\"bvh\""), "{ball}");
     }

@@ -1,6 +1,10 @@
+use std::path::PathBuf;
+
 use clap::CommandFactory;
+use shading::{Cut, Mode};
 
 use super::*;
+use crate::truth_level::TruthLevel;
 
 fn parse_line(line: &str) -> Result<Invocation, CliError> {
     parse(std::iter::once("lightbench").chain(line.split_whitespace()))
@@ -13,12 +17,12 @@ fn compare(line: &str) -> CompareArgs {
     }
 }
 
-fn refusal(line: &str) -> String {
+fn error_of(line: &str) -> String {
     message(parse_line(line))
 }
 
 fn message(parsed: Result<Invocation, CliError>) -> String {
-    let error = parsed.expect_err("refused");
+    let error = parsed.expect_err("an error");
     assert_eq!(error.exit_code(), 2);
     let message = error.to_string();
     assert_eq!(message.lines().count(), 1, "{message}");
@@ -26,12 +30,12 @@ fn message(parsed: Result<Invocation, CliError>) -> String {
 }
 
 #[test]
-fn the_definition_is_sound() {
+fn clap_accepts_the_definition() {
     Cli::command().debug_assert();
 }
 
 #[test]
-fn without_arguments_the_main_job_runs() {
+fn without_arguments_compare_runs_with_its_defaults() {
     let args = compare("");
     assert_eq!(args.stage.scene, "atrium");
     assert_eq!(args.strategies.0, ["None", "Sphere", "DC-I", "SC-E/bvh"]);
@@ -42,12 +46,12 @@ fn without_arguments_the_main_job_runs() {
     assert_eq!(args.mode.modes(), [Mode::Deferred]);
     assert_eq!(args.stage.light_box, LightBox::Core);
     assert_eq!(args.out, PathBuf::from("out/compare"));
-    assert_eq!(args.truth, TruthChoice::Full);
+    assert_eq!((args.truth, args.cut, args.source), (TruthLevel::Full, Cut::Windowed, None));
     assert_eq!((args.stage.camera, args.adapter, args.stage.no_own_lights), (None, None, false));
 }
 
 #[test]
-fn compare_is_the_command_where_none_is_named() {
+fn compare_is_the_default_command() {
     let line = "--scene a.gltf --lights 0 --mode both --camera -1,2,3.5:0,-1,0 --spots 0.5 \
                 --size 1x16384 --strategies None,T-I/28x28 --truth none --light-box bounds \
                 --no-own-lights --adapter llvm --out x --seed 18446744073709551615";
@@ -58,16 +62,16 @@ fn compare_is_the_command_where_none_is_named() {
     let on_path = compare("--camera path:3/12").stage.camera;
     assert_eq!(on_path, Some(Camera::OnPath { frame: 3, count: 12 }));
     assert_eq!(args.mode.modes(), [Mode::Deferred, Mode::Forward]);
-    assert_eq!(TruthLevel::from(args.truth), TruthLevel::None);
+    assert_eq!(args.truth, TruthLevel::None);
 }
 
 #[test]
-fn list_lists_what_can_be_named() {
+fn list_takes_strategies_scenes_or_adapters() {
     assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
     assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
-    assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
-    let unknown = refusal("list lights");
+    assert_eq!(error_of("list"), "list needs <WHAT>: one of strategies, scenes, adapters");
+    let unknown = error_of("list lights");
     assert!(
         unknown.ends_with("is lights: it must be one of strategies, scenes, adapters"),
         "{unknown}"
@@ -75,7 +79,7 @@ fn list_lists_what_can_be_named() {
 }
 
 #[test]
-fn every_value_out_of_range_is_named_with_its_range() {
+fn an_error_names_the_option_the_value_and_the_range() {
     let counts = "a whole number from";
     for (option, values, accepted) in [
         (
@@ -111,14 +115,18 @@ fn every_value_out_of_range_is_named_with_its_range() {
             &["1,2,3", "1,2:1,2", "0,0,0:0,0,NaN", "1,1,1:1,1,1", "1,2,3,4:0,0,0"],
             "eye and target",
         ),
-        ("--strategies", &["None,", ",", "None,None"], "ids separated by commas"),
-        ("--mode", &["clay", "Deferred"], "one of deferred, forward, both"),
+        ("--strategies", &["None,", ",", "None,None"], "ids separated by commas, each given once"),
+        (
+            "--mode",
+            &["clay", "Deferred"],
+            "one of deferred, forward, deferred-ids, forward-no-prepass, both",
+        ),
         ("--truth", &["half"], "one of full, none"),
         ("--light-box", &["scene"], "one of core, bounds"),
     ] {
         for value in values {
             for line in [format!("{option} {value}"), format!("compare {option} {value}")] {
-                let message = refusal(&line);
+                let message = error_of(&line);
                 let expected = format!("{option} is {value}: it must be {accepted}");
                 assert!(message.starts_with(&expected), "{line}: {message}");
             }
@@ -127,7 +135,7 @@ fn every_value_out_of_range_is_named_with_its_range() {
 }
 
 #[test]
-fn lobes_are_fitted_into_a_folder_or_only_compared() {
+fn fit_ltc_takes_a_folder_and_a_size() {
     let args = |line| match parse_line(line) {
         Ok(Invocation::FitLtc(args)) => args,
         other => panic!("{line}: {other:?}"),
@@ -136,7 +144,7 @@ fn lobes_are_fitted_into_a_folder_or_only_compared() {
     let out = Some(PathBuf::from("x"));
     assert_eq!(args("fit-ltc --out x --size 1024"), FitLtcArgs { out, size: 1024 });
     for size in ["1", "1025", "-2", "x"] {
-        let message = refusal(&format!("fit-ltc --size {size}"));
+        let message = error_of(&format!("fit-ltc --size {size}"));
         let expected = format!("--size is {size}: it must be a whole number from 2 to 1,024");
         assert_eq!(message, expected);
     }
@@ -152,47 +160,46 @@ fn empty_values_are_refused() {
 }
 
 #[test]
-fn a_missing_value_is_said_to_be_missing() {
-    assert!(refusal("--out").starts_with("--out needs a value"));
-    assert!(refusal("--mode").starts_with("--mode needs a value: one of deferred"));
+fn an_error_names_the_option_whose_value_is_missing() {
+    assert!(error_of("--out").starts_with("--out needs a value"));
+    assert!(error_of("--mode").starts_with("--mode needs a value: one of deferred"));
 }
 
 #[test]
-fn unknown_names_come_with_the_nearest() {
-    assert_eq!(refusal("--light 5"), "no option called --light: did you mean --lights?");
-    assert_eq!(refusal("--zzzz"), "no option called --zzzz: `lightbench --help` lists them");
-    assert_eq!(refusal("compar"), "no command called compar: did you mean compare?");
-    let known = "known are compare, study, report, advise, fit-ltc, truth, cdi, list";
-    assert_eq!(refusal("zzzz"), format!("no command called zzzz: {known}"));
+fn unknown_names_get_a_suggestion() {
+    assert_eq!(error_of("--light 5"), "there is no option called --light: did you mean --lights?");
+    let unknown = "there is no option called --zzzz: `lightbench --help` lists all options";
+    assert_eq!(error_of("--zzzz"), unknown);
+    assert_eq!(error_of("compar"), "there is no command called compar: did you mean compare?");
+    let known = "the known names are compare, advise, study, report, truth, cdi, fit-ltc, list";
+    assert_eq!(error_of("zzzz"), format!("there is no command called zzzz: {known}"));
+    assert!(error_of("study").starts_with("study needs <STUDY>: one of comparison, "));
     assert_eq!(
-        refusal("study"),
-        "study needs which one: comparison, culling, area, endless or cdi"
+        error_of("report"),
+        "report needs <DIR|FILE.json>...: A folder of a comparison or a study, or a file of results"
     );
-    assert_eq!(
-        refusal("report"),
-        "report needs a folder of a comparison or a study, or a file of results"
-    );
-    assert_eq!(refusal("list"), "list needs what to list: strategies, scenes or adapters");
-    assert!(refusal("study comparison --shard 3/2").contains("K from 1 to N"));
+    assert!(error_of("study comparison --shard 3/2").contains("K from 1 to N"));
+    assert_eq!(error_of("--rays 3"), "options of virtual point lights need --vpls N");
 }
 
 #[test]
 fn an_option_given_twice_or_before_a_command_is_refused() {
-    assert_eq!(refusal("--seed 1 --seed 2"), "--seed is given twice: it must be given once");
-    let before = "the command list has no option --seed: `lightbench help list` lists its options";
-    assert_eq!(refusal("--seed 1 list scenes"), before);
-    let before = refusal("--seed 1 --lights 3 truth --shadows");
-    assert!(before.contains("stand after the command") && before.contains("--lights"), "{before}");
-    let before = refusal("--frames 3 study culling");
-    assert!(before.starts_with("the command study has no option --frames"), "{before}");
-    assert_eq!(refusal("--path --camera path:0/2"), "--path and --camera do not go together");
-    let several = refusal("--vpls 64 --lights 3 --spots 0.5");
+    assert_eq!(error_of("--seed 1 --seed 2"), "--seed is given twice: it must be given once");
+    let before = "list has no option --seed: `lightbench help list` lists its options";
+    assert_eq!(error_of("--seed 1 list scenes"), before);
+    let before = error_of("--seed 1 --lights 3 truth --shadows");
+    let expected = "options must stand after the command: `lightbench truth --seed --lights ...`";
+    assert_eq!(before, expected);
+    let before = error_of("--frames 3 study culling");
+    assert!(before.starts_with("study has no option --frames"), "{before}");
+    assert_eq!(error_of("--path --camera path:0/2"), "--path and --camera cannot be combined");
+    let several = error_of("--vpls 64 --lights 3 --spots 0.5");
     assert!(several.contains("--vpls") && several.contains("--lights"), "{several}");
     assert!(!several.contains("after the command"), "{several}");
 }
 
 #[test]
-fn options_that_would_change_nothing_are_refused() {
+fn options_without_effect_are_refused() {
     for (line, option, with) in [
         ("--directions 8x8", "--directions", "--vpls"),
         ("truth --spread squares", "--spread", "--vpls"),
@@ -210,15 +217,14 @@ fn options_that_would_change_nothing_are_refused() {
         ("truth --primary --light-box bounds", "--light-box", "scattered"),
         ("--outlines polygons", "--outlines", "--areas"),
         ("--areas 0 --diffuse-share 0.5", "--diffuse-share", "--areas"),
-        ("--strategies None,T-E/hs --test hs+sat-p", "--test", "tests"),
-        ("--strategies None,HG,T-E/bvh --source linear", "--source", "source"),
-        ("--strategies None,Sphere --operations", "--operations", "lists"),
+        ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges", "infinite"),
+        ("--vpls 64 --constant-range 1", "--constant-range", "constant-discard"),
         ("cdi --casts none --compared 0 --rays 3", "--rays", "--compared"),
     ] {
-        let message = refusal(line);
-        let expected = format!("{option} would change nothing: it must be given with ");
+        let message = error_of(line);
+        let expected = format!("{option} has no effect here: it needs ");
         assert!(message.starts_with(&expected) && message.contains(with), "{line}: {message}");
-        // Results of versions that took them are still reported.
+        // Earlier versions accepted such options, and `report` still opens their results.
         let words = std::iter::once("lightbench").chain(line.split_whitespace());
         assert!(parse_stored(words).is_ok(), "{line}");
     }
@@ -245,22 +251,22 @@ fn help_is_a_command_too() {
             "{line}: {shown:?}"
         );
     }
-    assert_eq!(refusal("help stdy"), "no command called stdy: did you mean study?");
+    assert_eq!(error_of("help stdy"), "there is no command called stdy: did you mean study?");
 }
 
 #[test]
-fn a_value_with_line_breaks_stays_on_one_line() {
+fn an_error_about_a_value_with_line_breaks_has_one_line() {
     let message = message(parse(["lightbench", "--size", "1\n2"]));
     assert!(message.starts_with("--size is 1\\n2: it must be"), "{message}");
 }
 
 #[test]
-fn help_teaches() {
+fn help_has_examples_and_everyday_options() {
     for line in ["--help", "compare --help"] {
-        let Ok(Invocation::Show(help)) = parse_line(line) else { panic!("no help: {line}") };
+        let Ok(Invocation::Show(help)) = parse_line(line) else { panic!("`{line}` shows no help") };
         assert!(help.contains("Examples:") && help.contains("How to read the result:"));
         for option in ["--scene", "--strategies", "--lights", "--size", "--frames", "--out"] {
-            assert!(help.contains(option), "{line} leaves out {option}");
+            assert!(help.contains(option), "the help of `{line}` lacks {option}");
         }
     }
     assert!(
@@ -280,10 +286,13 @@ fn every_example_in_the_help_is_accepted() {
 }
 
 #[test]
-fn unknown_ids_name_the_nearest_or_all() {
+fn an_unknown_id_gets_the_nearest_names_or_all() {
     let known = ["None", "DC-I/64x64x24"];
     let near = CliError::unknown("strategy", "dc-i", &known).to_string();
-    assert_eq!(near, "no strategy called dc-i: did you mean DC-I/64x64x24?");
+    assert_eq!(near, "there is no strategy called dc-i: did you mean DC-I/64x64x24?");
     let far = CliError::unknown("strategy", "quaternion", &known).to_string();
-    assert_eq!(far, "no strategy called quaternion: known are None, DC-I/64x64x24");
+    assert_eq!(
+        far,
+        "there is no strategy called quaternion: the known names are None, DC-I/64x64x24"
+    );
 }

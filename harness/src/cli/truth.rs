@@ -14,36 +14,38 @@ pub struct TruthArgs {
     pub stage: StageArgs,
 
     /// Let surfaces cast shadows
-    #[arg(long)]
+    #[arg(long, display_order = 6)]
     pub shadows: bool,
 
-    /// Surfaces that light may meet before the one that is seen, 0 to 16. From 1 on, surfaces that emit
-    /// light others
-    #[arg(long, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::bounces)]
+    /// Surfaces that light may meet before it meets the visible one, 0 to 16
+    ///
+    /// From 1 on, surfaces that emit light also light other surfaces.
+    #[arg(long, display_order = 7, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::bounces)]
     pub bounces: u32,
 
-    /// Leave out light that comes straight from lights
-    #[arg(long)]
+    /// Leave out the light that comes straight from lights
+    #[arg(long, display_order = 8)]
     pub indirect: bool,
 
-    /// With --primary and --bounces 1: surfaces that light bounces off reflect as virtual point lights
-    /// emit, diffusely
-    #[arg(long)]
+    /// With --primary and --bounces 1: light bounces off surfaces diffusely, as virtual point lights emit it
+    #[arg(long, display_order = 9)]
     pub matte_bounces: bool,
 
-    /// Samples of each pixel where they are drawn, of shadows and of bounces, 1 to 65,536
-    #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::samples)]
+    /// Samples per pixel for shadows and bounces, 1 to 65,536
+    #[arg(long, display_order = 10, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::samples)]
     pub samples: u32,
 
-    /// Seed of the samples: images of different seeds have independent noise [default: that of --seed]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::seed)]
+    /// Seed of the samples [default: --seed]
+    ///
+    /// Images of different seeds have independent noise.
+    #[arg(long, display_order = 11, value_name = "N", allow_hyphen_values = true, value_parser = values::seed)]
     pub sample_seed: Option<u64>,
 
-    /// Part of the adapter's name, where there are several
-    #[arg(long, value_name = "NAME", value_parser = values::text)]
+    /// GPU to use, by any part of its name
+    #[arg(long, display_order = 12, value_name = "NAME", value_parser = values::text)]
     pub adapter: Option<String>,
 
     /// Folder for truth.exr, truth.png, error.exr, error.png and results.json
-    #[arg(long, value_name = "DIR", default_value = "out/truth")]
+    #[arg(long, display_order = 13, value_name = "DIR", default_value = "out/truth")]
     pub out: PathBuf,
 }

@@ -1,5 +1,4 @@
-//! Values of options. Each parser's error says what would be accepted, to follow
-//! `--option is value: it must be `.
+//! Parsers of option values. An error completes the sentence `--option is VALUE: it must be ...`.
 
 use std::str::FromStr;
 
@@ -7,8 +6,8 @@ use assign::{AssignError, FrustumTests, LightOrder};
 
 use shading::{ACCEPTED_AREA_MODELS, AreaModel};
 
-use super::MAX_LIGHTS;
-
+/// The most lights that can be scattered.
+pub const MAX_LIGHTS: u32 = 1 << 24;
 const MAX_SIDE: u32 = 16_384;
 const MAX_FRAMES: u32 = 100_000;
 /// The most poses along a path at which images are compared.
@@ -43,12 +42,12 @@ impl FromStr for Size {
     }
 }
 
-/// Where the far plane is: `100`, metres, or `infinite`.
+/// The far plane: a view depth in metres, such as `100`, or `infinite`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FarPlane {
     /// At a view depth, metres.
     At(f64),
-    /// Nowhere.
+    /// There is no far plane.
     Infinite,
 }
 
@@ -65,7 +64,7 @@ impl FromStr for FarPlane {
     }
 }
 
-/// Ids of strategies, none empty, none twice, in the order given: `None,DC-I/64x64x24`.
+/// Ids of strategies in the order given, none empty and none repeated: `None,DC-I/64x64x24`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies(pub Vec<String>);
 
@@ -78,7 +77,7 @@ impl FromStr for Strategies {
         if ids.iter().enumerate().all(once) {
             Ok(Self(ids))
         } else {
-            Err("ids separated by commas, none empty and none twice".to_owned())
+            Err("ids separated by commas, each given once and none empty".to_owned())
         }
     }
 }
@@ -111,7 +110,7 @@ impl std::fmt::Display for DirectionCounts {
     }
 }
 
-/// Two numbers of metres, the second no less than the first: `0.5,20`.
+/// Two lengths in metres, the second at least as large as the first: `0.5,20`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// The least.
@@ -254,7 +253,7 @@ pub(super) fn text(text: &str) -> Result<String, String> {
 }
 
 fn number(text: &str, least: f64, most: f64) -> Option<f64> {
-    // NaN lies in no range.
+    // No range contains NaN.
     text.parse().ok().filter(|number| (least..=most).contains(number))
 }
 
@@ -270,7 +269,7 @@ pub(super) fn light_order(text: &str) -> Result<LightOrder, String> {
     accepted(text.parse())
 }
 
-/// What would be accepted, of a value that was not.
+/// Turns a refused value into the text of what is accepted.
 fn accepted<T>(parsed: Result<T, AssignError>) -> Result<T, String> {
     parsed.map_err(|error| match error {
         AssignError::Parameter { accepted, .. } => accepted,

@@ -28,12 +28,18 @@ pub(super) fn comparisons(results: &Results) -> Vec<Comparison<'_>> {
 fn comparable(a: &Record, b: &Record) -> bool {
     let key = |r: &Record| {
         (
-            (r.scene_scale.to_bits(), r.radius_scale.to_bits(), r.seed, r.lights),
-            (r.mode, r.width, r.height),
+            (
+                r.setting.scene_scale.to_bits(),
+                r.setting.radius_scale.to_bits(),
+                r.setting.seed,
+                r.setting.lights,
+            ),
+            (r.setting.mode, r.setting.width, r.setting.height),
         )
     };
-    let is_same_scene = a.scene == b.scene && a.scene_hash == b.scene_hash;
-    is_same_scene && a.path_hash == b.path_hash && key(a) == key(b)
+    let is_same_scene =
+        a.setting.scene == b.setting.scene && a.setting.scene_hash == b.setting.scene_hash;
+    is_same_scene && a.setting.path_hash == b.setting.path_hash && key(a) == key(b)
 }
 
 impl<'a> Comparison<'a> {
@@ -74,7 +80,7 @@ impl<'a> Comparison<'a> {
 
     /// How many times as fast as no culling with an early exit, for methods with lists.
     pub(super) fn speedup_over_exit(&self, record: &Record) -> Option<f64> {
-        if !record.culls() || record.listed_per_sample.is_none() {
+        if !record.culls() || record.lists.listed_per_sample.is_none() {
             return None;
         }
         self.speedup_over(self.record_of(EARLY_EXIT)?, record)
@@ -101,7 +107,8 @@ impl<'a> Comparison<'a> {
     /// the samples, ms.
     pub(super) fn floor_ms(&self, record: &Record) -> Option<f64> {
         let baseline = self.baseline()?;
-        let floor = baseline.shade_ms * record.contributing_per_sample? / baseline.lights as f64;
+        let floor = baseline.times.shade_ms * record.lists.contributing_per_sample?
+            / baseline.setting.lights as f64;
         floor.is_finite().then_some(floor)
     }
 

@@ -34,12 +34,12 @@ fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
         all.iter().any(|other| key(other.first()) != own).then_some(own)
     };
     [
-        varies(|r| format!("in {}", r.scene)),
-        varies(|r| r.mode.name().to_owned()),
-        varies(|r| format!("at {}\u{d7}{}", r.width, r.height)),
-        varies(|r| format!("at scene scale {}", r.scene_scale)),
-        varies(|r| format!("at radius scale {}", r.radius_scale)),
-        varies(|r| format!("from seed {}", r.seed)),
+        varies(|r| format!("in {}", r.setting.scene)),
+        varies(|r| r.setting.mode.name().to_owned()),
+        varies(|r| format!("at {}\u{d7}{}", r.setting.width, r.setting.height)),
+        varies(|r| format!("at scene scale {}", r.setting.scene_scale)),
+        varies(|r| format!("at radius scale {}", r.setting.radius_scale)),
+        varies(|r| format!("from seed {}", r.setting.seed)),
     ]
     .into_iter()
     .flatten()
@@ -63,7 +63,7 @@ fn sentence(comparison: &Comparison<'_>) -> String {
             "{} takes {} ms to shade {}",
             if first.is_baseline() { "no culling".to_owned() } else { comparison.name(first) },
             significant(first.assign_and_shade_ms()),
-            lights(first.lights),
+            lights(first.setting.lights),
         );
     };
     let Some(lead) = Lead::of_comparison(comparison) else {
@@ -84,7 +84,7 @@ fn sentence(comparison: &Comparison<'_>) -> String {
 
 /// Whether surfaces are there, and no light at all: the times are then those of an empty frame.
 fn is_dark(record: &Record) -> bool {
-    record.lights == 0 && record.untested == Some(Untested::NoLight)
+    record.setting.lights == 0 && record.lists.untested == Some(Untested::NoLight)
 }
 
 /// Who a sentence speaks of: one method, or several that tie.
@@ -124,7 +124,7 @@ impl<'a> Subject<'a> {
 fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let leader = subject.records[0];
     let words = &subject.words;
-    let lights = lights(leader.lights);
+    let lights = lights(leader.setting.lights);
     let still = &subject.still_lights;
     let takes = subject.verb("takes", "take");
     let time = |record: &Record| Some(record.assign_and_shade_ms());
@@ -136,7 +136,7 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let Some(baseline) = comparison.baseline().filter(|record| is_timed(record)) else {
         return alone();
     };
-    if leader.lights == 0 {
+    if leader.setting.lights == 0 {
         let none = significant(baseline.assign_and_shade_ms());
         return format!(
             "there is no light to assign: {words} {takes} {took} ms, no culling {none} ms"
@@ -176,8 +176,10 @@ const SAME_IMAGE: &str = " and shows the same image, bit for bit";
 fn image(record: &Record) -> String {
     match loss(record) {
         Some(loss) => format!(", but {loss}"),
-        None if record.untested.is_some() => ", which puts no method to a test".to_owned(),
-        None if record.differing_channels == Some(0) && record.checked_pairs != Some(0) => {
+        None if record.lists.untested.is_some() => ", which puts no method to a test".to_owned(),
+        None if record.image.differing_channels == Some(0)
+            && record.lists.checked_pairs != Some(0) =>
+        {
             SAME_IMAGE.to_owned()
         }
         None => String::new(),
@@ -201,35 +203,42 @@ pub fn notices(results: &Results) -> Vec<String> {
     for comparison in comparisons(results) {
         if let Some(tie) = tie(&comparison.ranks()) {
             let first = comparison.first();
-            let lights = lights(first.lights);
-            notices.push(format!("{}, {}, {lights}: {tie}.", first.scene, first.mode.name()));
+            let lights = lights(first.setting.lights);
+            notices.push(format!(
+                "{}, {}, {lights}: {tie}.",
+                first.setting.scene,
+                first.setting.mode.name()
+            ));
         }
     }
     for record in &results.records {
         if let Some(loss) = loss(record) {
-            let mode = record.mode.name();
-            notices.push(format!("{}, {mode}, {}: {loss}.", record.scene, record.strategy));
+            let mode = record.setting.mode.name();
+            notices.push(format!("{}, {mode}, {}: {loss}.", record.setting.scene, record.strategy));
         }
     }
     for record in &results.records {
-        if record.checked_pairs == Some(0) && record.lights > 0 && record.untested.is_none() {
+        if record.lists.checked_pairs == Some(0)
+            && record.setting.lights > 0
+            && record.lists.untested.is_none()
+        {
             notices.push(format!(
                 "{}, {}, {}: no light reaches any of the {} samples, so nothing was checked.",
-                record.scene,
-                record.mode.name(),
+                record.setting.scene,
+                record.setting.mode.name(),
                 record.strategy,
-                number(record.samples as f64),
+                number(record.lists.samples as f64),
             ));
         }
     }
-    for record in results.records.iter().filter(|record| record.overflowed_groups > 0) {
+    for record in results.records.iter().filter(|record| record.lists.overflowed_groups > 0) {
         notices.push(format!(
             "{}, {}, {}: {} of {} groups fell back to all lights, because a list did not fit.",
-            record.scene,
-            record.mode.name(),
+            record.setting.scene,
+            record.setting.mode.name(),
             record.strategy,
-            number(record.overflowed_groups as f64),
-            number(record.groups as f64),
+            number(record.lists.overflowed_groups as f64),
+            number(record.lists.groups as f64),
         ));
     }
     if results.truth.level == TruthLevel::None && !results.records.is_empty() {
@@ -238,7 +247,7 @@ pub fn notices(results: &Results) -> Vec<String> {
     // Methods that lose nothing else say the same: the first of each scene and mode stands for all.
     let mut told = Vec::new();
     for record in &results.records {
-        let case = (&record.scene, record.mode);
+        let case = (&record.setting.scene, record.setting.mode);
         if let Some(loss) = range_loss(record).filter(|_| !told.contains(&case)) {
             notices.push(loss);
             told.push(case);
@@ -262,7 +271,7 @@ pub fn notices(results: &Results) -> Vec<String> {
 }
 
 pub(super) fn clock_notice(results: &Results) -> Option<String> {
-    let wall_clock = results.records.iter().any(|record| record.clock == Clock::WallClock);
+    let wall_clock = results.records.iter().any(|record| record.times.clock == Clock::WallClock);
     let adapter = short_adapter(&results.machine.adapter);
     if results.machine.device_type == DeviceType::Cpu {
         Some(format!(

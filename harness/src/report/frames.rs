@@ -51,13 +51,14 @@ fn kinds(methods: &[(&str, Vec<&Record>)]) -> Vec<FrameKind> {
 
 /// Modes that were measured.
 fn modes(records: &[&Record]) -> usize {
-    let modes: std::collections::BTreeSet<_> = records.iter().map(|record| record.mode).collect();
+    let modes: std::collections::BTreeSet<_> =
+        records.iter().map(|record| record.setting.mode).collect();
     modes.len()
 }
 
 fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
     let Some(bill) = Bill::of(kind, own) else { return super::format::ABSENT.into() };
-    let measured = own.iter().find(|record| record.mode == kind.mode());
+    let measured = own.iter().find(|record| record.setting.mode == kind.mode());
     let is_marked = match measured {
         Some(record) => raster::is_marked(machine, record),
         None => kind == FrameKind::NoPrepass && machine.weak_raster().is_some(),
@@ -120,8 +121,13 @@ const READING: &str = "In each kind of frame: assign + shade; below it the two, 
 /// A section for each set of lights that was measured in several modes; empty where there is none.
 pub(super) fn sections(results: &Results) -> Html {
     let key = |record: &Record| {
-        let size = (record.width, record.height, record.lights, record.seed);
-        (record.scene.clone(), record.scene_hash.clone(), size)
+        let size = (
+            record.setting.width,
+            record.setting.height,
+            record.setting.lights,
+            record.setting.seed,
+        );
+        (record.setting.scene.clone(), record.setting.scene_hash.clone(), size)
     };
     let mut groups: Vec<Vec<&Record>> = Vec::new();
     for record in &results.records {
@@ -132,7 +138,8 @@ pub(super) fn sections(results: &Results) -> Html {
     }
     let section = |(ix, group): (usize, &Vec<&Record>)| {
         let first = group.first().filter(|_| modes(group) > 1)?;
-        let caption = format!("{}, {} lights", first.scene, number(first.lights as f64));
+        let caption =
+            format!("{}, {} lights", first.setting.scene, number(first.setting.lights as f64));
         let table = table(&format!("Kinds of frame: {caption}"), group, &results.machine);
         (!table.is_empty()).then(|| {
             html!(
@@ -159,7 +166,7 @@ pub(super) fn part_of_study(done: &Done, scene: &str) -> Html {
     let mut tables = Html::default();
     for (machine, records) in jobs.iter().rev() {
         let Some(first) = records.first() else { continue };
-        let caption = format!("{scene}, {} lights", number(first.lights as f64));
+        let caption = format!("{scene}, {} lights", number(first.setting.lights as f64));
         tables += table(&format!("Kinds of frame: {caption}"), records, machine);
     }
     super::study::part(scene, "frames", "Kinds of frame", READING, &tables)

@@ -77,8 +77,8 @@ fn title(results: &Results) -> String {
         Some(first) => {
             format!(
                 "{}, {} lights, {adapter} \u{b7} lightbench",
-                first.scene,
-                number(first.lights as f64)
+                first.setting.scene,
+                number(first.setting.lights as f64)
             )
         }
         None => format!("{adapter} \u{b7} lightbench"),

@@ -46,7 +46,7 @@ impl<'a> Lead<'a> {
             None => Doubt::None,
             Some(None) => Doubt::NoRounds,
             Some(Some(ratio)) if ratio.coverage < SURE => {
-                let word = if leader.along_path { "laps" } else { "rounds" };
+                let word = if leader.setting.along_path { "laps" } else { "rounds" };
                 Doubt::FewRounds(leader.round_times_ms().len(), word)
             }
             Some(Some(_)) => Doubt::None,
@@ -121,6 +121,7 @@ impl<'a> Lead<'a> {
             self.records.iter().copied().filter(|r| needs_built_hierarchy(r)).collect();
         let Some(one) = built.first() else { return String::new() };
         let time = one
+            .times
             .light_build_ms
             .map_or_else(String::new, |build| format!(" built in {} ms", significant(build)));
         match built.len() == self.records.len() {

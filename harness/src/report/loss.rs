@@ -48,8 +48,9 @@ pub(super) static ERROR_COLUMNS: [Metric; 3] = [
 
 /// An error against no culling: 0 where no bit differs.
 fn error(record: &Record, id: &str) -> Option<f64> {
-    let same = record.differing_channels == Some(0) && record.missed_pairs.unwrap_or(0) == 0;
-    record.errors.get(id).copied().flatten().or(same.then_some(0.0))
+    let same =
+        record.image.differing_channels == Some(0) && record.lists.missed_pairs.unwrap_or(0) == 0;
+    record.image.errors.get(id).copied().flatten().or(same.then_some(0.0))
 }
 
 /// Whether a method may lose light, or is known to have lost some.
@@ -87,10 +88,10 @@ pub fn error_words(record: &Record) -> String {
 
 /// What a record lost, in words; `None` where nothing is known to be lost.
 pub(super) fn loss(record: &Record) -> Option<String> {
-    let missed = record.missed_pairs.filter(|missed| *missed > 0).map(|missed| {
+    let missed = record.lists.missed_pairs.filter(|missed| *missed > 0).map(|missed| {
         format!("misses {} of {} (light, sample) pairs", number(missed as f64), checked(record))
     });
-    let differs = match (record.differing_channels, record.max_abs_diff) {
+    let differs = match (record.image.differing_channels, record.image.max_abs_diff) {
         (Some(channels @ 1..), Some(most)) => Some(format!(
             "differs from no culling in {} channels, by at most {}",
             number(channels as f64),
@@ -116,11 +117,11 @@ pub(super) fn loss(record: &Record) -> Option<String> {
 
 /// What the ends of lights lose in a record, whatever its method; `None` where it was not measured.
 pub(super) fn range_loss(record: &Record) -> Option<String> {
-    let error = |id| record.unbounded_errors.get(id).copied().flatten();
+    let error = |id| record.image.unbounded_errors.get(id).copied().flatten();
     Some(format!(
         "{}, {}: against lights without an end the image of {} has {} % missing energy and relMSE {}.",
-        record.scene,
-        record.mode.name(),
+        record.setting.scene,
+        record.setting.mode.name(),
         record.strategy,
         percent(error("missing_energy")?),
         difference(error("rel_mse")?)
@@ -129,6 +130,7 @@ pub(super) fn range_loss(record: &Record) -> Option<String> {
 
 fn checked(record: &Record) -> String {
     record
+        .lists
         .checked_pairs
         .map_or_else(|| "an unknown number of".to_owned(), |pairs| number(pairs as f64))
 }
@@ -167,15 +169,15 @@ mod tests {
         let example: Results =
             serde_json::from_str(include_str!("../results/example.json")).expect("the example");
         let mut record = example.records[0].clone();
-        record.differing_channels = Some(7);
-        record.errors = [("missing_energy", 0.3012), ("rel_mse", 0.21), ("flip", 0.1)]
+        record.image.differing_channels = Some(7);
+        record.image.errors = [("missing_energy", 0.3012), ("rel_mse", 0.21), ("flip", 0.1)]
             .map(|(id, error)| (id.to_owned(), Some(error)))
             .into();
         assert_eq!(error_words(&record), "30.1 % missing energy, relMSE 0.210, FLIP 0.100");
-        record.errors.clear();
+        record.image.errors.clear();
         assert_eq!(error_words(&record), "");
-        record.differing_channels = Some(0);
-        record.missed_pairs = Some(0);
+        record.image.differing_channels = Some(0);
+        record.lists.missed_pairs = Some(0);
         assert_eq!(error_words(&record), "0 % missing energy, relMSE 0, FLIP 0");
     }
 }

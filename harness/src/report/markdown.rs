@@ -60,6 +60,6 @@ fn passes(record: &Record) -> String {
         let time_ms = || record.time_of(|other, _| other == name);
         (times.kind == PassKind::Assign).then(|| format!("{name} {}", significant(time_ms())))
     };
-    let passes: Vec<String> = record.passes.iter().filter_map(assign).collect();
+    let passes: Vec<String> = record.times.passes.iter().filter_map(assign).collect();
     if passes.len() < 2 { String::new() } else { format!(" ({})", passes.join(", ")) }
 }

@@ -23,7 +23,7 @@ pub(super) fn strategy_classes(results: &Results) -> BTreeMap<&str, String> {
 pub(super) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
     let mut classes = BTreeMap::new();
     let mut next: [usize; 4] = [0; 4];
-    for (name, times) in results.records.iter().flat_map(|record| record.passes.iter()) {
+    for (name, times) in results.records.iter().flat_map(|record| record.times.passes.iter()) {
         let (kind, label) = match times.kind {
             PassKind::Scene => (0, "scene"),
             PassKind::Assign => (1, "assign"),
@@ -73,7 +73,7 @@ pub(super) fn comparisons_html(results: &Results) -> Html {
     let classes = strategy_classes(results);
     let section = |(ix, comparison): (usize, &Comparison<'_>)| {
         let first = comparison.first();
-        let heading = format!("{}, {}", first.scene, first.mode.name());
+        let heading = format!("{}, {}", first.setting.scene, first.setting.mode.name());
         html!(
             "<section class=\"comparison\" data-comparison=\"{0}\" aria-labelledby=\"c{0}\">\n\
              <h2 id=\"c{0}\">{1}</h2>\n<p class=\"meta\">{2}</p>\n{3}\
@@ -93,30 +93,34 @@ const SUN: &str = "sun";
 
 pub(super) fn setting(record: &Record) -> String {
     let kinds: Vec<_> = record
+        .setting
         .light_kinds
         .iter()
         .filter(|(kind, count)| **count > 0 && *kind != SUN)
         .map(|(kind, count)| format!("{} {kind}", number(*count as f64)))
         .collect();
     let mut parts = vec![if kinds.is_empty() {
-        format!("{} lights", number(record.lights as f64))
+        format!("{} lights", number(record.setting.lights as f64))
     } else {
-        format!("{} lights ({})", number(record.lights as f64), kinds.join(", "))
+        format!("{} lights ({})", number(record.setting.lights as f64), kinds.join(", "))
     }];
-    match record.light_kinds.get(SUN).copied().unwrap_or(0) {
+    match record.setting.light_kinds.get(SUN).copied().unwrap_or(0) {
         0 => {}
         1 => parts.push("1 sun".to_owned()),
         count => parts.push(format!("{count} suns")),
     }
-    parts.push(format!("{}\u{a0}\u{d7}\u{a0}{} pixels", record.width, record.height));
-    parts.push(format!("{} triangles", number(record.triangles as f64)));
-    if record.scene_scale != 1.0 {
-        parts.push(format!("scene scale {}", record.scene_scale));
+    parts.push(format!(
+        "{}\u{a0}\u{d7}\u{a0}{} pixels",
+        record.setting.width, record.setting.height
+    ));
+    parts.push(format!("{} triangles", number(record.setting.triangles as f64)));
+    if record.setting.scene_scale != 1.0 {
+        parts.push(format!("scene scale {}", record.setting.scene_scale));
     }
-    if record.radius_scale != 1.0 {
-        parts.push(format!("radius scale {}", record.radius_scale));
+    if record.setting.radius_scale != 1.0 {
+        parts.push(format!("radius scale {}", record.setting.radius_scale));
     }
-    parts.push(format!("{} frames", number(f64::from(record.frames))));
+    parts.push(format!("{} frames", number(f64::from(record.times.frames))));
     parts.join(" \u{b7} ")
 }
 
@@ -160,7 +164,7 @@ fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> Html {
     let value = (metric.value)(comparison, record);
     let class = match (metric.better, value) {
         (Better::Zero, Some(value)) if value != 0.0 => html!(" class=\"fault\""),
-        (Better::Zero, Some(_)) if record.untested.is_none() => html!(" class=\"good\""),
+        (Better::Zero, Some(_)) if record.lists.untested.is_none() => html!(" class=\"good\""),
         (Better::Less | Better::More, Some(value))
             if competes(record) && is_best(metric, comparison, record, value) =>
         {
@@ -234,12 +238,14 @@ pub(super) fn provenance(results: &Results) -> Html {
         ("Date", machine.date.clone()),
         ("Commit", machine.commit.clone()),
         ("Compiler", machine.rustc.clone().unwrap_or_default()),
-        ("Clock", distinct(results, |r| clock(r.clock).to_owned())),
-        ("Scene", distinct(results, |r| format!("{} ({})", r.scene, r.scene_hash))),
-        ("Seed", distinct(results, |r| r.seed.to_string())),
+        ("Clock", distinct(results, |r| clock(r.times.clock).to_owned())),
+        ("Scene", distinct(results, |r| format!("{} ({})", r.setting.scene, r.setting.scene_hash))),
+        ("Seed", distinct(results, |r| r.setting.seed.to_string())),
         (
             "Frames",
-            distinct(results, |r| format!("{} after {} to warm up", r.frames, r.warmup_frames)),
+            distinct(results, |r| {
+                format!("{} after {} to warm up", r.times.frames, r.times.warmup_frames)
+            }),
         ),
         ("Truth", truth(results)),
         ("Schema", format!("results.json version {}", results.schema_version)),

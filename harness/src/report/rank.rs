@@ -31,11 +31,12 @@ impl Ratio {
     /// Of `record` over `other`. `None` where they have fewer than two rounds in common. Along a path
     /// a round is a lap, so both need two laps of as many poses.
     pub(super) fn of(record: &Record, other: &Record) -> Option<Self> {
-        let laps = |record: &Record| (record.along_path, record.laps(), record.frames);
-        let differ = if record.along_path || other.along_path {
+        let laps =
+            |record: &Record| (record.setting.along_path, record.laps(), record.times.frames);
+        let differ = if record.setting.along_path || other.setting.along_path {
             laps(record) != laps(other)
         } else {
-            record.rounds != other.rounds
+            record.times.rounds != other.times.rounds
         };
         if differ {
             return None;
@@ -83,7 +84,7 @@ pub(super) struct Ranked<'a> {
 /// Whether a time was recorded: a record without a pass adds up to 0 ms, which no frame takes.
 pub(super) fn is_timed(record: &Record) -> bool {
     let ms = record.assign_and_shade_ms();
-    ms.is_finite() && (ms > 0.0 || record.passes.iter().next().is_some())
+    ms.is_finite() && (ms > 0.0 || record.times.passes.iter().next().is_some())
 }
 
 /// Whether a record may be called the best: it culls, and nothing is known to be lost.
@@ -122,7 +123,7 @@ pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
 pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
-    if leader.along_path && leader.laps() < 2 && ranked.len() > 1 {
+    if leader.setting.along_path && leader.laps() < 2 && ranked.len() > 1 {
         return Some(
             "one lap says nothing about noise, so ranks use the means only; use --laps 6 to test \
              ties"
@@ -135,7 +136,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
     if widest.coverage < SURE {
         let (rounds, option) =
-            if leader.along_path { ("laps", "--laps") } else { ("rounds", "--frames") };
+            if leader.setting.along_path { ("laps", "--laps") } else { ("rounds", "--frames") };
         return Some(format!(
             "{} {rounds} are too few; use {option} 6: until then {} share rank 1",
             leader.round_times_ms().len(),
@@ -182,12 +183,12 @@ mod tests {
             serde_json::from_str(include_str!("../results/example.json")).expect("the example");
         let mut record = example.records[0].clone();
         record.strategy = strategy.into();
-        record.passes = Default::default();
-        record.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
-        record.frames = times_ms.len() as u32;
-        record.rounds = record.frames;
-        record.along_path = false;
-        (record.missed_pairs, record.max_abs_diff, record.differing_channels) =
+        record.times.passes = Default::default();
+        record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
+        record.times.frames = times_ms.len() as u32;
+        record.times.rounds = record.times.frames;
+        record.setting.along_path = false;
+        (record.lists.missed_pairs, record.image.max_abs_diff, record.image.differing_channels) =
             (Some(0), Some(0.0), Some(0));
         record.set_times();
         record
@@ -274,7 +275,8 @@ mod tests {
             .map(|(l, p)| time(l, p))
             .collect();
         let mut record = record(strategy, &times);
-        (record.along_path, record.poses, record.rounds) = (true, Some(poses), laps);
+        (record.setting.along_path, record.setting.poses, record.times.rounds) =
+            (true, Some(poses), laps);
         record.set_times();
         record
     }
@@ -301,8 +303,8 @@ mod tests {
     fn one_lap_tells_nothing_apart_and_laps_of_other_poses_do_not_pair() {
         let one = along_path("A", 1, 40, |_, pose| f64::from(pose));
         let mut old = one.clone();
-        old.poses = None;
-        old.rounds = 40;
+        old.setting.poses = None;
+        old.times.rounds = 40;
         for record in [&one, &old] {
             assert_eq!((record.laps(), record.interval_ms()), (1, None));
             assert_eq!(Ratio::of(record, record), None);
@@ -319,7 +321,7 @@ mod tests {
     #[test]
     fn what_loses_or_does_not_cull_has_no_rank() {
         let mut lossy = of("A", |_| 1.0);
-        lossy.missed_pairs = Some(3);
+        lossy.lists.missed_pairs = Some(3);
         let nan = of("E", |_| f64::NAN);
         // A knob that lost nothing in this view.
         let mut capped = of("B/cap9", |_| 1.0);

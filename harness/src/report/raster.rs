@@ -40,7 +40,7 @@ pub(super) fn notice<'a>(
         if passes.is_empty() {
             continue;
         }
-        let key = format!("{} in {}", listed(&passes), record.mode.name());
+        let key = format!("{} in {}", listed(&passes), record.setting.mode.name());
         match groups.iter_mut().find(|(known, _)| *known == key) {
             Some((_, names)) if !names.contains(&record.strategy.as_str()) => {
                 names.push(&record.strategy);
@@ -84,9 +84,9 @@ mod tests {
         let machine = example.machine.clone();
         let of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
             let mut record = example.records[0].clone();
-            (record.strategy, record.mode) = (strategy.into(), mode);
+            (record.strategy, record.setting.mode) = (strategy.into(), mode);
             let times = |kind| PassTimes::new(kind, vec![1.0]);
-            record.passes = passes.iter().map(|(name, kind)| (*name, times(*kind))).collect();
+            record.times.passes = passes.iter().map(|(name, kind)| (*name, times(*kind))).collect();
             record
         };
         let deferred =

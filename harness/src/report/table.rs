@@ -20,13 +20,13 @@ pub fn render_table(results: &Results) -> String {
         let _ = writeln!(
             text,
             "{}, {}, {} lights, {}x{}, on {} ({})",
-            first.scene,
-            first.mode.name(),
-            number(first.lights as f64),
-            first.width,
-            first.height,
+            first.setting.scene,
+            first.setting.mode.name(),
+            number(first.setting.lights as f64),
+            first.setting.width,
+            first.setting.height,
             short_adapter(&results.machine.adapter),
-            first.clock.name(),
+            first.times.clock.name(),
         );
         push_table(&mut text, &comparison);
         push_losses(&mut text, &comparison);

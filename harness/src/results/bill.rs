@@ -94,27 +94,29 @@ impl Bill {
     /// one more. With ids in the G-buffer, a method does without `model-ids`; what the ids cost the
     /// G-buffer is then not known. Nothing else can be derived.
     pub fn of(kind: FrameKind, records: &[&Record]) -> Option<Self> {
-        let in_mode = |mode: Mode| records.iter().find(|record| record.mode == mode);
+        let in_mode = |mode: Mode| records.iter().find(|record| record.setting.mode == mode);
         if let Some(record) = in_mode(kind.mode()) {
             return Some(Self {
-                assign_ms: record.assign_ms,
-                shade_ms: record.shade_ms,
-                frame_ms: record.frame_ms,
-                span_ms: record.span_ms,
+                assign_ms: record.times.assign_ms,
+                shade_ms: record.times.shade_ms,
+                frame_ms: record.times.frame_ms,
+                span_ms: record.times.span_ms,
                 is_derived: false,
             });
         }
         let derived = |record: &Record, assign_ms: f64, frame_ms: f64| Self {
             assign_ms,
-            shade_ms: record.shade_ms,
+            shade_ms: record.times.shade_ms,
             frame_ms,
             span_ms: None,
             is_derived: true,
         };
         match kind {
-            FrameKind::NoPrepass => in_mode(Mode::Forward)
-                .filter(|record| record.reads_depth())
-                .map(|record| derived(record, record.assign_with_depth_ms(), record.frame_ms)),
+            FrameKind::NoPrepass => {
+                in_mode(Mode::Forward).filter(|record| record.reads_depth()).map(|record| {
+                    derived(record, record.assign_with_depth_ms(), record.times.frame_ms)
+                })
+            }
             FrameKind::DeferredIds => in_mode(Mode::Deferred).map(|record| {
                 let without_ids = |name: &str| name != "model-ids";
                 let assign =
@@ -131,10 +133,11 @@ impl Record {
     /// volumes, `model-ids`, and what is drawn for the method alone.
     pub fn raster_passes(&self) -> Vec<&str> {
         let is_billed = |kind| matches!(kind, PassKind::Assign | PassKind::Shade);
-        self.passes
+        self.times
+            .passes
             .iter()
             .filter(|(name, times)| {
-                is_billed(times.kind) && is_raster_pass(name, self.mode, &self.strategy)
+                is_billed(times.kind) && is_raster_pass(name, self.setting.mode, &self.strategy)
             })
             .map(|(name, _)| name)
             .collect()
@@ -153,16 +156,21 @@ impl Record {
 
     /// Assigning and lighting, with the depth pre-pass on the bill of methods that read depth, ms.
     pub fn with_depth_ms(&self) -> f64 {
-        self.assign_with_depth_ms() + self.shade_ms
+        self.assign_with_depth_ms() + self.times.shade_ms
     }
 
     /// Bills passes as this program does: older programs billed nobody for the G-buffer that forward
     /// shading draws for normals.
     pub(super) fn bill_again(&mut self) {
-        let mode = self.mode;
+        let mode = self.setting.mode;
         let changed = |name: &str| name == "gbuffer" && mode.is_forward();
-        if self.passes.iter().any(|(name, pass)| changed(name) && pass.kind == PassKind::Scene) {
-            self.passes.bill_again(|name, kind| match changed(name) {
+        if self
+            .times
+            .passes
+            .iter()
+            .any(|(name, pass)| changed(name) && pass.kind == PassKind::Scene)
+        {
+            self.times.passes.bill_again(|name, kind| match changed(name) {
                 true => pass_kind(name, mode),
                 false => kind,
             });
@@ -180,9 +188,9 @@ mod tests {
         let example: Results =
             serde_json::from_str(include_str!("example.json")).expect("the example");
         let mut record = example.records[0].clone();
-        (record.strategy, record.mode) = (strategy.into(), mode);
+        (record.strategy, record.setting.mode) = (strategy.into(), mode);
         let times = |ms: f64| vec![ms; 3];
-        record.passes = passes
+        record.times.passes = passes
             .iter()
             .map(|(name, ms)| (*name, PassTimes::new(pass_kind(name, mode), times(*ms))))
             .collect();
@@ -233,13 +241,13 @@ mod tests {
     fn a_stored_forward_row_pays_for_its_g_buffer() {
         let passes = [("depth", 1.0), ("gbuffer", 2.0), ("cull", 1.0), ("shade", 1.0)];
         let mut stored = record("SC-E/48x48x40/n6", Mode::Forward, &passes);
-        stored.passes.bill_again(|name, kind| match name {
+        stored.times.passes.bill_again(|name, kind| match name {
             "gbuffer" => PassKind::Scene,
             _ => kind,
         });
         stored.set_times();
-        assert_eq!(stored.assign_ms, 1.0);
+        assert_eq!(stored.times.assign_ms, 1.0);
         stored.bill_again();
-        assert_eq!((stored.assign_ms, stored.frame_ms), (3.0, 5.0));
+        assert_eq!((stored.times.assign_ms, stored.times.frame_ms), (3.0, 5.0));
     }
 }

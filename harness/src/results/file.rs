@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::{
     Record, Results, SCHEMA_VERSION,
+    flat::FlatResults,
     lack::lack,
     seal::{sealed, unsealed},
 };
@@ -48,7 +49,7 @@ pub enum ResultsError {
         reason: String,
     },
     /// A file of a version that this program does not know.
-    #[error("{}: schema_version is {found}: it must be {SCHEMA_VERSION}", path.display())]
+    #[error("{}: schema_version is {found}: it must be 1 to {SCHEMA_VERSION}", path.display())]
     Version {
         /// The file.
         path: PathBuf,
@@ -93,35 +94,32 @@ impl Results {
     /// As [`read`](Self::read).
     pub fn read_checked(path: &Path) -> Result<(Self, Option<String>), ResultsError> {
         let (mut results, checksum) = Self::read_raw(path)?;
-        // Under the names that the command knows.
         let lack = lack(&results);
-        results.name_as_today();
+        results.bill_as_today();
         results.take_metrics(path, &checksum);
         Ok((results, lack))
     }
 
-    /// Reads what a file holds, under the names of its time, and its checksum.
+    /// Reads what a file holds, under the ids of today, and its checksum.
     pub(super) fn read_raw(path: &Path) -> Result<(Self, String), ResultsError> {
         let fail = |reason| ResultsError::Parse { path: path.to_owned(), reason };
         let bytes = fs::read(path)
             .map_err(|source| ResultsError::Read { path: path.to_owned(), source })?;
         let (value, checksum) = unsealed(&bytes).map_err(fail)?;
-        match value.get("schema_version").and_then(serde_json::Value::as_u64) {
+        // From the text: the order of passes counts.
+        let results = match value.get("schema_version").and_then(serde_json::Value::as_u64) {
+            Some(1) => serde_json::from_slice::<FlatResults>(&bytes).map(Self::from),
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
-                Err(ResultsError::Version { path: path.to_owned(), found })
+                return Err(ResultsError::Version { path: path.to_owned(), found });
             }
-            _ => {
-                // From the text: the order of passes counts.
-                let results = serde_json::from_slice(&bytes).map_err(|e| fail(e.to_string()))?;
-                Ok((results, checksum))
-            }
-        }
+            _ => serde_json::from_slice(&bytes),
+        };
+        Ok((results.map_err(|error| fail(error.to_string()))?, checksum))
     }
 
-    /// Gives records of earlier versions the names and the bills of today, and shows what names hide.
-    pub(super) fn name_as_today(&mut self) {
+    /// Gives records of earlier versions the bills of today, and shows what names hide.
+    pub(super) fn bill_as_today(&mut self) {
         self.show_hidden();
-        self.rename_records();
         self.records.iter_mut().for_each(Record::bill_again);
     }
 }
@@ -241,7 +239,9 @@ mod tests {
             fs::write(&path, text).expect("writes");
             Results::read(&path).expect_err("refused").to_string()
         };
-        assert!(read(r#"{"schema_version": 2}"#).contains("schema_version is 2: it must be 1"));
+        assert!(
+            read(r#"{"schema_version": 3}"#).contains("schema_version is 3: it must be 1 to 2")
+        );
         assert!(read(r#"{"schema_version": 1}"#).contains("missing field"));
         assert!(read("{").contains("not a results.json"));
         fs::remove_file(&path).expect("removes");

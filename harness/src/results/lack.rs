@@ -3,7 +3,7 @@
 //! A file that was cut by hand, or put together from others, may hold half of the records of its command,
 //! or one twice. It must not count as done.
 
-use super::{Record, Results};
+use super::{Record, Results, renamed::named_then};
 use crate::{
     cli::{self, CompareArgs, Invocation},
     strategy::StrategyId,
@@ -12,7 +12,9 @@ use crate::{
 /// What is missing from results, or too many in them; `None` where they are what was asked for.
 pub(super) fn lack(results: &Results) -> Option<String> {
     for (ix, record) in results.records.iter().enumerate() {
-        let same = |known: &&Record| known.strategy == record.strategy && known.mode == record.mode;
+        let same = |known: &&Record| {
+            known.strategy == record.strategy && known.setting.mode == record.setting.mode
+        };
         if results.records.iter().take(ix).any(|known| same(&known)) {
             return Some(format!("{} is there twice", name(record)));
         }
@@ -43,8 +45,14 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
     let mut is_asked = vec![false; records.len()];
     for &mode in args.mode.modes() {
         for choice in asked.iter().filter(|choice| choice.refuses_mode(mode).is_none()) {
-            let same = |ix: &usize| records[*ix].mode == mode && records[*ix].strategy == choice.id().as_str();
-            match (0..records.len()).find(same) {
+            let find = |id: fn(&StrategyId) -> StrategyId| {
+                let same = |record: &Record| {
+                    record.setting.mode == mode && id(&record.strategy) == *choice.id()
+                };
+                records.iter().position(same)
+            };
+            // Commands of earlier versions ask by the ids of their time.
+            match find(StrategyId::clone).or_else(|| find(named_then)) {
                 Some(ix) => is_asked[ix] = true,
                 // Of all strategies, those that cannot serve a scene are left out. No culling serves all.
                 None if !choice.is_named && !choice.is_reference() => {}
@@ -57,7 +65,7 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
 }
 
 fn name(record: &Record) -> String {
-    format!("{} in {}", record.strategy, record.mode.name())
+    format!("{} in {}", record.strategy, record.setting.mode.name())
 }
 
 #[cfg(test)]

@@ -40,11 +40,11 @@ impl Results {
     fn metrics(&self, of: String) -> Metrics {
         let one = |record: &super::Record| RecordMetrics {
             strategy: record.strategy.to_string(),
-            mode: record.mode,
-            errors: record.errors.clone(),
-            unbounded_errors: record.unbounded_errors.clone(),
-            truth_errors: record.truth_errors.clone(),
-            build_errors: record.vpls.as_ref().map(|vpls| vpls.build_errors.clone()),
+            mode: record.setting.mode,
+            errors: record.image.errors.clone(),
+            unbounded_errors: record.image.unbounded_errors.clone(),
+            truth_errors: record.image.truth_errors.clone(),
+            build_errors: record.setting.vpls.as_ref().map(|vpls| vpls.build_errors.clone()),
         };
         Metrics { of, records: self.records.iter().map(one).collect() }
     }
@@ -57,13 +57,13 @@ impl Results {
             .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
         let Some(known) = known.filter(|known| known.of == of) else { return };
         for (record, metrics) in self.records.iter_mut().zip(known.records) {
-            if record.strategy != metrics.strategy.as_str() || record.mode != metrics.mode {
+            if record.strategy != metrics.strategy.as_str() || record.setting.mode != metrics.mode {
                 continue;
             }
-            record.errors = metrics.errors;
-            record.unbounded_errors = metrics.unbounded_errors;
-            record.truth_errors = metrics.truth_errors;
-            if let (Some(vpls), Some(errors)) = (&mut record.vpls, metrics.build_errors) {
+            record.image.errors = metrics.errors;
+            record.image.unbounded_errors = metrics.unbounded_errors;
+            record.image.truth_errors = metrics.truth_errors;
+            if let (Some(vpls), Some(errors)) = (&mut record.setting.vpls, metrics.build_errors) {
                 vpls.build_errors = errors;
             }
         }
@@ -78,7 +78,7 @@ impl Results {
     pub fn write_metrics(&self, results: &Path) -> Result<(), ResultsError> {
         let Some(path) = beside(results) else { return Ok(()) };
         let (mut known, of) = Self::read_raw(results)?;
-        known.name_as_today();
+        known.bill_as_today();
         let own = self.metrics(of.clone());
         if own == known.metrics(of.clone()) && !path.exists() {
             return Ok(());
@@ -114,7 +114,7 @@ mod tests {
         raw.write_metrics(&path).unwrap();
         assert!(!folder.path().join(FILE).exists(), "nothing new, nothing written");
         let mut computed = raw.clone();
-        computed.records[0].truth_errors.insert("flip".into(), Some(0.1 + 0.2));
+        computed.records[0].image.truth_errors.insert("flip".into(), Some(0.1 + 0.2));
         computed.write_metrics(&path).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         assert_eq!(Results::read(&path).unwrap(), computed);

@@ -27,21 +27,21 @@ impl Results {
             all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);
         }
         for record in &mut self.records {
-            all.extend([&mut record.scene, &mut record.scene_hash]);
             if let std::borrow::Cow::Owned(shown) = visible(&record.strategy) {
                 record.strategy = shown.into();
             }
+            all.extend([&mut record.setting.scene, &mut record.setting.scene_hash]);
             let known = [
-                &mut record.path_hash,
-                &mut record.area_model,
-                &mut record.radii,
-                &mut record.light_places,
-                &mut record.cut,
-                &mut record.light_order,
+                &mut record.setting.path_hash,
+                &mut record.setting.area_model,
+                &mut record.setting.radii,
+                &mut record.setting.light_places,
+                &mut record.setting.cut,
+                &mut record.setting.light_order,
                 &mut record.note,
             ];
             all.extend(known.into_iter().flatten());
-            if let Some(vpls) = &mut record.vpls {
+            if let Some(vpls) = &mut record.setting.vpls {
                 all.push(&mut vpls.ranges);
                 let deep = vpls.deep.iter_mut();
                 all.extend(deep.flat_map(|deep| [&mut deep.build, &mut deep.spread]));
@@ -64,16 +64,16 @@ mod tests {
         let mut results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
         let odd = || "a\u{1b}[2J\nreport   /elsewhere".to_owned();
         results.machine.adapter = odd();
-        results.records[0].scene = odd();
-        results.records[0].radii = Some(odd());
+        results.records[0].setting.scene = odd();
+        results.records[0].setting.radii = Some(odd());
         results.warnings.push(odd());
         results.command.push(odd());
         results.show_hidden();
         let shown = "a\\u{1b}[2J\\nreport   /elsewhere";
         let record = &results.records[0];
-        let texts = [&results.machine.adapter, &record.scene, &results.warnings[0]];
+        let texts = [&results.machine.adapter, &record.setting.scene, &results.warnings[0]];
         assert!(texts.iter().all(|text| *text == shown), "{texts:?}");
-        assert_eq!(record.radii.as_deref(), Some(shown));
+        assert_eq!(record.setting.radii.as_deref(), Some(shown));
         assert_eq!(results.command.last(), Some(&odd()), "the command is to be run again");
     }
 }

@@ -34,6 +34,6 @@ impl Record {
     /// Why nothing can be said of the methods of its run; `None` where they were tested, or where the
     /// record is older than this question.
     pub fn untested_words(&self) -> Option<&'static str> {
-        self.untested.map(|why| why.words(self.lights, self.along_path))
+        self.lists.untested.map(|why| why.words(self.setting.lights, self.setting.along_path))
     }
 }

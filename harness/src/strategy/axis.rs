@@ -67,7 +67,9 @@ impl Axis {
                  all beyond the reach of diffuse light"
             }
             Self::Cap => "cap and the most lights of a list, such as cap32",
-            Self::Reuse => "reuse and the number of frames for which lists are used, such as reuse4",
+            Self::Reuse => {
+                "reuse and the number of frames for which lists are used, such as reuse4"
+            }
             Self::Exit => "no-exit, which evaluates every listed light",
         }
     }
@@ -124,14 +126,13 @@ impl Axis {
             Self::Tests => {
                 (settings.tests != FrustumTests::default()).then(|| settings.tests.to_string())
             }
-            Self::Source => {
-                (settings.source == LightSource::Hierarchy).then(|| "bvh".to_owned())
-            }
+            Self::Source => (settings.source == LightSource::Hierarchy).then(|| "bvh".to_owned()),
             Self::AreaBounds => {
                 (settings.area_bounds == AreaBounds::Ball).then(|| "ball".to_owned())
             }
-            Self::Box => (options.grid_box != GridBox::default())
-                .then(|| options.grid_box.name().to_owned()),
+            Self::Box => {
+                (options.grid_box != GridBox::default()).then(|| options.grid_box.name().to_owned())
+            }
             Self::Normals => match options.normals {
                 Normals::None => None,
                 Normals::Bins(count) => Some(format!("{NORMALS}{count}")),

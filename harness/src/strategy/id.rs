@@ -149,7 +149,8 @@ impl StrategyId {
     pub fn short(&self) -> String {
         let mut short = self.family().to_owned();
         let Some(row) = self.row else { return short };
-        let is_stand_in = |segment: &String| row.stand_ins.iter().any(|(known, _)| known == segment);
+        let is_stand_in =
+            |segment: &String| row.stand_ins.iter().any(|(known, _)| known == segment);
         let segments = [
             self.is_parted().then(|| self.size().to_owned()),
             Axis::Box.segment(&self.options),

@@ -72,7 +72,12 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
     if options.specular == SpecularCut::WhereDiffuse
         && let Some(normals) = Axis::Normals.segment(options)
     {
-        return Err(contradiction(id, "dif", &normals, "`dif` cannot be combined with normal cones"));
+        return Err(contradiction(
+            id,
+            "dif",
+            &normals,
+            "`dif` cannot be combined with normal cones",
+        ));
     }
     let settings = options.settings();
     let is_ball = settings.area_bounds == AreaBounds::Ball;

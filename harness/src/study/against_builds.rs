@@ -39,7 +39,7 @@ pub fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
         let Some(reference_job) = others.clone().find(is_reference) else { continue };
         let raw = |job: &str| {
             let record = done.results.get(job)?.records.last()?;
-            Some((record.images.raw.clone()?, record.images.exposure))
+            Some((record.image.files.raw.clone()?, record.image.files.exposure))
         };
         let (Some((reference_raw, exposure)), Some((own_raw, _))) = (raw(reference_job), raw(name))
         else {
@@ -59,7 +59,7 @@ pub fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
         let found = stored(errors(&ImagePair { image: &image, reference: &reference, exposure }));
         let records = done.results.get_mut(name).map(|results| &mut results.records);
         for record in records.into_iter().flatten() {
-            if let Some(vpls) = &mut record.vpls {
+            if let Some(vpls) = &mut record.setting.vpls {
                 vpls.build_errors.clone_from(&found);
             }
         }
@@ -68,7 +68,7 @@ pub fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
 }
 
 fn vpls_of(results: &Results) -> Option<&Vpls> {
-    results.records.last()?.vpls.as_ref()
+    results.records.last()?.setting.vpls.as_ref()
 }
 
 /// Whether two sets of lights differ in nothing but the build of their deep images, the second being

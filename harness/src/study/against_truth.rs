@@ -27,10 +27,10 @@ pub fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
             let Some(results) = done.results.get_mut(&model) else { continue };
             let mut store = Store::new(folder);
             for record in &mut results.records {
-                let raw = record.images.raw.as_deref();
+                let raw = record.image.files.raw.as_deref();
                 let Some(image) = store.image_like(raw, &reference, "the truth")? else { continue };
                 let pair = ImagePair { image: &image, reference: &reference, exposure };
-                record.truth_errors = stored(errors(&pair));
+                record.image.truth_errors = stored(errors(&pair));
             }
         }
     }

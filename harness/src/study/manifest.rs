@@ -179,7 +179,7 @@ impl Done {
         }
         let is_same_scene = |known: &Job| known.scene == job.scene && scaled(known).eq(scaled(job));
         let hash = |results: &Results| {
-            let record = results.records.first().map(|record| record.scene_hash.clone());
+            let record = results.records.first().map(|record| record.setting.scene_hash.clone());
             record.or_else(|| results.truth_image.as_ref().map(|truth| truth.scene_hash.clone()))
         };
         for known_job in &self.manifest.jobs {

@@ -80,7 +80,7 @@ fn ranges_that_rays_do_not_measure_keep_the_lights_that_rays_keep() {
     let made = |name: &str, rule: &[&str]| {
         let out = folder.path().join(name);
         let (_, results) = run(&out, &[&drawn[..], &timed, rule].concat());
-        results.records[0].vpls.clone().expect("virtual point lights")
+        results.records[0].setting.vpls.clone().expect("virtual point lights")
     };
     let cast = made("cast", &["--ranges", "average"]);
     let all = made("all", &["--ranges", "random", "--random-ranges", "4,20"]);
@@ -109,13 +109,13 @@ fn every_strategy_shows_the_same_indirect_light() {
     let (_, results) = run(folder.path(), &[&drawn[..], &all, &timed].concat());
     assert!(results.records.len() >= 36, "{}", results.records.len());
     for record in &results.records {
-        let what = format!("{} {}", record.strategy, record.mode.name());
-        assert_eq!(record.missed_pairs, Some(0), "{what}");
-        assert_eq!(record.differing_channels, Some(0), "{what}");
-        let vpls = record.vpls.as_ref().expect("virtual point lights");
+        let what = format!("{} {}", record.strategy, record.setting.mode.name());
+        assert_eq!(record.lists.missed_pairs, Some(0), "{what}");
+        assert_eq!(record.image.differing_channels, Some(0), "{what}");
+        let vpls = record.setting.vpls.as_ref().expect("virtual point lights");
         assert_eq!(
-            (vpls.kept, record.light_kinds.get("vpl").copied()),
-            (record.lights, Some(record.lights))
+            (vpls.kept, record.setting.light_kinds.get("vpl").copied()),
+            (record.setting.lights, Some(record.setting.lights))
         );
         assert_eq!(vpls.candidates, vpls.kept + vpls.too_small + vpls.too_large, "{what}");
         assert!(vpls.kept > 100 && vpls.mean_range_m > 1.0, "{vpls:?}");
@@ -229,7 +229,7 @@ fn virtual_point_lights_are_as_bright_as_a_matte_bounce() {
         let lights = ["--vpls", "64", "--ranges", "infinite"];
         let words = [&["compare", "--scene", &scene], &ROOM_VIEW[..], &lights, &timed].concat();
         let (_, results) = run(&out, &words);
-        let raw = results.records[0].images.raw.clone().expect("a linear image");
+        let raw = results.records[0].image.files.raw.clone().expect("a linear image");
         mean(&HdrImage::read_exr(&out.join(raw)).expect("an image"))
     };
     let matte = truth("matte", &["--matte-bounces"]);
@@ -255,7 +255,7 @@ fn light_of_long_range_leaks_and_light_of_short_range_lacks() {
         let words = [&["compare"], &drawn[..], &["--vpls", "64"], &timed, rule].concat();
         let (_, results) = run(&out, &words);
         let record: &Record = results.records.last().expect("a record");
-        let raw = record.images.raw.as_ref().expect("a linear image");
+        let raw = record.image.files.raw.as_ref().expect("a linear image");
         mean(&HdrImage::read_exr(&out.join(raw)).expect("an image"))
     };
     let cast = lit("cast", &["--ranges", "average"]);
@@ -267,7 +267,7 @@ fn light_of_long_range_leaks_and_light_of_short_range_lacks() {
 }
 
 #[test]
-fn what_does_not_go_together_is_refused() {
+fn contradicting_options_are_refused() {
     for (line, wanted) in [
         ("--vpls 64 --primary", "--primary"),
         ("--vpls 64 --lights 10", "--lights"),
@@ -277,22 +277,28 @@ fn what_does_not_go_together_is_refused() {
         ("--vpls 64 --random-ranges 5,1", "--random-ranges is 5,1: it must be LOW,HIGH in metres"),
         ("--vpls 64 --directions 0x4", "--directions is 0x4: it must be STACKSxSLICES"),
         ("--ranges random", "--vpls"),
-        ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges: it must be given with"),
+        ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges has no effect here"),
         (
             "--vpls 64 --random-ranges 1,2",
-            "--random-ranges would change nothing: it must be given with --vpls N and --ranges random",
+            "--random-ranges has no effect here: it needs --vpls N above 0 and --ranges random",
         ),
         (
             "--vpls 64 --ranges random --correct-rays",
-            "--correct-rays would change nothing: it must be given with --vpls N and --ranges average",
+            "--correct-rays has no effect here: it needs --vpls N above 0 and --ranges average",
         ),
         (
             "--vpls 64 --constant-range 3",
-            "--constant-range: it must be given with --ranges constant",
+            "--constant-range has no effect here: it needs --vpls N above 0 and --ranges constant",
         ),
-        ("study cdi --quick --only no-such-job", "--only is no-such-job: it must be words that"),
-        ("cdi --build per-direction --oversampling 2", "--oversampling is 2: it must be 1 where"),
-        ("truth --primary --indirect", "--indirect: it must be given with --bounces 1"),
+        (
+            "study cdi --quick --only no-such-job",
+            "--only is no-such-job: it must be words from job names",
+        ),
+        (
+            "cdi --build per-direction --oversampling 2",
+            "--oversampling is 2: it must be 1 for --build per-direction",
+        ),
+        ("truth --primary --indirect", "--indirect has no effect here: it needs --bounces 1"),
         ("cdi --casts 12", "--casts is 12: it must be none, or sizes from 16 to 2,048"),
         ("cdi --directions 64x64", "stacks x slices is 64 x 64: it must be 1 to 1024 together"),
     ] {
@@ -323,7 +329,7 @@ fn a_quick_study_has_all_parts() {
     let page = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     // Brute force was compared with the single pass, image by image.
     let brute = &done.results["town-small-models-per-direction"].records[0];
-    let errors = &brute.vpls.as_ref().expect("virtual point lights").build_errors;
+    let errors = &brute.setting.vpls.as_ref().expect("virtual point lights").build_errors;
     assert!(errors["mean_error"].is_some_and(|error| error > 0.0 && error < 0.5), "{errors:?}");
     for claim in ["one-pass", "same-image", "fewer-lights"] {
         assert!(page.contains(&format!("data-claim=\"{claim}\"")), "{claim}");

@@ -127,16 +127,16 @@ impl Maker {
         let assign = offset * 0.5 + in_assignment * slope * count;
         let shade = offset * 0.5 + (1.0 - in_assignment) * slope * count + bend;
         let mut record = record(id, Mode::Deferred, assign, shade);
-        record.lights = lights;
-        record.lists_bytes = match (of(&["DC-E"]), self.turned) {
+        record.setting.lights = lights;
+        record.lists.bytes = match (of(&["DC-E"]), self.turned) {
             (true, "memory") => 1_000,
             (true, _) => 9_000_000,
             _ => 1_310_720,
         };
-        record.memory_bytes = Some(record.lists_bytes);
+        record.lists.memory_bytes = Some(record.lists.bytes);
         let is_extreme = id == "M" && self.turned != "models";
-        record.longest_list = if is_extreme { lights * 3 / 4 } else { 96 };
-        record.listed_per_sample = Some(match (id, self.turned) {
+        record.lists.longest = if is_extreme { lights * 3 / 4 } else { 96 };
+        record.lists.listed_per_sample = Some(match (id, self.turned) {
             ("M", _) => 100.0,
             ("M/2", "models") => 200.0,
             _ => 5.0,
@@ -156,9 +156,10 @@ impl Maker {
                 ("SC-E", _) => 1.4,
                 _ => 1.0,
             };
-            record.listed_per_sample = record.listed_per_sample.map(|listed| listed * growth);
+            record.lists.listed_per_sample =
+                record.lists.listed_per_sample.map(|listed| listed * growth);
             if growth > 1.0 || self.turned == "view-free" {
-                record.list_entries = record.list_entries * 3 / 2;
+                record.lists.entries = record.lists.entries * 3 / 2;
             }
         }
         records
@@ -190,7 +191,7 @@ impl Maker {
                     id.replacen("-E", "-I", 1).into()
                 };
                 // Even the depth pre-pass does not raise their offset then.
-                record.passes.insert("depth", PassTimes::new(PassKind::Scene, vec![0.01; 8]));
+                record.times.passes.insert("depth", PassTimes::new(PassKind::Scene, vec![0.01; 8]));
             }
         }
         records
@@ -207,9 +208,7 @@ impl Maker {
         };
         let make = |union: &&str| {
             let (assign, shade) = times(union);
-            let mut record = record(&format!("{family}/{union}"), Mode::Deferred, assign, shade);
-            record.strategy_parameters.insert("tests".into(), (*union).into());
-            record
+            record(&format!("{family}/{union}"), Mode::Deferred, assign, shade)
         };
         ["hs", "hs+sat-n", "hs+sat-v", "hs+sat-e+sat-p+sat-v"].iter().map(make).collect()
     }
@@ -230,7 +229,7 @@ impl Maker {
                 "steady-alike" if of("G") => 0.4,
                 _ => swing(id),
             };
-            let mean = [record.assign_ms, record.shade_ms];
+            let mean = [record.times.assign_ms, record.times.shade_ms];
             let wave = |frame: u32| {
                 1.0 + swing
                     * (std::f64::consts::TAU * f64::from(frame % poses) / f64::from(poses)).sin()
@@ -238,13 +237,14 @@ impl Maker {
             let frames = poses * laps;
             let of = |part: usize| (0..frames).map(|frame| mean[part] * wave(frame)).collect();
             let (assign, shade) = (of(0), of(1));
-            record.passes = Default::default();
-            record.passes.insert("cull", PassTimes::new(PassKind::Assign, assign));
-            record.passes.insert("shade", PassTimes::new(PassKind::Shade, shade));
-            (record.frames, record.rounds, record.along_path) = (frames, laps, true);
-            record.poses = (laps > 1).then_some(poses);
+            record.times.passes = Default::default();
+            record.times.passes.insert("cull", PassTimes::new(PassKind::Assign, assign));
+            record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, shade));
+            (record.times.frames, record.times.rounds, record.setting.along_path) =
+                (frames, laps, true);
+            record.setting.poses = (laps > 1).then_some(poses);
             if laps == 1 {
-                record.rounds = frames;
+                record.times.rounds = frames;
             }
             record.set_times();
         }
@@ -261,14 +261,14 @@ impl Maker {
                 let id = format!("{family}{knob}");
                 let mut record = record(&id, Mode::Deferred, 2.0, time * share);
                 record.is_lossy = !knob.is_empty();
-                (record.max_abs_diff, record.differing_channels) =
+                (record.image.max_abs_diff, record.image.differing_channels) =
                     (Some(error), Some(u64::from(record.is_lossy) * 9));
                 let errors = [("rel_mse", error), ("flip", error * 0.5), ("bias", f64::NAN)];
-                record.errors = errors
+                record.image.errors = errors
                     .map(|(id, e)| (id.to_owned(), e.is_finite().then_some(e)))
                     .into_iter()
                     .collect();
-                record.images.baseline = Some("None.png".into());
+                record.image.files.baseline = Some("None.png".into());
                 records.push(record);
             }
         }
@@ -291,7 +291,7 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     for lights in [100, 1_000, 10_000] {
         let mut records = maker.all(lights);
         let mut none = record("None", Mode::Deferred, 0.0, 0.2 * lights as f64);
-        none.lights = lights;
+        none.setting.lights = lights;
         records.insert(0, none);
         maker.add("main", &lights.to_string(), records);
     }
@@ -327,7 +327,7 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     for radii in ["gamma", "equal"] {
         let mut records = maker.all(10_000);
         for record in &mut records {
-            record.radii = Some(radii.into());
+            record.setting.radii = Some(radii.into());
         }
         maker.add("radii", radii, records);
     }
@@ -336,14 +336,14 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     for (record, error) in reuse.iter_mut().zip([0.1, 0.2, 0.3]) {
         record.strategy = format!("{}/reuse2", record.strategy).into();
         record.is_lossy = true;
-        record.errors.insert("rel_mse".into(), Some(error));
+        record.image.errors.insert("rel_mse".into(), Some(error));
     }
     maker.add("reuse", "all", reuse);
     for cut in ["windowed", "hard"] {
         let mut records = maker.all(10_000);
         for record in &mut records {
-            (record.cut, record.threshold) = (Some(cut.into()), Some(0.01));
-            record.unbounded_errors.insert("rel_mse".into(), Some(0.3));
+            (record.setting.cut, record.setting.threshold) = (Some(cut.into()), Some(0.01));
+            record.image.unbounded_errors.insert("rel_mse".into(), Some(0.3));
         }
         maker.add("ranges", cut, records);
     }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use harness::results::{
-    Clock, DeviceType, Images, Machine, Mode, PassKind, PassTimes, Passes, Record, Results, Truth,
-    TruthLevel,
+    Clock, DeviceType, ImageFigures, Images, ListFigures, Machine, Mode, PassKind, PassTimes,
+    Passes, Record, Results, Setting, Times, Truth, TruthLevel,
 };
 use image::{ImageFormat, Rgb, RgbImage};
 
@@ -58,82 +58,89 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
     let is_none = strategy == "None";
     let stem = format!("atrium-{}-{}", mode.name(), strategy.replace('/', "-"));
     let mut record = Record {
-        vpls: None,
-        compensation: None,
-        scene: "atrium".to_owned(),
-        scene_hash: "5f0c1b7e9ad24410".to_owned(),
-        path_hash: None,
-        scene_scale: 1.0,
-        triangles: 262_144,
         strategy: strategy.into(),
-        strategy_parameters: BTreeMap::new(),
-        mode,
-        lights: 1_000,
-        light_kinds: BTreeMap::from([("point".to_owned(), 900), ("spot".to_owned(), 100)]),
-        area_model: None,
-        operations: None,
-        radius_scale: 1.0,
-        eye: [0.0, 1.7, 8.0],
-        forward: [0.0, 0.0, -1.0],
-        planes: None,
-        light_box: [[-15.0, 0.0, -7.0], [15.0, 10.0, 7.0]],
-        own_lights: 0,
-        open_lights: None,
-        open_threshold: None,
-        width: 640,
-        height: 360,
-        frames,
-        warmup_frames: 2,
-        seed: 1,
-        clock: Clock::WallClock,
-        passes,
-        assign_ms: 0.0,
-        shade_ms: 0.0,
-        frame_ms: 0.0,
-        spans: None,
-        span_ms: None,
-        frame_span_ms: None,
-        groups: if is_none { 1 } else { 1_440 },
-        occupied_groups: if is_none { 1 } else { 1_102 },
-        list_entries: if is_none { 1_000 } else { 21_834 },
-        longest_list: if is_none { 1_000 } else { 96 },
-        listed_per_sample: Some(if is_none { 1_000.0 } else { 26.37 }),
-        contributing_per_sample: Some(14.218),
-        missed_pairs: Some(0),
-        checked_pairs: Some(3_275_827),
-        samples: 230_400,
-        untested: None,
-        max_abs_diff: Some(0.0),
-        max_rel_diff: Some(0.0),
-        differing_channels: Some(0),
-        lists_bytes: if is_none { 4_016 } else { 1_310_720 },
-        memory_bytes: None,
-        overflowed_groups: 0,
-        all_groups: vec![],
-        histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
-        rounds: frames,
-        along_path: false,
-        poses: None,
-        radii: Some("gamma".to_owned()),
-        light_places: Some("core".to_owned()),
-        threshold: None,
-        cut: Some("windowed".to_owned()),
         is_lossy: false,
-        errors: BTreeMap::from([("rel_mse".to_owned(), Some(0.0))]),
-        unbounded_errors: BTreeMap::new(),
-        truth_errors: BTreeMap::new(),
-        light_order: Some("bvh".to_owned()),
-        light_build_ms: Some(0.4),
-        tolerance: None,
-        images: Images {
-            image: Some(format!("{stem}.png")),
-            baseline: None,
-            difference: (!is_none).then(|| format!("{stem}-difference.png")),
-            heat_map: (!is_none).then(|| format!("{stem}-heat.png")),
-            difference_amplification: (!is_none).then_some(64.0),
-            ..Images::default()
-        },
         note: None,
+        setting: Setting {
+            vpls: None,
+            compensation: None,
+            scene: "atrium".to_owned(),
+            scene_hash: "5f0c1b7e9ad24410".to_owned(),
+            path_hash: None,
+            scene_scale: 1.0,
+            triangles: 262_144,
+            mode,
+            lights: 1_000,
+            light_kinds: BTreeMap::from([("point".to_owned(), 900), ("spot".to_owned(), 100)]),
+            area_model: None,
+            radius_scale: 1.0,
+            eye: [0.0, 1.7, 8.0],
+            forward: [0.0, 0.0, -1.0],
+            planes: None,
+            light_box: [[-15.0, 0.0, -7.0], [15.0, 10.0, 7.0]],
+            own_lights: 0,
+            open_lights: None,
+            open_threshold: None,
+            width: 640,
+            height: 360,
+            seed: 1,
+            along_path: false,
+            poses: None,
+            radii: Some("gamma".to_owned()),
+            light_places: Some("core".to_owned()),
+            threshold: None,
+            cut: Some("windowed".to_owned()),
+            light_order: Some("bvh".to_owned()),
+        },
+        times: Times {
+            frames,
+            warmup_frames: 2,
+            clock: Clock::WallClock,
+            passes,
+            assign_ms: 0.0,
+            shade_ms: 0.0,
+            frame_ms: 0.0,
+            spans: None,
+            span_ms: None,
+            frame_span_ms: None,
+            rounds: frames,
+            light_build_ms: Some(0.4),
+        },
+        lists: ListFigures {
+            operations: None,
+            groups: if is_none { 1 } else { 1_440 },
+            occupied_groups: if is_none { 1 } else { 1_102 },
+            entries: if is_none { 1_000 } else { 21_834 },
+            longest: if is_none { 1_000 } else { 96 },
+            listed_per_sample: Some(if is_none { 1_000.0 } else { 26.37 }),
+            contributing_per_sample: Some(14.218),
+            missed_pairs: Some(0),
+            checked_pairs: Some(3_275_827),
+            samples: 230_400,
+            untested: None,
+            bytes: if is_none { 4_016 } else { 1_310_720 },
+            memory_bytes: None,
+            overflowed_groups: 0,
+            all_groups: vec![],
+            histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
+        },
+        image: ImageFigures {
+            max_abs_diff: Some(0.0),
+            max_rel_diff: Some(0.0),
+            differing_channels: Some(0),
+            errors: BTreeMap::from([("rel_mse".to_owned(), Some(0.0))]),
+            unbounded_errors: BTreeMap::new(),
+            truth_errors: BTreeMap::new(),
+            tolerance: None,
+            files: Images {
+                image: Some(format!("{stem}.png")),
+                baseline: None,
+                difference: (!is_none).then(|| format!("{stem}-difference.png")),
+                heat_map: (!is_none).then(|| format!("{stem}-heat.png")),
+                difference_amplification: (!is_none).then_some(64.0),
+                ..Images::default()
+            },
+        },
     };
     record.set_times();
     record
@@ -152,11 +159,11 @@ pub(crate) fn typical() -> Results {
 
 /// A lossy record: pairs missed, channels that differ, groups that overflowed.
 pub(crate) fn spoil(record: &mut Record) {
-    record.missed_pairs = Some(1_234);
-    record.max_abs_diff = Some(0.031_26);
-    record.max_rel_diff = Some(0.4);
-    record.differing_channels = Some(5_678);
-    record.overflowed_groups = 3;
+    record.lists.missed_pairs = Some(1_234);
+    record.image.max_abs_diff = Some(0.031_26);
+    record.image.max_rel_diff = Some(0.4);
+    record.image.differing_channels = Some(5_678);
+    record.lists.overflowed_groups = 3;
     record.note = Some("Lists were reused for 4 frames.".to_owned());
 }
 
@@ -164,14 +171,14 @@ pub(crate) fn spoil(record: &mut Record) {
 pub(crate) fn pictures(results: &Results) -> Vec<(String, Vec<u8>)> {
     let mut all: Vec<(String, Vec<u8>)> = vec![];
     for record in &results.records {
-        let lossy = record.max_abs_diff != Some(0.0);
+        let lossy = record.image.max_abs_diff != Some(0.0);
         // Smaller than the record says, to be quick: the page scales them.
-        let (width, height) = (record.width / 2, record.height / 2);
+        let (width, height) = (record.setting.width / 2, record.setting.height / 2);
         for (name, png) in [
-            (&record.images.image, scene(width, height, lossy)),
-            (&record.images.baseline, scene(width, height, false)),
-            (&record.images.difference, difference(width, height, lossy)),
-            (&record.images.heat_map, scene(width, height, !lossy)),
+            (&record.image.files.image, scene(width, height, lossy)),
+            (&record.image.files.baseline, scene(width, height, false)),
+            (&record.image.files.difference, difference(width, height, lossy)),
+            (&record.image.files.heat_map, scene(width, height, !lossy)),
         ] {
             if let Some(name) = name {
                 all.push((name.clone(), png));

@@ -6,6 +6,7 @@
 
 mod materials;
 mod parts;
+mod path;
 #[cfg(test)]
 mod tests;
 mod textures;
@@ -18,9 +19,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::{
-    Aabb, CameraPath, Instance, Mesh, Model, Pose, Scene,
+    Aabb, Instance, Mesh, Model, Scene,
     builder::{Builder, arc, sharp},
-    fit,
+    extent,
 };
 
 /// Half the court, and half of all inside the outer walls, along x and z, metres.
@@ -70,47 +71,14 @@ pub fn atrium(seed: u64) -> Scene {
         cameras: Vec::new(),
         view_camera: 0,
         origin: glam::DVec3::ZERO,
-        path: path(),
+        path: path::path(),
         bounds: Aabb::EMPTY,
         core_bounds: Aabb::EMPTY,
         warnings: Vec::new(),
     };
-    scene.bounds = fit::bounds(&scene);
+    scene.bounds = extent::bounds(&scene);
     scene.core_bounds = scene.bounds;
     scene
-}
-
-/// Through the court, up to the gallery's parapet and down again, out between columns at its east
-/// end, along the north walkway and back in at the west end. Each knot is (x, y, z) of the eye and of
-/// the point looked at.
-fn path() -> CameraPath {
-    let knots = [
-        ([-9.2, 1.9, 4.4], [3.0, 2.9, -2.6]),
-        ([-6.2, 3.4, 4.3], [4.0, 2.8, -3.0]),
-        ([-3.0, 5.6, 4.2], [6.0, 2.5, -3.0]),
-        ([0.2, 7.0, 4.1], [9.0, 2.3, -2.5]),
-        ([3.4, 6.2, 3.8], [11.0, 2.2, -2.5]),
-        ([6.4, 4.2, 2.9], [13.0, 2.2, -3.0]),
-        ([9.1, 2.5, 1.7], [14.0, 2.2, -4.5]),
-        ([11.6, 1.7, 0.4], [13.5, 2.1, -8.0]),
-        ([13.0, 1.7, -2.3], [12.0, 2.0, -9.0]),
-        ([12.8, 1.7, -5.3], [9.0, 2.1, -9.0]),
-        ([11.2, 1.8, -7.7], [3.0, 2.2, -8.2]),
-        ([8.2, 2.3, -8.1], [-1.0, 2.3, -7.8]),
-        ([5.0, 3.0, -8.1], [-4.0, 2.3, -7.8]),
-        ([1.8, 3.3, -8.1], [-7.0, 2.2, -7.8]),
-        ([-1.4, 3.0, -8.1], [-10.0, 2.1, -7.7]),
-        ([-4.6, 2.3, -8.1], [-13.0, 2.0, -7.2]),
-        ([-7.8, 1.8, -8.1], [-14.0, 2.0, -5.0]),
-        ([-10.9, 1.7, -7.6], [-13.0, 2.0, -1.5]),
-        ([-12.8, 1.7, -5.2], [-9.5, 2.1, 1.0]),
-        ([-13.0, 1.7, -2.2], [-5.0, 2.2, 1.0]),
-        ([-12.3, 1.8, 0.5], [-2.0, 2.5, -0.5]),
-        ([-10.6, 1.9, 2.4], [1.0, 2.8, -2.0]),
-    ];
-    let knots: Vec<_> = knots.map(|(eye, target)| (Vec3::from(eye), Vec3::from(target))).to_vec();
-    let start = Pose::new(knots[0].0, knots[0].1);
-    CameraPath::closed_loop(knots, start)
 }
 
 struct Hall {

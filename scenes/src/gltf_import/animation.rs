@@ -1,49 +1,18 @@
-//! Animated cameras: the tracks of the nodes from the root to the camera, evaluated exactly.
+//! Reads the animation of a camera: the tracks of the nodes from the root to the camera.
 
 use std::collections::{BTreeSet, HashSet};
 
-use glam::{DMat4, DVec3, Quat, Vec4, Vec4Swizzles};
+use glam::{DVec3, Vec4};
 use gltf::json::{
     animation::{Channel, Interpolation, Property, Sampler},
     validation::Checked,
 };
 
-use super::{
-    Warnings, area_lights,
-    cameras::pose,
-    file::File,
-    nodes::{Local, Walk},
+use super::{Warnings, area_lights, file::File, walk::Walk};
+use crate::{
+    SceneError,
+    animated_node::{AnimatedNode, Local, Part, Track},
 };
-use crate::{Pose, SceneError};
-
-/// A camera whose node, or one above it, is animated.
-#[derive(Clone, Debug)]
-pub(crate) struct AnimatedNode {
-    /// From the root to the camera.
-    chain: Vec<Part>,
-    /// Where world space begins, in the file's.
-    origin: DVec3,
-    start_s: f32,
-    end_s: f32,
-}
-
-#[derive(Clone, Debug)]
-struct Part {
-    local: Local,
-    translation: Option<Track>,
-    rotation: Option<Track>,
-    scale: Option<Track>,
-}
-
-#[derive(Clone, Debug)]
-struct Track {
-    /// Strictly increasing, seconds.
-    times: Vec<f32>,
-    /// One per key, three for cubic splines: in-tangent, value, out-tangent.
-    values: Vec<Vec4>,
-    interpolation: Interpolation,
-    is_rotation: bool,
-}
 
 /// The nodes that any animation moves, turns or scales.
 pub(super) fn targets(file: &File) -> HashSet<usize> {
@@ -179,108 +148,4 @@ fn track(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, Sce
         return Err(file.invalid(field, "not finite", "finite"));
     }
     Ok(Track { times, values, interpolation, is_rotation })
-}
-
-impl AnimatedNode {
-    /// The pose at `t` (0..1) of the animation.
-    pub(crate) fn pose(&self, t: f32) -> Pose {
-        let time = self.start_s + (self.end_s - self.start_s) * t;
-        let root = DMat4::from_translation(-self.origin);
-        // As `nodes::walk` places what stands still: scales of 0 turn no camera.
-        let (place, facing) = self.chain.iter().fold((root, root), |(place, facing), part| {
-            let local = part.local(time);
-            (place * local.matrix().as_dmat4(), facing * local.facing().as_dmat4())
-        });
-        pose(&DMat4 { w_axis: place.w_axis, ..facing })
-    }
-}
-
-impl Part {
-    /// The transform at a time.
-    fn local(&self, time: f32) -> Local {
-        let sample = |track: &Option<Track>| track.as_ref().map(|t| t.sample(time));
-        match self.local {
-            Local::Matrix(_) => self.local,
-            Local::Parts { translation, rotation, scale } => Local::Parts {
-                translation: sample(&self.translation).map_or(translation, Vec4::xyz),
-                rotation: sample(&self.rotation).map_or(rotation, quaternion),
-                scale: sample(&self.scale).map_or(scale, Vec4::xyz),
-            },
-        }
-    }
-}
-
-fn quaternion(v: Vec4) -> Quat {
-    let unit = v.try_normalize().unwrap_or(Vec4::W);
-    Quat::from_vec4(unit)
-}
-
-impl Track {
-    /// The value at `time`, clamped to the first and last key.
-    fn sample(&self, time: f32) -> Vec4 {
-        let next = self.times.partition_point(|t| *t <= time);
-        let last = self.times.len() - 1;
-        if next == 0 || next > last {
-            return self.value(if next == 0 { 0 } else { last });
-        }
-        let span_s = self.times[next] - self.times[next - 1];
-        let t = (time - self.times[next - 1]) / span_s;
-        let (from, to) = (self.value(next - 1), self.value(next));
-        match self.interpolation {
-            Interpolation::Step => from,
-            Interpolation::Linear if self.is_rotation => {
-                Vec4::from(quaternion(from).slerp(quaternion(to), t))
-            }
-            Interpolation::Linear => from.lerp(to, t),
-            Interpolation::CubicSpline => {
-                let out_tangent = self.values[(next - 1) * 3 + 2] * span_s;
-                let in_tangent = self.values[next * 3] * span_s;
-                hermite(from, out_tangent, to, in_tangent, t)
-            }
-        }
-    }
-
-    fn value(&self, key: usize) -> Vec4 {
-        match self.interpolation {
-            Interpolation::CubicSpline => self.values[key * 3 + 1],
-            _ => self.values[key],
-        }
-    }
-}
-
-/// Cubic Hermite spline (glTF 2.0, appendix C.5).
-fn hermite(from: Vec4, out_tangent: Vec4, to: Vec4, in_tangent: Vec4, t: f32) -> Vec4 {
-    let (t2, t3) = (t * t, t * t * t);
-    from * (2.0 * t3 - 3.0 * t2 + 1.0)
-        + out_tangent * (t3 - 2.0 * t2 + t)
-        + to * (3.0 * t2 - 2.0 * t3)
-        + in_tangent * (t3 - t2)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sample(interpolation: Interpolation, values: &[f32], time: f32) -> f32 {
-        let track = Track {
-            times: vec![1.0, 3.0],
-            values: values.iter().map(|v| Vec4::splat(*v)).collect(),
-            interpolation,
-            is_rotation: false,
-        };
-        track.sample(time).x
-    }
-
-    #[test]
-    fn tracks_interpolate_and_clamp() {
-        assert_eq!(sample(Interpolation::Linear, &[2.0, 6.0], 2.0), 4.0);
-        assert_eq!(sample(Interpolation::Linear, &[2.0, 6.0], 0.0), 2.0);
-        assert_eq!(sample(Interpolation::Linear, &[2.0, 6.0], 9.0), 6.0);
-        assert_eq!(sample(Interpolation::Step, &[2.0, 6.0], 2.9), 2.0);
-        let flat = [0.0, 2.0, 0.0, 0.0, 6.0, 0.0];
-        assert_eq!(sample(Interpolation::CubicSpline, &flat, 2.0), 4.0);
-        // Tangents of 2 per second over two seconds make the cubic a straight line.
-        let line = [2.0, 2.0, 2.0, 2.0, 6.0, 2.0];
-        assert_eq!(sample(Interpolation::CubicSpline, &line, 1.5), 3.0);
-    }
 }

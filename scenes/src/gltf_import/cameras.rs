@@ -5,7 +5,7 @@
 
 use std::f32::consts::PI;
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::DMat4;
 use gltf::json::{
     camera::{Camera as JsonCamera, Orthographic, Perspective, Type},
     validation::Checked,
@@ -41,7 +41,7 @@ pub(super) fn placed(
         (_, Some(lens), _) => check.perspective(lens)?,
         (_, None, _) => return Err(check.missing("perspective")),
     };
-    Ok(Camera { name, pose: pose(to_world), lens, near_m, far_m })
+    Ok(Camera { name, pose: Pose::of_node(to_world), lens, near_m, far_m })
 }
 
 /// Checks the fields of one camera.
@@ -99,15 +99,4 @@ impl Check<'_> {
         self.is("orthographic.zfar", far, far > near && far <= MOST_FAR_M, accepted)?;
         Ok((Lens::Orthographic { half_width, half_height }, near, Some(far)))
     }
-}
-
-/// A glTF camera or spot looks down its node's -Z; scale does not matter, nor does one axis without
-/// length.
-pub(super) fn pose(to_world: &DMat4) -> Pose {
-    let [x, y, z] = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(DVec4::truncate);
-    let back = z.try_normalize().or_else(|| x.cross(y).try_normalize()).unwrap_or(DVec3::Z);
-    let up = if y == DVec3::ZERO { back.cross(x) } else { y };
-    let up = (up - back * back.dot(up)).normalize_or(back.any_orthonormal_vector());
-    let eye = to_world.w_axis.truncate();
-    Pose::looking(eye.as_vec3(), -back.as_vec3(), up.as_vec3())
 }

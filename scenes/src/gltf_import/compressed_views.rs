@@ -2,23 +2,14 @@
 
 use std::collections::HashMap;
 
-use gltf::json::Buffer;
 use rayon::prelude::*;
 
-use super::{file::File, limits, meshopt::Compressed};
+use super::{
+    file::File,
+    limits,
+    meshopt::{Compressed, NAMES},
+};
 use crate::SceneError;
-
-/// The extension under its two names. What only the second can say is refused by its header.
-const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
-
-/// Whether a buffer stands for bytes that are compressed elsewhere, and has none of its own.
-pub(super) fn is_fallback(buffer: &Buffer) -> bool {
-    let extensions = buffer.extensions.as_ref().map(|e| &e.others);
-    NAMES.iter().any(|name| {
-        let fallback = extensions.and_then(|all| all.get(*name)?.get("fallback")?.as_bool());
-        fallback == Some(true)
-    })
-}
 
 /// The decoded bytes of all compressed buffer views, by their numbers.
 pub(super) fn decode(file: &File) -> Result<HashMap<usize, Vec<u8>>, SceneError> {

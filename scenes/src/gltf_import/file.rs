@@ -17,9 +17,11 @@ use gltf::json::{
 };
 
 use super::{
-    Warnings, adapt, compressed_views, extensions,
+    Warnings, adapt, extensions,
+    invalid::invalid,
     json_path::as_in_file,
     limits,
+    meshopt::is_fallback,
     parts::{is_absolute, read_part, read_regular},
 };
 use crate::SceneError;
@@ -59,7 +61,7 @@ impl File {
                     [..binary.len().min(usize::try_from(wanted).unwrap_or(usize::MAX))]
                     .to_vec(),
                 // Nothing reads it but views that are compressed elsewhere.
-                (None, _) if compressed_views::is_fallback(buffer) => {
+                (None, _) if is_fallback(buffer) => {
                     file.buffers.push(Vec::new());
                     continue;
                 }
@@ -79,8 +81,12 @@ impl File {
             data.truncate(wanted as usize);
             file.buffers.push(data);
         }
-        file.decoded = compressed_views::decode(&file)?;
         Ok(file)
+    }
+
+    /// Keeps the decoded bytes of compressed buffer views: [`view`](Self::view) returns them.
+    pub(super) fn set_decoded(&mut self, decoded: HashMap<usize, Vec<u8>>) {
+        self.decoded = decoded;
     }
 
     /// Notes a warning while parts are read.
@@ -193,21 +199,6 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     read_regular(path, limits::MAX_FILE_BYTES)
         .map_err(|source| SceneError::Read { file: path.into(), source })
-}
-
-/// The error for a field that does not hold what it must.
-pub(super) fn invalid(
-    path: &Path,
-    field: impl Into<String>,
-    value: impl ToString,
-    accepted: impl Into<String>,
-) -> SceneError {
-    SceneError::Invalid {
-        file: path.into(),
-        field: field.into(),
-        value: value.to_string(),
-        accepted: accepted.into(),
-    }
 }
 
 /// The JSON, and the binary chunk of a GLB.

@@ -6,18 +6,12 @@
 
 use std::fmt;
 
-use gltf::json::{
-    Index,
-    accessor::Accessor,
-    mesh::{Mode, Primitive, Semantic},
-    validation::Checked,
-};
 use serde::{
     Deserialize,
     de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor},
 };
 
-use super::file::{File, invalid};
+use super::invalid::invalid;
 use crate::{SceneError, memory::machine_bytes};
 
 /// The share of the machine's memory that any one kind of data may take: buffers, meshes, images.
@@ -32,14 +26,6 @@ pub(super) const MAX_IMAGE_BYTES: u64 = 1 << 30;
 
 /// The most pixels of all images in use together: 8 GiB once decoded.
 const MAX_PIXELS: u64 = 1 << 31;
-
-/// The most vertices and indices, every primitive counting its own: many primitives of a small
-/// file can share one large accessor, and each becomes a mesh of its own.
-const MAX_ELEMENTS: u64 = 1 << 27;
-
-/// The most elements of all accessors that have no buffer view, every primitive counting its own.
-/// They cost a file nothing.
-const MAX_ZEROED: u64 = 1 << 22;
 
 /// The most elements of the lists at a file's root.
 const MAX_COUNTS: [(&str, u64); 12] = [
@@ -130,67 +116,4 @@ impl<'de> Deserialize<'de> for Length {
         }
         json.deserialize_seq(List)
     }
-}
-
-/// Checks what the file's meshes will take.
-pub(super) fn check_meshes(file: &File) -> Result<(), SceneError> {
-    let mut need = Need::default();
-    for primitive in file.root.meshes.iter().flat_map(|mesh| &mesh.primitives) {
-        need.add(file, primitive);
-    }
-    let each = "(each primitive counts its own)";
-    let checks = [
-        ("vertices and indices", need.elements, MAX_ELEMENTS),
-        ("elements of accessors without bufferView", need.zeroed, MAX_ZEROED),
-        ("bytes of memory", need.bytes, budget_bytes()),
-    ];
-    for (what, count, most) in checks {
-        if count > most {
-            let field = format!("meshes' {what} {each}");
-            return Err(file.invalid(field, count, format!("at most {most}")));
-        }
-    }
-    Ok(())
-}
-
-/// What meshes take.
-#[derive(Default)]
-struct Need {
-    elements: u64,
-    zeroed: u64,
-    bytes: u64,
-}
-
-impl Need {
-    fn add(&mut self, file: &File, primitive: &Primitive) {
-        const VERTEX: u64 = size_of::<crate::Vertex>() as u64;
-        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
-        let positions = attribute(Semantic::Positions).map_or(0, |ix| count(file, ix));
-        let corners = primitive.indices.map_or(positions, |ix| count(file, ix));
-        let strip =
-            matches!(primitive.mode, Checked::Valid(Mode::TriangleStrip | Mode::TriangleFan));
-        let indices = if strip { corners.saturating_mul(3) } else { corners };
-        let mut bytes = positions.saturating_mul(VERTEX + 12);
-        bytes = bytes.saturating_add(indices.saturating_mul(4));
-        if attribute(Semantic::Normals).is_none() {
-            // Every corner becomes a vertex.
-            bytes = bytes.saturating_add(indices.saturating_mul(VERTEX + 4));
-        }
-        self.bytes = self.bytes.saturating_add(bytes);
-        let own = primitive.indices.map_or(0, |_| corners);
-        self.elements = self.elements.saturating_add(positions).saturating_add(own);
-        let accessors = primitive.attributes.values().copied().chain(primitive.indices);
-        for accessor in accessors {
-            let is_zeroed = |a: &Accessor| a.buffer_view.is_none();
-            if file.root.get(accessor).is_some_and(is_zeroed) {
-                self.zeroed = self.zeroed.saturating_add(count(file, accessor));
-            }
-        }
-    }
-}
-
-/// An accessor's count; 0 where it is beyond 32 bits, which the reader of accessors refuses.
-fn count(file: &File, accessor: Index<Accessor>) -> u64 {
-    let count = file.root.get(accessor).map_or(0, |accessor| accessor.count.0);
-    if count <= u64::from(u32::MAX) { count } else { 0 }
 }

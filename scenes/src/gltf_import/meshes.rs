@@ -12,8 +12,8 @@ use gltf::json::{
 use rayon::prelude::*;
 
 use super::{
-    Warnings, draco::DracoMesh, file::File, limits, materials::Materials, repeats,
-    skins::Influence, tangents, warnings::kept_name,
+    Warnings, draco::DracoMesh, file::File, influence::Influence, materials::Materials,
+    mesh_limits::check_meshes, repeats, tangents, warnings::kept_name,
 };
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
@@ -31,7 +31,7 @@ pub(super) fn load(
     materials: &Materials,
     warnings: &mut Warnings,
 ) -> Result<Meshes, SceneError> {
-    limits::check_meshes(file)?;
+    check_meshes(file)?;
     let all = file.root.meshes.iter().enumerate();
     let jobs: Vec<_> =
         all.flat_map(|(mesh, json)| (0..json.primitives.len()).map(move |ix| (mesh, ix))).collect();
@@ -316,14 +316,8 @@ impl<'a> Job<'a> {
         let weights = self.floats::<4>(&Semantic::Weights(0), weights)?;
         self.check_count("JOINTS_0", joints.len(), vertices)?;
         self.check_count("WEIGHTS_0", weights.len(), vertices)?;
-        let influence = |(joints, weights): ([f32; 4], [f32; 4])| {
-            let sum: f32 = weights.iter().sum();
-            let is_sound = sum > 0.0 && sum.is_finite();
-            // A vertex that nothing moves follows the first joint.
-            let weights = if is_sound { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0, 0.0] };
-            Influence { joints: joints.map(|joint| joint as u32), weights }
-        };
-        Ok(joints.into_iter().zip(weights).map(influence).collect())
+        let pairs = joints.into_iter().zip(weights);
+        Ok(pairs.map(|(joints, weights)| Influence::new(joints, weights)).collect())
     }
 
     fn check_count(&self, name: &str, count: usize, vertices: usize) -> Result<(), SceneError> {

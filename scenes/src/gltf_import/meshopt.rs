@@ -8,7 +8,20 @@
 //! A filter then turns integers of attributes into unit vectors, quaternions or floats. Our own
 //! code: the crate that decodes this in Rust takes strides as types and asserts on bad input.
 
+use gltf::json::Buffer;
 use serde::Deserialize;
+
+/// The extension under its two names. What only the second can say is refused by its header.
+pub(super) const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Whether a buffer stands for bytes that are compressed elsewhere, and has none of its own.
+pub(super) fn is_fallback(buffer: &Buffer) -> bool {
+    let extensions = buffer.extensions.as_ref().map(|e| &e.others);
+    NAMES.iter().any(|name| {
+        let fallback = extensions.and_then(|all| all.get(*name)?.get("fallback")?.as_bool());
+        fallback == Some(true)
+    })
+}
 
 /// The compressed form of one buffer view.
 #[derive(Clone, Debug, Deserialize)]

@@ -13,21 +13,26 @@ mod draco;
 mod extensions;
 mod file;
 mod images;
+mod influence;
+mod invalid;
 mod json_path;
 mod limits;
 mod materials;
+mod mesh_limits;
 mod meshes;
 mod meshopt;
 mod models;
 mod nodes;
 mod origin;
 mod parts;
+mod placed;
 mod punctual;
 mod repeats;
 mod skins;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod walk;
 mod warnings;
 
 use std::path::Path;
@@ -35,11 +40,10 @@ use std::path::Path;
 use assign::{MAX_SUNS, Sun};
 use glam::DVec3;
 
-pub(crate) use animation::AnimatedNode;
 use file::File;
 use warnings::Warnings;
 
-use crate::{CameraPath, Scene, SceneError, close_ranges, fit};
+use crate::{CameraPath, Scene, SceneError, close_ranges, extent, fit};
 
 /// Loads a glTF 2.0 file.
 ///
@@ -71,7 +75,7 @@ use crate::{CameraPath, Scene, SceneError, close_ranges, fit};
 /// glTF 2, whose images do not decode, that requires an unknown extension, or that has no
 /// triangles or too many.
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
-    let file = File::open(path)?;
+    let file = open(path)?;
     let mut warnings = file.take_notes();
     let materials = materials::load(&file, &mut warnings)?;
     warnings.append(file.take_notes());
@@ -117,13 +121,13 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         warnings: warnings.into_lines(),
     };
     drop_unused_default(&mut scene);
-    scene.bounds = fit::bounds(&scene);
+    scene.bounds = extent::bounds(&scene);
     let bounds = &scene.bounds;
     if bounds.is_empty() || !(bounds.size().is_finite() && bounds.diagonal() < 1e12) {
         let size = scene.bounds.size();
         return Err(file.invalid("scene bounds", size, "at most 1e12 across"));
     }
-    scene.core_bounds = fit::core_bounds(&scene);
+    scene.core_bounds = extent::core_bounds(&scene);
     scene.open_lights = close_ranges(&mut scene.lights, scene.core_bounds.diagonal());
     scene.path = match animated {
         Some(animated) => CameraPath::animated(animated),
@@ -142,9 +146,9 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
 ///
 /// [`SceneError`] as [`load_gltf`] has them of the file's JSON, buffers, nodes and lights.
 pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, SceneError> {
-    let file = File::open(path)?;
+    let file = open(path)?;
     let mut warnings = file.take_notes();
-    let walk = nodes::walk(&file, origin)?;
+    let walk = walk::walk(&file, origin)?;
     let (lights, suns) = nodes::lights(&file, &walk, &mut warnings)?;
     check_suns(&file, &suns)?;
     animation::note_unplayed(&file, &walk, &mut warnings);
@@ -166,6 +170,14 @@ pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, Scen
         core_bounds: crate::Aabb::EMPTY,
         warnings: warnings.into_lines(),
     })
+}
+
+/// Opens a file with its buffers, and decodes its compressed buffer views.
+fn open(path: &Path) -> Result<File, SceneError> {
+    let mut file = File::open(path)?;
+    let decoded = compressed_views::decode(&file)?;
+    file.set_decoded(decoded);
+    Ok(file)
 }
 
 fn check_suns(file: &File, suns: &[Sun]) -> Result<(), SceneError> {

@@ -7,17 +7,11 @@ use super::{
     Warnings,
     file::File,
     meshes::Meshes,
-    nodes::{Placed, Visit},
+    placed::{MAX_INSTANCES, MAX_TRIANGLES, Placed},
     skins::Skins,
+    walk::Visit,
 };
 use crate::{Aabb, Instance, Model, SceneError};
-
-/// The most triangles drawn, every node counting its mesh's. A small file can place one large
-/// mesh often, and what follows takes time and memory by that number.
-pub(super) const MAX_TRIANGLES: u64 = 200_000_000;
-
-/// The most meshes drawn, every node counting those of its own.
-pub(super) const MAX_INSTANCES: usize = 1 << 23;
 
 /// The most models that EXT_mesh_gpu_instancing may make: a few bytes of a file can ask for many.
 const MAX_MODELS: usize = 1 << 22;

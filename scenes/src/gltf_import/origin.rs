@@ -11,7 +11,9 @@ use super::{
     Warnings,
     file::File,
     meshes::Meshes,
-    nodes::{self, Placed, Walk},
+    nodes,
+    placed::Placed,
+    walk::{self, Walk},
 };
 use crate::{Aabb, SceneError};
 
@@ -28,14 +30,14 @@ pub(super) fn place(
     warnings: &mut Warnings,
 ) -> Result<(Walk, Placed, DVec3), SceneError> {
     let count = meshes.meshes.len();
-    let walk = nodes::walk(file, DVec3::ZERO)?;
+    let walk = walk::walk(file, DVec3::ZERO)?;
     let placed = nodes::place(file, &walk, meshes, warnings)?;
     let Some(origin) = far_off(&placed, meshes) else {
         return Ok((walk, placed, DVec3::ZERO));
     };
     // Skins pose copies anew. The warnings are the same again.
     meshes.meshes.truncate(count);
-    let walk = nodes::walk(file, origin)?;
+    let walk = walk::walk(file, origin)?;
     let placed = nodes::place(file, &walk, meshes, &mut Warnings::default())?;
     Ok((walk, placed, origin))
 }

@@ -10,8 +10,8 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{Warnings, cameras, file::File, nodes::Placed, warnings::kept_name};
-use crate::SceneError;
+use super::{Warnings, file::File, placed::Placed, warnings::kept_name};
+use crate::{Pose, SceneError};
 
 impl Placed {
     /// Adds the light that a node carries. A faulty sun is left out with a warning; other faulty
@@ -34,7 +34,7 @@ impl Placed {
             file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
         })?;
         let intensity = Vec3::from(json.color) * json.intensity;
-        let pose = cameras::pose(to_world);
+        let pose = Pose::of_node(to_world);
         let direction = pose.forward();
         let shape = match json.type_ {
             Checked::Valid(LightType::Point) => LightShape::Point,

@@ -7,18 +7,11 @@ use std::{collections::HashMap, ops::Range, rc::Rc};
 
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
-use super::{Warnings, file::File, meshes::Meshes, nodes::Walk};
+use super::{Warnings, file::File, influence::Influence, meshes::Meshes, walk::Walk};
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
 /// The most vertices and indices of all posed copies together: many nodes can share one large mesh.
 const MAX_ELEMENTS: usize = 1 << 26;
-
-/// The joints that move one vertex, and by how much; the weights sum to 1.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Influence {
-    pub(super) joints: [u32; 4],
-    pub(super) weights: [f32; 4],
-}
 
 /// The skins of a file, and where their joints are.
 pub(super) struct Skins<'a> {

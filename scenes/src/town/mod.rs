@@ -27,7 +27,7 @@ use land::Land;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::{Aabb, Instance, Mesh, Model, Scene, fit};
+use crate::{Aabb, Instance, Mesh, Model, Scene, extent};
 
 /// How much of a town.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub fn town(seed: u64, size: TownSize) -> Scene {
         core_bounds: Aabb::EMPTY,
         warnings: Vec::new(),
     };
-    scene.bounds = fit::bounds(&scene);
+    scene.bounds = extent::bounds(&scene);
     scene.core_bounds = scene.bounds;
     scene
 }

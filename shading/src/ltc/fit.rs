@@ -15,7 +15,7 @@ use glam::{DMat3, DVec3};
 use super::{
     lobe::{Lobe, Masking},
     nelder_mead::minimize,
-    table::share_above_horizon,
+    polygon::share_above_horizon,
 };
 
 /// Grid of the samples of one side of the plane of incidence; the other mirrors them.

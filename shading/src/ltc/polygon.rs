@@ -44,6 +44,15 @@ pub fn ltc_integral(inverse: &DMat3, vertices: &[DVec3]) -> f64 {
     edge_sum(&clip(&above))
 }
 
+/// The share of a lobe above the surface's horizon, for the inverse of its matrix M.
+///
+/// M^-1 turns the upper half-space into one around the third row of M, which is along (-c, 0, a). A
+/// half-space at an angle t to the cosine's own covers `(1 + cos t) / 2` of it.
+pub(super) fn share_above_horizon(inverse: &DMat3) -> f64 {
+    let (a, c) = (inverse.x_axis.x, inverse.x_axis.z);
+    0.5 + 0.5 * a / a.hypot(c)
+}
+
 /// The part of a polygon in `z > 0` (Sutherland and Hodgman 1974); at most one vertex more where
 /// the polygon is convex.
 pub(super) fn clip(vertices: &[DVec3]) -> Vec<DVec3> {

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::{
     fit::{Fit, fit_masked},
     lobe::Masking,
+    polygon::share_above_horizon,
 };
 use crate::ShadingError;
 
@@ -71,15 +72,6 @@ impl Entry {
             integrals: each(self.integrals, other.integrals),
         }
     }
-}
-
-/// The share of a lobe above the surface's horizon, for the inverse of its matrix M.
-///
-/// M^-1 turns the upper half-space into one around the third row of M, which is along (-c, 0, a). A
-/// half-space at an angle t to the cosine's own covers `(1 + cos t) / 2` of it.
-pub(super) fn share_above_horizon(inverse: &DMat3) -> f64 {
-    let (a, c) = (inverse.x_axis.x, inverse.x_axis.z);
-    0.5 + 0.5 * a / a.hypot(c)
 }
 
 /// Fitted lobes of all roughnesses and views.

@@ -11,7 +11,7 @@
 //! blocks the emitter, and where all of it is blocked, there is none. A ratio of two means is off by about
 //! one over the number of pairs, so few pairs estimate the radiance itself.
 
-use assign::{Emitter, Light};
+use assign::{Emitter, Light, range_window};
 use glam::{DVec3, Vec3};
 
 use super::{
@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     ltc::SphericalRectangle,
-    reference::{light_contribution, lobes_of, window},
+    reference::{light_contribution, lobes_of},
 };
 
 /// Below this solid angle, steradians, an emitter casts the shadow of its middle: the difference of
@@ -68,8 +68,8 @@ impl<'a> SeenEmitter<'a> {
             sample,
             center,
             normal: vertices.zip(next).map(|(a, b)| a.cross(b)).sum(),
-            diffuse: radiance * window(distance_2, f64::from(light.diffuse_range_m())),
-            specular: radiance * window(distance_2, f64::from(light.range_m)),
+            diffuse: radiance * range_window(distance_2, f64::from(light.diffuse_range_m())),
+            specular: radiance * range_window(distance_2, f64::from(light.range_m)),
         };
         (seen.specular != DVec3::ZERO).then_some(seen)
     }

@@ -3,17 +3,17 @@
 //! Positions are rebuilt from depth by the shader code that deferred lighting runs, surfaces are the
 //! G-buffer's. Lit in f64, they differ from the truth by the rounding of depth and G-buffer alone.
 
-use assign::{EncoderPasses, Passes, Projection, View, entry, storage_entry};
+use assign::{Projection, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
 use glam::{DVec3, Vec4};
 
 use super::{SurfaceSample, TracedScene};
 use crate::{
     Renderer, ShadingError,
-    lighting::{TEXELS, compute_pipeline, texture, texture_entry},
-    raster::LISTS_GROUP,
+    gbuffer_inputs::GBufferInputs,
+    pixel_pass::PixelPass,
     reference::{Reflectance, Surface},
-    shaders,
+    shaders::{LISTS_GROUP, lighting_modules},
 };
 
 /// What each pixel of a view shows.
@@ -41,62 +41,34 @@ impl GBufferSamples {
     /// is the one that the renderer was prepared for.
     pub fn read(renderer: &Renderer, view: &View) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
-        let targets = &renderer.targets;
-        let stages = wgpu::ShaderStages::COMPUTE;
-        let mut entries = vec![
-            texture_entry(0, wgpu::TextureSampleType::Depth),
-            texture_entry(1, TEXELS),
-            texture_entry(2, TEXELS),
+        let images = GBufferInputs::of_scene(&renderer.scene);
+        // Names and bindings of `surfaces.wesl`.
+        let outputs = [
+            ("positions", 12, true),
+            ("base colours", 13, true),
+            ("normals", 14, true),
+            ("emissions", 15, images.emissive),
+            ("dielectrics", 16, images.dielectrics),
         ];
-        let mut resources = vec![
-            texture(0, &targets.depth),
-            texture(1, &targets.base_color),
-            texture(2, &targets.normal),
-        ];
-        if let Some(emissive) = &targets.emissive {
-            entries.push(texture_entry(3, TEXELS));
-            resources.push(texture(3, emissive));
-        }
-        if let Some(dielectric) = &targets.dielectric {
-            entries.push(texture_entry(8, TEXELS));
-            resources.push(texture(8, dielectric));
-        }
         let bytes = u64::from(view.viewport.width) * u64::from(view.viewport.height) * 16;
-        let mut names = vec!["positions", "base colours", "normals"];
-        names.extend(targets.emissive.as_ref().map(|_| "emissions"));
-        names.extend(targets.dielectric.as_ref().map(|_| "dielectrics"));
-        let buffers = names.into_iter().map(|name| gpu.storage(name, bytes));
-        let buffers = buffers.collect::<Result<Vec<_>, _>>()?;
-        let mut bindings = vec![4, 5, 6];
-        bindings.extend(targets.emissive.as_ref().map(|_| 7));
-        bindings.extend(targets.dielectric.as_ref().map(|_| 9));
-        for (binding, buffer) in bindings.into_iter().zip(&buffers) {
-            entries.push(storage_entry(binding, stages, false));
-            resources.push(entry(binding, buffer));
+        let mut layout = Vec::new();
+        let mut buffers = Vec::new();
+        for (name, binding, _) in outputs.into_iter().filter(|&(.., is_written)| is_written) {
+            layout.push(storage_entry(binding, wgpu::ShaderStages::COMPUTE, false));
+            buffers.push((binding, gpu.storage(name, bytes)?));
         }
-        let layout = gpu.bind_group_layout("surfaces", &entries);
-        let images = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("surfaces"),
-            layout: &layout,
-            entries: &resources,
-        });
-        let module = shaders::lighting(LISTS_GROUP)
-            .flag("emissive", targets.emissive.is_some())
-            .flag("dielectrics", targets.dielectric.is_some())
-            .create(gpu, "package::surfaces")?;
-        let groups = [renderer.frame.layout(), &layout];
-        let pipeline = compute_pipeline(gpu, &groups, &module, "surfaces");
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        EncoderPasses { encoder: &mut encoder }.compute("surfaces", &mut |pass| {
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, renderer.frame.bind_group(), &[]);
-            pass.set_bind_group(1, &images, &[]);
-            let viewport = view.viewport;
-            pass.dispatch_workgroups(viewport.width.div_ceil(8), viewport.height.div_ceil(8), 1);
-        });
-        gpu.queue.submit([encoder.finish()]);
+        let pass = PixelPass {
+            name: "surfaces",
+            entry_point: "surfaces",
+            shader: lighting_modules(LISTS_GROUP),
+            images,
+            layout,
+            resources: buffers.iter().map(|(binding, buffer)| entry(*binding, buffer)).collect(),
+            strategy: None,
+        };
+        pass.submit(renderer, view.viewport)?;
         let mut texels = Vec::new();
-        for buffer in &buffers {
+        for (_, buffer) in &buffers {
             texels.push(pod_collect_to_vec::<u8, Vec4>(&gpu.read(buffer, bytes)?));
         }
         let mut texels = texels.into_iter();
@@ -108,7 +80,7 @@ impl GBufferSamples {
             positions: next(),
             base_colors: next(),
             normals: next(),
-            emissions: if targets.emissive.is_some() { next() } else { Vec::new() },
+            emissions: if images.emissive { next() } else { Vec::new() },
             dielectrics: next(),
         })
     }

@@ -3,7 +3,11 @@
 use assign::{Projection, View, ViewUniform};
 use glam::{DMat4, DVec2, DVec3, Vec2};
 
-use super::{SurfaceSample, TracedScene, scene::offset, surface::SeenFrom, triangles::Hit};
+use super::{
+    TracedScene,
+    seen::{SeenFrom, SurfaceSample, offset},
+    triangles::Hit,
+};
 
 /// The rays of a view's pixels, in f64.
 struct Rays {

@@ -5,7 +5,7 @@ use scenes::{Material, Mesh, Scene, Vertex};
 
 use super::{
     emissive::{Emission, EmissiveTriangles},
-    surface::SeenFrom,
+    seen::{SeenFrom, SurfaceSample, offset, towards},
     texture::Texture,
     triangles::{Hit, Triangles},
 };
@@ -14,36 +14,8 @@ use crate::{
     reference::Surface,
 };
 
-/// How far rays start off their surface, as a share of the largest of its coordinates and its
-/// distance from where it was seen: four times what rebuilding a position from depth may err by.
-const RAY_OFFSET: f64 = 64.0 * f32::EPSILON as f64;
-
-/// How far around a position its triangle is looked for, in multiples of [`RAY_OFFSET`].
+/// How far around a position its triangle is looked for, in multiples of [`offset`].
 const SEARCH: f64 = 8.0;
-
-/// A point of a surface, seen from one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceSample {
-    /// World space, metres.
-    pub position: DVec3,
-    /// Its material and shading normal.
-    pub surface: Surface,
-    /// Emitted radiance, linear RGB.
-    pub emission: DVec3,
-    /// Unit vector to whence it is seen.
-    pub to_eye: DVec3,
-    /// Unit normal of its triangle, on the side of the eye.
-    pub geometric_normal: DVec3,
-    /// How far rays start above the surface, and end before a light, metres.
-    pub offset_m: f64,
-}
-
-impl SurfaceSample {
-    /// Where its rays start: off the surface on the side of the eye.
-    pub fn ray_origin(&self) -> DVec3 {
-        self.position + self.geometric_normal * self.offset_m
-    }
-}
 
 /// The triangles of a scene in a hierarchy, with all that a hit's surface needs.
 pub struct TracedScene<'a> {
@@ -265,14 +237,4 @@ impl<'a> TracedScene<'a> {
         let [a, b, c] = self.triangles.corners(hit.triangle);
         (b - a).cross(c - a).normalize_or(DVec3::Y)
     }
-}
-
-/// How far rays start off a position that was seen from a distance, metres.
-pub(super) fn offset(position: DVec3, distance_m: f64) -> f64 {
-    RAY_OFFSET * position.abs().max_element().max(distance_m)
-}
-
-/// The normal or its opposite, on the side of a direction.
-pub(super) fn towards(normal: DVec3, direction: DVec3) -> DVec3 {
-    if normal.dot(direction) < 0.0 { -normal } else { normal }
 }

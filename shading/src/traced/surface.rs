@@ -4,32 +4,11 @@ use glam::{DMat4, DVec2, DVec3, DVec4, Vec2, Vec4};
 use scenes::{Material, TextureRef, Vertex};
 
 use super::{
-    SurfaceSample, TracedScene,
-    scene::{offset, towards},
+    TracedScene,
+    seen::{SeenFrom, SurfaceSample, offset, towards},
     triangles::Hit,
 };
 use crate::reference::Surface;
-
-/// A ray that meets a surface.
-pub(super) struct SeenFrom {
-    /// Unit vector along the ray.
-    direction: DVec3,
-    /// Origins and directions of the rays through the pixels beside and below; none where textures
-    /// are read at their finest level.
-    neighbours: Option<[(DVec3, DVec3); 2]>,
-}
-
-impl SeenFrom {
-    /// A ray that stands for itself only.
-    pub(super) fn afar(direction: DVec3) -> Self {
-        Self { direction, neighbours: None }
-    }
-
-    /// A ray through a pixel: textures are averaged over the pixel.
-    pub(super) fn pixel(direction: DVec3, neighbours: [(DVec3, DVec3); 2]) -> Self {
-        Self { direction, neighbours: Some(neighbours) }
-    }
-}
 
 /// A hit's place in its triangle's textures.
 struct Place {

@@ -1,8 +1,9 @@
 //! The shaders' lighting function, light by light.
 
 use assign::{
-    EncoderPasses, Frame, FrameBindings, Gpu, LightBuffer, Passes, entry, storage_entry,
-    uniform_entry,
+    Frame, FrameBindings, Gpu, LightBuffer,
+    conformance::{Bound, download, run_kernel, upload},
+    kernel::Slot,
 };
 use shading::AreaModel;
 
@@ -41,30 +42,11 @@ pub(crate) fn evaluate(
     let view = super::view([8, 8]);
     let mut bindings = FrameBindings::new(gpu);
     bindings.update(gpu, &Frame::new(&view, lights)).unwrap();
-    let asked = gpu.storage("queries", size_of_val(queries) as u64).unwrap();
-    gpu.queue.write_buffer(&asked, 0, bytemuck::cast_slice(queries));
-    let answered = gpu.storage("answers", queries.len() as u64 * 16).unwrap();
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[
-            storage_entry(0, stages, true),
-            storage_entry(1, stages, false),
-            uniform_entry(6, stages),
-            storage_entry(7, stages, true),
-        ],
-    });
-    let samples = area.samples();
-    let numbers = gpu.uniform("lighting", 16);
-    gpu.queue.write_buffer(&numbers, 0, bytemuck::bytes_of(&[0, samples, 0, 0]));
+    let asked = upload(gpu, "queries", queries).unwrap();
+    let answered = upload(gpu, "answers", &vec![[0.0_f32; 4]; queries.len()]).unwrap();
+    let numbers = upload(gpu, "lighting", &[0, area.samples(), 0, 0]).unwrap();
     let table = shading::ltc::Table::of(area.table().unwrap_or_default()).unwrap();
-    let looked_up = gpu.storage("table", table.as_bytes().len() as u64).unwrap();
-    gpu.queue.write_buffer(&looked_up, 0, table.as_bytes());
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &layout,
-        entries: &[entry(0, &asked), entry(1, &answered), entry(6, &numbers), entry(7, &looked_up)],
-    });
+    let looked_up = upload(gpu, "table", table.as_bytes()).unwrap();
     let shader = shading::lighting_shader()
         .module("package::evaluate", EVALUATE)
         .module("package::strategy", include_str!("../../../assign/src/shaders/everything.wesl"))
@@ -72,26 +54,16 @@ pub(crate) fn evaluate(
     let flags = area.flags().iter();
     let shader = flags.fold(shader, |shader, flag| shader.flag(flag, lights.kinds().areas));
     let module = shader.create(gpu, "package::evaluate").unwrap();
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(bindings.layout()), None, Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("evaluate"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    EncoderPasses { encoder: &mut encoder }.compute("evaluate", &mut |pass| {
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, bindings.bind_group(), &[]);
-        pass.set_bind_group(2, &group, &[]);
-        pass.dispatch_workgroups((queries.len() as u32).div_ceil(64), 1, 1);
-    });
-    gpu.queue.submit([encoder.finish()]);
-    bytemuck::pod_collect_to_vec(&gpu.read(&answered, queries.len() as u64 * 16).unwrap())
+    let groups = [
+        Bound::Group(bindings.layout(), bindings.bind_group().unwrap()),
+        Bound::Nothing,
+        Bound::Buffers(&[
+            (0, Slot::Read, &asked),
+            (1, Slot::Write, &answered),
+            (6, Slot::Uniform, &numbers),
+            (7, Slot::Read, &looked_up),
+        ]),
+    ];
+    run_kernel(gpu, &module, "evaluate", &groups, (queries.len() as u32).div_ceil(64));
+    download(gpu, &answered, queries.len()).unwrap()
 }

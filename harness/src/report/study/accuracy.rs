@@ -24,7 +24,7 @@ pub(super) fn accuracy(
         slug: "caps",
         title: "Culling error of capped lists",
         entries: entries(done, scene, "caps"),
-        errors: |record| &record.errors,
+        errors: |record| &record.image.errors,
         series,
         class: |record| record.strategy.class(),
         shape: |_| None,
@@ -57,15 +57,15 @@ pub(super) fn accuracy(
         slug: "ranges",
         title: "Error of the lights\u{2019} range",
         entries: entries(done, scene, "ranges"),
-        errors: |record| &record.unbounded_errors,
+        errors: |record| &record.image.unbounded_errors,
         series: |record| {
-            let cut = record.cut.as_deref().unwrap_or("windowed");
+            let cut = record.setting.cut.as_deref().unwrap_or("windowed");
             format!("{}, {cut}", record.strategy.family())
         },
         class: |record| record.strategy.class(),
-        shape: |record| Some(usize::from(record.cut.as_deref() == Some("hard"))),
+        shape: |record| Some(usize::from(record.setting.cut.as_deref() == Some("hard"))),
         name: |record| record.strategy.to_string(),
-        label: |record| record.threshold.map_or_else(String::new, |t| t.to_string()),
+        label: |record| record.setting.threshold.map_or_else(String::new, |t| t.to_string()),
         wanted: Wanted::Unbounded,
         time: "Assign + shade",
         first: FIRST,
@@ -93,7 +93,7 @@ pub(super) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
             .filter(|record| record.is_lossy == lossy)
             .filter(|record| record.assign_and_shade_ms().is_finite())
             .filter(|record| {
-                let error = record.errors.get("rel_mse").copied().flatten();
+                let error = record.image.errors.get("rel_mse").copied().flatten();
                 error.is_some_and(|error| match lossy {
                     true => error > 0.0 && error <= bound,
                     false => error == 0.0,
@@ -103,7 +103,7 @@ pub(super) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
     };
     let (lossy, lossless) = (fastest(true)?, fastest(false)?);
     let [time, exact] = [lossy, lossless].map(Record::assign_and_shade_ms);
-    let error = difference(lossy.errors.get("rel_mse").copied().flatten().unwrap_or(0.0));
+    let error = difference(lossy.image.errors.get("rel_mse").copied().flatten().unwrap_or(0.0));
     let is_faster = Ratio::of(lossy, lossless).is_some_and(|ratio| ratio.is_faster());
     Some(if is_faster {
         format!(

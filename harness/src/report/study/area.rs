@@ -101,7 +101,7 @@ pub(super) fn class(model: &str) -> String {
 
 /// A record's model of area lights; spots where it has none.
 pub(super) fn model(record: &Record) -> &str {
-    record.area_model.as_deref().unwrap_or(SPOTS)
+    record.setting.area_model.as_deref().unwrap_or(SPOTS)
 }
 
 /// A model's name with the dot of its colour.
@@ -111,14 +111,14 @@ pub(super) fn name(model: &str) -> Html {
 
 /// An error against the truth, where it is finite.
 fn error(record: &Record, id: &str) -> Option<f64> {
-    record.truth_errors.get(id).copied().flatten()
+    record.image.truth_errors.get(id).copied().flatten()
 }
 
 /// Errors and times of all models, and what each gets wrong.
 pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
-        all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
+        all.iter().filter(|entry| !entry.record.image.truth_errors.is_empty()).copied().collect();
     let truth = truth_of(done, scene).map(|(_, truth)| truth);
     let mut html = Html::default();
     if let (Some(truth), false) = (truth, known.is_empty()) {
@@ -134,7 +134,7 @@ pub(super) fn area(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Sh
         slug: "models",
         title: "Error of models against time",
         entries: known,
-        errors: |record| &record.truth_errors,
+        errors: |record| &record.image.truth_errors,
         series: |record| family(model(record)).to_owned(),
         class: |record| class(model(record)),
         shape: |_| None,
@@ -182,7 +182,7 @@ fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> Html {
     let mut rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
-            let mut row = vec![name(model(record)), significant(record.shade_ms).into()];
+            let mut row = vec![name(model(record)), significant(record.times.shade_ms).into()];
             row.extend(cells(&|id| error(record, id)));
             row
         })
@@ -228,20 +228,22 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let known: Vec<(&Record, f64)> = all
         .iter()
         .filter_map(|entry| Some((entry.record, error(entry.record, METRIC)?)))
-        .filter(|(record, _)| record.shade_ms.is_finite())
+        .filter(|(record, _)| record.times.shade_ms.is_finite())
         .collect();
-    let best = frontier(known.iter().map(|(record, error)| (record.shade_ms, *error)));
+    let best = frontier(known.iter().map(|(record, error)| (record.times.shade_ms, *error)));
     if best.is_empty() {
         return Vec::new();
     }
     let on: Vec<String> = best
         .iter()
-        .filter_map(|at| known.iter().find(|(record, error)| (record.shade_ms, *error) == *at))
+        .filter_map(|at| {
+            known.iter().find(|(record, error)| (record.times.shade_ms, *error) == *at)
+        })
         .map(|(record, error)| {
             format!(
                 "{} ({} ms, {})",
                 model(record),
-                significant(record.shade_ms),
+                significant(record.times.shade_ms),
                 difference(*error)
             )
         })
@@ -254,7 +256,7 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     if let (Some((table, error)), Some((polynomial, other))) = (of("ltc"), of("ltc-polynomial")) {
         found.push(format!(
             "In {scene} polynomials in place of the table take {} times as long, FLIP {} instead of {}.",
-            significant(polynomial.shade_ms / table.shade_ms),
+            significant(polynomial.times.shade_ms / table.times.shade_ms),
             difference(*other),
             difference(*error)
         ));
@@ -275,7 +277,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
             "Without noise, {} is nearest to the truth in {scene}: FLIP {} in {} ms.",
             model(record),
             difference(error),
-            significant(record.shade_ms)
+            significant(record.times.shade_ms)
         ))
     })
 }

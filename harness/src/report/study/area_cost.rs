@@ -12,7 +12,7 @@ use crate::results::Record;
 use crate::study::Done;
 
 fn shade(record: &Record) -> f64 {
-    record.shade_ms
+    record.times.shade_ms
 }
 
 /// The records of one model, with its name.
@@ -29,7 +29,7 @@ fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<ModelLine<'a>> {
         }
     }
     for (_, records) in &mut lines {
-        records.sort_by_key(|record| record.lights);
+        records.sort_by_key(|record| record.setting.lights);
     }
     lines
 }
@@ -71,7 +71,7 @@ fn times(done: &Done, scene: &str, lines: &[ModelLine<'_>]) -> Html {
     let counts = counts(&entries(done, scene, "cost"));
     let spots = lines.iter().find(|(own, _)| *own == SPOTS).map(|(_, records)| records);
     let at = |records: &[&Record], count: u64| {
-        records.iter().find(|record| record.lights == count).map(|record| shade(record))
+        records.iter().find(|record| record.setting.lights == count).map(|record| shade(record))
     };
     let slope = |records: &[&Record]| fit(records, shade).filter(|fit| fit.points > 2);
     let rows: Vec<Vec<Html>> = lines
@@ -112,7 +112,7 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let lines = by_model(done, scene);
     let at_most = |own: &str| {
         let records = &lines.iter().find(|(known, _)| *known == own)?.1;
-        records.last().map(|record| (record.lights, shade(record)))
+        records.last().map(|record| (record.setting.lights, shade(record)))
     };
     let sentence = || {
         let ((count, spots), (same, ltc)) = (at_most(SPOTS)?, at_most("ltc")?);

@@ -34,7 +34,7 @@ pub(super) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html 
     let mut shown: Vec<(String, Html)> = Vec::new();
     for entry in entries(done, scene, MODELS) {
         let Entry { job, record } = entry;
-        let raw = record.images.raw.as_deref();
+        let raw = record.image.files.raw.as_deref();
         let Some(image) = linear(done, &job.name, raw) else { continue };
         if (image.width, image.height) != (reference.width, reference.height) {
             continue;

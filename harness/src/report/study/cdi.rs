@@ -60,7 +60,7 @@ const STEPS: [Step; 6] = [
 fn steps(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, cdi::STEPS);
     let Some((record, vpls)) =
-        all.first().and_then(|entry| Some((entry.record, entry.record.vpls.as_ref()?)))
+        all.first().and_then(|entry| Some((entry.record, entry.record.setting.vpls.as_ref()?)))
     else {
         return Html::default();
     };
@@ -75,10 +75,10 @@ fn steps(done: &Done, scene: &str) -> Html {
             row(name, own.map(|(_, times)| times.median_ms).sum(), *paper)
         })
         .collect();
-    let scene_ms = record.passes.median_ms(Some(PassKind::Scene));
+    let scene_ms = record.times.passes.median_ms(Some(PassKind::Scene));
     rows.insert(2, row("render G-buffer", scene_ms, [1.3, 8.0]));
-    rows.push(row("build light grid", record.assign_ms, [0.7, 0.5]));
-    rows.push(row("apply lighting", record.shade_ms, [12.0, 6.1]));
+    rows.push(row("build light grid", record.times.assign_ms, [0.7, 0.5]));
+    rows.push(row("apply lighting", record.times.shade_ms, [12.0, 6.1]));
     let total = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     rows.push(row("total", total, [20.6, 43.5]));
     let ms = |head| unit(head, "ms");
@@ -87,9 +87,9 @@ fn steps(done: &Done, scene: &str) -> Html {
         "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
          paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding. A data-centre GPU \
          draws fragments on a few of its processors: what is rasterised is slow there as on no other chip.",
-        record.scene,
-        record.width,
-        record.height,
+        record.setting.scene,
+        record.setting.width,
+        record.setting.height,
         number(vpls.kept as f64),
         vpls.rsm_px,
         vpls.rsm_px,
@@ -203,23 +203,23 @@ fn strategies(done: &Done, scene: &str) -> Html {
     let text = format!(
         "{} virtual point lights at {} x {}, in the order of their map, from the list of all: lights of this frame \
          have no hierarchy.",
-        number(first.record.lights as f64),
-        first.record.width,
-        first.record.height
+        number(first.record.setting.lights as f64),
+        first.record.setting.width,
+        first.record.setting.height
     );
     let title = "Strategies under virtual point lights";
     part(scene, "vpl-strategies", title, &text, &table(title, &heads, &rows))
 }
 
 fn row_of(record: &Record) -> Vec<Html> {
-    let differing = record.differing_channels.map(|count| number(count as f64));
+    let differing = record.image.differing_channels.map(|count| number(count as f64));
     vec![
         name(&record.strategy),
         significant(record.assign_and_shade_ms()).into(),
-        significant(record.assign_ms).into(),
-        significant(record.shade_ms).into(),
+        significant(record.times.assign_ms).into(),
+        significant(record.times.shade_ms).into(),
         differing.unwrap_or_else(|| ABSENT.to_owned()).into(),
-        super::super::format::mebibytes(record.lists_bytes as f64).into(),
+        super::super::format::mebibytes(record.lists.bytes as f64).into(),
     ]
 }
 

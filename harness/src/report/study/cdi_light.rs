@@ -31,14 +31,14 @@ pub(super) const RULES: [(&str, &str, &str); 6] = [
 ];
 
 pub(super) fn rule(record: &Record) -> &'static str {
-    let ranges = record.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
+    let ranges = record.setting.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
     RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
 }
 
 /// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set
 /// otherwise by themselves.
 fn series(record: &Record) -> String {
-    let Some(vpls) = &record.vpls else { return String::new() };
+    let Some(vpls) = &record.setting.vpls else { return String::new() };
     let side = vpls.rsm_px;
     match vpls.ranges.as_str() {
         "random" => format!("random, {side}\u{b2}"),
@@ -50,7 +50,7 @@ fn series(record: &Record) -> String {
 
 fn class(record: &Record) -> String {
     let is_cast = |vpls: &Vpls| vpls.rays > 0 && !cdi::is_usual(vpls);
-    if record.vpls.as_ref().is_some_and(is_cast) {
+    if record.setting.vpls.as_ref().is_some_and(is_cast) {
         return "strategy-5".to_owned();
     }
     RULES
@@ -62,15 +62,15 @@ fn class(record: &Record) -> String {
 
 /// Everything that a frame takes: lights, lists and shading, ms. NaN where the clock was not steady.
 pub(super) fn total_ms(record: &Record) -> f64 {
-    if record.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
+    if record.setting.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
         return f64::NAN;
     }
-    record.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
+    record.setting.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
 }
 
 /// What is set otherwise than usual: `× 3`, `0.4 to 8 m`, `8 directions`.
 pub(super) fn setting(record: &Record) -> String {
-    let Some(vpls) = &record.vpls else { return String::new() };
+    let Some(vpls) = &record.setting.vpls else { return String::new() };
     let mut parts = Vec::new();
     match vpls.random_m {
         Some([low, high]) if low == high => parts.push(format!("{} m", significant(low))),
@@ -106,7 +106,7 @@ fn title(record: &Record) -> String {
 }
 
 pub(super) fn error(record: &Record) -> Option<f64> {
-    record.truth_errors.get(METRIC).copied().flatten().filter(|error| error.is_finite())
+    record.image.truth_errors.get(METRIC).copied().flatten().filter(|error| error.is_finite())
 }
 
 /// Errors, times and pictures.
@@ -118,7 +118,7 @@ pub(super) fn indirect(
 ) -> Html {
     let all = entries(done, scene, MODELS);
     let known: Vec<Entry<'_>> =
-        all.iter().filter(|entry| !entry.record.truth_errors.is_empty()).copied().collect();
+        all.iter().filter(|entry| !entry.record.image.truth_errors.is_empty()).copied().collect();
     let Some((_, truth)) = truth_of(done, scene) else { return Html::default() };
     if known.is_empty() {
         return Html::default();
@@ -128,17 +128,21 @@ pub(super) fn indirect(
         slug: "indirect",
         title: "Error of indirect light against time",
         entries: known,
-        errors: |record| &record.truth_errors,
+        errors: |record| &record.image.truth_errors,
         series,
         class,
         // A mark for each size of the map.
         shape: |record| {
-            let side = record.vpls.as_ref()?.rsm_px;
+            let side = record.setting.vpls.as_ref()?.rsm_px;
             [256, 128, 64, 512].iter().position(|known| *known == side)
         },
         name: title,
         label: |record| {
-            record.vpls.as_ref().map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
+            record
+                .setting
+                .vpls
+                .as_ref()
+                .map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
         },
         wanted: Wanted::Truth,
         time: "Lights, assign and shade",
@@ -175,7 +179,7 @@ fn errors_table(entries: &[Entry<'_>]) -> Html {
     let rows: Vec<Vec<Html>> = entries
         .iter()
         .map(|Entry { record, .. }| {
-            let vpls = record.vpls.as_ref();
+            let vpls = record.setting.vpls.as_ref();
             let of = |value: fn(&Vpls) -> f64| -> Html {
                 vpls.map_or_else(|| ABSENT.into(), |vpls| significant(value(vpls)).into())
             };
@@ -189,7 +193,7 @@ fn errors_table(entries: &[Entry<'_>]) -> Html {
                 significant(record.assign_and_shade_ms()).into(),
             ];
             let cell = |id: &str| {
-                let error = record.truth_errors.get(id).copied().flatten();
+                let error = record.image.truth_errors.get(id).copied().flatten();
                 Html::from(error.map_or_else(|| ABSENT.to_owned(), difference))
             };
             row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
@@ -217,7 +221,7 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Html {
         else {
             continue;
         };
-        let raw = record.images.raw.as_deref();
+        let raw = record.image.files.raw.as_deref();
         let Some(image) = linear(done, &job.name, raw) else { continue };
         let own = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
         let gain = GAIN * exposure as f32;

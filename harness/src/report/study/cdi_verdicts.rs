@@ -86,7 +86,11 @@ fn least<'a>(entries: impl Iterator<Item = Entry<'a>>) -> Option<Entry<'a>> {
 /// settings.
 pub(super) fn best_cast<'a>(entries: &[Entry<'a>]) -> Option<Entry<'a>> {
     let is_usual = |record: &Record| {
-        record.vpls.as_ref().is_some_and(|vpls| cdi::is_usual(vpls) && vpls.random_m.is_none())
+        record
+            .setting
+            .vpls
+            .as_ref()
+            .is_some_and(|vpls| cdi::is_usual(vpls) && vpls.random_m.is_none())
     };
     least(entries.iter().copied().filter(|entry| is_usual(entry.record)))
 }
@@ -104,7 +108,7 @@ fn parameter(vpls: &Vpls) -> f64 {
 /// Whether the best of a rule's sweep is its first or its last setting, `None` of fewer than three:
 /// then a better one may lie beyond.
 pub(super) fn is_at_end(entries: &[Entry<'_>], best: &Record) -> Option<bool> {
-    let own = best.vpls.as_ref()?;
+    let own = best.setting.vpls.as_ref()?;
     let of_sweep = |vpls: &&Vpls| {
         let deep =
             |vpls: &Vpls| vpls.deep.as_ref().map(|d| (d.build.clone(), d.directions(), d.size_px));
@@ -113,7 +117,8 @@ pub(super) fn is_at_end(entries: &[Entry<'_>], best: &Record) -> Option<bool> {
                 == (own.rays, own.is_reflected, own.is_corrected)
             && deep(vpls) == deep(own)
     };
-    let all = entries.iter().filter_map(|entry| entry.record.vpls.as_ref()).filter(of_sweep);
+    let all =
+        entries.iter().filter_map(|entry| entry.record.setting.vpls.as_ref()).filter(of_sweep);
     let values: Vec<f64> = all.map(parameter).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(0.0, f64::max);
@@ -129,7 +134,7 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let (Some(cast), Some((_, truth))) = (best_cast(&all), truth_of(done, scene)) else {
         return found;
     };
-    let (Some(own), Some(vpls)) = (error(cast.record), cast.record.vpls.as_ref()) else {
+    let (Some(own), Some(vpls)) = (error(cast.record), cast.record.setting.vpls.as_ref()) else {
         return found;
     };
     let noise = noise_of(truth);
@@ -156,9 +161,9 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
             }
         )
     };
-    let kept = |record: &Record| record.vpls.as_ref().map_or(0, |other| other.kept);
+    let kept = |record: &Record| record.setting.vpls.as_ref().map_or(0, |other| other.kept);
     let of_map = |record: &Record| {
-        record.vpls.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
+        record.setting.vpls.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
     };
     let random = named("random");
     let same_map = best(&all, random, of_map);
@@ -194,7 +199,7 @@ pub(super) fn quietest(done: &Done, scene: &str) -> Vec<String> {
 
 /// Whether a record's lights lack Fresnel's term: then its errors decide nothing.
 fn is_stale(record: &Record) -> bool {
-    record.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel)
+    record.setting.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel)
 }
 
 /// ` in 3.2 ms`; nothing where the clock was not steady.
@@ -208,9 +213,9 @@ pub(super) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let all = entries(done, scene, MODELS);
         let cast = best_cast(&all)?;
-        let candidates = cast.record.vpls.as_ref()?.candidates;
+        let candidates = cast.record.setting.vpls.as_ref()?.candidates;
         let random = best(&all, named("random"), |record| {
-            record.vpls.as_ref().is_some_and(|other| other.candidates == candidates)
+            record.setting.vpls.as_ref().is_some_and(|other| other.candidates == candidates)
         })?;
         let (own, theirs) = (error(cast.record)?, error(random.record)?);
         let (_, truth) = truth_of(done, scene)?;
@@ -306,7 +311,7 @@ pub(super) fn in_common(done: &Done) -> Option<String> {
 /// What the build of the deep images changes in the image: nothing in the paper.
 pub(super) fn by_build(entries: &[Entry<'_>]) -> Html {
     let of = |entry: &Entry<'_>| {
-        let vpls = entry.record.vpls.as_ref()?;
+        let vpls = entry.record.setting.vpls.as_ref()?;
         let errors = &vpls.build_errors;
         let cell = |id: &str| {
             let error = errors.get(id).copied().flatten();
@@ -330,7 +335,7 @@ pub(super) fn by_build(entries: &[Entry<'_>]) -> Html {
 /// and the share of pixels that differ by more than a twentieth.
 pub(super) fn image_by_build(done: &Done, scene: &str) -> Option<(f64, f64)> {
     entries(done, scene, MODELS).iter().find_map(|entry| {
-        let vpls = entry.record.vpls.as_ref()?;
+        let vpls = entry.record.setting.vpls.as_ref()?;
         let is_brute = vpls.deep.as_ref()?.build.starts_with("per-direction");
         let of = |id: &str| vpls.build_errors.get(id).copied().flatten();
         Some((of(METRIC)?, of("pixels_off")?)).filter(|_| is_brute)

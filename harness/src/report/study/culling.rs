@@ -24,7 +24,7 @@ const DEFERRED_CAUTION: &str = " This GPU runs fragment shaders on a few of its 
     shade there, the other methods in a compute pass.";
 
 fn frame(record: &Record) -> f64 {
-    record.frame_ms
+    record.times.frame_ms
 }
 
 /// A chart, the fits and the times of each mode.
@@ -73,7 +73,7 @@ fn times(entries: &[Entry<'_>]) -> Html {
         .map(|(id, records)| {
             let mut cells: Vec<Option<String>> = Vec::new();
             cells.extend(counts.iter().map(|count| {
-                let found = records.iter().find(|record| record.lights == *count);
+                let found = records.iter().find(|record| record.setting.lights == *count);
                 found.map(|record| significant(frame(record)))
             }));
             cells.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
@@ -102,13 +102,14 @@ fn times(entries: &[Entry<'_>]) -> Html {
 
 /// The error of a record against no culling; `None` where it was not compared.
 fn error(record: &Record) -> Option<String> {
-    let error = record.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control());
+    let error =
+        record.image.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control());
     error.map(significant)
 }
 
 /// A record's time, and its error where a knob loses light.
 fn said(record: &Record) -> String {
-    let time = format!("{} {} ms", record.strategy, significant(record.frame_ms));
+    let time = format!("{} {} ms", record.strategy, significant(record.times.frame_ms));
     match error(record).filter(|_| record.is_lossy) {
         Some(error) => format!("{time} (lossy, relMSE {error})"),
         None => time,
@@ -122,9 +123,11 @@ fn by_time<'a>(done: &'a Done, scene: &'a str, mode: &'a str) -> Vec<&'a Record>
     let mut records: Vec<&Record> = all
         .iter()
         .map(|entry| entry.record)
-        .filter(|r| Some(r.lights) == most && !r.is_control() && r.frame_ms.is_finite())
+        .filter(|r| {
+            Some(r.setting.lights) == most && !r.is_control() && r.times.frame_ms.is_finite()
+        })
         .collect();
-    records.sort_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms));
+    records.sort_by(|a, b| a.times.frame_ms.total_cmp(&b.times.frame_ms));
     records
 }
 
@@ -135,7 +138,7 @@ pub(super) fn findings(done: &Done, scene: &str) -> Vec<String> {
         let times: Vec<String> = records.iter().map(|record| said(record)).collect();
         Some(format!(
             "In {scene} at {}, {mode}, a frame takes, mean along the path: {}.",
-            lights(records.first()?.lights),
+            lights(records.first()?.setting.lights),
             listed(&times)
         ))
     };
@@ -150,12 +153,16 @@ pub(super) fn headline(done: &Done) -> Option<String> {
             let mut records = by_time(done, scene, mode);
             records.retain(|record| record.shows_no_loss());
             let first = *records.first()?;
-            let alike = |record: &&&Record| record.frame_ms <= first.frame_ms * (1.0 + ALIKE);
+            let alike =
+                |record: &&&Record| record.times.frame_ms <= first.times.frame_ms * (1.0 + ALIKE);
             let names: Vec<&str> =
                 records.iter().take_while(alike).map(|record| record.strategy.as_str()).collect();
             let verb = if names.len() > 1 { "tie" } else { "is fastest" };
-            let time = significant(first.frame_ms);
-            Some((first.lights, format!("{mode} {} {verb} ({time} ms a frame)", listed(&names))))
+            let time = significant(first.times.frame_ms);
+            Some((
+                first.setting.lights,
+                format!("{mode} {} {verb} ({time} ms a frame)", listed(&names)),
+            ))
         };
         let all: Vec<(u64, String)> = MODES.iter().filter_map(fastest).collect();
         let most = all.first()?.0;

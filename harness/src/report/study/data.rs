@@ -2,8 +2,8 @@
 
 use super::super::format::number;
 use crate::results::{Record, Results};
-use crate::study::{Done, Job};
 use crate::strategy::StrategyId;
+use crate::study::{Done, Job};
 
 /// A record with the job that it comes from.
 #[derive(Clone, Copy)]
@@ -26,14 +26,14 @@ pub(super) fn ranking<'a>(done: &'a Done, scene: &'a str) -> Vec<Entry<'a>> {
     let mut all = entries(done, scene, "path");
     let along = counts(&all);
     let still = entries(done, scene, "main").into_iter();
-    all.extend(still.filter(|entry| !along.contains(&entry.record.lights)));
+    all.extend(still.filter(|entry| !along.contains(&entry.record.setting.lights)));
     all
 }
 
 /// Poses along the path of which a record's times are means; 1 from a still camera.
 pub(super) fn poses(record: &Record) -> usize {
-    match record.along_path {
-        true => record.frames as usize / record.laps().max(1) as usize,
+    match record.setting.along_path {
+        true => record.times.frames as usize / record.laps().max(1) as usize,
         false => 1,
     }
 }
@@ -64,14 +64,14 @@ pub(super) fn lines<'a>(entries: &[Entry<'a>]) -> Vec<Line<'a>> {
         }
     }
     for (_, records) in &mut lines {
-        records.sort_by_key(|record| record.lights);
+        records.sort_by_key(|record| record.setting.lights);
     }
     lines
 }
 
 /// The counts of lights of records, ascending, each once.
 pub(super) fn counts(entries: &[Entry<'_>]) -> Vec<u64> {
-    let mut counts: Vec<u64> = entries.iter().map(|entry| entry.record.lights).collect();
+    let mut counts: Vec<u64> = entries.iter().map(|entry| entry.record.setting.lights).collect();
     counts.sort_unstable();
     counts.dedup();
     counts

@@ -53,7 +53,7 @@ pub(super) fn endless(
 /// What the camera sees.
 fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
     let key = case.entries.iter().find_map(|Entry { job, record }| {
-        shots.file(&job.name, record.images.baseline.as_deref()?)
+        shots.file(&job.name, record.image.files.baseline.as_deref()?)
     });
     let Some(key) = key else { return Html::default() };
     html!(
@@ -85,8 +85,10 @@ const HEADS: [(&str, &str); 15] = [
 
 /// The paper's table with ours.
 fn operations(case: &Case<'_>) -> Html {
-    let is_unbounded =
-        case.entries.iter().any(|entry| entry.record.unbounded_errors.contains_key("rel_mse"));
+    let is_unbounded = case
+        .entries
+        .iter()
+        .any(|entry| entry.record.image.unbounded_errors.contains_key("rel_mse"));
     let columns = HEADS.len() - usize::from(!is_unbounded);
     let head = |(head, of): &(&str, &str)| match *of {
         "" => Html::from(*head),
@@ -116,7 +118,7 @@ fn stands_for_the_paper(case: &Case<'_>, record: &Record) -> bool {
 }
 
 fn row(case: &Case<'_>, record: &Record) -> Vec<Html> {
-    let counted = record.operations.as_ref();
+    let counted = record.lists.operations.as_ref();
     let known = |value: Option<String>| value.unwrap_or_else(|| ABSENT.to_owned());
     let count = |value: Option<u64>| known(value.map(|value| number(value as f64)));
     let theirs = match stands_for_the_paper(case, record) {
@@ -145,24 +147,24 @@ fn row(case: &Case<'_>, record: &Record) -> Vec<Html> {
         count(evaluated.map(|all| all.diffuse + all.specular)).into(),
         count(counted.map(seen)).into(),
         known(loss(case, record)).into(),
-        ms(record.assign_ms, theirs.as_ref().map(|theirs| theirs.assign_ms)),
-        ms(record.shade_ms, theirs.as_ref().map(|theirs| theirs.shade_ms)),
+        ms(record.times.assign_ms, theirs.as_ref().map(|theirs| theirs.assign_ms)),
+        ms(record.times.shade_ms, theirs.as_ref().map(|theirs| theirs.shade_ms)),
         ms(
             record.assign_and_shade_ms(),
             theirs.as_ref().map(|theirs| theirs.assign_ms + theirs.shade_ms),
         ),
-        error(&record.errors, "rel_mse"),
-        error(&record.errors, "flip"),
-        error(&record.errors, "missing_energy"),
-        error(&record.unbounded_errors, "rel_mse"),
+        error(&record.image.errors, "rel_mse"),
+        error(&record.image.errors, "flip"),
+        error(&record.image.errors, "missing_energy"),
+        error(&record.image.unbounded_errors, "rel_mse"),
     ]
 }
 
 /// Terms that would be seen and that a lossy setting loses: a number, or the least that it may be.
 fn loss(case: &Case<'_>, record: &Record) -> Option<String> {
-    let position = case.position()?.operations.as_ref()?;
+    let position = case.position()?.lists.operations.as_ref()?;
     let (lost, may_be_more) =
-        lost(record.operations.as_ref().filter(|_| record.is_lossy)?, position);
+        lost(record.lists.operations.as_ref().filter(|_| record.is_lossy)?, position);
     let least = if may_be_more { "\u{2265} " } else { "" };
     Some(format!("{least}{}", number(lost as f64)))
 }
@@ -218,7 +220,7 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
     };
     if !leaders.iter().any(|record| std::ptr::eq(*record, position)) {
         text += &format!(", position alone {} ms", time(position));
-        if let (Some(own), Some(all)) = (&leader.operations, &position.operations) {
+        if let (Some(own), Some(all)) = (&leader.lists.operations, &position.lists.operations) {
             let fewer = 1.0 - own.listed() as f64 / all.listed().max(1) as f64;
             text += &format!(", with {} % fewer listed terms", percent(fewer));
         }
@@ -238,12 +240,12 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         );
     }
     if let Some(lossy) = fastest(usual(case).filter(|record| record.is_lossy)) {
-        let flip = lossy.errors.get("flip").copied().flatten();
+        let flip = lossy.image.errors.get("flip").copied().flatten();
         let flip =
             flip.map_or_else(String::new, |flip| format!(" with a FLIP of {}", significant(flip)));
         let (name, takes) = (setting(&lossy.strategy), takes(lossy));
         text += &format!("; {name} {takes} {} ms{flip}", time(lossy));
-        if let (Some(lost), Some(all)) = (loss(case, lossy), &position.operations) {
+        if let (Some(lost), Some(all)) = (loss(case, lossy), &position.lists.operations) {
             let all = number(seen(all) as f64);
             text += &format!("; of {all} terms that would be seen, {lost} are lost");
         }

@@ -20,7 +20,8 @@ pub(super) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Ht
         note: String::new(),
     };
     html += charts.bars(&slug("times"), &times);
-    let outer = case.position().and_then(|record| record.operations).map(|all| all.outer_specular);
+    let outer =
+        case.position().and_then(|record| record.lists.operations).map(|all| all.outer_specular);
     if let Some(all) = outer.filter(|all| *all > 0) {
         let share = |operations: &Operations| operations.outer_specular as f64 / all as f64 * 100.0;
         let title = "Outer specular operations, of those by position alone";
@@ -51,15 +52,15 @@ fn time(record: &Record) -> BarRow {
         name: setting(&record.strategy),
         class: String::new(),
         segments: vec![
-            part("assign", "pass-assign-0", record.assign_ms),
-            part("shade", "pass-shade-0", record.shade_ms),
+            part("assign", "pass-assign-0", record.times.assign_ms),
+            part("shade", "pass-shade-0", record.times.shade_ms),
         ],
         value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
         tip: format!(
             "{}\nassign {} ms\nshade {} ms",
             record.strategy,
-            significant(record.assign_ms),
-            significant(record.shade_ms)
+            significant(record.times.assign_ms),
+            significant(record.times.shade_ms)
         ),
     }
 }
@@ -73,7 +74,7 @@ fn counted(
     value: impl Fn(&Operations) -> f64,
 ) -> Option<BarChart> {
     let row = |record: &&Record| {
-        let value = value(record.operations.as_ref()?);
+        let value = value(record.lists.operations.as_ref()?);
         value.is_finite().then(|| BarRow {
             name: setting(&record.strategy),
             class: String::new(),

@@ -77,10 +77,13 @@ impl Order {
     /// Of the times of whole frames: by rounds or laps where both have them, else by the figures.
     pub(super) fn of_frames(record: &Record, other: &Record) -> Self {
         let times = [record, other].map(frame_rounds_ms);
-        let same = (record.along_path, record.frames) == (other.along_path, other.frames);
+        let same = (record.setting.along_path, record.times.frames)
+            == (other.setting.along_path, other.times.frames);
         match same {
-            true => Self::of_laps(&times[0], &times[1], [record.frame_ms, other.frame_ms]),
-            false => Self::of_figures(record.frame_ms, other.frame_ms),
+            true => {
+                Self::of_laps(&times[0], &times[1], [record.times.frame_ms, other.times.frame_ms])
+            }
+            false => Self::of_figures(record.times.frame_ms, other.times.frame_ms),
         }
     }
 
@@ -102,10 +105,10 @@ impl Order {
 /// The whole frame of each round, ms: the mean of a lap along the path, the median of a round from a still
 /// camera.
 fn frame_rounds_ms(record: &Record) -> Vec<f64> {
-    let frames = record.passes.per_frame_ms(None);
-    let rounds = if record.along_path { record.laps() } else { record.rounds };
+    let frames = record.times.passes.per_frame_ms(None);
+    let rounds = if record.setting.along_path { record.laps() } else { record.times.rounds };
     let length = frames.len().div_ceil(rounds.max(1) as usize).max(1);
-    let time = if record.along_path { mean } else { median };
+    let time = if record.setting.along_path { mean } else { median };
     frames.chunks(length).map(time).collect()
 }
 

@@ -37,14 +37,15 @@ fn rankings(done: &Done, scene: &str) -> Vec<Results> {
 
 /// The records at a count of lights.
 fn at<'a>(entries: &[Entry<'a>], lights: u64) -> Vec<Entry<'a>> {
-    entries.iter().filter(|entry| entry.record.lights == lights).copied().collect()
+    entries.iter().filter(|entry| entry.record.setting.lights == lights).copied().collect()
 }
 
 /// The still comparisons that stand beside a ranking along the path: examples.
 fn examples(done: &Done, scene: &str) -> Vec<Results> {
     let still = entries(done, scene, "main");
-    let along = |results: &&Results| results.records.iter().any(|record| record.along_path);
-    let example = |results: &Results| merged(done, &at(&still, results.records.first()?.lights));
+    let along = |results: &&Results| results.records.iter().any(|record| record.setting.along_path);
+    let example =
+        |results: &Results| merged(done, &at(&still, results.records.first()?.setting.lights));
     rankings(done, scene).iter().filter(along).filter_map(example).collect()
 }
 
@@ -91,7 +92,7 @@ fn panel(
     let comparison = comparison(results)?;
     let first = comparison.first();
     let most = comparison.records.iter().map(|(_, r)| *r).max_by_key(|r| poses(r))?;
-    let count = first.lights;
+    let count = first.setting.lights;
     let lights = format!("{} lights", number(count as f64));
     let title = format!("{lights}, {}", stand(most));
     let classes: BTreeMap<&str, String> =
@@ -135,6 +136,7 @@ fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarC
 
 fn bar(record: &Record, classes: &BTreeMap<&str, String>) -> BarRow {
     let billed = record
+        .times
         .passes
         .iter()
         .filter(|(_, times)| [PassKind::Assign, PassKind::Shade].contains(&times.kind));
@@ -142,7 +144,7 @@ fn bar(record: &Record, classes: &BTreeMap<&str, String>) -> BarRow {
         .map(|(name, times)| Segment {
             name: name.to_owned(),
             class: classes.get(name).cloned().unwrap_or_default(),
-            value: if record.along_path { mean(&times.samples) } else { times.median_ms },
+            value: if record.setting.along_path { mean(&times.samples) } else { times.median_ms },
         })
         .collect();
     let parts: String = segments
@@ -170,7 +172,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = comparison.ranks();
     let lead = Lead::of_comparison(comparison)?;
     let leader = lead.leader();
-    let lights = super::super::finding::lights(comparison.first().lights);
+    let lights = super::super::finding::lights(comparison.first().setting.lights);
     let time = match lead.is_tie() {
         true => {
             let times = span(&lead.records, |record| Some(record.assign_and_shade_ms()));
@@ -222,7 +224,7 @@ pub(super) fn headline(done: &Done) -> Option<String> {
         let Some(lead) = Lead::of_comparison(&comparison).map(|lead| lead.headline()) else {
             continue;
         };
-        most = most.max(Some(comparison.first().lights));
+        most = most.max(Some(comparison.first().setting.lights));
         match leads.iter_mut().find(|(known, _)| *known == lead) {
             Some((_, scenes)) => scenes.push(scene),
             None => leads.push((lead, vec![scene])),
@@ -240,7 +242,7 @@ pub(super) fn ties(done: &Done, scene: &str) -> Vec<String> {
     let said = |results: &Results| {
         let comparison = comparison(results)?;
         let tie = tie(&comparison.ranks())?;
-        let lights = super::super::finding::lights(comparison.first().lights);
+        let lights = super::super::finding::lights(comparison.first().setting.lights);
         Some(format!("{scene}, {lights}: {tie}."))
     };
     rankings(done, scene).iter().filter_map(said).collect()

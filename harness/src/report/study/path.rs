@@ -55,7 +55,7 @@ pub(super) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let mut shown: Vec<(String, Html)> = Vec::new();
     for count in counts(&all).into_iter().rev() {
         let own: Vec<Entry<'_>> =
-            all.iter().filter(|entry| entry.record.lights == count).copied().collect();
+            all.iter().filter(|entry| entry.record.setting.lights == count).copied().collect();
         let title = format!("Pose by pose, {} lights", number(count as f64));
         let body = charts.xy(&format!("{scene}-path-{count}"), &chart(title.clone(), &own))
             + spreads(&title, &own);

@@ -19,7 +19,7 @@ pub(super) type Time = fn(&Record) -> f64;
 /// The straight line through the times of a strategy.
 pub(super) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
     let points: Vec<(f64, f64)> =
-        records.iter().map(|record| (record.lights as f64, time(record))).collect();
+        records.iter().map(|record| (record.setting.lights as f64, time(record))).collect();
     Fit::through(&points)
 }
 
@@ -51,7 +51,8 @@ impl Straight {
 /// How straight times are: through the line that takes every count's relative distance alike, so that
 /// the greatest counts do not decide alone. `None` of fewer than four counts.
 pub(super) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
-    let points: Vec<(f64, f64)> = records.iter().map(|r| (r.lights as f64, time(r))).collect();
+    let points: Vec<(f64, f64)> =
+        records.iter().map(|r| (r.setting.lights as f64, time(r))).collect();
     let worst = |points: &[(f64, f64)]| Fit::relative(points).map(|fit| fit.worst(points));
     if points.len() < FEWEST {
         return None;
@@ -112,7 +113,7 @@ pub(super) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
 /// What the points of a chart are: means along the path, or medians of one pose.
 fn stands(entries: &[Entry<'_>]) -> String {
     match entries.iter().map(|entry| entry.record).max_by_key(|record| poses(record)) {
-        Some(record) if record.along_path => {
+        Some(record) if record.setting.along_path => {
             format!("Points are means of {} along the path.", stand(record))
         }
         _ => "Points are medians from one pose.".to_owned(),
@@ -146,7 +147,8 @@ pub(super) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyC
         let line = fit(records, time).filter(|fit| fit.points > 2);
         let ends = (records.first(), records.last());
         if let (Some(line), (Some(first), Some(last))) = (line, ends) {
-            let (low, high) = (first.lights.max(1) as f64, last.lights.max(1) as f64);
+            let (low, high) =
+                (first.setting.lights.max(1) as f64, last.setting.lights.max(1) as f64);
             let at = |step: u32| low * (high / low).powf(f64::from(step) / f64::from(STEPS));
             let points = (0..=STEPS)
                 .map(at)
@@ -196,9 +198,9 @@ pub(super) fn times_series(
 pub(super) fn points(name: &str, records: &[&Record], time: Time) -> Vec<Point> {
     let point = |record: &&Record| {
         let y = time(record);
-        let lights = number(record.lights as f64);
+        let lights = number(record.setting.lights as f64);
         Point {
-            x: record.lights as f64,
+            x: record.setting.lights as f64,
             y,
             y_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
             tip: format!("{name}\n{lights} lights\n{} ms", significant(y)),
@@ -225,7 +227,7 @@ fn fits_table(entries: &[Entry<'_>]) -> Html {
                 |[low, high]| format!("{} to {}", number(low as f64), number(high as f64)),
             ),
         ]);
-        let parts: [Time; 2] = [|record| record.assign_ms, |record| record.shade_ms];
+        let parts: [Time; 2] = [|record| record.times.assign_ms, |record| record.times.shade_ms];
         for time in parts {
             let is_there = records.iter().any(|record| time(record) != 0.0);
             let fit = fit(&records, time).filter(|_| is_there);
@@ -277,7 +279,8 @@ fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
         if own.is_empty() {
             continue;
         }
-        let from = |entry: &&Entry<'_>| section == "growing" || Some(entry.record.lights) == most;
+        let from =
+            |entry: &&Entry<'_>| section == "growing" || Some(entry.record.setting.lights) == most;
         let known = |entry: &&Entry<'_>| {
             own.iter().any(|other| other.record.strategy == entry.record.strategy)
         };
@@ -305,7 +308,7 @@ fn radii(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, "radii");
     let mut kinds: Vec<&str> = Vec::new();
     for entry in &all {
-        let kind = entry.record.radii.as_deref().unwrap_or("unknown");
+        let kind = entry.record.setting.radii.as_deref().unwrap_or("unknown");
         if !kinds.contains(&kind) {
             kinds.push(kind);
         }
@@ -314,7 +317,8 @@ fn radii(done: &Done, scene: &str) -> Html {
         .into_iter()
         .map(|(id, records)| {
             let of = |kind: &str| {
-                let found = records.iter().find(|record| record.radii.as_deref() == Some(kind));
+                let found =
+                    records.iter().find(|record| record.setting.radii.as_deref() == Some(kind));
                 found.map(|record| record.assign_and_shade_ms())
             };
             let cell = |kind: &&str| match (of(kind), of("gamma")) {

@@ -62,7 +62,7 @@ impl<'a> Shots<'a> {
     /// Keeps the pictures of a record; the key by which the page opens them, where there are any.
     pub(super) fn keep(&mut self, entry: Entry<'_>, wanted: Wanted) -> Option<String> {
         let Entry { job, record } = entry;
-        let images = &record.images;
+        let images = &record.image.files;
         let image = match wanted {
             // Under the exposure of the truth, as the truth itself.
             Wanted::Truth => {
@@ -91,24 +91,24 @@ impl<'a> Shots<'a> {
         };
         let key = format!("{}:{}", job.name, record.strategy);
         let errors = match wanted {
-            Wanted::Pair => &record.errors,
-            Wanted::Unbounded => &record.unbounded_errors,
-            Wanted::Truth => &record.truth_errors,
+            Wanted::Pair => &record.image.errors,
+            Wanted::Unbounded => &record.image.unbounded_errors,
+            Wanted::Truth => &record.image.truth_errors,
         };
         let name = match wanted {
-            Wanted::Truth => record.area_model.as_deref().unwrap_or(&record.strategy),
+            Wanted::Truth => record.setting.area_model.as_deref().unwrap_or(&record.strategy),
             _ => record.strategy.as_str(),
         };
         let shot = json!({
-            "scene": record.scene,
+            "scene": record.setting.scene,
             "strategy": name,
-            "width": record.width,
-            "height": record.height,
-            "differing_channels": record.differing_channels,
-            "max_abs_diff": record.max_abs_diff,
+            "width": record.setting.width,
+            "height": record.setting.height,
+            "differing_channels": record.image.differing_channels,
+            "max_abs_diff": record.image.max_abs_diff,
             "both_ms": record.assign_and_shade_ms(),
             "errors": errors,
-            "threshold": record.threshold,
+            "threshold": record.setting.threshold,
             "reference": text,
             "images": {
                 "image": image,

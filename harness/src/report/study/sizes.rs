@@ -103,20 +103,20 @@ fn bars(family: &str, records: &[&Record]) -> BarChart {
                 Segment {
                     name: "assign".to_owned(),
                     class: "pass-assign-0".to_owned(),
-                    value: record.assign_ms,
+                    value: record.times.assign_ms,
                 },
                 Segment {
                     name: "shade".to_owned(),
                     class: "pass-shade-0".to_owned(),
-                    value: record.shade_ms,
+                    value: record.times.shade_ms,
                 },
             ],
             value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
             tip: format!(
                 "{}\nassign {} ms\nshade {} ms",
                 record.strategy,
-                significant(record.assign_ms),
-                significant(record.shade_ms)
+                significant(record.times.assign_ms),
+                significant(record.times.shade_ms)
             ),
         })
         .collect();
@@ -147,7 +147,8 @@ fn tests_table(done: &Done, scene: &str) -> Html {
         .iter()
         .map(|union| {
             let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
-                let found = records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
+                let found =
+                    records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
                 found.map_or_else(
                     || ABSENT.into(),
                     |record| {

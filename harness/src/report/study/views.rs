@@ -70,11 +70,12 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html 
     let mut figures = Html::default();
     for entry in entries {
         let record = entry.record;
-        let heat = record.images.heat_map.as_deref();
+        let heat = record.image.files.heat_map.as_deref();
         let Some(picture) = heat.and_then(|heat| shots.file(&entry.job.name, heat)) else {
             continue;
         };
         let listed = record
+            .lists
             .listed_per_sample
             .map_or_else(String::new, |listed| format!("; {} lights a pixel", significant(listed)));
         figures += html!(
@@ -83,11 +84,11 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html 
             picture,
             record.strategy.short(),
             view(entry),
-            record.width,
-            record.height,
+            record.setting.width,
+            record.setting.height,
             listed,
-            significant(record.assign_ms),
-            significant(record.shade_ms),
+            significant(record.times.assign_ms),
+            significant(record.times.shade_ms),
         );
     }
     match figures.is_empty() {
@@ -99,11 +100,15 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html 
 /// The lists that histograms count: those of all groups, as in the comparison paper, or in older results
 /// those that a pixel reads.
 fn lengths(record: &Record) -> &[u64] {
-    if record.all_groups.is_empty() { &record.histogram } else { &record.all_groups }
+    if record.lists.all_groups.is_empty() {
+        &record.lists.histogram
+    } else {
+        &record.lists.all_groups
+    }
 }
 
 fn counted(entries: &[Entry<'_>]) -> &'static str {
-    match entries.iter().all(|entry| entry.record.all_groups.is_empty()) {
+    match entries.iter().all(|entry| entry.record.lists.all_groups.is_empty()) {
         true => "groups that some pixel reads",
         false => "all groups with lights",
     }
@@ -138,7 +143,7 @@ fn histogram(record: &Record, view: &str) -> Histogram {
     };
     // Most cells of a dense grid hold no light: their bar would hide all others.
     let lengths = lengths(record);
-    let without = usize::from(!record.all_groups.is_empty());
+    let without = usize::from(!record.lists.all_groups.is_empty());
     let note = match lengths.first().filter(|_| without > 0) {
         Some(empty) => format!("{} groups hold no light", number(*empty as f64)),
         None => String::new(),

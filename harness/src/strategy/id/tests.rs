@@ -60,13 +60,18 @@ fn short_names_say_what_differs_from_the_paper() {
         ("T-I/hs+sat-e", "T-I", None),
         ("SC-I/48x48x40/hs", "SC-I", None),
     ] {
-        assert_eq!((id(given).short().as_str(), id(given).stand_in()), (short, stand_in), "{given}");
+        assert_eq!(
+            (id(given).short().as_str(), id(given).stand_in()),
+            (short, stand_in),
+            "{given}"
+        );
     }
 }
 
 #[test]
 fn only_the_comparison_papers_strategies_are_counted_as_its_own() {
-    for of_the_paper in ["T-I", "T-I/hs", "T-E", "DC-I", "DC-E", "SC-I", "SC-E", "G", "G/supports", "M"]
+    for of_the_paper in
+        ["T-I", "T-I/hs", "T-E", "DC-I", "DC-E", "SC-I", "SC-E", "G", "G/supports", "M"]
     {
         assert!(id(of_the_paper).is_of_the_paper(), "{of_the_paper}");
     }
@@ -99,7 +104,10 @@ fn knobs_make_an_id_lossy() {
 fn ids_of_other_programs_keep_their_text() {
     let other = StrategyId::read("Their-Way/64/bvh/Cap16");
     assert_eq!((other.as_str(), other.family()), ("Their-Way/64/bvh/Cap16", "Their-Way"));
-    assert_eq!((other.row().map(|row| row.family), other.class().as_str()), (None, "strategy-none"));
+    assert_eq!(
+        (other.row().map(|row| row.family), other.class().as_str()),
+        (None, "strategy-none")
+    );
     assert_eq!((other.size(), other.is_bvh(), other.short().as_str()), ("64", true, "Their-Way"));
     assert_eq!(other.knob().as_deref(), Some("cap16"));
     assert!(!other.is_of_the_paper() && other.role().is_none());

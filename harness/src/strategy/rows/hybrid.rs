@@ -1,6 +1,6 @@
-//! The grid of hybrid lighting (`assign-cdi`).
+//! The grid of hybrid lighting (`assign-clustered`).
 
-use assign_cdi::HybridGrid;
+use assign_clustered::HybridGrid;
 
 use super::super::{Axis, Colour, Method, Role, Row, Sizes, row::NEEDS_DEPTH};
 use super::clusters::FEW;
@@ -11,7 +11,7 @@ pub(super) const ROWS: &[Row] = &[Row {
     about: "lights add themselves to the clusters that hold samples",
     role: Role::OtherPaper,
     source: "Archer 2019, section 3.2",
-    krate: "assign-cdi",
+    krate: "assign-clustered",
     parameters: &["tile_width_px", "tile_height_px", "slices"],
     default: "48x48x40",
     axes: &[Axis::Cap, Axis::Reuse, Axis::Exit],

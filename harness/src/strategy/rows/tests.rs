@@ -79,7 +79,11 @@ fn rows_are_complete() {
         assert!(row.has_groups || row.axes.is_empty(), "{family}");
         assert!(row.parameters.is_empty() == row.sizes.few.is_empty(), "{family}: sizes to search");
         assert!(!row.sizes.few.contains(&row.default), "{family}: advice has measured the default");
-        assert!(row.parameters.is_empty() || row.default.is_empty() || row.sizes.many.contains(&row.default));
+        assert!(
+            row.parameters.is_empty()
+                || row.default.is_empty()
+                || row.sizes.many.contains(&row.default)
+        );
         for refusal in row.refuses {
             assert!(!refusal.modes.is_empty() && !refusal.why.is_empty(), "{family}");
         }

@@ -62,7 +62,7 @@ pub(super) fn of_model<'a>(done: &'a Done, scene: &'a str, wanted: &str) -> Opti
 
 /// An error of a model against the truth.
 pub(super) fn error_of(done: &Done, scene: &str, wanted: &str, metric: &str) -> Option<f64> {
-    of_model(done, scene, wanted)?.truth_errors.get(metric).copied().flatten()
+    of_model(done, scene, wanted)?.image.truth_errors.get(metric).copied().flatten()
 }
 
 /// Numbers of samples of a family of models, ascending, with an error of each.
@@ -72,7 +72,7 @@ fn by_samples(done: &Done, scene: &str, family: &str, metric: &str) -> Vec<(u32,
         .iter()
         .filter_map(|entry| {
             let (name, samples) = model(entry.record).split_once(':')?;
-            let error = entry.record.truth_errors.get(metric).copied().flatten()?;
+            let error = entry.record.image.truth_errors.get(metric).copied().flatten()?;
             (name == family).then_some((samples.parse().ok()?, error))
         })
         .collect();
@@ -100,9 +100,9 @@ const BALLS: Check = Check {
                 continue;
             }
             let outline = all.iter().map(|entry| entry.record).find(|r| r.strategy == id);
-            let Some(outline) = outline.filter(|record| record.list_entries > 0) else { continue };
+            let Some(outline) = outline.filter(|record| record.lists.entries > 0) else { continue };
             count += 1;
-            good += usize::from(ball.list_entries > outline.list_entries);
+            good += usize::from(ball.lists.entries > outline.lists.entries);
             let time = Ratio::of(ball, outline).map_or_else(String::new, |ratio| {
                 let tie = if ratio.is_tie() { " (a tie)" } else { "" };
                 format!(", \u{d7} {} in assign + shade{tie}", significant(ratio.median))
@@ -110,7 +110,7 @@ const BALLS: Check = Check {
             figures.push(format!(
                 "{} by spheres: \u{d7} {} list entries{time}",
                 outline.strategy.short(),
-                significant(ball.list_entries as f64 / outline.list_entries as f64)
+                significant(ball.lists.entries as f64 / outline.lists.entries as f64)
             ));
         }
         if count == 0 {

@@ -18,12 +18,16 @@ pub(super) fn at<'a>(
 ) -> Option<&'a Record> {
     let all = entries(done, scene, "cost");
     let mut records = all.iter().map(|entry| entry.record);
-    records.find(|record| model(record) == wanted && record.lights == lights)
+    records.find(|record| model(record) == wanted && record.setting.lights == lights)
 }
 
 /// A frame and its shading, ms.
 pub(super) fn time(record: &Record) -> String {
-    format!("{} ms (shading {})", significant(record.frame_ms), significant(record.shade_ms))
+    format!(
+        "{} ms (shading {})",
+        significant(record.times.frame_ms),
+        significant(record.times.shade_ms)
+    )
 }
 
 /// Which of two records is faster.
@@ -97,17 +101,18 @@ pub(super) const MRP_GAIN: Check = Check {
         for (lights, least) in GAINS {
             let of = |name| at(done, scene, name, lights);
             let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else { continue };
-            let gain = 1.0 - mrp.frame_ms / ltc.frame_ms;
-            let shading = 1.0 - mrp.shade_ms / ltc.shade_ms;
+            let gain = 1.0 - mrp.times.frame_ms / ltc.times.frame_ms;
+            let shading = 1.0 - mrp.times.shade_ms / ltc.times.shade_ms;
             let mut figure = format!(
                 "{lights} lights: frame {} % less ({} and {} ms), shading {} % less",
                 percent(gain),
-                significant(mrp.frame_ms),
-                significant(ltc.frame_ms),
+                significant(mrp.times.frame_ms),
+                significant(ltc.times.frame_ms),
                 percent(shading)
             );
             if let Some(own) = of("mrp") {
-                figure += &format!(", mrp {} %", percent(1.0 - own.shade_ms / ltc.shade_ms));
+                figure +=
+                    &format!(", mrp {} %", percent(1.0 - own.times.shade_ms / ltc.times.shade_ms));
             }
             figures.push(figure);
             parts.push((faster(mrp, ltc), gain >= least));
@@ -191,13 +196,13 @@ pub(super) const SPOTS_RATIO: Check = Check {
         for lights in [16, 64] {
             let of = |name| at(done, scene, name, lights);
             let (Some(ltc), Some(spots)) = (of("ltc"), of(SPOTS)) else { continue };
-            let ratio = ltc.frame_ms / spots.frame_ms;
+            let ratio = ltc.times.frame_ms / spots.times.frame_ms;
             count += 1;
             good += usize::from(ABOUT_TWICE.contains(&ratio));
             figures.push(format!(
                 "{lights} lights: frames \u{d7} {}, shading \u{d7} {}",
                 significant(ratio),
-                significant(ltc.shade_ms / spots.shade_ms)
+                significant(ltc.times.shade_ms / spots.times.shade_ms)
             ));
         }
         if count == 0 {

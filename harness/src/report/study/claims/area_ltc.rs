@@ -159,7 +159,7 @@ pub(super) const SPLITTING_COST: Check = Check {
             .filter_map(|lights| {
                 let split = at(done, scene, "ltc", lights)?;
                 let unsplit = at(done, scene, "ltc-unsplit", lights)?;
-                Some((lights, split.shade_ms / unsplit.shade_ms))
+                Some((lights, split.times.shade_ms / unsplit.times.shade_ms))
             })
             .collect();
         if pairs.is_empty() {

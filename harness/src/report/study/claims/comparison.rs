@@ -304,7 +304,7 @@ fn bounds(done: &Done, scene: &str) -> Answer {
     let is_weak = done.results.values().any(|results| results.machine.weak_raster().is_some());
     let mark = if is_weak { format!(" {MARK}") } else { String::new() };
     let mut pairs = Pairs::default();
-    let has_depth = scaling.iter().any(|entry| entry.record.passes.get("depth").is_some());
+    let has_depth = scaling.iter().any(|entry| entry.record.times.passes.get("depth").is_some());
     let mut figures = Vec::new();
     for group in ["T", "DC", "SC"] {
         for bvh in [false, true] {

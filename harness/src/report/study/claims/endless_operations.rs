@@ -14,7 +14,7 @@ const NEAR: f64 = 0.1;
 
 /// The share of outer specular operations that a setting leaves out of those by position.
 fn left_out(record: &Record, position: &Record) -> Option<f64> {
-    let outer = |record: &Record| record.operations.map(|all| all.outer_specular as f64);
+    let outer = |record: &Record| record.lists.operations.map(|all| all.outer_specular as f64);
     let (own, all) = (outer(record)?, outer(position)?);
     (all > 0.0).then(|| 1.0 - own / all)
 }
@@ -54,8 +54,10 @@ pub(super) fn growth(done: &Done, scene: &str) -> Answer {
     const PAPERS: f64 = 0.54;
     let (mut figures, mut judged) = (Vec::new(), None);
     for case in cases(done, scene) {
-        let Some(all) = case.position().and_then(|record| record.operations) else { continue };
-        let dif = case.find(|s| s.cut == Cut::Diffuse).and_then(|record| record.operations);
+        let Some(all) = case.position().and_then(|record| record.lists.operations) else {
+            continue;
+        };
+        let dif = case.find(|s| s.cut == Cut::Diffuse).and_then(|record| record.lists.operations);
         let inner = dif.map_or(2 * all.diffuse, |dif| dif.listed());
         let growth = all.listed() as f64 / inner.max(1) as f64 - 1.0;
         figures.push(format!("{}: {} % more", case.name(), percent(growth)));
@@ -74,7 +76,7 @@ pub(super) fn growth(done: &Done, scene: &str) -> Answer {
 
 /// Listed terms over those of them that would be seen.
 fn waste(record: &Record) -> Option<f64> {
-    let operations = record.operations.as_ref()?;
+    let operations = record.lists.operations.as_ref()?;
     Some(operations.listed() as f64 / seen(operations).max(1) as f64)
 }
 
@@ -98,7 +100,7 @@ pub(super) fn in_vain(done: &Done, scene: &str) -> Answer {
 
 /// The share of terms that would be seen and that cones lose.
 fn lost_share(record: &Record, position: &Operations) -> Option<f64> {
-    let own = record.operations?;
+    let own = record.lists.operations?;
     own.perceptible_listed?;
     Some(lost(&own, position).0 as f64 / seen(position).max(1) as f64)
 }
@@ -106,7 +108,7 @@ fn lost_share(record: &Record, position: &Operations) -> Option<f64> {
 /// The paper's cones lose 6 and 9 % of the terms that would be seen.
 pub(super) fn seen_lost(done: &Done, scene: &str) -> Answer {
     by_case(done, scene, true, &|_, rows| {
-        let position = rows.position.operations?;
+        let position = rows.position.lists.operations?;
         let shares = shares(rows, |record| lost_share(record, &position));
         let of = |wanted: u32| shares.iter().find(|(count, _)| *count == wanted).map(|(_, s)| *s);
         let (few, many) = (of(24)?, of(54)?);
@@ -157,7 +159,7 @@ pub(super) fn inner(done: &Done, scene: &str) -> Answer {
 }
 
 fn flip(record: &Record) -> Option<f64> {
-    record.errors.get("flip").copied().flatten()
+    record.image.errors.get("flip").copied().flatten()
 }
 
 /// 6 cones by the paper's test lose more than 24 and 54 do.

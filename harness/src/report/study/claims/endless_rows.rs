@@ -134,7 +134,7 @@ pub(super) fn told(record: &Record) -> String {
 
 /// ` (FLIP 0.106)` of a setting that loses something.
 pub(super) fn error(record: &Record) -> String {
-    match record.errors.get("flip").copied().flatten() {
+    match record.image.errors.get("flip").copied().flatten() {
         Some(flip) if record.is_lossy => format!(" (FLIP {})", significant(flip)),
         _ => String::new(),
     }

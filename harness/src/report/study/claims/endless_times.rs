@@ -69,8 +69,8 @@ const HALVED: f64 = 0.7;
 pub(super) fn shading(done: &Done, scene: &str) -> Answer {
     by_case(done, scene, false, &|_, rows| {
         let cones = rows.cones(54)?;
-        let share = cones.shade_ms / rows.position.shade_ms;
-        let times = [cones, rows.position].map(|record| significant(record.shade_ms));
+        let share = cones.times.shade_ms / rows.position.times.shade_ms;
+        let times = [cones, rows.position].map(|record| significant(record.times.shade_ms));
         let figure = format!(
             "\u{d7} {}, {} of {} ms{}",
             significant(share),
@@ -88,8 +88,8 @@ const FOUR_TIMES: std::ops::RangeInclusive<f64> = 3.0..=5.0;
 pub(super) fn assignment(done: &Done, scene: &str) -> Answer {
     by_case(done, scene, false, &|_, rows| {
         let (few, many) = (rows.cones(6)?, rows.cones(24)?);
-        let ratio = many.assign_ms / few.assign_ms;
-        let times = [few, many].map(|record| significant(record.assign_ms));
+        let ratio = many.times.assign_ms / few.times.assign_ms;
+        let times = [few, many].map(|record| significant(record.times.assign_ms));
         let figure = format!("\u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
         Some((figure, Outcome::good_if(FOUR_TIMES.contains(&ratio))))
     })
@@ -116,8 +116,8 @@ pub(super) fn sixteenfold(done: &Done, scene: &str) -> Answer {
         if few.lights == many.lights {
             continue;
         }
-        let ratio = all.shade_ms / one.shade_ms;
-        let times = [one, all].map(|record| significant(record.shade_ms));
+        let ratio = all.times.shade_ms / one.times.shade_ms;
+        let times = [one, all].map(|record| significant(record.times.shade_ms));
         let name = place.to_uppercase();
         figures.push(format!(
             "{name}: \u{d7} {}, {} to {} ms",
@@ -156,13 +156,13 @@ pub(super) fn without(done: &Done, scene: &str) -> Answer {
         Some((case, case.none()?, culled))
     });
     let Some((case, none, culled)) = found else { return Answer::unknown("no culling") };
-    let ratio = none.frame_ms / culled.frame_ms;
+    let ratio = none.times.frame_ms / culled.times.frame_ms;
     let figure = format!(
         "{}: \u{d7} {}, {} ms; by {} ms",
         case.name(),
         significant(ratio),
-        significant(none.frame_ms),
-        [setting(&culled.strategy), significant(culled.frame_ms)].join(" ")
+        significant(none.times.frame_ms),
+        [setting(&culled.strategy), significant(culled.times.frame_ms)].join(" ")
     );
     Answer { figure, verdict: Verdict::of_parts(usize::from(ratio >= WITHOUT), 1, "cases") }
 }
@@ -175,8 +175,8 @@ pub(super) fn far(done: &Done, scene: &str) -> Answer {
     let (Some(near), Some(far)) = (of("a"), of("c")) else {
         return Answer::unknown("near fragments and far ones");
     };
-    let ratio = far.shade_ms / near.shade_ms;
-    let times = [near, far].map(|record| significant(record.shade_ms));
+    let ratio = far.times.shade_ms / near.times.shade_ms;
+    let times = [near, far].map(|record| significant(record.times.shade_ms));
     let figure =
         format!("C over A: \u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
     Answer { figure, verdict: Verdict::of_parts(usize::from(ratio >= 2.0), 1, "cases") }
@@ -188,9 +188,11 @@ pub(super) fn slices(done: &Done, scene: &str) -> Answer {
     for case in cases(done, scene) {
         let of = |slices: &str| case.find(|s| s.is_position() && s.grid.ends_with(slices));
         let (Some(half), Some(full)) = (of("x12"), of("x24")) else { continue };
-        let (Some(many), Some(few)) = (half.operations, full.operations) else { continue };
+        let (Some(many), Some(few)) = (half.lists.operations, full.lists.operations) else {
+            continue;
+        };
         let fewer = 1.0 - few.listed() as f64 / many.listed().max(1) as f64;
-        let ratio = full.assign_ms / half.assign_ms;
+        let ratio = full.times.assign_ms / half.times.assign_ms;
         figures.push(format!(
             "{}: {} % fewer terms, \u{d7} {} to assign",
             case.name(),
@@ -218,7 +220,9 @@ pub(super) fn early_exit(done: &Done, scene: &str) -> Answer {
         };
         let shares: Option<Vec<f64>> = [true, false]
             .into_iter()
-            .map(|exits| Some(of(Some(54), exits)?.shade_ms / of(None, exits)?.shade_ms))
+            .map(|exits| {
+                Some(of(Some(54), exits)?.times.shade_ms / of(None, exits)?.times.shade_ms)
+            })
             .collect();
         let Some(shares) = shares else { continue };
         figures.push(format!(

@@ -18,13 +18,14 @@ pub(super) fn cast_share(done: &Done, scene: &str) -> Answer {
     /// Half and twice the paper's 1 %.
     const ABOUT: std::ops::RangeInclusive<f64> = 0.005..=0.02;
     let all = entries(done, scene, cdi::STEPS);
-    let steps = all.first().and_then(|entry| Some((entry.record, entry.record.vpls.as_ref()?)));
+    let steps =
+        all.first().and_then(|entry| Some((entry.record, entry.record.setting.vpls.as_ref()?)));
     let Some((record, vpls)) = steps.filter(|(_, vpls)| vpls.unsteady().is_none()) else {
         return Answer::unknown("the steps of a frame at a steady clock");
     };
     let lights_ms = passes_ms(vpls, |pass| pass.starts_with("vpl-") || pass.ends_with("ranges"));
     let cast_ms = passes_ms(vpls, |pass| pass.ends_with("ranges"));
-    let scene_ms = record.passes.median_ms(Some(PassKind::Scene));
+    let scene_ms = record.times.passes.median_ms(Some(PassKind::Scene));
     let total_ms = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     let figure = format!(
         "choosing lights and casting {} of {} ms, {} %; only casting {} ms",

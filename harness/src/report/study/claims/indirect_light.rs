@@ -46,7 +46,7 @@ impl<'a> Against<'a> {
     }
 
     fn vpls(record: &Record) -> Option<&Vpls> {
-        record.vpls.as_ref()
+        record.setting.vpls.as_ref()
     }
 
     /// The best of a rule from the same map.
@@ -77,7 +77,8 @@ impl<'a> Against<'a> {
 
 /// Lights that are 4 to 7 % too bright decide nothing.
 fn stale(records: &[&Record]) -> Option<Verdict> {
-    let is_stale = |record: &&Record| record.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel);
+    let is_stale =
+        |record: &&Record| record.setting.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel);
     let any = records.iter().any(is_stale);
     any.then(|| Verdict::undecided("these lights were 4 to 7 % too bright: measure again"))
 }
@@ -87,7 +88,7 @@ pub(super) fn fewer_lights(done: &Done, scene: &str) -> Answer {
     let Some(against) = Against::new(done, scene) else {
         return Answer::unknown("errors of rays against the truth");
     };
-    let kept = |record: &Record| record.vpls.as_ref().map_or(0, |vpls| vpls.kept);
+    let kept = |record: &Record| record.setting.vpls.as_ref().map_or(0, |vpls| vpls.kept);
     let as_near = against.all.iter().map(|entry| entry.record).filter(|record| {
         rule(record) == "random" && against.nearer(record).is_some_and(|who| who != Nearer::First)
     });
@@ -162,7 +163,8 @@ pub(super) fn similar(done: &Done, scene: &str) -> Answer {
     let Some(against) = Against::new(done, scene) else {
         return Answer::unknown("errors of rays against the truth");
     };
-    let of = |id: &str| against.cast.truth_errors.get(id).copied().flatten().unwrap_or(f64::NAN);
+    let of =
+        |id: &str| against.cast.image.truth_errors.get(id).copied().flatten().unwrap_or(f64::NAN);
     let figure = format!(
         "mean error {} of the mean, missing energy {} %, bias {} %, FLIP {}",
         significant(of(METRIC)),

@@ -1,7 +1,9 @@
 //! The paper's strategies at one count of lights, and their times.
 
 use super::super::super::super::format::{number, significant};
-use super::super::super::data::{Entry, counts, is_near, is_of_the_paper, nearest_count, ranking, stand};
+use super::super::super::data::{
+    Entry, counts, is_near, is_of_the_paper, nearest_count, ranking, stand,
+};
 use super::super::super::order::Order;
 use super::super::Answer;
 use super::pairs::{Member, Pairs};
@@ -29,7 +31,7 @@ impl<'a> Field<'a> {
             let why = format!("only {} lights were measured", number(lights as f64));
             return Err(Answer::undecided(&why));
         }
-        let own = all.iter().map(|entry| entry.record).filter(|r| r.lights == lights);
+        let own = all.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
         let mut records: Vec<&Record> = own.collect();
         // The paper's own strategy comes before what stands in for it.
         records.sort_by_key(|record| record.strategy.stand_in().is_some());
@@ -48,7 +50,7 @@ impl<'a> Field<'a> {
 
     /// `at 10,000 lights, means of 240 poses`; poses of single strategies stand beside them.
     pub(super) fn basis(&self) -> String {
-        let most = self.records.iter().max_by_key(|record| record.frames);
+        let most = self.records.iter().max_by_key(|record| record.times.frames);
         let stand = most.map_or_else(String::new, |record| stand(record));
         let mean = if stand == "one pose" { "" } else { "means of " };
         format!("at {} lights, {mean}{stand}", number(self.lights as f64))

@@ -20,7 +20,7 @@ const RANGE: [u64; 2] = [100, 10_000];
 fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<Line<'a>> {
     let scaling: Vec<Entry<'_>> = entries(done, scene, "scaling")
         .into_iter()
-        .filter(|entry| is_of_the_paper(entry.record) && entry.record.lights <= most)
+        .filter(|entry| is_of_the_paper(entry.record) && entry.record.setting.lights <= most)
         .collect();
     let mut lines = lines(&scaling);
     lines.retain(|(_, records)| records.len() > 2);
@@ -36,8 +36,8 @@ fn fit(records: &[&Record], time: Time) -> Option<Fit> {
 
 fn basis(lines: &[Line<'_>]) -> String {
     let records = || lines.iter().flat_map(|(_, records)| records.iter());
-    let low = records().map(|record| record.lights).min().unwrap_or(0);
-    let high = records().map(|record| record.lights).max().unwrap_or(0);
+    let low = records().map(|record| record.setting.lights).min().unwrap_or(0);
+    let high = records().map(|record| record.setting.lights).max().unwrap_or(0);
     let stand = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| stand(r));
     format!("{} to {} lights, {stand}", number(low as f64), number(high as f64))
 }
@@ -65,7 +65,12 @@ pub(super) fn linear(done: &Done, scene: &str) -> Answer {
 
 /// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
 /// 30,000`. Both distances are of `records`, those of the paper's range.
-fn said(id: &StrategyId, within: &Straight, whole: Option<Straight>, records: &[&Record]) -> String {
+fn said(
+    id: &StrategyId,
+    within: &Straight,
+    whole: Option<Straight>,
+    records: &[&Record],
+) -> String {
     let mut text = format!(
         "{} off its line by {} % at most, at {}",
         id.short(),
@@ -74,7 +79,7 @@ fn said(id: &StrategyId, within: &Straight, whole: Option<Straight>, records: &[
     );
     if let Some(plain) = fit(records, Record::assign_and_shade_ms) {
         let points: Vec<(f64, f64)> =
-            records.iter().map(|r| (r.lights as f64, r.assign_and_shade_ms())).collect();
+            records.iter().map(|r| (r.setting.lights as f64, r.assign_and_shade_ms())).collect();
         let (off, at) = plain.worst(&points);
         text += &format!(" (plain least squares {} % at {})", percent(off), number(at));
     }
@@ -178,8 +183,8 @@ pub(super) fn offsets(done: &Done, scene: &str) -> Answer {
 
 /// Shading grows faster than assignment, in each strategy.
 pub(super) fn shading_dominates(done: &Done, scene: &str) -> Answer {
-    let both = Slopes::of(done, scene, |r| r.assign_ms)
-        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.shade_ms)?)));
+    let both = Slopes::of(done, scene, |r| r.times.assign_ms)
+        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.times.shade_ms)?)));
     let (assign, shade) = match both {
         Ok(both) => both,
         Err(answer) => return answer,
@@ -210,8 +215,8 @@ pub(super) fn shading_dominates(done: &Done, scene: &str) -> Answer {
 
 /// M assigns with the least slope and shades with the greatest.
 pub(super) fn model_slopes(done: &Done, scene: &str) -> Answer {
-    let both = Slopes::of(done, scene, |r| r.assign_ms)
-        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.shade_ms)?)));
+    let both = Slopes::of(done, scene, |r| r.times.assign_ms)
+        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.times.shade_ms)?)));
     let (assign, shade) = match both {
         Ok(both) => both,
         Err(answer) => return answer,

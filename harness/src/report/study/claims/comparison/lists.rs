@@ -1,7 +1,9 @@
 //! Claims on the lengths of lists: depth discontinuity (section 4.4.1.2) and models.
 
 use super::super::super::super::format::{number, percent, significant};
-use super::super::super::data::{Entry, counts, entries, is_of_the_paper, nearest_count, ranking, stand};
+use super::super::super::data::{
+    Entry, counts, entries, is_of_the_paper, nearest_count, ranking, stand,
+};
 use super::super::super::order::Order;
 use super::super::super::views::is_low;
 use super::super::{Answer, Verdict};
@@ -42,7 +44,7 @@ fn in_both<'a>(done: &'a Done, scene: &'a str, name: &str) -> Option<[&'a Record
 pub(super) fn discontinuity(done: &Done, scene: &str) -> Answer {
     let listed = |name: &str| {
         let [low, high] = in_both(done, scene, name)?;
-        Some([low.listed_per_sample?, high.listed_per_sample?])
+        Some([low.lists.listed_per_sample?, high.lists.listed_per_sample?])
     };
     let (Some(tiles), Some(clusters)) = (listed("T-E"), listed("SC-E")) else {
         return Answer::unknown("lists of T-E and SC-E in views of low and high discontinuity");
@@ -92,12 +94,12 @@ pub(super) fn view_free(done: &Done, scene: &str) -> Answer {
             missing.extend(is_judged.then(|| format!("{name} not measured")));
             continue;
         };
-        let change = (high.list_entries as f64 / low.list_entries.max(1) as f64 - 1.0).abs();
+        let change = (high.lists.entries as f64 / low.lists.entries.max(1) as f64 - 1.0).abs();
         if is_judged {
             all += 1;
             good += usize::from(change <= SAME);
         }
-        let entries = [low, high].map(|record| number(record.list_entries as f64));
+        let entries = [low, high].map(|record| number(record.lists.entries as f64));
         figures.push(format!("{} {} and {}", low.strategy.short(), entries[0], entries[1]));
     }
     if all == 0 {
@@ -121,7 +123,7 @@ impl<'a> Models<'a> {
         let lights = nearest_count(&counts(&ranked), 10_000)?;
         let linear = |all: Vec<Entry<'a>>| -> Vec<&'a Record> {
             let records = all.into_iter().map(|entry| entry.record);
-            let own = records.filter(|r| r.lights == lights && !r.strategy.is_bvh());
+            let own = records.filter(|r| r.setting.lights == lights && !r.strategy.is_bvh());
             own.filter(|record| !record.is_lossy).collect()
         };
         Some(Self { lights, lists: linear(main), times: linear(ranked) })
@@ -152,15 +154,17 @@ pub(super) fn models(done: &Done, scene: &str) -> Answer {
     let ([Some(long), Some(short)], [Some(whole), Some(parts)]) = (lists, times) else {
         return Answer::unknown("M and M/2");
     };
-    let (Some(of_whole), Some(of_parts)) = (long.listed_per_sample, short.listed_per_sample) else {
+    let (Some(of_whole), Some(of_parts)) =
+        (long.lists.listed_per_sample, short.lists.listed_per_sample)
+    else {
         return Answer::unknown("lengths of lists");
     };
     let ms = [whole, parts].map(Record::assign_and_shade_ms);
     let figure = format!(
         "at {} lights M to M/2: longest list {} to {}; {} to {} listed per sample; {} to {} ms ({})",
         number(models.lights as f64),
-        number(long.longest_list as f64),
-        number(short.longest_list as f64),
+        number(long.lists.longest as f64),
+        number(short.lists.longest as f64),
         significant(of_whole),
         significant(of_parts),
         significant(ms[0]),
@@ -168,7 +172,7 @@ pub(super) fn models(done: &Done, scene: &str) -> Answer {
         stand(whole)
     );
     let is_faster = Order::of_times(parts, whole) == Order::Less;
-    let is_extreme = long.longest_list as f64 >= EXTREME * long.lights as f64;
+    let is_extreme = long.lists.longest as f64 >= EXTREME * long.setting.lights as f64;
     let good = [is_extreme, of_parts < of_whole, is_faster].into_iter().filter(|good| *good);
     Answer { figure, verdict: Verdict::of_parts(good.count(), 3, "parts of it") }
 }
@@ -181,7 +185,7 @@ pub(super) fn subdivision(done: &Done, scene: &str) -> Answer {
     let (Some(parts), Some(grid)) = (models.timed("M/2"), models.grid()) else {
         return Answer::unknown("M/2 and G");
     };
-    let ids = parts.passes.get("model-ids").map_or(0.0, |pass| pass.median_ms);
+    let ids = parts.times.passes.get("model-ids").map_or(0.0, |pass| pass.median_ms);
     let ms = [parts, grid].map(Record::assign_and_shade_ms);
     let mut figure = format!(
         "at {} lights, {}: M/2 {} ms, {} {} ms",

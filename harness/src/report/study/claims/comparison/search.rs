@@ -170,18 +170,21 @@ pub(super) fn tests(done: &Done, scene: &str) -> Answer {
 pub(super) fn full_union(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
     for (name, records) in tested(done, scene) {
-        let of = |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
+        let of =
+            |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
         let (Some(best), Some(full)) = (of(BEST), of(FULL)) else { continue };
         all += 2;
-        let shade = full.shade_ms / best.shade_ms;
+        let shade = full.times.shade_ms / best.times.shade_ms;
         good += usize::from((shade - 1.0).abs() <= ABOUT);
-        good += usize::from(Order::of_figures(best.assign_ms, full.assign_ms) == Order::Less);
+        good += usize::from(
+            Order::of_figures(best.times.assign_ms, full.times.assign_ms) == Order::Less,
+        );
         figures.push(format!(
             "{name}: shade {} and {} ms, assign {} and {} ms",
-            significant(best.shade_ms),
-            significant(full.shade_ms),
-            significant(best.assign_ms),
-            significant(full.assign_ms)
+            significant(best.times.shade_ms),
+            significant(full.times.shade_ms),
+            significant(best.times.assign_ms),
+            significant(full.times.assign_ms)
         ));
     }
     if all == 0 {

@@ -1,7 +1,9 @@
 //! Claims on how times vary along the path: table 4.4 and figure 4.8.
 
 use super::super::super::super::format::{number, percent, significant};
-use super::super::super::data::{Entry, counts, entries, is_near, is_of_the_paper, nearest_count, stand};
+use super::super::super::data::{
+    Entry, counts, entries, is_near, is_of_the_paper, nearest_count, stand,
+};
 use super::super::super::order::Order;
 use super::super::super::path::Spread;
 use super::super::{Answer, Verdict};
@@ -32,12 +34,12 @@ impl<'a> Spreads<'a> {
             let why = format!("only {} lights were measured", number(lights as f64));
             return Err(Answer::undecided(&why));
         }
-        let own = || path.iter().map(|entry| entry.record).filter(|r| r.lights == lights);
+        let own = || path.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
         let mut all: Vec<(&StrategyId, Spread)> =
             own().filter_map(|r| Some((&r.strategy, Spread::of(r)?))).collect();
         // The paper's own strategy comes before what stands in for it.
         all.sort_by_key(|(id, _)| id.stand_in().is_some());
-        let most = own().max_by_key(|record| record.frames);
+        let most = own().max_by_key(|record| record.times.frames);
         let basis = most.map_or_else(String::new, |record| {
             format!("at {} lights, {}", number(lights as f64), stand(record))
         });
@@ -59,7 +61,8 @@ impl<'a> Spreads<'a> {
     /// `SD G 0.007, SC-E 0.01 ms`: the strategies that are there by a figure, least first.
     fn ascending(&self, names: &[&str], of: fn(&Spread) -> f64, show: fn(f64) -> String) -> String {
         let own = names.iter().filter_map(|name| self.of_family(name));
-        let mut all: Vec<(String, f64)> = own.map(|(id, spread)| (id.short(), of(spread))).collect();
+        let mut all: Vec<(String, f64)> =
+            own.map(|(id, spread)| (id.short(), of(spread))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let said = all.iter().map(|(name, figure)| format!("{name} {}", show(*figure)));
         said.collect::<Vec<_>>().join(", ")

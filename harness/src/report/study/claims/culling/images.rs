@@ -21,12 +21,13 @@ pub(super) fn cap(done: &Done, scene: &str) -> Answer {
             let Some((own, all)) = mode.at(lights, capped).zip(mode.at(lights, whole)) else {
                 continue;
             };
-            let is_whole = all.longest_list <= CAP && own.differing_channels.unwrap_or(0) == 0;
-            let lost = own.errors.get("missing_energy").copied().flatten().unwrap_or(0.0);
+            let is_whole =
+                all.lists.longest <= CAP && own.image.differing_channels.unwrap_or(0) == 0;
+            let lost = own.image.errors.get("missing_energy").copied().flatten().unwrap_or(0.0);
             let figure = format!(
                 "{} lights: longest list {}, the cap loses {} % of the light",
                 number(lights as f64),
-                number(all.longest_list as f64),
+                number(all.lists.longest as f64),
                 percent(lost)
             );
             tally.add(is_whole, figure);
@@ -39,14 +40,14 @@ pub(super) fn cap(done: &Done, scene: &str) -> Answer {
 pub(super) fn range(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         let Some(sphere) = mode.last(bounding_sphere) else { continue };
-        let error = |name: &str| sphere.unbounded_errors.get(name).copied().flatten();
+        let error = |name: &str| sphere.image.unbounded_errors.get(name).copied().flatten();
         let Some(lost) = error("missing_energy") else { continue };
         let flip =
             error("flip").map_or_else(String::new, |flip| format!(", FLIP {}", significant(flip)));
         let figure = format!(
             "{}, {} lights: {} % of the light of lights without a range is lost{flip}",
             mode.name,
-            number(sphere.lights as f64),
+            number(sphere.setting.lights as f64),
             percent(lost)
         );
         let verdict = if lost >= SEEN { Verdict::Holds } else { Verdict::Fails };
@@ -61,14 +62,15 @@ pub(super) fn tiles(done: &Done, scene: &str) -> Answer {
     let mut tally = Tally::default();
     for mode in Mode::all(done, scene) {
         let rows: Vec<&Record> = mode.lit().filter_map(|lights| mode.at(lights, whole)).collect();
-        let Some(differ) = rows.iter().map(|record| record.differing_channels).sum::<Option<u64>>()
+        let Some(differ) =
+            rows.iter().map(|record| record.image.differing_channels).sum::<Option<u64>>()
         else {
             continue;
         };
         if rows.is_empty() {
             continue;
         }
-        let names: Vec<String> = rows.iter().map(|r| number(r.lights as f64)).collect();
+        let names: Vec<String> = rows.iter().map(|r| number(r.setting.lights as f64)).collect();
         let differing = number(differ as f64);
         let lights = listed(&names);
         let figure = format!("{}: {differing} channels differ at {lights} lights", mode.name);

@@ -25,7 +25,7 @@ impl<'a> Mode<'a> {
             let entries = entries(done, scene, name);
             let counts = counts(&entries);
             let times = entries.iter().map(|entry| entry.record);
-            Self { name, records: times.filter(|r| r.frame_ms.is_finite()).collect(), counts }
+            Self { name, records: times.filter(|r| r.times.frame_ms.is_finite()).collect(), counts }
         };
         MODES.into_iter().map(of).filter(|mode| !mode.records.is_empty()).collect()
     }
@@ -40,7 +40,7 @@ impl<'a> Mode<'a> {
     }
 
     pub(super) fn at(&self, lights: u64, is_it: impl Fn(&Record) -> bool) -> Option<&'a Record> {
-        self.records.iter().copied().find(|record| record.lights == lights && is_it(record))
+        self.records.iter().copied().find(|record| record.setting.lights == lights && is_it(record))
     }
 
     /// At the most lights.
@@ -50,7 +50,7 @@ impl<'a> Mode<'a> {
 
     /// What lights cost: the frame at the most lights less that without a light, ms.
     pub(super) fn growth(&self, is_it: impl Fn(&Record) -> bool + Copy) -> Option<f64> {
-        let frames = (self.last(is_it)?.frame_ms, self.at(0, is_it)?.frame_ms);
+        let frames = (self.last(is_it)?.times.frame_ms, self.at(0, is_it)?.times.frame_ms);
         (self.most() > 0).then_some(frames.0 - frames.1)
     }
 }
@@ -87,7 +87,7 @@ pub(super) fn of_the_survey(record: &Record) -> bool {
 }
 
 pub(super) fn timed(record: &Record) -> String {
-    format!("{} {} ms", record.strategy, significant(record.frame_ms))
+    format!("{} {} ms", record.strategy, significant(record.times.frame_ms))
 }
 
 /// What modes said, and how many of them held.

@@ -40,9 +40,13 @@ pub(super) fn linear(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         let all = entries(done, scene, mode.name);
         let (mut straight, mut count, mut worst) = (0, 0, (0.0, ""));
-        for (id, records) in lines(&all).into_iter().filter(|(id, _)| id.role() != Some(Role::Control)) {
-            let points: Vec<(f64, f64)> =
-                records.iter().map(|record| (record.lights as f64, record.frame_ms)).collect();
+        for (id, records) in
+            lines(&all).into_iter().filter(|(id, _)| id.role() != Some(Role::Control))
+        {
+            let points: Vec<(f64, f64)> = records
+                .iter()
+                .map(|record| (record.setting.lights as f64, record.times.frame_ms))
+                .collect();
             let Some(fit) = Fit::through(&points).filter(|fit| fit.points > 2) else { continue };
             let growth = fit.slope.abs() * mode.most() as f64;
             let off = fit.residual / growth.max(LEVEL * fit.offset);
@@ -75,8 +79,10 @@ pub(super) fn clay(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         for &lights in &mode.counts {
             let Some(clay) = mode.at(lights, Record::is_control) else { continue };
-            let others = mode.records.iter().filter(|r| r.lights == lights && !r.is_control());
-            let Some(least) = others.min_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms)) else {
+            let others =
+                mode.records.iter().filter(|r| r.setting.lights == lights && !r.is_control());
+            let Some(least) = others.min_by(|a, b| a.times.frame_ms.total_cmp(&b.times.frame_ms))
+            else {
                 continue;
             };
             tally.good += usize::from(!is_below(least, clay));
@@ -92,7 +98,7 @@ pub(super) fn clay(done: &Done, scene: &str) -> Answer {
 
 /// Whether a frame is shorter than the control's. Their passes differ, so laps cannot pair them.
 fn is_below(record: &Record, clay: &Record) -> bool {
-    record.frame_ms < clay.frame_ms * (1.0 - LEVEL)
+    record.times.frame_ms < clay.times.frame_ms * (1.0 - LEVEL)
 }
 
 /// No other method is as slow as no culling, at the most lights.
@@ -100,10 +106,11 @@ pub(super) fn slowest(done: &Done, scene: &str) -> Answer {
     let mut tally = Tally::default();
     for mode in Mode::all(done, scene) {
         let Some(none) = mode.last(none) else { continue };
-        let others = mode.records.iter().copied().filter(|r| r.lights == none.lights);
+        let others =
+            mode.records.iter().copied().filter(|r| r.setting.lights == none.setting.lights);
         let next = others
             .filter(|r| !r.is_baseline() && !r.is_control())
-            .max_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms));
+            .max_by(|a, b| a.times.frame_ms.total_cmp(&b.times.frame_ms));
         let Some(next) = next else { continue };
         let figure = format!("{}: {}, {}", mode.name, timed(none), timed(next));
         tally.add_order(Order::of_frames(next, none), figure);
@@ -117,7 +124,8 @@ pub(super) fn gain(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         for lights in mode.lit() {
             let Some(none) = mode.at(lights, none) else { continue };
-            let culling = mode.records.iter().filter(|r| r.lights == lights && of_the_survey(r));
+            let culling =
+                mode.records.iter().filter(|r| r.setting.lights == lights && of_the_survey(r));
             for record in culling {
                 // No longer than no culling: a tie holds as well.
                 let order = match Order::of_frames(record, none) {
@@ -189,11 +197,11 @@ pub(super) fn deferred(done: &Done, scene: &str) -> Answer {
         let figure = format!(
             "{}: deferred {} ms, forward {} ms",
             own.strategy,
-            significant(own.frame_ms),
-            significant(other.frame_ms)
+            significant(own.times.frame_ms),
+            significant(other.times.frame_ms)
         );
         // Renderers run in jobs of their own: their rounds are not pairs.
-        tally.add_order(Order::of_figures(own.frame_ms, other.frame_ms), figure);
+        tally.add_order(Order::of_figures(own.times.frame_ms, other.times.frame_ms), figure);
     }
     let mut answer = tally.answer("methods", "no culling in both renderers");
     if done.results.values().any(|results| results.machine.weak_raster().is_some()) {
@@ -211,9 +219,11 @@ pub(super) fn clusters(done: &Done, scene: &str) -> Answer {
         let Some(own) = mode.last(capped) else { continue };
         let others = [none, bounding_sphere, raster_sphere] as [fn(&Record) -> bool; 3];
         let others = others.into_iter().filter_map(|is_it| mode.last(is_it));
-        let Some(next) = others.min_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms)) else { continue };
+        let Some(next) = others.min_by(|a, b| a.times.frame_ms.total_cmp(&b.times.frame_ms)) else {
+            continue;
+        };
         let figure = format!("{}: {}, {}", mode.name, timed(own), timed(next));
-        tally.add(own.frame_ms <= GREAT * next.frame_ms, figure);
+        tally.add(own.times.frame_ms <= GREAT * next.times.frame_ms, figure);
     }
     tally.answer("renderers", "clusters with the paper\u{2019}s cap")
 }
@@ -227,9 +237,9 @@ pub(super) fn rate(done: &Done, scene: &str) -> Answer {
             "{}: {}, {} lights; the paper {FRAME_MS} ms",
             mode.name,
             timed(own),
-            number(own.lights as f64)
+            number(own.setting.lights as f64)
         );
-        tally.add(ABOUT.contains(&(own.frame_ms / FRAME_MS)), figure);
+        tally.add(ABOUT.contains(&(own.times.frame_ms / FRAME_MS)), figure);
     }
     let is_measured = tally.all > 0;
     let mut answer = tally.answer("renderers", "clusters with the paper\u{2019}s cap");

@@ -1,0 +1,249 @@
+//! The froxel grid: screen tiles cut into depth slices. Clusters and hybrid lighting share it.
+
+use std::{fmt, str::FromStr};
+
+use assign::{AssignError, FIRST_STRATEGY_BINDING, Projection, View};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// The size of froxels: pixels of a tile, and the number of depth slices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FroxelSize {
+    /// Width and height of a tile, pixels.
+    pub tile_px: [u32; 2],
+    /// Depth slices.
+    pub slices: u32,
+}
+
+/// Binding of the grid's uniform: `froxels.wesl`.
+pub(crate) const FROXELS_BINDING: u32 = FIRST_STRATEGY_BINDING;
+
+/// The most groups of a strategy. Their records alone would take 128 MiB.
+pub(crate) const MAX_GROUPS: u64 = 1 << 24;
+
+impl FroxelSize {
+    /// Checks each field.
+    pub fn check(&self) -> Result<(), AssignError> {
+        let fail = |field: &str, value: u32, accepted: &str| {
+            Err(AssignError::Parameter {
+                field: format!("froxel {field}"),
+                value: value.to_string(),
+                accepted: accepted.into(),
+            })
+        };
+        if let Some(&value) = self.tile_px.iter().find(|t| !(1..=16_384).contains(*t)) {
+            return fail("tile size", value, "1 to 16384 pixels");
+        }
+        if !(1..=1024).contains(&self.slices) {
+            return fail("slice count", self.slices, "1 to 1024");
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for FroxelSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}x{}", self.tile_px[0], self.tile_px[1], self.slices)
+    }
+}
+
+impl FromStr for FroxelSize {
+    type Err = AssignError;
+
+    /// Reads `WIDTHxHEIGHTxSLICES`.
+    fn from_str(text: &str) -> Result<Self, AssignError> {
+        let fail = || AssignError::Parameter {
+            field: "froxel size".into(),
+            value: text.into(),
+            accepted:
+                "WIDTHxHEIGHTxSLICES, the pixels of a tile and the number of depth slices, such as \
+                       64x64x40"
+                    .into(),
+        };
+        let numbers: Vec<u32> = text
+            .split('x')
+            .map(|part| part.parse().map_err(|_| fail()))
+            .collect::<Result<_, _>>()?;
+        let [width, height, slices] = numbers[..] else {
+            return Err(fail());
+        };
+        let size = Self { tile_px: [width, height], slices };
+        size.check()?;
+        Ok(size)
+    }
+}
+
+/// Slices end at most this many times farther away than they begin: 40 octaves. The last slice takes the
+/// rest. `DEPTH_SLACK` of `froxels.wesl` is derived for no more.
+const MAX_DEPTH_RATIO: f32 = (1_u64 << 40) as f32;
+
+/// The grid as shaders read it: `struct Froxels` of `froxels.wesl`. 64 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct FroxelsUniform {
+    /// Froxels along x, y and depth.
+    pub counts: [u32; 3],
+    /// Slices per octave of depth (exponential) or per metre (even).
+    pub slices_per_unit: f32,
+    /// Width and height of a tile, pixels.
+    pub tile_px: [u32; 2],
+    /// Upper left pixel of the viewport.
+    pub origin_px: [u32; 2],
+    /// View depth at which slice 0 begins, metres.
+    pub first_m: f32,
+    /// Least view depth of a sample, metres: the near plane, as shading rebuilds it.
+    pub near_m: f32,
+    /// Greatest view depth of a sample, metres: the far plane, as shading rebuilds it, or [`UNBOUNDED`].
+    pub far_m: f32,
+    /// 1: slices grow exponentially with depth. 0: all are equally deep.
+    pub exponential: u32,
+    /// 1: lists serve only the surfaces in the depth buffer. 0: lists serve any depth.
+    pub surfaces_only: u32,
+    /// Pads to 64 bytes.
+    pub padding: [u32; 3],
+}
+
+/// The far end of a view without a far plane: `UNBOUNDED` of `bounds_frustum.wesl`.
+pub const UNBOUNDED: f32 = 3.4e38;
+
+impl FroxelsUniform {
+    /// Cuts `view` into froxels; lists serve any depth.
+    ///
+    /// Slices run from the near to the far plane. In a perspective view they grow exponentially with depth
+    /// (Enhuber 2019, equation 3.3); in an orthographic view they are equally deep.
+    ///
+    /// If the far plane of a perspective view lies beyond every light, slices end at the farthest point that a
+    /// light reaches, which is a corner of `light_bounds`. The last slice then continues to the far plane or
+    /// to infinity ([`View::slices_end_m`]).
+    pub fn new(
+        size: FroxelSize,
+        view: &View,
+        light_bounds: Option<(Vec3, Vec3)>,
+    ) -> Result<Self, AssignError> {
+        let [width, height] = [view.viewport.width, view.viewport.height];
+        let counts =
+            [width.div_ceil(size.tile_px[0]), height.div_ceil(size.tile_px[1]), size.slices];
+        let total = counts.iter().map(|&n| u64::from(n)).product::<u64>();
+        if total > MAX_GROUPS {
+            return Err(AssignError::Parameter {
+                field: "froxel size".into(),
+                value: format!("{size} at {width}x{height} pixels, {total} froxels"),
+                accepted: format!("at most {MAX_GROUPS} froxels: use larger tiles or fewer slices"),
+            });
+        }
+        let near = view.near_m;
+        let exponential = matches!(view.projection, Projection::Perspective { .. });
+        let last = match (exponential, view.far_m) {
+            (false, Some(far)) => far,
+            _ => view.slices_end_m(light_bounds).min(near * MAX_DEPTH_RATIO),
+        };
+        let span = if exponential { (last / near).log2() } else { last - near };
+        Ok(Self {
+            counts,
+            slices_per_unit: size.slices as f32 / span,
+            tile_px: size.tile_px,
+            origin_px: [view.viewport.x, view.viewport.y],
+            first_m: near,
+            near_m: view.nearest_rebuilt_m(),
+            far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
+            exponential: u32::from(exponential),
+            surfaces_only: 0,
+            padding: [0; 3],
+        })
+    }
+
+    /// Number of froxels.
+    pub fn froxel_count(&self) -> u32 {
+        self.counts.iter().product()
+    }
+
+    /// Number of tiles.
+    pub fn tile_count(&self) -> u32 {
+        self.counts[0] * self.counts[1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_print_as_they_parse() {
+        let size: FroxelSize = "64x32x24".parse().unwrap();
+        assert_eq!(size.to_string(), "64x32x24");
+        for bad in ["", "64", "64x64", "0x64x24", "64x64x0", "64x64x1025", "axbxc", "64x64x24x2"] {
+            let error = bad.parse::<FroxelSize>().unwrap_err().to_string();
+            assert!(error.contains("must be"), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn slices_span_near_to_far() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
+        view.far_m = Some(512.0);
+        let size = "64x64x20".parse().unwrap();
+        let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+        assert_eq!(froxels.counts, [3, 1, 20]);
+        // Ten octaves, two slices each.
+        assert_eq!(froxels.slices_per_unit, 2.0);
+    }
+
+    #[test]
+    fn an_infinite_view_is_sliced_to_the_farthest_light() {
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [64, 64]);
+        let bounds = Some((Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE));
+        let size = "64x64x8".parse().unwrap();
+        let froxels = FroxelsUniform::new(size, &view, bounds).unwrap();
+        assert_eq!(froxels.slices_per_unit, 2.0);
+        assert_eq!(froxels.far_m, UNBOUNDED);
+        // With all lights behind the camera, slices span one octave.
+        let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
+        let froxels = FroxelsUniform::new(size, &view, behind).unwrap();
+        assert_eq!(froxels.slices_per_unit, 8.0);
+    }
+
+    #[test]
+    fn slices_end_with_the_lights_if_the_far_plane_lies_beyond_them() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [64, 64]);
+        view.far_m = Some(1_024.0);
+        let size = "64x64x8".parse().unwrap();
+        let per_octave = |view: &View, bounds| {
+            FroxelsUniform::new(size, view, Some(bounds)).unwrap().slices_per_unit
+        };
+        // Four octaves to the farthest light, as without a far plane.
+        let bounds = (Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE);
+        assert_eq!(per_octave(&view, bounds), 2.0);
+        assert_eq!(per_octave(&View { far_m: None, ..view }, bounds), 2.0);
+        // The far plane is nearer than the farthest light: two octaves.
+        assert_eq!(per_octave(&View { far_m: Some(4.0), ..view }, bounds), 4.0);
+        // The last slice continues to the far plane.
+        let froxels = FroxelsUniform::new(size, &view, Some(bounds)).unwrap();
+        assert!((1_023.0..1_025.0).contains(&froxels.far_m), "{froxels:?}");
+    }
+
+    #[test]
+    fn the_last_slice_ends_where_shading_rebuilds_the_far_plane() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.001, [64, 64]);
+        view.far_m = Some(1_000.0);
+        view.depth = assign::DepthMapping::Standard;
+        let size = "64x64x8".parse().unwrap();
+        let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+        assert!((1_048.5..1_049.0).contains(&froxels.far_m), "{froxels:?}");
+        // f32 cannot tell this far plane from infinity.
+        view.far_m = Some(1e6);
+        let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+        assert_eq!(froxels.far_m, UNBOUNDED);
+    }
+
+    #[test]
+    fn too_many_froxels_are_refused() {
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [16_384, 16_384]);
+        let count = |size: &str| {
+            FroxelsUniform::new(size.parse().unwrap(), &view, None).map(|grid| grid.froxel_count())
+        };
+        assert_eq!(count("16x16x16").unwrap(), 1 << 24);
+        let error = count("16x16x17").unwrap_err().to_string();
+        assert!(error.contains("16x16x17 at 16384x16384 pixels, 17825792 froxels"), "{error}");
+        assert!(count("1x1x1").is_err());
+    }
+}

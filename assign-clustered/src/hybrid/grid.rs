@@ -1,0 +1,95 @@
+//! HG as a strategy: its look-up, its lists and its passes.
+
+use assign::{
+    AssignError, Assignment, Frame, Gpu, LightLists, ListsBindings, Lookup, Needs, Passes,
+    SampleDomain, StrategyModule, entry, uniform_entry,
+};
+use bytemuck::bytes_of;
+
+use super::{passes::HybridPasses, shader::HYBRID_WESL};
+use crate::froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform};
+
+/// HG: a grid of cells that lights add themselves to.
+#[derive(Debug)]
+pub struct HybridGrid {
+    size: FroxelSize,
+    froxels: wgpu::Buffer,
+    lists: LightLists,
+    look_up: ListsBindings,
+    passes: HybridPasses,
+}
+
+impl HybridGrid {
+    /// Makes the strategy. Checks `size`.
+    pub fn new(gpu: &Gpu, size: FroxelSize) -> Result<Self, AssignError> {
+        size.check()?;
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        Ok(Self {
+            size,
+            froxels: gpu.uniform("froxels", size_of::<FroxelsUniform>() as u64),
+            lists: LightLists::new(gpu)?,
+            look_up: ListsBindings::of_look_up(
+                gpu,
+                "HG",
+                &[uniform_entry(FROXELS_BINDING, stages)],
+            ),
+            passes: HybridPasses::new(gpu)?,
+        })
+    }
+}
+
+impl Assignment for HybridGrid {
+    fn id(&self) -> String {
+        format!("HG/{}", self.size)
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { depth: true, ..Needs::default() }
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.lights.bounds())?;
+        let depth =
+            match frame.samples {
+                SampleDomain::AnyDepth => None,
+                SampleDomain::OpaqueSurfaces => Some(frame.depth.ok_or_else(|| {
+                    AssignError::Missing { strategy: self.id(), missing: "depth" }
+                })?),
+            };
+        froxels.surfaces_only = u32::from(depth.is_some());
+        self.lists.prepare(gpu, frame.lights.count(), froxels.froxel_count())?;
+        gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
+        self.look_up.bind(gpu, &self.lists, &[entry(FROXELS_BINDING, &self.froxels)]);
+        self.passes.prepare(gpu, frame, &froxels, &self.froxels, &self.lists, depth)
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        self.lists.record_reset(passes.encoder());
+        self.passes.record(frame, passes);
+        self.lists.record_readback(passes.encoder());
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        // SAFETY: its modules have no loop.
+        #[allow(unsafe_code, reason = "they have no loop")]
+        let module = unsafe { StrategyModule::new(HYBRID_WESL) };
+        Lookup { module, layout: self.look_up.layout() }
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.look_up.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        &self.lists
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        &mut self.lists
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.froxels.size() + self.lists.memory_bytes() + self.passes.bytes()
+    }
+}

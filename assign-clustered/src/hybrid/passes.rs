@@ -1,0 +1,211 @@
+//! The passes of HG: what they bind, and the order in which they run.
+
+use assign::{
+    AssignError, Frame, FrameBindings, Gpu, LightKinds, LightLists, ListsBindings, Passes,
+    SampleDomain, entry, storage_entry, uniform_entry,
+};
+
+use super::{
+    buffers::{Buffers, Sizes},
+    shader::{HybridShader, LISTS_GROUP},
+};
+use crate::{
+    bindings::{texture, texture_layout},
+    froxels::{FROXELS_BINDING, FroxelsUniform},
+};
+
+/// Bindings of the cells in bind group [`LISTS_GROUP`].
+const MASKS: u32 = FROXELS_BINDING + 1;
+const CURSORS: u32 = FROXELS_BINDING + 2;
+const UNSORTED: u32 = FROXELS_BINDING + 3;
+
+/// Everything between the depth buffer and the lists.
+#[derive(Debug)]
+pub(crate) struct HybridPasses {
+    frame: FrameBindings,
+    /// The cells without the lists: what `occupancy` and `scatter` read and write.
+    cells_layout: wgpu::BindGroupLayout,
+    cells_bind_group: Option<wgpu::BindGroup>,
+    kernel: ListsBindings,
+    depth_layout: wgpu::BindGroupLayout,
+    depth_bind_group: Option<wgpu::BindGroup>,
+    /// The live cells: first as `clear` and `reserve_lists` write them, then as `sort` reads them.
+    live_layouts: [wgpu::BindGroupLayout; 2],
+    live_bind_groups: Option<[wgpu::BindGroup; 2]>,
+    occupancy: wgpu::ComputePipeline,
+    clear: wgpu::ComputePipeline,
+    reserve: wgpu::ComputePipeline,
+    sort: wgpu::ComputePipeline,
+    /// The kinds of lights that it is compiled for, and the pipeline.
+    scatter: Option<(LightKinds, wgpu::ComputePipeline)>,
+    buffers: Buffers,
+    sizes: Sizes,
+}
+
+impl HybridPasses {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let cells = [
+            uniform_entry(FROXELS_BINDING, stages),
+            storage_entry(MASKS, stages, false),
+            storage_entry(CURSORS, stages, false),
+            storage_entry(UNSORTED, stages, false),
+        ];
+        let with_cull = [&[uniform_entry(3, stages)], &cells[..]].concat();
+        let frame = FrameBindings::new(gpu);
+        let cells_layout = gpu.bind_group_layout("hybrid cells", &with_cull);
+        let depth_layout = gpu.bind_group_layout(
+            "hybrid depth",
+            &[texture_layout(0, wgpu::TextureSampleType::Depth)],
+        );
+        let live_layouts = [false, true].map(|read_only| {
+            gpu.bind_group_layout("hybrid live", &[storage_entry(0, stages, read_only)])
+        });
+        let kernel = ListsBindings::of_kernel(gpu, "hybrid lists", &cells);
+        let kinds = LightKinds::default();
+        let occupancy = HybridShader::Occupancy.create(gpu, kinds)?;
+        let reserve = HybridShader::Reserve.create(gpu, kinds)?;
+        let sort = HybridShader::Sort.create(gpu, kinds)?;
+        let depth_groups = [Some(frame.layout()), Some(&cells_layout), Some(&depth_layout)];
+        let [written, read_only] = &live_layouts;
+        let reserve_groups = [None, Some(kernel.layout()), Some(written)];
+        let sort_groups = [None, Some(kernel.layout()), Some(read_only)];
+        Ok(Self {
+            // Workgroup memory need not start as zero: `sort` writes it before it reads it.
+            occupancy: gpu.compute_pipeline(&occupancy, "occupancy", &depth_groups, false),
+            clear: gpu.compute_pipeline(&reserve, "clear", &reserve_groups, false),
+            reserve: gpu.compute_pipeline(&reserve, "reserve_lists", &reserve_groups, false),
+            sort: gpu.compute_pipeline(&sort, "sort_lists", &sort_groups, false),
+            frame,
+            cells_layout,
+            cells_bind_group: None,
+            kernel,
+            depth_layout,
+            depth_bind_group: None,
+            live_layouts,
+            live_bind_groups: None,
+            scatter: None,
+            buffers: Buffers::new(gpu)?,
+            sizes: Sizes::default(),
+        })
+    }
+
+    /// Sizes buffers for the cells and for the prepared lists, and binds them: outside the clock. `depth` is
+    /// `None` if lists serve any depth.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        froxels: &FroxelsUniform,
+        uniform: &wgpu::Buffer,
+        lists: &LightLists,
+        depth: Option<&wgpu::TextureView>,
+    ) -> Result<(), AssignError> {
+        self.frame.update(gpu, frame)?;
+        self.buffers.grow(gpu, froxels, lists)?;
+        self.bind(gpu, uniform, lists, depth);
+        self.sizes = Sizes::new(frame, froxels, &self.buffers);
+        let kinds = frame.lights.kinds();
+        if self.scatter.as_ref().is_none_or(|(known, _)| *known != kinds) {
+            let module = HybridShader::Scatter.create(gpu, kinds)?;
+            let layouts = [Some(self.frame.layout()), Some(&self.cells_layout)];
+            let pipeline = gpu.compute_pipeline(&module, "scatter", &layouts, false);
+            self.scatter = Some((kinds, pipeline));
+        }
+        Ok(())
+    }
+
+    fn bind(
+        &mut self,
+        gpu: &Gpu,
+        uniform: &wgpu::Buffer,
+        lists: &LightLists,
+        depth: Option<&wgpu::TextureView>,
+    ) {
+        let Buffers { masks, cursors, unsorted, live } = &self.buffers;
+        let cells = [
+            entry(FROXELS_BINDING, uniform),
+            entry(MASKS, masks),
+            entry(CURSORS, cursors),
+            entry(UNSORTED, unsorted),
+        ];
+        self.kernel.bind(gpu, lists, &cells);
+        let with_cull = [&[entry(3, lists.uniform())], &cells[..]].concat();
+        self.cells_bind_group =
+            Some(bind_group(gpu, "hybrid cells", &self.cells_layout, &with_cull));
+        let live = [entry(0, live.buffer())];
+        let [written, read] = &self.live_layouts;
+        self.live_bind_groups =
+            Some([written, read].map(|layout| bind_group(gpu, "hybrid live", layout, &live)));
+        self.depth_bind_group = depth
+            .map(|view| bind_group(gpu, "hybrid depth", &self.depth_layout, &[texture(0, view)]));
+    }
+
+    /// Records the passes: inside the clock, after [`prepare`](Self::prepare).
+    pub(crate) fn record(&self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        let sizes = self.sizes;
+        let reads_depth = frame.samples == SampleDomain::OpaqueSurfaces;
+        passes.compute("occupancy", &mut |pass| {
+            self.bind_lists(pass);
+            pass.set_pipeline(&self.clear);
+            pass.dispatch_workgroups(sizes.clear, 1, 1);
+            if reads_depth {
+                self.bind_cells(pass);
+                pass.set_bind_group(2, self.depth_bind_group.as_ref(), &[]);
+                pass.set_pipeline(&self.occupancy);
+                pass.dispatch_workgroups(sizes.blocks[0], sizes.blocks[1], 1);
+            }
+        });
+        self.add_lights("count", passes);
+        passes.compute("reserve", &mut |pass| {
+            self.bind_lists(pass);
+            pass.set_pipeline(&self.reserve);
+            pass.dispatch_workgroups(sizes.reserve, 1, 1);
+        });
+        self.add_lights("fill", passes);
+        passes.compute("sort", &mut |pass| {
+            self.bind_lists(pass);
+            pass.set_bind_group(2, self.live_bind_groups.as_ref().map(|[_, read]| read), &[]);
+            pass.set_pipeline(&self.sort);
+            pass.dispatch_workgroups_indirect(self.buffers.live.buffer(), 0);
+        });
+    }
+
+    /// Bytes of its buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.buffers.bytes() + self.frame.bytes()
+    }
+
+    /// The pass that adds lights to cells. It counts them first, and places them after `reserve`.
+    fn add_lights(&self, name: &str, passes: &mut dyn Passes) {
+        let Some((_, scatter)) = &self.scatter else {
+            return;
+        };
+        let [workgroups, parts] = self.sizes.scatter;
+        passes.compute(name, &mut |pass| {
+            self.bind_cells(pass);
+            pass.set_pipeline(scatter);
+            pass.dispatch_workgroups(workgroups, parts, 1);
+        });
+    }
+
+    fn bind_cells(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_bind_group(0, self.frame.bind_group(), &[]);
+        pass.set_bind_group(LISTS_GROUP, self.cells_bind_group.as_ref(), &[]);
+    }
+
+    fn bind_lists(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_bind_group(LISTS_GROUP, self.kernel.bind_group(), &[]);
+        let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
+        pass.set_bind_group(2, live, &[]);
+    }
+}
+
+fn bind_group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    entries: &[wgpu::BindGroupEntry<'_>],
+) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+}

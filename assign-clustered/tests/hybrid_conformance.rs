@@ -1,0 +1,149 @@
+//! HG passes the conformance suite, and the suite rejects it with each planted fault.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+use assign::{
+    AssignError, Assignment, Counters, ENTRY_LIGHT, EncoderPasses, Frame, Gpu, Light, LightBuffer,
+    ListsSnapshot, Reuse, SampleDomain, View,
+    conformance::{self, faulty::Fault, flat_depth},
+};
+use assign_clustered::HybridGrid;
+use glam::Vec3;
+
+fn grid(size: &str) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    move |gpu| Ok(Box::new(HybridGrid::new(gpu, size.parse()?)?))
+}
+
+fn conforms(size: &str) {
+    let report = conformance::run(&grid(size)).expect("conforms");
+    println!("{report}");
+}
+
+#[test]
+fn coarse_cells_conform() {
+    conforms("48x48x40");
+    conforms("4096x4096x1");
+}
+
+#[test]
+fn odd_cells_conform() {
+    conforms("13x9x5");
+}
+
+#[test]
+fn fine_cells_conform() {
+    conforms("9x7x200");
+}
+
+#[test]
+fn faults_are_rejected() {
+    let make = grid("16x16x8");
+    assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
+}
+
+#[test]
+fn reused_lists_miss_lights_that_move() {
+    let reused = |frames| {
+        let make = grid("16x16x8");
+        move |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+            Ok(Box::new(Reuse::new(make(gpu)?, frames)?))
+        }
+    };
+    conformance::run_case("lights-move", &reused(1)).expect("conforms");
+    let error = conformance::run_case("lights-move", &reused(3))
+        .expect_err("lists of an earlier frame miss lights that moved");
+    assert!(error.to_string().contains("missed pair"), "{error}");
+}
+
+/// A view of 4 x 3 tiles of 16 pixels.
+fn view() -> View {
+    View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48])
+}
+
+fn draw(gpu: &Gpu, strategy: &mut dyn Assignment, frame: &Frame<'_>) -> ListsSnapshot {
+    strategy.prepare(gpu, frame).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    strategy.record(frame, &mut EncoderPasses { encoder: &mut encoder });
+    gpu.queue.submit([encoder.finish()]);
+    strategy.lists().snapshot(gpu).unwrap()
+}
+
+/// Counters and lists are those of the frame, whether earlier frames held nothing or everything.
+#[test]
+fn only_cells_that_hold_samples_get_lists() {
+    let gpu = Gpu::open(None).unwrap();
+    let light = Light::point(Vec3::ZERO, 50.0, Vec3::ONE);
+    let lights = LightBuffer::new(&gpu, &[light; 3]).unwrap();
+    let view = view();
+    let [wall, nothing] = [0.05, view.depth_clear()].map(|depth| flat_depth(&gpu, [64, 48], depth));
+    let mut strategy = grid("16x16x8")(&gpu).unwrap();
+    let frame = Frame::new(&view, &lights);
+    let walls = [&wall, &wall].map(|depth| draw(&gpu, &mut *strategy, &frame.with_depth(depth)));
+    assert_eq!(walls[0].counters.occupied_groups, 12, "one slice of 4 x 3 tiles");
+    assert_eq!((walls[0].counters.requested(), walls[0].counters.longest), (36, 3));
+    assert_eq!(walls[0].counters, walls[1].counters);
+    for _ in 0..2 {
+        let nothing = draw(&gpu, &mut *strategy, &frame.with_depth(&nothing));
+        assert_eq!(nothing.counters, Counters::default());
+        assert!(nothing.lists[1..].iter().all(|list| list.count == 0));
+    }
+    // If look-ups may come at any depth, every cell counts as holding samples.
+    let any = draw(&gpu, &mut *strategy, &frame.sampled_at(SampleDomain::AnyDepth));
+    assert_eq!(any.counters.occupied_groups, 4 * 3 * 8);
+    assert_eq!(draw(&gpu, &mut *strategy, &frame.with_depth(&wall)).counters, walls[0].counters);
+}
+
+/// A capped list keeps its lowest lights, in whatever order it was filled.
+#[test]
+fn capped_lists_keep_the_lowest_lights() {
+    let gpu = Gpu::open(None).unwrap();
+    let view = view();
+    let wall = flat_depth(&gpu, [64, 48], 0.05);
+    // Short and long lists are sorted in different ways.
+    for (count, cap) in [(240, 101), (5_000, 1_001), (5_000, 2_501)] {
+        let light = Light::point(Vec3::ZERO, 50.0, Vec3::ONE);
+        let lights = LightBuffer::new(&gpu, &vec![light; count]).unwrap();
+        let mut strategy = grid("16x16x8")(&gpu).unwrap();
+        strategy.lists_mut().cap_lists(cap);
+        let frame = Frame::new(&view, &lights).with_depth(&wall);
+        // The pool grows before the second frame.
+        draw(&gpu, &mut *strategy, &frame);
+        strategy.prepare(&gpu, &frame).unwrap();
+        let drawn = draw(&gpu, &mut *strategy, &frame);
+        assert_eq!(drawn.counters.overflowed_groups, 0);
+        assert_eq!(drawn.counters.longest, count as u32);
+        let mut capped = 0;
+        for group in 0..4 * 3 * 8 {
+            let entries = drawn.entries_of(group).unwrap();
+            if !entries.is_empty() {
+                let kept: Vec<u32> = entries.iter().map(|entry| entry & ENTRY_LIGHT).collect();
+                assert!(kept == (0..cap).collect::<Vec<_>>(), "group {group}: {kept:?}");
+                capped += 1;
+            }
+        }
+        assert_eq!(capped, 12);
+    }
+}
+
+#[test]
+fn errors_name_what_is_wrong() {
+    let gpu = Gpu::noop().unwrap();
+    let lights = LightBuffer::new(&gpu, &[]).unwrap();
+    let view = view();
+    let mut strategy = grid("32x32x8")(&gpu).unwrap();
+    assert_eq!(strategy.id(), "HG/32x32x8");
+    let frame = Frame::new(&view, &lights);
+    let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
+    assert!(error.contains("HG/32x32x8 needs depth"), "{error}");
+    strategy.prepare(&gpu, &frame.sampled_at(SampleDomain::AnyDepth)).unwrap();
+    let error = grid("0x32x8")(&gpu).err().unwrap().to_string();
+    assert!(error.contains("froxel tile size is 0: it must be 1 to 16384"), "{error}");
+    let huge =
+        View { viewport: assign::Viewport { x: 0, y: 0, width: 16384, height: 16384 }, ..view };
+    let error =
+        grid("1x1x8")(&gpu).unwrap().prepare(&gpu, &Frame::new(&huge, &lights)).unwrap_err();
+    assert!(error.to_string().contains("larger tiles or fewer slices"), "{error}");
+    let flat = View { near_m: 0.0, ..view };
+    let error = strategy.prepare(&gpu, &Frame::new(&flat, &lights)).unwrap_err();
+    assert!(matches!(error, AssignError::View(_)), "{error}");
+}

@@ -1,0 +1,57 @@
+//! The shaders of HG, linked without a GPU: they validate, and structs that they share with Rust or with
+//! each other have the same size and offsets.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
+
+mod linked;
+
+use assign::{LightKinds, LiveGroups};
+use assign_clustered::HybridShader;
+use linked::members;
+
+fn validated(shader: HybridShader, kinds: LightKinds) -> naga::Module {
+    let source = shader.source(kinds).unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {e}"));
+    linked::validated(&source, &format!("{shader:?}, {kinds:?}"))
+}
+
+#[test]
+fn all_permutations_validate() {
+    for shader in HybridShader::ALL {
+        for kinds in LightKinds::ALL {
+            validated(shader, kinds);
+        }
+    }
+}
+
+/// A pool has at most 2^30 entries. Each lane of 65,535 workgroups may add one list of up to `CAREFUL` to a
+/// full pool before it sees that the pool is full.
+#[test]
+fn reservations_at_once_cannot_wrap_the_cursor() {
+    let module = validated(HybridShader::Reserve, LightKinds::default());
+    let is_it = |name: &Option<String>| name.as_deref().is_some_and(|n| n.ends_with("CAREFUL"));
+    let (_, careful) = module.constants.iter().find(|(_, c)| is_it(&c.name)).unwrap();
+    let init = &module.global_expressions[careful.init];
+    let naga::Expression::Literal(naga::Literal::U32(careful)) = *init else {
+        panic!("{init:?}: not a number");
+    };
+    let entry_point = module.entry_points.iter().find(|e| e.name == "reserve_lists").unwrap();
+    let lanes: u32 = entry_point.workgroup_size.iter().product();
+    let most = 65_535 * u64::from(lanes) * u64::from(careful) + (1 << 30);
+    assert!(careful > 0 && most < 1 << 32, "{lanes} lanes of {careful}: {most}");
+}
+
+/// `reserve` writes the live cells by the struct of `package::live`, `sort` reads them by one of its own.
+#[test]
+fn live_cells_have_one_layout() {
+    assert!(LiveGroups::WESL.contains("struct LiveGroups"));
+    let kinds = LightKinds::default();
+    let (written, _) = members(&validated(HybridShader::Reserve, kinds), "LiveGroups");
+    let (read, _) = members(&validated(HybridShader::Sort, kinds), "LiveGroups");
+    let offsets = |fields: Vec<(String, usize)>| {
+        let known = ["dispatch", "dispatch_x", "count", "ids"];
+        let known = fields.into_iter().filter(|(name, _)| known.contains(&name.as_str()));
+        known.map(|(_, offset)| offset).collect::<Vec<_>>()
+    };
+    assert_eq!(offsets(written), [0, 12, 16]);
+    assert_eq!(offsets(read), [0, 12, 16]);
+}

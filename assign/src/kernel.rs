@@ -1,0 +1,94 @@
+//! Short forms for compute kernels: bind group layouts, bind groups and pipelines over whole buffers.
+//!
+//! A kernel is an entry point of a module that [`Shader`](crate::Shader) linked. Layouts and pipelines
+//! come from the device's store ([`Gpu::bind_group_layout`], [`Gpu::compute_pipeline`]), so equal ones
+//! are made once. `conformance::run_kernel` runs a kernel once, for tests and examples.
+
+use crate::{
+    Gpu,
+    frame::{entry, storage_entry, uniform_entry},
+};
+
+/// The most workgroups of a dispatch along one axis.
+pub const MAX_WORKGROUPS: u32 = 65_535;
+
+/// The kind of a buffer binding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// A uniform buffer.
+    Uniform,
+    /// A uniform buffer with a dynamic offset, given where the bind group is set.
+    UniformAt,
+    /// A storage buffer that the kernel only reads.
+    Read,
+    /// A storage buffer that the kernel reads and writes.
+    Write,
+}
+
+impl Slot {
+    /// The layout entry of this slot.
+    pub fn entry(self, binding: u32, stages: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+        match self {
+            Self::Uniform => uniform_entry(binding, stages),
+            Self::UniformAt => wgpu::BindGroupLayoutEntry {
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: true,
+                    min_binding_size: None,
+                },
+                ..uniform_entry(binding, stages)
+            },
+            Self::Read => storage_entry(binding, stages, true),
+            Self::Write => storage_entry(binding, stages, false),
+        }
+    }
+}
+
+/// The layout of `slots` at bindings 0, 1, 2 and so on.
+pub fn layout(
+    gpu: &Gpu,
+    label: &str,
+    stages: wgpu::ShaderStages,
+    slots: &[Slot],
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> =
+        (0..).zip(slots).map(|(binding, slot)| slot.entry(binding, stages)).collect();
+    gpu.bind_group_layout(label, &entries)
+}
+
+/// A bind group of whole buffers at bindings 0, 1, 2 and so on.
+pub fn bind_buffers(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &[&wgpu::Buffer],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        (0..).zip(buffers).map(|(binding, buffer)| entry(binding, buffer)).collect();
+    bind_entries(gpu, layout, &entries)
+}
+
+/// A bind group of any entries.
+pub fn bind_entries(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    entries: &[wgpu::BindGroupEntry<'_>],
+) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
+}
+
+/// The pipeline of an entry point over bind groups 0, 1, 2 and so on. Its workgroup memory starts
+/// undefined: the kernel writes what it reads.
+pub fn pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    layouts: &[&wgpu::BindGroupLayout],
+) -> wgpu::ComputePipeline {
+    let layouts: Vec<_> = layouts.iter().copied().map(Some).collect();
+    gpu.compute_pipeline(module, entry_point, &layouts, false)
+}
+
+/// Workgroups of `size` lanes for `items`, at most [`MAX_WORKGROUPS`]: kernels stride over the rest.
+pub fn workgroups(items: u64, size: u32) -> u32 {
+    items.div_ceil(u64::from(size)).min(u64::from(MAX_WORKGROUPS)) as u32
+}

@@ -1,0 +1,26 @@
+//! Why a light cannot be used.
+
+use thiserror::Error;
+
+/// Why a light cannot be used. Such a light is left out and counted, never uploaded.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum LightFault {
+    /// A field is NaN or infinite.
+    #[error("{field} is {value}: it must be finite")]
+    NotFinite {
+        /// The field's name.
+        field: &'static str,
+        /// The offending value.
+        value: f32,
+    },
+    /// A field lies outside its accepted range.
+    #[error("{field} is {value}: it must be {accepted}")]
+    OutOfRange {
+        /// The field's name.
+        field: &'static str,
+        /// The offending value.
+        value: f32,
+        /// What is accepted.
+        accepted: &'static str,
+    },
+}

@@ -1,0 +1,49 @@
+//! A strategy's shader text: what kernels and renderers mount to look lists up.
+
+/// WESL of a strategy: its main module, the modules that this one imports, and the flags that both read.
+///
+/// [`Shader::strategy`](crate::Shader::strategy) mounts all of it. A renderer with a linker of its own mounts
+/// `main` as `package::strategy`, mounts `imports` at their paths, and sets `flags`.
+#[derive(Clone, Copy, Debug)]
+pub struct StrategyWesl<'a> {
+    /// The main module. It defines `fn group_of(sample: ViewSample) -> u32`.
+    pub main: &'a str,
+    /// Path and source of each module that the main one imports, without the contract's own. Paths start
+    /// with `package::strategy::`, so that they meet no module of a renderer.
+    pub imports: &'a [(&'a str, &'a str)],
+    /// Name and value of each flag that these modules read with `@if`.
+    pub flags: &'a [(&'a str, bool)],
+}
+
+impl<'a> From<&'a str> for StrategyWesl<'a> {
+    /// A main module that imports nothing of its own and reads no flag.
+    fn from(main: &'a str) -> Self {
+        Self { main, imports: &[], flags: &[] }
+    }
+}
+
+/// A strategy's WESL, and its author's word that every loop in it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct StrategyModule(StrategyWesl<'static>);
+
+impl StrategyModule {
+    /// # Safety
+    ///
+    /// Every loop must end by itself, whatever the buffers hold: shaders that mount the module do not count
+    /// loops ([`Shader::create_uncounted`](crate::Shader::create_uncounted)).
+    #[allow(unsafe_code, reason = "the author's word")]
+    pub unsafe fn new(wesl: impl Into<StrategyWesl<'static>>) -> Self {
+        Self(wesl.into())
+    }
+
+    /// The WESL.
+    pub const fn wesl(self) -> StrategyWesl<'static> {
+        self.0
+    }
+}
+
+impl From<StrategyModule> for StrategyWesl<'_> {
+    fn from(module: StrategyModule) -> Self {
+        module.0
+    }
+}

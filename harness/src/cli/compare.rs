@@ -1,0 +1,166 @@
+//! The options of `compare`.
+
+use std::path::PathBuf;
+
+use assign::{FrustumTests, LightSource};
+use clap::{Args, ValueEnum};
+use shading::{AreaModel, Cut};
+
+use super::{
+    headings::{BOUNCE, CHECKS, LISTS, SHADING, TIMING},
+    modes::Modes,
+    named::named,
+    stage::StageArgs,
+    values::{self, Strategies},
+};
+use crate::truth_level::TruthLevel;
+
+/// The options of `lightbench compare`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct CompareArgs {
+    /// What is drawn.
+    #[command(flatten)]
+    pub stage: StageArgs,
+
+    /// Strategies to compare, separated by commas; `all` takes every one
+    ///
+    /// None is no culling. `lightbench list strategies` lists all ids and their parameters.
+    #[arg(
+        long,
+        display_order = 6,
+        value_name = "A,B,C",
+        default_value = "None,Sphere,DC-I,SC-E/bvh"
+    )]
+    pub strategies: Strategies,
+
+    /// How pixels are lit
+    #[arg(long, display_order = 7, value_name = "MODE", default_value = "deferred", value_parser = Modes::parser())]
+    pub mode: Modes,
+
+    /// Move the camera once along the scene's path, and time each frame from another pose
+    #[arg(long, display_order = 8, conflicts_with = "camera")]
+    pub path: bool,
+
+    /// Frames to time, 1 to 100,000; with --path, poses per lap
+    ///
+    /// The results keep every sample. [default: 64, or 3 on a software adapter; with --path 1,200, or 60 on a
+    /// software adapter]
+    #[arg(long, display_order = 9, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
+    pub frames: Option<u32>,
+
+    /// GPU to use, by any part of its name
+    #[arg(long, display_order = 10, value_name = "NAME", value_parser = values::text)]
+    pub adapter: Option<String>,
+
+    /// Folder for index.html, results.json and the pictures
+    #[arg(long, display_order = 11, value_name = "DIR", default_value = "out/compare")]
+    pub out: PathBuf,
+
+    /// How to integrate the light of area lights [default: ltc]
+    ///
+    /// From one point: point, mrp, mrp-published. By linearly transformed cosines: ltc, ltc-hammon,
+    /// ltc-unsplit, ltc-per-light, ltc-polynomial, ltc-polynomial-per-light. By N samples: monte-carlo:N,
+    /// monte-carlo-reflected:N.
+    #[arg(long, value_name = "MODEL", value_parser = values::area_model, help_heading = SHADING, hide_short_help = true)]
+    pub area_model: Option<AreaModel>,
+
+    /// How fall-off ends at a light's range
+    #[arg(long, value_name = "HOW", default_value = "windowed", value_parser = named(CUTS, Cut::name), help_heading = SHADING, hide_short_help = true)]
+    pub cut: Cut,
+
+    /// Even out the brightness of virtual point lights: multiply each sample by N / (number of lights that
+    /// light it)
+    ///
+    /// The factor stays between 1/4 and 4. It hides where these lights are dense or sparse, and hides errors
+    /// with them. N is a number from 1 to 1e9.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::compensation, help_heading = BOUNCE, hide_short_help = true)]
+    pub compensate: Option<f64>,
+
+    /// Tests of lights against frusta, joined by +, for strategies whose id names none
+    ///
+    /// hs rejects a light behind one of the frustum's planes. The others reject a light that an axis separates
+    /// from the frustum: along the frustum's edges (sat-e), towards its nearest corner (sat-n), along its
+    /// planes' normals (sat-p), or towards each corner (sat-v). [default: hs+sat-n]
+    #[arg(long, value_name = "UNION", value_parser = values::tests, help_heading = LISTS, hide_short_help = true)]
+    pub test: Option<FrustumTests>,
+
+    /// Where strategies whose id names no source read lights from [default: linear]
+    #[arg(long, value_name = "SOURCE", help_heading = LISTS, hide_short_help = true)]
+    pub source: Option<SourceChoice>,
+
+    /// Frames of each method to draw before timing starts, 0 to 100,000
+    ///
+    /// A GPU draws more of them until its times are steady. [default: 16, or 1 on a software adapter]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::warmup, help_heading = TIMING, hide_short_help = true)]
+    pub warmup: Option<u32>,
+
+    /// With --path, laps along the path, 1 to 1,000, each of --frames poses [default: 1]
+    ///
+    /// The test for ties needs 6 laps.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::laps, help_heading = TIMING, hide_short_help = true)]
+    pub laps: Option<u32>,
+
+    /// What to check against the CPU
+    #[arg(long, value_name = "LEVEL", default_value = "full", value_parser = named(TRUTH_LEVELS, TruthLevel::name), help_heading = CHECKS, hide_short_help = true)]
+    pub truth: TruthLevel,
+
+    /// With --path, poses at which to compare images with no culling, 1 to 8 [default: 8]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::checks, help_heading = CHECKS, hide_short_help = true)]
+    pub checks: Option<u32>,
+
+    /// Also compare each image with that of lights without a range: the error of their ranges
+    #[arg(long, help_heading = CHECKS, hide_short_help = true)]
+    pub unbounded: bool,
+
+    /// Count the light operations of every strategy that has lists
+    ///
+    /// One operation is one term (diffuse or specular) of one light at one sample. The report counts those in
+    /// the lists, those that shading evaluates, and those that change the image.
+    #[arg(long, help_heading = CHECKS, hide_short_help = true)]
+    pub operations: bool,
+
+    /// Which pictures to keep
+    #[arg(long, value_name = "WHICH", default_value = "all", help_heading = CHECKS, hide_short_help = true)]
+    pub pictures: PicturesChoice,
+}
+
+impl CompareArgs {
+    /// The sources of lights for a strategy whose id names none.
+    pub fn sources(&self) -> &'static [LightSource] {
+        match self.source {
+            None | Some(SourceChoice::Linear) => &[LightSource::Linear],
+            Some(SourceChoice::Bvh) => &[LightSource::Hierarchy],
+            Some(SourceChoice::Both) => &[LightSource::Linear, LightSource::Hierarchy],
+        }
+    }
+}
+
+const CUTS: [(Cut, &str); 2] = [
+    (Cut::Windowed, "Smoothly: times (1 - (distance / range)^4)^2"),
+    (Cut::Hard, "At once: inverse square up to the range, 0 beyond it"),
+];
+
+const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
+    (TruthLevel::Full, "Every (light, pixel) pair, in f64"),
+    (TruthLevel::None, "Nothing; images are still compared with no culling"),
+];
+
+/// Which pictures are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PicturesChoice {
+    /// Each method's image (PNG and linear EXR), its difference to no culling, and its heat map
+    All,
+    /// No pictures; images are still compared
+    None,
+}
+
+/// Where strategies read lights from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SourceChoice {
+    /// The list of all lights
+    Linear,
+    /// The hierarchy of boxes around the lights
+    Bvh,
+    /// Run each strategy twice, once per source
+    Both,
+}

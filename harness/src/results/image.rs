@@ -1,0 +1,73 @@
+//! The image of a record.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// How far its image is from what it should be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ImageFigures {
+    /// Largest difference of a channel to the image of no culling, linear HDR; `null` where
+    /// there was no such image, or the difference is not finite.
+    #[serde(default)]
+    pub max_abs_diff: Option<f64>,
+    /// Largest difference of a channel over that channel's value without culling.
+    #[serde(default)]
+    pub max_rel_diff: Option<f64>,
+    /// Channels (three per pixel) of which any bit differs from the image of no culling.
+    #[serde(default)]
+    pub differing_channels: Option<u64>,
+    /// The largest relative difference that the method states of itself; none where it states
+    /// that no bit differs.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+    /// Errors against no culling with the same shader, by metric; means over the compared frames
+    /// along a path.
+    #[serde(default)]
+    pub errors: Errors,
+    /// Errors against lights without a range, by metric.
+    #[serde(default)]
+    pub unbounded_errors: Errors,
+    /// Errors against the truth image of a study, by metric: those of the model of area lights, never
+    /// of culling.
+    #[serde(default)]
+    pub truth_errors: Errors,
+    /// Pictures, beside `results.json`.
+    #[serde(default, alias = "images")]
+    pub files: Images,
+}
+
+/// Errors by metric; `null` where one is not finite.
+pub type Errors = BTreeMap<String, Option<f64>>;
+
+/// The pictures of a record: names of files beside `results.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Images {
+    /// The tone-mapped image.
+    #[serde(default)]
+    pub image: Option<String>,
+    /// The linear image, an EXR file of 32-bit floats.
+    #[serde(default)]
+    pub raw: Option<String>,
+    /// The linear image of no culling.
+    #[serde(default)]
+    pub raw_baseline: Option<String>,
+    /// The linear image of lights without a range.
+    #[serde(default)]
+    pub raw_unbounded: Option<String>,
+    /// The factor before the tone curve that the pictures share.
+    #[serde(default)]
+    pub exposure: Option<f64>,
+    /// The tone-mapped image of no culling; needed where the run has no record of it.
+    #[serde(default)]
+    pub baseline: Option<String>,
+    /// The absolute difference to no culling, linear, times the amplification.
+    #[serde(default)]
+    pub difference: Option<String>,
+    /// Lights per pixel over the scene: blue at none, red at 150, green above.
+    #[serde(default)]
+    pub heat_map: Option<String>,
+    /// The factor on the difference; 1 where absent.
+    #[serde(default)]
+    pub difference_amplification: Option<f64>,
+}

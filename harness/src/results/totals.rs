@@ -1,0 +1,131 @@
+//! What a record's figures come to.
+
+use super::{Interval, PassKind, Record, Spans, mean, median, median_interval};
+use crate::{schedule::frames_of_round, strategy::Role};
+
+impl Record {
+    /// Assigning and lighting together, ms: what strategies are compared by.
+    pub fn assign_and_shade_ms(&self) -> f64 {
+        self.times.assign_ms + self.times.shade_ms
+    }
+
+    /// Sets its times from passes and spans: medians, and means along a path.
+    pub fn set_times(&mut self) {
+        self.times.assign_ms = self.time_of(|_, kind| kind == PassKind::Assign);
+        self.times.shade_ms = self.time_of(|_, kind| kind == PassKind::Shade);
+        self.times.frame_ms = self.time_of(|_, _| true);
+        let of = |samples: fn(&Spans) -> &[f64]| {
+            let samples = samples(self.times.spans.as_ref()?);
+            (!samples.is_empty()).then(|| self.middle_ms(samples))
+        };
+        [self.times.span_ms, self.times.frame_span_ms] =
+            [of(|spans| &spans.assign_and_shade_ms), of(|spans| &spans.frame_ms)];
+    }
+
+    /// The time of the passes that are counted by name and kind, summed per frame, ms: median, or mean
+    /// along a path. 0 where there is no such pass.
+    pub fn time_of(&self, is_counted: impl Fn(&str, PassKind) -> bool) -> f64 {
+        let samples = self.times.passes.per_frame_where(&is_counted);
+        match self.times.passes.iter().any(|(name, times)| is_counted(name, times.kind)) {
+            true => self.middle_ms(&samples),
+            false => 0.0,
+        }
+    }
+
+    /// The mean along a path, whose frames are a population; else the median.
+    fn middle_ms(&self, samples: &[f64]) -> f64 {
+        if self.setting.along_path { mean(samples) } else { median(samples) }
+    }
+
+    /// Assigning and lighting together, frame by frame, ms.
+    pub fn frames_ms(&self) -> Vec<f64> {
+        let [assign, shade] = [PassKind::Assign, PassKind::Shade]
+            .map(|kind| self.times.passes.per_frame_ms(Some(kind)));
+        let at = |list: &[f64], frame: usize| list.get(frame).copied().unwrap_or(0.0);
+        (0..assign.len().max(shade.len())).map(|f| at(&assign, f) + at(&shade, f)).collect()
+    }
+
+    /// How often the camera went along its path: 0 from a still camera.
+    pub fn laps(&self) -> u32 {
+        match (self.setting.along_path, self.setting.poses) {
+            (false, _) => 0,
+            (true, Some(poses @ 1..)) => (self.times.frames / poses).max(1),
+            (true, _) => 1,
+        }
+    }
+
+    /// The time of each round, assigning and lighting together, ms. From a still camera a round's
+    /// time is the median of its frames; along a path a round is a lap, and its time is the mean over
+    /// the poses. Intervals and comparisons of methods use these, because frames of one round are not
+    /// independent, and poses are not repetitions of each other.
+    pub fn round_times_ms(&self) -> Vec<f64> {
+        let frames = self.frames_ms();
+        let count = u32::try_from(frames.len()).unwrap_or(u32::MAX);
+        let rounds = if self.setting.along_path { self.laps() } else { self.times.rounds };
+        let rounds = rounds.clamp(1, count.max(1));
+        let time = if self.setting.along_path { mean } else { median };
+        (0..rounds)
+            .map(|round| {
+                let range = frames_of_round(round, rounds, count);
+                time(frames.get(range.start as usize..range.end as usize).unwrap_or(&[]))
+            })
+            .collect()
+    }
+
+    /// The time at each pose of the path, its mean over the laps, ms; frame by frame from a still
+    /// camera.
+    pub fn pose_times_ms(&self) -> Vec<f64> {
+        let frames = self.frames_ms();
+        let poses = frames.len() / self.laps().max(1) as usize;
+        if !self.setting.along_path || poses == 0 {
+            return frames;
+        }
+        let at = |pose| frames.iter().copied().skip(pose).step_by(poses).collect::<Vec<f64>>();
+        (0..poses).map(|pose| mean(&at(pose))).collect()
+    }
+
+    /// Where [`assign_and_shade_ms`](Self::assign_and_shade_ms) lies, from its rounds. Along a path
+    /// the poses are the same in every lap, so what varies between laps is the noise of measuring,
+    /// and the interval speaks of these poses only. `None` where there is one round or lap.
+    pub fn interval_ms(&self) -> Option<Interval> {
+        median_interval(&self.round_times_ms())
+    }
+
+    /// Whether this is the strategy without culling.
+    pub fn is_baseline(&self) -> bool {
+        self.strategy.role() == Some(Role::Baseline)
+    }
+
+    /// Whether this is the control without lights.
+    pub fn is_control(&self) -> bool {
+        self.strategy.role() == Some(Role::Control)
+    }
+
+    /// Whether it leaves out lights before a sample is lit: neither no culling, with or without an
+    /// early exit, nor the control.
+    pub fn culls(&self) -> bool {
+        !self.is_baseline() && !self.is_control() && self.strategy.role() != Some(Role::EarlyExit)
+    }
+
+    /// Whether it may be called exact: no knob loses light, nothing is known to be lost, and the run
+    /// put it to a test.
+    pub fn is_exact(&self) -> bool {
+        self.shows_no_loss() && self.lists.untested.is_none()
+    }
+
+    /// Whether no knob loses light and nothing is known to be lost, tested or not.
+    pub fn shows_no_loss(&self) -> bool {
+        !self.is_lossy && self.is_lossless()
+    }
+
+    /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs by
+    /// more than the method states of itself.
+    pub fn is_lossless(&self) -> bool {
+        let same = self.image.differing_channels.unwrap_or(0) == 0
+            && self.image.max_abs_diff.unwrap_or(0.0) == 0.0;
+        let tolerated = self.image.tolerance.is_some_and(|most| {
+            self.image.max_rel_diff.is_some_and(|difference| difference <= most)
+        });
+        self.lists.missed_pairs.unwrap_or(0) == 0 && (same || tolerated)
+    }
+}

@@ -1,0 +1,20 @@
+//! The error for a field of a file.
+
+use std::path::Path;
+
+use crate::SceneError;
+
+/// The error for a field that does not hold what it must.
+pub(super) fn invalid(
+    path: &Path,
+    field: impl Into<String>,
+    value: impl ToString,
+    accepted: impl Into<String>,
+) -> SceneError {
+    SceneError::Invalid {
+        file: path.into(),
+        field: field.into(),
+        value: value.to_string(),
+        accepted: accepted.into(),
+    }
+}

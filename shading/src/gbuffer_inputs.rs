@@ -1,0 +1,89 @@
+//! Binds depth and G-buffer for the passes that read drawn pixels: `gbuffer.wesl`.
+
+use assign::Shader;
+
+use crate::{geometry::SceneGpu, targets::Targets};
+
+/// Bind group of depth and G-buffer, and of what else such a pass reads and writes.
+pub(crate) const PIXELS_GROUP: u32 = 2;
+
+/// Bindings of `gbuffer.wesl`.
+const DEPTH: u32 = 0;
+const BASE_COLOR: u32 = 1;
+const NORMAL: u32 = 2;
+const EMISSIVE: u32 = 3;
+const MODEL: u32 = 5;
+const DIELECTRIC: u32 = 11;
+
+/// The images that a pass reads beside depth, base colour and normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GBufferInputs {
+    pub(crate) emissive: bool,
+    pub(crate) dielectrics: bool,
+    pub(crate) model_ids: bool,
+}
+
+impl GBufferInputs {
+    /// The images that a scene's surfaces fill; without the model of each pixel.
+    pub(crate) fn of_scene(scene: &SceneGpu) -> Self {
+        let (emissive, dielectrics) = (scene.has_emissive(), scene.has_dielectrics());
+        Self { emissive, dielectrics, model_ids: false }
+    }
+
+    /// Only what tells a pixel's sample, and its model where a strategy needs it.
+    pub(crate) fn of_sample(model_ids: bool) -> Self {
+        Self { emissive: false, dielectrics: false, model_ids }
+    }
+
+    /// Compiles the loads of these images.
+    pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
+        shader
+            .flag("emissive", self.emissive)
+            .flag("dielectrics", self.dielectrics)
+            .flag("model_ids", self.model_ids)
+    }
+
+    /// Layout entries of [`PIXELS_GROUP`].
+    pub(crate) fn layout(self, stages: wgpu::ShaderStages) -> Vec<wgpu::BindGroupLayoutEntry> {
+        let texels = wgpu::TextureSampleType::Float { filterable: false };
+        let images = [
+            (DEPTH, wgpu::TextureSampleType::Depth, true),
+            (BASE_COLOR, texels, true),
+            (NORMAL, texels, true),
+            (EMISSIVE, texels, self.emissive),
+            (MODEL, wgpu::TextureSampleType::Uint, self.model_ids),
+            (DIELECTRIC, texels, self.dielectrics),
+        ];
+        let entry = |(binding, sample_type, _)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: stages,
+            ty: wgpu::BindingType::Texture {
+                sample_type,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        images.into_iter().filter(|&(.., is_read)| is_read).map(entry).collect()
+    }
+
+    /// Bind group entries of [`PIXELS_GROUP`].
+    pub(crate) fn entries(self, targets: &Targets) -> Vec<wgpu::BindGroupEntry<'_>> {
+        let images = [
+            (DEPTH, Some(&targets.depth)),
+            (BASE_COLOR, Some(&targets.base_color)),
+            (NORMAL, Some(&targets.normal)),
+            (EMISSIVE, targets.emissive.as_ref().filter(|_| self.emissive)),
+            (MODEL, self.model_ids.then_some(&targets.model_ids)),
+            (DIELECTRIC, targets.dielectric.as_ref().filter(|_| self.dielectrics)),
+        ];
+        let entry =
+            |(binding, image): (u32, Option<_>)| image.map(|image| texture_binding(binding, image));
+        images.into_iter().filter_map(entry).collect()
+    }
+}
+
+/// A bind group entry of an image.
+pub(crate) fn texture_binding(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
+}

@@ -1,0 +1,95 @@
+//! Area lights in f64 on the CPU: the true integral, and what linearly transformed cosines make of it.
+
+use assign::{Emitter, Light, range_window};
+use glam::{DMat3, DVec3};
+
+use super::brdf::{Surface, f0_of, f90_of};
+use crate::ltc;
+
+/// Relative error at which the quadrature of the truth stops.
+const TOLERANCE: f64 = 1e-4;
+
+/// An area light seen from a surface.
+pub(crate) struct SeenArea {
+    /// Emitter in the shading frame, see [`ltc`].
+    vertices: Vec<DVec3>,
+    to_eye: DVec3,
+    /// Radiance of the emitter times the window of each term.
+    diffuse: DVec3,
+    specular: DVec3,
+    albedo: DVec3,
+    f0: DVec3,
+    f90: f64,
+    roughness: f64,
+}
+
+impl SeenArea {
+    /// `None` where the light does not reach the position.
+    pub(crate) fn new(
+        light: &Light,
+        emitter: &Emitter,
+        position: DVec3,
+        surface: &Surface,
+        to_eye: DVec3,
+    ) -> Option<Self> {
+        let to_position = position - light.position.as_dvec3();
+        if emitter.in_front(to_position) <= 0.0 {
+            return None;
+        }
+        let distance_2 = to_position.distance_squared(emitter.closest(to_position));
+        let window = |range_m: f32| range_window(distance_2, f64::from(range_m));
+        let radiance = light.intensity.as_dvec3() / f64::from(emitter.area());
+        let frame = shading_frame(surface.normal, to_eye);
+        let vertices = emitter.vertices().iter();
+        Some(Self {
+            vertices: vertices.map(|v| frame * (v.as_dvec3() - to_position)).collect(),
+            to_eye: frame * to_eye,
+            diffuse: radiance * window(light.diffuse_range_m()),
+            specular: radiance * window(light.range_m),
+            albedo: (1.0 - surface.metallic) * surface.base_color,
+            f0: f0_of(surface),
+            f90: f90_of(surface),
+            roughness: surface.roughness,
+        })
+    }
+
+    /// Radiance to the eye: the BRDF itself, integrated.
+    pub(crate) fn truth(&self) -> DVec3 {
+        if self.specular == DVec3::ZERO && self.diffuse == DVec3::ZERO {
+            return DVec3::ZERO;
+        }
+        let found = ltc::integrate(&self.vertices, self.to_eye, self.roughness, TOLERANCE).value;
+        let channel = |c: usize| {
+            let (albedo, f0) = (self.albedo[c], self.f0[c]);
+            // Less is reflected at grazing incidence than the integrals have, and more is kept.
+            let less = 1.0 - self.f90;
+            let diffuse =
+                found.diffuse_reflected(albedo, f0) + less * albedo * found.diffuse_fresnel;
+            let specular = found.specular_reflected(f0) - less * found.specular_fresnel;
+            self.diffuse[c] * diffuse + self.specular[c] * specular
+        };
+        DVec3::new(channel(0), channel(1), channel(2))
+    }
+
+    /// Radiance to the eye by linearly transformed cosines: `area_ltc.wesl`.
+    pub(crate) fn ltc(&self, entry: &ltc::Entry) -> DVec3 {
+        let cosine = ltc::cosine_integral(&self.vertices);
+        let lobe = ltc::ltc_integral(&entry.inverse(), &self.vertices);
+        let kept = 1.0 - ltc::diffuse_fresnel(self.to_eye.z.abs());
+        let channel = |c: usize| {
+            let f0 = self.f0[c];
+            let less = 1.0 - self.f90;
+            let diffuse = self.albedo[c] * ((1.0 - f0) * kept + less * (1.0 - kept));
+            let specular = entry.specular_albedo(f0) - less * entry.specular_albedo(0.0);
+            self.diffuse[c] * diffuse * cosine + self.specular[c] * specular * lobe
+        };
+        DVec3::new(channel(0), channel(1), channel(2))
+    }
+}
+
+/// World to shading frame: x the view's projection onto the surface, z the normal.
+fn shading_frame(normal: DVec3, to_eye: DVec3) -> DMat3 {
+    let x = to_eye.reject_from_normalized(normal).try_normalize();
+    let x = x.unwrap_or_else(|| normal.any_orthonormal_vector());
+    DMat3::from_cols(x, normal.cross(x), normal).transpose()
+}
