@@ -42,7 +42,7 @@ impl StrategyModule {
     }
 }
 
-impl From<StrategyModule> for StrategyWesl<'static> {
+impl From<StrategyModule> for StrategyWesl<'_> {
     fn from(module: StrategyModule) -> Self {
         module.0
     }

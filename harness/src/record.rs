@@ -8,7 +8,7 @@ use crate::{
     cli::{CompareArgs, name_of},
     clock::clock_of,
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
     results::{
         Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, mean,
@@ -87,8 +87,7 @@ pub fn record(
     let count = u64::from(stage.lights.count());
     let has_lists = lists.bytes > 0;
     let mut record = Record {
-        strategy: choice.id().to_owned(),
-        strategy_parameters: choice.parameters(),
+        strategy: choice.id().clone(),
         is_lossy: choice.is_lossy(count) || loses_edges(choice, plan.cut),
         setting: Setting {
             scene: visible(&stage.scene.name).into_owned(),

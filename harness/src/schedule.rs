@@ -4,6 +4,9 @@
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_pcg::Pcg64Mcg;
 
+/// Timed frames if the command line gives no number: on a GPU, and on a software adapter.
+pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
+
 /// The most rounds of a still camera: more would not improve the confidence interval of the median.
 const MAX_ROUNDS: u32 = 16;
 

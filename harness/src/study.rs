@@ -21,11 +21,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::{
-    cdi::measure,
+    bench::Bench,
     checks::check_options,
-    choice::choices,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
-    compare::Bench,
+    compare::compare_on,
+    deep_image_run::measure,
     error::HarnessError,
     messages::say,
     out_folder::OutFolder,
@@ -157,7 +157,7 @@ fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError>
                 .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
         }
         let results = match asked {
-            Asked::Compare(args) => bench.compare(&args, job.command.clone())?.0,
+            Asked::Compare(args) => compare_on(bench, &args, job.command.clone())?.0,
             Asked::Truth(args) => render(bench, &args, job.command.clone())?,
             Asked::Cdi(args) => measure(bench, &args, job.command.clone())?,
         };
@@ -223,7 +223,7 @@ impl Job {
     /// Whether its command would be understood.
     fn check(&self) -> Result<(), CliError> {
         let checked = self.asked(Path::new("")).and_then(|asked| match asked {
-            Asked::Compare(args) => check_options(&args, &choices(&args)?),
+            Asked::Compare(args) => check_options(&args, &args.choices()?),
             Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
         });
         checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use harness::{
+    bench::Bench,
     cli::{CompareArgs, Invocation, parse},
-    compare::Bench,
+    compare::compare_on,
     report::{finding, render_table},
     results::{Results, Untested},
 };
@@ -139,7 +140,7 @@ impl Runs {
         let moved = kept.join("room.gltf");
         std::fs::rename(path, &moved).expect("moves");
         let args = args(&moved, &self.folder.path().join("out"), more);
-        self.bench.compare(&args, Vec::new()).expect("runs").0
+        compare_on(&mut self.bench, &args, Vec::new()).expect("runs").0
     }
 
     /// The picture of no culling.

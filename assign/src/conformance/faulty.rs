@@ -1,19 +1,20 @@
-//! Negative controls: strategies with a planted fault, which the suite must reject.
+//! Negative controls: strategies with a planted fault. The suite must reject them.
 
 use bytemuck::bytes_of;
 
 use super::violation::Breach;
 use crate::{
     AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup, Needs,
-    Passes, Shader, StrategyModule, entry, storage_entry, uniform_entry,
+    Passes, Shader, StrategyModule,
+    kernel::{self, Slot},
 };
 
-/// A fault planted in a strategy that otherwise works.
+/// A fault that is planted in a working strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The last entry of every list is missing.
     DroppedLight,
-    /// The first two entries of every list are exchanged.
+    /// The first two entries of every list are swapped.
     ShuffledList,
     /// The first entry of every list is a copy of the second.
     Repeated,
@@ -21,27 +22,27 @@ pub enum Fault {
     ForeignLight,
     /// The first entry of every list has lost its flags.
     LostTerms,
-    /// The last entry of every list says that the light's diffuse term reaches no sample.
+    /// The last entry of every list lacks the flag of the diffuse term.
     LostDiffuse,
-    /// Lists are made with horizons that stand a little too high.
+    /// Lists are made with horizons that are a little too high.
     HighHorizon,
     /// Every list ends beyond the buffer.
     RunawayList,
-    /// Lists are made from lights of 0.9 times their range.
+    /// Lists are made from lights with 0.9 times their range.
     ShrunkenBound,
-    /// Lists are made from area lights that shine from their middle alone.
+    /// Lists are made from points at the centres of area lights.
     CentredEmitter,
-    /// Lists are made from emitters of 0.95 times their size. Coarse groups may hide it.
+    /// Lists are made from emitters with 0.95 times their size. Coarse groups may hide it.
     TightEmitter,
-    /// Lists are made from spots of half their half angle.
+    /// Lists are made from spots with half their half angle.
     NarrowCone,
-    /// Lists are made from virtual point lights that shine into a cone of 45 degrees.
+    /// Lists are made from virtual point lights that shine only into a cone of 45 degrees.
     NarrowHalfSpace,
-    /// Lists are made no more once the lights have moved.
+    /// Lists are no longer made once the lights have moved.
     StaleLists,
     /// Every other frame lacks entries.
     Flicker,
-    /// Entries are missing wherever faulty lights were left out.
+    /// Entries are missing in frames with faulty lights.
     LeakyQuarantine,
     /// Record 0 lacks a light.
     Record0,
@@ -51,14 +52,14 @@ pub enum Fault {
     StarvedPool,
     /// No frame is recorded at all.
     Unrecorded,
-    /// `group_of` names a group that does not exist.
+    /// `group_of` returns a group that does not exist.
     LostGroup,
-    /// Shading is handed the bind group of the first frame for ever.
+    /// Shading gets the bind group of the first frame in every frame.
     StaleBinding,
 }
 
 impl Fault {
-    /// All faults that groups of any size must show: all but [`TightEmitter`](Self::TightEmitter).
+    /// All faults that show with groups of any size: all but [`TightEmitter`](Self::TightEmitter).
     pub const ALL: [Self; 21] = [
         Self::DroppedLight,
         Self::ShuffledList,
@@ -83,7 +84,7 @@ impl Fault {
         Self::StaleBinding,
     ];
 
-    /// The case that must reject it, and the promise it breaks there.
+    /// The case that must reject the fault, and the promise that it breaks there.
     pub fn shows_in(self) -> (&'static str, Breach) {
         match self {
             Self::DroppedLight => ("33-lights", Breach::MissedPair),
@@ -112,7 +113,8 @@ impl Fault {
         }
     }
 
-    /// The first stage of its case in which it may show: lists are right until the lights move.
+    /// The first stage of its case in which the fault may show. Stale lists are right until the
+    /// lights move.
     pub fn shows_from_stage(self) -> u32 {
         match self {
             Self::StaleLists => 1,
@@ -120,7 +122,7 @@ impl Fault {
         }
     }
 
-    /// Whether it is a fault only of strategies that cut samples into groups.
+    /// Whether the fault needs a strategy with groups.
     pub fn needs_groups(self) -> bool {
         matches!(
             self,
@@ -138,17 +140,17 @@ impl Fault {
         )
     }
 
-    /// All that a strategy with groups may have: one that reads normals, or one that does not.
+    /// All faults of a strategy with groups; `normals` says whether it reads normals.
     pub fn all(normals: bool) -> Vec<Self> {
         Self::ALL.into_iter().filter(|fault| normals || !fault.needs_normals()).collect()
     }
 
-    /// Whether it is a fault only of strategies that read normals.
+    /// Whether the fault needs a strategy that reads normals.
     pub fn needs_normals(self) -> bool {
         self == Self::HighHorizon
     }
 
-    /// Whether the strategy is shown other lights than there are.
+    /// Whether the strategy gets altered lights.
     fn alters_lights(self) -> bool {
         matches!(
             self,
@@ -161,7 +163,7 @@ impl Fault {
         )
     }
 
-    /// What `fault.wesl` is to do in a frame; 0 is nothing.
+    /// What `fault.wesl` does in a frame; 0 does nothing.
     fn kernel_kind(self, frame: u32, rejected: bool) -> u32 {
         match self {
             Self::DroppedLight => 1,
@@ -180,7 +182,7 @@ impl Fault {
     }
 }
 
-/// A look-up that leads nowhere.
+/// A look-up that returns a group that does not exist.
 const LOST_GROUP_WESL: &str = "
 import package::sample::ViewSample;
 
@@ -194,7 +196,7 @@ pub struct Faulty {
     inner: Box<dyn Assignment>,
     fault: Fault,
     frame: u32,
-    /// The lights that the strategy is shown instead.
+    /// The altered lights that the strategy gets.
     altered: LightBuffer,
     uniform: wgpu::Buffer,
     plant: wgpu::ComputePipeline,
@@ -203,7 +205,7 @@ pub struct Faulty {
     record_count: u32,
     /// The lights of the first frame.
     first_lights: Option<Vec<Light>>,
-    /// What the look-up was bound to in the first frame.
+    /// The look-up's bind group of the first frame.
     first_binding: Option<wgpu::BindGroup>,
 }
 
@@ -226,7 +228,7 @@ impl Faulty {
         })
     }
 
-    /// What the strategy is shown of a light: a part of its support, or a place that stands lower
+    /// A light as the strategy gets it: with a part of its support, or at a place that is lower
     /// above every surface that faces the eye.
     fn alter(&self, light: &Light, frame: &Frame<'_>) -> Light {
         let shape = match (self.fault, &light.shape) {
@@ -274,16 +276,8 @@ impl Faulty {
         ];
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&parameters));
         self.record_count = groups + 1 - first_record;
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("fault"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, lists.lists()),
-                entry(1, lists.entries()),
-                entry(2, lists.counters()),
-                entry(3, &self.uniform),
-            ],
-        }));
+        let buffers = [lists.lists(), lists.entries(), lists.counters(), &self.uniform];
+        self.bind_group = Some(kernel::bind_buffers(gpu, &self.layout, &buffers));
     }
 }
 
@@ -378,13 +372,7 @@ fn plant_pipeline(
     let module = Shader::new(0)
         .module("package::fault", include_str!("fault.wesl"))
         .create(gpu, "package::fault")?;
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let entries = [
-        storage_entry(0, stages, false),
-        storage_entry(1, stages, false),
-        storage_entry(2, stages, false),
-        uniform_entry(3, stages),
-    ];
-    let layout = gpu.bind_group_layout("fault", &entries);
-    Ok((gpu.compute_pipeline(&module, "plant", &[Some(&layout)], true), layout))
+    let slots = [Slot::Write, Slot::Write, Slot::Write, Slot::Uniform];
+    let layout = kernel::layout(gpu, "fault", wgpu::ShaderStages::COMPUTE, &slots);
+    Ok((kernel::pipeline(gpu, &module, "plant", &[&layout]), layout))
 }

@@ -17,13 +17,13 @@ const FILE_MARGIN: f64 = 18.0;
 /// What a drawing is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A page: it brings colours, a heading and scripts for tips.
+    /// A page, which has the colours and a heading.
     Page,
-    /// A file: it brings its own style, and tips are titles.
+    /// A file of its own, which brings its style and its heading.
     File,
 }
 
-/// Which end of a text its place is.
+/// Which point of a text is at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -41,23 +41,13 @@ impl Canvas {
         Self { target, body: String::new() }
     }
 
-    /// Begins a group that a tip explains and a key names; both may be empty.
+    /// Begins a group that a tip explains and, on a page, a key names; both may be empty.
     pub(super) fn open(&mut self, class: &str, tip: &str, key: &str) {
         self.body.push_str("<g");
         if !class.is_empty() {
             self.attribute("class", class);
         }
-        if self.target == Target::File {
-            self.body.push('>');
-            if !tip.is_empty() {
-                self.body.push_str(&format!("<title>{}</title>", escape(tip)));
-            }
-            return;
-        }
-        if !tip.is_empty() {
-            self.attribute("data-tip", tip);
-        }
-        if !key.is_empty() {
+        if !key.is_empty() && self.target == Target::Page {
             self.attribute("data-key", key);
             self.attribute("tabindex", "0");
             if !tip.is_empty() {
@@ -66,6 +56,9 @@ impl Canvas {
             }
         }
         self.body.push('>');
+        if !tip.is_empty() {
+            self.body.push_str(&format!("<title>{}</title>", escape(tip.trim())));
+        }
     }
 
     pub(super) fn close(&mut self) {
@@ -124,7 +117,14 @@ impl Canvas {
         self.body.push_str(&format!(">{}</text>", escape(text)));
     }
 
-    /// A text that may have been cut: the whole is its tip then.
+    /// A text in a colour that only the style sheet of a page gives. Files leave it out.
+    pub(super) fn page_text(&mut self, class: &str, at: [f64; 2], anchor: Anchor, text: &str) {
+        if self.target == Target::Page {
+            self.text(class, at, anchor, text);
+        }
+    }
+
+    /// A text that may have been cut. If so, its tip shows the whole text.
     pub(super) fn cut_text(
         &mut self,
         class: &str,
@@ -136,13 +136,13 @@ impl Canvas {
         if cut == whole {
             self.text(class, at, anchor, cut);
         } else {
-            self.open("", whole, "");
+            self.open("cut", whole, "");
             self.text(class, at, anchor, cut);
             self.close();
         }
     }
 
-    /// Writes notes below everything else; where they end.
+    /// Writes notes below everything else. Returns where they end.
     pub(super) fn notes(&mut self, notes: &[String], top: f64) -> f64 {
         let mut y = top;
         for note in notes {
@@ -154,7 +154,7 @@ impl Canvas {
         y
     }
 
-    /// The whole drawing, with a title that readers of the screen hear.
+    /// The whole drawing, with a title for screen readers.
     pub(super) fn finish(self, title: &str, height: f64) -> String {
         match self.target {
             Target::Page => format!(
@@ -190,7 +190,7 @@ impl Canvas {
             length(FILE_WIDTH * high / wide),
             length(wide),
             length(high),
-            palette::file_style(CHART_CSS),
+            palette::file_style(CHART_CSS, &self.body),
             heading.body,
             length(top),
             self.body,

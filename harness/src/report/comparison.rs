@@ -2,9 +2,10 @@
 
 use super::rank::{Ranked, ranks};
 use super::raster;
-use crate::results::{EARLY_EXIT, Machine, Record, Results};
+use crate::results::{Machine, Record, Results};
+use crate::strategy::EARLY_EXIT;
 
-/// The records of one scene, camera path, camera size, set of lights and mode: only strategies differ.
+/// The records of one scene, camera path, image size, set of lights and mode. Only strategies differ.
 pub(super) struct Comparison<'a> {
     /// The records with their indices in [`Results::records`], in the order of the run.
     pub(super) records: Vec<(usize, &'a Record)>,
@@ -48,27 +49,27 @@ impl<'a> Comparison<'a> {
         self.records[0].1
     }
 
-    /// A record's name, marked where its times are bound by rasterisation on a chip weak at it.
+    /// The records, in the order of the run.
+    pub(super) fn all(&self) -> impl Iterator<Item = &'a Record> {
+        self.records.iter().map(|(_, record)| *record)
+    }
+
+    /// A record's name, with a mark if rasterisation limits its times on a chip that is weak at it.
     pub(super) fn name(&self, record: &Record) -> String {
         format!("{}{}", record.strategy, raster::mark(self.machine, record))
     }
 
-    /// The record of no culling.
+    /// The record without culling.
     pub(super) fn baseline(&self) -> Option<&'a Record> {
-        self.baseline_index().map(|ix| self.records[ix].1)
+        self.all().find(|record| record.is_baseline())
     }
 
-    /// Where in [`records`](Self::records) the record of no culling is.
-    pub(super) fn baseline_index(&self) -> Option<usize> {
-        self.records.iter().position(|(_, record)| record.is_baseline())
-    }
-
-    /// How many times as fast as no culling, assigning and shading together.
+    /// How many times as fast as no culling, by assign + shade.
     pub(super) fn speedup(&self, record: &Record) -> Option<f64> {
         self.speedup_over(self.baseline()?, record)
     }
 
-    /// How many times as fast as another record, assigning and shading together.
+    /// How many times as fast as another record, by assign + shade.
     pub(super) fn speedup_over(&self, other: &Record, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
@@ -77,7 +78,7 @@ impl<'a> Comparison<'a> {
         ratio.is_finite().then_some(ratio)
     }
 
-    /// How many times as fast as no culling with an early exit, for methods with lists.
+    /// How many times as fast as no culling with an early exit; only of strategies with lists.
     pub(super) fn speedup_over_exit(&self, record: &Record) -> Option<f64> {
         if !record.culls() || record.lists.listed_per_sample.is_none() {
             return None;
@@ -85,7 +86,7 @@ impl<'a> Comparison<'a> {
         self.speedup_over(self.record_of(EARLY_EXIT)?, record)
     }
 
-    /// The place of a record by assigning and shading together: see [`ranks`].
+    /// The rank of a record by assign + shade: see [`ranks`].
     pub(super) fn rank(&self, record: &Record) -> Option<f64> {
         let ranked = self.ranks();
         let place = ranked.iter().find(|ranked| std::ptr::eq(ranked.record, record));
@@ -94,38 +95,36 @@ impl<'a> Comparison<'a> {
 
     /// The records that cull without a loss, by rank.
     pub(super) fn ranks(&self) -> Vec<Ranked<'a>> {
-        ranks(self.records.iter().map(|(_, record)| *record))
+        ranks(self.all())
     }
 
     /// The record of a strategy.
     pub(super) fn record_of(&self, strategy: &str) -> Option<&'a Record> {
-        self.records.iter().map(|(_, record)| *record).find(|record| record.strategy == strategy)
+        self.all().find(|record| record.strategy == strategy)
     }
 
-    /// The time in which no culling, at its own rate, would evaluate only the lights that reach
-    /// the samples, ms.
-    pub(super) fn floor_ms(&self, record: &Record) -> Option<f64> {
+    /// The ideal time, ms: what no culling would need, at its own rate, if it evaluated only the lights
+    /// that reach each sample.
+    pub(super) fn ideal_ms(&self, record: &Record) -> Option<f64> {
         let baseline = self.baseline()?;
-        let floor = baseline.times.shade_ms * record.lists.contributing_per_sample?
+        let ideal = baseline.times.shade_ms * record.lists.contributing_per_sample?
             / baseline.setting.lights as f64;
-        floor.is_finite().then_some(floor)
+        ideal.is_finite().then_some(ideal)
     }
 
-    /// The floor over assigning and shading.
+    /// Efficiency = ideal time / (assign + shade).
     pub(super) fn efficiency(&self, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
         }
-        let share = self.floor_ms(record)? / record.assign_and_shade_ms();
+        let share = self.ideal_ms(record)? / record.assign_and_shade_ms();
         share.is_finite().then_some(share)
     }
 
-    /// The fastest strategy that culls: among those without a loss where there is one.
+    /// The fastest strategy that culls, lossless ones first.
     pub(super) fn fastest(&self) -> Option<&'a Record> {
         let candidates = |lossless: bool| {
-            self.records
-                .iter()
-                .map(|(_, record)| *record)
+            self.all()
                 .filter(|record| record.culls() && !record.is_lossy)
                 .filter(move |record| record.is_lossless() || !lossless)
                 .filter(|record| record.assign_and_shade_ms().is_finite())

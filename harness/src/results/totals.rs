@@ -1,9 +1,7 @@
 //! Totals and properties of a record.
 
-use super::{
-    BASELINE, CONTROL, EARLY_EXIT, Interval, PassKind, Record, Spans, mean, median, median_interval,
-};
-use crate::schedule::frames_of_round;
+use super::{Interval, PassKind, Record, Spans, mean, median, median_interval};
+use crate::{schedule::frames_of_round, strategy::Role};
 
 impl Record {
     /// Time of assigning and lighting together, ms: the time that strategies are compared by.
@@ -95,18 +93,18 @@ impl Record {
 
     /// Whether this is the strategy without culling.
     pub fn is_baseline(&self) -> bool {
-        self.strategy == BASELINE
+        self.strategy.role() == Some(Role::Baseline)
     }
 
     /// Whether this is the control without lights.
     pub fn is_control(&self) -> bool {
-        self.strategy == CONTROL
+        self.strategy.role() == Some(Role::Control)
     }
 
     /// Whether it culls lights before shading: true for all methods except no culling (with or without the
     /// early exit) and the control.
     pub fn culls(&self) -> bool {
-        !self.is_baseline() && !self.is_control() && self.strategy != EARLY_EXIT
+        !self.is_baseline() && !self.is_control() && self.strategy.role() != Some(Role::EarlyExit)
     }
 
     /// Whether it is exact: no setting loses light, no loss is known, and the run tested it.

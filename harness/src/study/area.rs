@@ -6,10 +6,10 @@
 
 use super::{BOUNDS, Job, MODELS, StudyScene, TRUTH};
 use crate::{
+    bench::Bench,
     cli::{Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
-    results::BASELINE,
+    strategy::BASELINE,
 };
 
 /// The range of a light as a share of the diagonal of the scene's core: from where it hangs, it is
