@@ -134,9 +134,9 @@ mod tests {
         }
         let mut unique = scene.clone();
         unique.cameras[2].name = "north".into();
-        let of = |camera: &str| pose(&unique, &args(camera)).unwrap();
-        assert_eq!((of("north").eye.x, of("north").up), (3.0, Vec3::X));
-        // By default the first, tilted as it is.
+        let pose_of = |camera: &str| pose(&unique, &args(camera)).unwrap();
+        assert_eq!((pose_of("north").eye.x, pose_of("north").up), (3.0, Vec3::X));
+        // The default is the first camera with its tilt.
         let words = ["lightbench", "compare"];
         let Ok(Invocation::Compare(default)) = parse(words) else { panic!() };
         assert_eq!(pose(&unique, &default.stage).unwrap(), unique.cameras[0].pose);
@@ -151,7 +151,7 @@ mod tests {
         assert!(error.len() < 1_000 && error.contains("and 280 more"), "{error}");
         assert_eq!(error.lines().count(), 1);
         let error = file_camera(&scene(&[]), &args("b")).unwrap_err().to_string();
-        assert!(error.ends_with("atrium holds no camera"), "{error}");
+        assert!(error.ends_with("atrium has no cameras"), "{error}");
     }
 
     #[test]
