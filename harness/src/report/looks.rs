@@ -34,7 +34,7 @@ pub(super) fn pictures(
         shown = all().collect();
     }
     let viewer = |record: &&Record| Panel {
-        name: record.strategy.clone(),
+        name: record.strategy.to_string(),
         class: record.strategy.class(),
         body: html!("<div class=\"stage\">\n{}</div>\n", viewer(record, baseline, kept)),
     };
@@ -101,7 +101,7 @@ pub(super) fn list_lengths(comparison: &Comparison<'_>, colours: &Colours<'_>) -
     let all: Vec<Histogram> = records
         .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))
         .map(|record| Histogram {
-            title: record.strategy.clone(),
+            title: record.strategy.to_string(),
             x_label: "Lights in a list".to_owned(),
             bins: bins(&record.lists.histogram),
             class: record.strategy.class(),

@@ -95,7 +95,7 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
         false => "not measured".to_owned(),
     };
     BarRow {
-        name: record.strategy.clone(),
+        name: record.strategy.to_string(),
         class: String::new(),
         tip: format!("{}: {value_text}{lines}", record.strategy),
         segments,

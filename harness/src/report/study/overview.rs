@@ -108,7 +108,7 @@ fn panel(
     };
     let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
     let mut body = html!("<p class=\"meta\">{}</p>\n", meta);
-    body += result_table(&format!("{scene}, {title}"), &comparison, |r| class(&r.strategy));
+    body += result_table(&format!("{scene}, {title}"), &comparison, |r| r.strategy.class());
     body += charts.bars(
         &format!("{scene}-passes-{slug}{count}"),
         &passes(format!("Passes that assign and shade, {title}"), results, &comparison),
@@ -155,7 +155,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let mut text = format!("In {scene} at {lights}, {}{still} with {time}", lead.is_fastest());
     text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
-        let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
+        let slower = Ratio::between(next.record, leader).map_or_else(String::new, |ratio| {
             let ends = [ratio.low, ratio.high].map(significant);
             let range = if ends[0] == ends[1] { ends[0].clone() } else { ends.join(" to ") };
             format!(", {range} times as long")
