@@ -36,7 +36,7 @@ impl<'a> Lead<'a> {
         let mut records = first(ranked);
         let leader = *records.first()?;
         let other = ranked.iter().map(|ranked| ranked.record).find(|r| !std::ptr::eq(*r, leader));
-        let doubt = match other.map(|other| Ratio::between(other, leader)) {
+        let doubt = match other.map(|other| Ratio::of(other, leader)) {
             None => Doubt::None,
             Some(None) => Doubt::NoRounds,
             Some(Some(ratio)) if ratio.coverage < SURE => {
