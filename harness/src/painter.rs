@@ -3,7 +3,7 @@
 use assign::{Assignment, Gpu, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
-use crate::{error::HarnessError, registry::Method, stage::Stage};
+use crate::{error::HarnessError, stage::Stage, strategy::Method};
 
 /// A strategy with the pipelines that draw its frames.
 pub enum Painter<'a> {

@@ -12,7 +12,7 @@ use crate::{
     image_errors::{ImagePair, errors},
     measure::Checked,
     record::Seen,
-    results::{CONTROL, Images, write_atomically},
+    results::{Images, write_atomically},
 };
 
 /// Pictures of a report, PNG files, by name.
@@ -88,7 +88,7 @@ pub(crate) fn see(
     checked: Checked,
     reference: &Reference,
 ) -> Result<(Seen, Pictures), HarnessError> {
-    let is_control = choice.family() == CONTROL;
+    let is_control = choice.is_control();
     let Checked { image, lists } = checked;
     let is_same = image.pixels == reference.image.pixels;
     let exposure = reference.exposure;

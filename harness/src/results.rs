@@ -62,15 +62,6 @@ pub use crate::truth_level::TruthLevel;
 /// The version of `results.json` that this program writes. It reads version 1 too, whose records were flat.
 pub const SCHEMA_VERSION: u32 = 2;
 
-/// The id of the strategy without culling, which the others are compared with.
-pub const BASELINE: &str = "None";
-
-/// The id of no culling with the early exit that all methods but [`BASELINE`] have.
-pub const EARLY_EXIT: &str = "Sphere";
-
-/// The id of the control, which draws the surfaces without lights: a cost, not a competitor.
-pub const CONTROL: &str = "Clay";
-
 /// One run of `lightbench compare`: the root of `results.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {

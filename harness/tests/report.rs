@@ -70,7 +70,7 @@ fn a_lossless_strategy_wins_over_a_faster_lossy_one_and_over_the_control() {
 /// A copy of a record under another name, `factor` times as slow in every frame.
 fn copy(record: &harness::results::Record, name: &str, factor: f64) -> harness::results::Record {
     let mut copy = record.clone();
-    copy.strategy = name.to_owned();
+    copy.strategy = name.into();
     let passes: Vec<_> =
         record.times.passes.iter().map(|(name, times)| (name.to_owned(), times.clone())).collect();
     for (name, mut times) in passes {
@@ -125,7 +125,7 @@ fn a_lead_that_rounds_do_not_show_says_so() {
 #[test]
 fn a_built_hierarchy_leads_for_still_lights_only() {
     let mut results = pair();
-    results.records[1].strategy = "SC-E/48x48x40/bvh".to_owned();
+    results.records[1].strategy = "SC-E/48x48x40/bvh".into();
     results.records[1].times.light_build_ms = Some(9.7);
     let headline = &finding(&results)[0];
     let limit = "as fast as no culling (still lights only)";
@@ -288,7 +288,7 @@ fn the_page_holds_everything() {
 #[test]
 fn names_cannot_inject_markup() {
     let mut results = pair();
-    results.records[1].strategy = "</script><script>alert(1)</script><b>".to_owned();
+    results.records[1].strategy = "</script><script>alert(1)</script><b>".into();
     results.records[1].setting.scene = "{{data}} & \"x\"".to_owned();
     let page = render_html(&results, &[]);
     assert!(!page.contains("<script>alert") && !page.contains("{{data}} & \""));

@@ -141,7 +141,7 @@ fn odd_results_render() {
         results
     };
     let mut odd = record("DC-I/64x64x24", Mode::Deferred, 5.0, 20.0);
-    odd.strategy = "</script><script>throw 1</script> \u{1f4a1} ".repeat(6);
+    odd.strategy = "</script><script>throw 1</script> \u{1f4a1} ".repeat(6).into();
     odd.setting.scene = "a \"scene\" with <b>markup</b> & a long, long name.gltf".to_owned();
     (odd.times.assign_ms, odd.times.frame_ms) = (f64::NAN, f64::NAN);
     odd.lists.listed_per_sample = None;

@@ -190,7 +190,7 @@ impl Canvas {
             length(FILE_WIDTH * high / wide),
             length(wide),
             length(high),
-            palette::file_style(CHART_CSS),
+            palette::file_style(CHART_CSS, &self.body),
             heading.body,
             length(top),
             self.body,

@@ -2,7 +2,8 @@
 
 use super::rank::{Ranked, ranks};
 use super::raster;
-use crate::results::{EARLY_EXIT, Machine, Record, Results};
+use crate::results::{Machine, Record, Results};
+use crate::strategy::EARLY_EXIT;
 
 /// The records of one scene, camera path, image size, set of lights and mode. Only strategies differ.
 pub(super) struct Comparison<'a> {

@@ -36,7 +36,7 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
 fn methods<'a>(records: &[&'a Record]) -> Vec<(&'a str, Vec<&'a Record>)> {
     let mut methods: Vec<(&str, Vec<&Record>)> = Vec::new();
     for &record in records.iter().filter(|record| !record.is_control()) {
-        match methods.iter_mut().find(|(known, _)| *known == record.strategy) {
+        match methods.iter_mut().find(|(known, _)| *known == record.strategy.as_str()) {
             Some((_, own)) => own.push(record),
             None => methods.push((&record.strategy, vec![record])),
         }

@@ -13,7 +13,7 @@ use super::markup::{Html, with_names_whole};
 use super::section::sections;
 use super::terms::terms;
 use super::{frames, notices, page};
-use crate::chart::CHART_CSS;
+use crate::chart::{CHART_CSS, page_colours};
 use crate::results::{Results, ResultsError, write_atomically};
 
 pub(super) const PAGE: &str = include_str!("report.html");
@@ -51,7 +51,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
         PAGE,
         &[
             ("title", title(results).into()),
-            ("style", Html::trusted([STYLE, CHART_CSS].join("\n"))),
+            ("style", Html::trusted([STYLE, CHART_CSS, &page_colours()].join("\n"))),
             ("headline", headline),
             ("findings", page::paragraphs("finding", &others)),
             ("notices", page::notices(&notices(results))),

@@ -48,7 +48,7 @@ impl<'a> Lead<'a> {
         if doubt != Doubt::None {
             records.truncate(1);
         }
-        let names = records.iter().map(|record| record.strategy.clone()).collect();
+        let names = records.iter().map(|record| record.strategy.to_string()).collect();
         Some(Self { records, names, ranked: ranked.len(), doubt })
     }
 
@@ -127,7 +127,7 @@ impl<'a> Lead<'a> {
 /// Whether a strategy reads a hierarchy over the lights that was built before the first frame. Its time then
 /// holds for still lights only.
 pub fn needs_built_hierarchy(record: &Record) -> bool {
-    record.strategy.split('/').any(|segment| segment == HIERARCHY)
+    record.strategy.is_bvh()
 }
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` if the figure is

@@ -35,7 +35,7 @@ pub(super) fn pictures(
     }
     let viewer = |record: &&Record| Panel {
         name: record.strategy.clone(),
-        class: colours.strategy(record).to_owned(),
+        class: record.strategy.class(),
         body: html!("<div class=\"stage\">\n{}</div>\n", viewer(record, baseline, kept)),
     };
     let shown: Vec<Panel> = shown.iter().map(viewer).collect();
@@ -104,7 +104,7 @@ pub(super) fn list_lengths(comparison: &Comparison<'_>, colours: &Colours<'_>) -
             title: record.strategy.clone(),
             x_label: "Lights in a list".to_owned(),
             bins: bins(&record.lists.histogram),
-            class: colours.strategy(record).to_owned(),
+            class: record.strategy.class(),
             note: String::new(),
         })
         .collect();

@@ -195,7 +195,7 @@ mod tests {
         let example: Results =
             serde_json::from_str(include_str!("../results/example.json")).expect("the example");
         let mut record = example.records[0].clone();
-        record.strategy = strategy.to_owned();
+        record.strategy = strategy.into();
         record.times.passes = Default::default();
         record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
         record.times.frames = times_ms.len() as u32;
@@ -224,7 +224,7 @@ mod tests {
     }
 
     fn places(records: &[Record]) -> Vec<(String, u32)> {
-        ranks(records).iter().map(|r| (r.record.strategy.clone(), r.rank)).collect()
+        ranks(records).iter().map(|r| (r.record.strategy.to_string(), r.rank)).collect()
     }
 
     fn place(name: &str, rank: u32) -> (String, u32) {

@@ -84,7 +84,7 @@ mod tests {
         let machine = example.machine.clone();
         let of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
             let mut record = example.records[0].clone();
-            (record.strategy, record.setting.mode) = (strategy.to_owned(), mode);
+            (record.strategy, record.setting.mode) = (strategy.into(), mode);
             let times = |kind| PassTimes::new(kind, vec![1.0]);
             record.times.passes = passes.iter().map(|(name, kind)| (*name, times(*kind))).collect();
             record

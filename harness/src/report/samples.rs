@@ -27,7 +27,7 @@ pub(super) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
                 row(times, strip)
             })
             .collect();
-        let class = colours.strategy(record);
+        let class = record.strategy.class();
         groups += html!(
             "<tbody><tr><th scope=\"rowgroup\" class=\"strategy\" colspan=\"4\">\
              <i class=\"dot {}\"></i>{}</th></tr>\n{}</tbody>\n",

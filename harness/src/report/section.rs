@@ -27,7 +27,7 @@ pub(super) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
         let heading = format!("{}, {}", first.setting.scene, first.setting.mode.name());
         let records: Vec<&Record> = comparison.all().collect();
         let body = result_table(&format!("Results: {heading}"), comparison, |record| {
-            colours.strategy(record).to_owned()
+            record.strategy.class()
         }) + frame_times(&records, &colours)
             + pictures(comparison, kept, &colours)
             + list_lengths(comparison, &colours)
@@ -59,7 +59,7 @@ pub(super) fn result_table(
 fn frame_times(records: &[&Record], colours: &Colours<'_>) -> Html {
     const TITLE: &str = "Where the time of a frame goes";
     let draw = |name: &str, scale| {
-        let class = |record: &Record| colours.strategy(record).to_owned();
+        let class = |record: &Record| record.strategy.class();
         let chart = pass_bars(TITLE.to_owned(), scale, Counted::Frame, records, colours, class);
         // Charts escape their text themselves.
         let drawing = Html::trusted(chart.to_svg());

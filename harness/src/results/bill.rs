@@ -15,10 +15,7 @@
 use shading::Mode;
 
 use super::{PassKind, Record};
-use crate::registry::family_reads_depth;
-
-/// The method that draws light volumes.
-const RASTER_SPHERE: &str = "RasterSphere";
+use crate::strategy::{RASTER_SPHERE, StrategyId};
 
 /// Which bill a pass is on: what the pipeline does not know is a strategy's own. In forward shading
 /// the G-buffer is drawn only for a strategy that reads normals, and without a pre-pass so is depth.
@@ -33,16 +30,12 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
 }
 
 /// Whether a pass rasterises triangles and runs fragment shaders, of a method in a mode.
-pub fn is_raster_pass(name: &str, mode: Mode, strategy: &str) -> bool {
+pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
         "depth" | "gbuffer" | "model-ids" | "clay" => true,
-        "shade" => mode.is_forward() || family(strategy) == RASTER_SPHERE,
+        "shade" => mode.is_forward() || strategy.family() == RASTER_SPHERE,
         _ => false,
     }
-}
-
-fn family(strategy: &str) -> &str {
-    strategy.split('/').next().unwrap_or(strategy)
 }
 
 /// A kind of frame that a renderer may draw.
@@ -152,7 +145,7 @@ impl Record {
 
     /// Whether the method reads the depth of surfaces before it assigns lights.
     pub fn reads_depth(&self) -> bool {
-        family_reads_depth(family(&self.strategy))
+        self.strategy.reads_depth()
     }
 
     /// Assigning lights, with the depth pre-pass where the method reads depth, ms.
@@ -195,7 +188,7 @@ mod tests {
         let example: Results =
             serde_json::from_str(include_str!("example.json")).expect("the example");
         let mut record = example.records[0].clone();
-        (record.strategy, record.setting.mode) = (strategy.to_owned(), mode);
+        (record.strategy, record.setting.mode) = (strategy.into(), mode);
         let times = |ms: f64| vec![ms; 3];
         record.times.passes = passes
             .iter()

@@ -94,14 +94,13 @@ impl Results {
     /// As [`read`](Self::read).
     pub fn read_checked(path: &Path) -> Result<(Self, Option<String>), ResultsError> {
         let (mut results, checksum) = Self::read_raw(path)?;
-        // Under the names that the command knows.
         let lack = lack(&results);
-        results.name_as_today();
+        results.bill_as_today();
         results.take_metrics(path, &checksum);
         Ok((results, lack))
     }
 
-    /// Reads what a file holds, under the names of its time, and its checksum.
+    /// Reads what a file holds, under the ids of today, and its checksum.
     pub(super) fn read_raw(path: &Path) -> Result<(Self, String), ResultsError> {
         let fail = |reason| ResultsError::Parse { path: path.to_owned(), reason };
         let bytes = fs::read(path)
@@ -118,10 +117,9 @@ impl Results {
         Ok((results.map_err(|error| fail(error.to_string()))?, checksum))
     }
 
-    /// Gives records of earlier versions the names and the bills of today, and shows what names hide.
-    pub(super) fn name_as_today(&mut self) {
+    /// Gives records of earlier versions the bills of today, and shows what names hide.
+    pub(super) fn bill_as_today(&mut self) {
         self.show_hidden();
-        self.rename_records();
         self.records.iter_mut().for_each(Record::bill_again);
     }
 }

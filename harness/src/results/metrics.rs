@@ -39,7 +39,7 @@ struct RecordMetrics {
 impl Results {
     fn metrics(&self, of: String) -> Metrics {
         let one = |record: &super::Record| RecordMetrics {
-            strategy: record.strategy.clone(),
+            strategy: record.strategy.to_string(),
             mode: record.setting.mode,
             errors: record.image.errors.clone(),
             unbounded_errors: record.image.unbounded_errors.clone(),
@@ -57,7 +57,7 @@ impl Results {
             .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
         let Some(known) = known.filter(|known| known.of == of) else { return };
         for (record, metrics) in self.records.iter_mut().zip(known.records) {
-            if record.strategy != metrics.strategy || record.setting.mode != metrics.mode {
+            if record.strategy != metrics.strategy.as_str() || record.setting.mode != metrics.mode {
                 continue;
             }
             record.image.errors = metrics.errors;
@@ -78,7 +78,7 @@ impl Results {
     pub fn write_metrics(&self, results: &Path) -> Result<(), ResultsError> {
         let Some(path) = beside(results) else { return Ok(()) };
         let (mut known, of) = Self::read_raw(results)?;
-        known.name_as_today();
+        known.bill_as_today();
         let own = self.metrics(of.clone());
         if own == known.metrics(of.clone()) && !path.exists() {
             return Ok(());

@@ -1,19 +1,15 @@
 //! One measured method: what was asked, and what came of it.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use super::{ImageFigures, ListFigures, Setting, Times};
+use crate::strategy::StrategyId;
 
 /// One strategy on one scene in one mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// The strategy's id with its parameters: `DC-I/64x64x24`.
-    pub strategy: String,
-    /// The strategy's parameters, by name.
-    #[serde(default)]
-    pub strategy_parameters: BTreeMap<String, serde_json::Value>,
+    /// The strategy's id: `DC-I/64x64x24`. Files hold its family and parameters beside it.
+    pub strategy: StrategyId,
     /// Whether a knob of the method loses light on purpose.
     #[serde(default)]
     pub is_lossy: bool,

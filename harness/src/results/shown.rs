@@ -27,11 +27,10 @@ impl Results {
             all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);
         }
         for record in &mut self.records {
-            all.extend([
-                &mut record.setting.scene,
-                &mut record.setting.scene_hash,
-                &mut record.strategy,
-            ]);
+            if let std::borrow::Cow::Owned(shown) = visible(&record.strategy) {
+                record.strategy = shown.into();
+            }
+            all.extend([&mut record.setting.scene, &mut record.setting.scene_hash]);
             let known = [
                 &mut record.setting.path_hash,
                 &mut record.setting.area_model,

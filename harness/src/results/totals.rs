@@ -1,9 +1,7 @@
 //! What a record's figures come to.
 
-use super::{
-    BASELINE, CONTROL, EARLY_EXIT, Interval, PassKind, Record, Spans, mean, median, median_interval,
-};
-use crate::schedule::frames_of_round;
+use super::{Interval, PassKind, Record, Spans, mean, median, median_interval};
+use crate::{schedule::frames_of_round, strategy::Role};
 
 impl Record {
     /// Assigning and lighting together, ms: what strategies are compared by.
@@ -95,18 +93,18 @@ impl Record {
 
     /// Whether this is the strategy without culling.
     pub fn is_baseline(&self) -> bool {
-        self.strategy == BASELINE
+        self.strategy.role() == Some(Role::Baseline)
     }
 
     /// Whether this is the control without lights.
     pub fn is_control(&self) -> bool {
-        self.strategy == CONTROL
+        self.strategy.role() == Some(Role::Control)
     }
 
     /// Whether it leaves out lights before a sample is lit: neither no culling, with or without an
     /// early exit, nor the control.
     pub fn culls(&self) -> bool {
-        !self.is_baseline() && !self.is_control() && self.strategy != EARLY_EXIT
+        !self.is_baseline() && !self.is_control() && self.strategy.role() != Some(Role::EarlyExit)
     }
 
     /// Whether it may be called exact: no knob loses light, nothing is known to be lost, and the run

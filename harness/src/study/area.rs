@@ -9,7 +9,7 @@ use crate::{
     bench::Bench,
     cli::{Size, StudyArgs},
     error::HarnessError,
-    results::BASELINE,
+    strategy::BASELINE,
 };
 
 /// The range of a light as a share of the diagonal of the scene's core: from where it hangs, it is

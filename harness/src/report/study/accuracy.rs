@@ -3,7 +3,7 @@
 use super::super::format::{difference, significant};
 use super::super::markup::Html;
 use super::super::rank::Ratio;
-use super::data::{class, entries, family, knob, lines};
+use super::data::{entries, lines};
 use super::errors_plot::{FIRST, Plot};
 use super::figure::{Charts, part};
 use super::shots::{Shots, Wanted};
@@ -18,17 +18,17 @@ pub(super) fn accuracy(
     shots: &mut Shots<'_>,
 ) -> Html {
     let mut html = Html::default();
-    let label = |record: &Record| knob(&record.strategy).unwrap_or("lossless").to_owned();
-    let series = |record: &Record| family(&record.strategy).to_owned();
+    let label = |record: &Record| record.strategy.knob().unwrap_or_else(|| "lossless".to_owned());
+    let series = |record: &Record| record.strategy.family().to_owned();
     let caps = Plot {
         slug: "caps",
         title: "Culling error of capped lists",
         entries: entries(done, scene, "caps"),
         errors: |record| &record.image.errors,
         series,
-        class: |record| class(&record.strategy),
+        class: |record| record.strategy.class(),
         shape: |_| None,
-        name: |record| record.strategy.clone(),
+        name: |record| record.strategy.to_string(),
         label,
         wanted: Wanted::Pair,
         time: "Assign + shade",
@@ -60,11 +60,11 @@ pub(super) fn accuracy(
         errors: |record| &record.image.unbounded_errors,
         series: |record| {
             let cut = record.setting.cut.as_deref().unwrap_or("windowed");
-            format!("{}, {cut}", family(&record.strategy))
+            format!("{}, {cut}", record.strategy.family())
         },
-        class: |record| class(&record.strategy),
+        class: |record| record.strategy.class(),
         shape: |record| Some(usize::from(record.setting.cut.as_deref() == Some("hard"))),
-        name: |record| record.strategy.clone(),
+        name: |record| record.strategy.to_string(),
         label: |record| record.setting.threshold.map_or_else(String::new, |t| t.to_string()),
         wanted: Wanted::Unbounded,
         time: "Assign + shade",

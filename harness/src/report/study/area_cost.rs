@@ -4,7 +4,7 @@ use super::super::finding::lights;
 use super::super::format::{ABSENT, significant};
 use super::super::markup::{Html, html};
 use super::area::{SPOTS, class, model, name};
-use super::data::{Line, counts, entries};
+use super::data::{counts, entries};
 use super::figure::{Charts, part, table, unit};
 use super::scaling::{fit, points};
 use crate::chart::{Axis, Marks, Scale, Series, XyChart};
@@ -15,9 +15,12 @@ fn shade(record: &Record) -> f64 {
     record.times.shade_ms
 }
 
-/// The records of each model, with its name, in the order of their lights.
-fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<Line<'a>> {
-    let mut lines: Vec<Line<'a>> = Vec::new();
+/// The records of one model, with its name.
+type ModelLine<'a> = (&'a str, Vec<&'a Record>);
+
+/// The records of each model, in the order of their lights.
+fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<ModelLine<'a>> {
+    let mut lines: Vec<ModelLine<'a>> = Vec::new();
     for entry in entries(done, scene, "cost") {
         let own = model(entry.record);
         match lines.iter_mut().find(|(known, _)| *known == own) {
@@ -37,10 +40,12 @@ pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     if lines.is_empty() {
         return Html::default();
     }
-    let series = |(own, records): &Line<'_>| Series {
-        name: (*own).to_owned(),
-        class: class(own),
-        ..points(own, records, shade, Marks::LineAndPoints)
+    let series = |(model, records): &ModelLine<'_>| Series {
+        name: (*model).to_owned(),
+        class: class(model),
+        marks: Marks::LineAndPoints,
+        points: points(model, records, shade),
+        ..Series::default()
     };
     let chart = XyChart {
         title: "Shading time against lights, by model".to_owned(),
@@ -62,7 +67,7 @@ pub(super) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     )
 }
 
-fn times(done: &Done, scene: &str, lines: &[Line<'_>]) -> Html {
+fn times(done: &Done, scene: &str, lines: &[ModelLine<'_>]) -> Html {
     let counts = counts(&entries(done, scene, "cost"));
     let spots = lines.iter().find(|(own, _)| *own == SPOTS).map(|(_, records)| records);
     let at = |records: &[&Record], count: u64| {

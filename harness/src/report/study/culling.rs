@@ -7,7 +7,7 @@ use super::super::markup::Html;
 use super::super::rank::{ALIKE, listed};
 use super::data::{Entry, counts, entries, lines};
 use super::figure::{Charts, name, part, table, unit};
-use super::scaling::{fit, points};
+use super::scaling::{fit, times_series};
 use crate::chart::{Axis, Marks, Scale, XyChart};
 use crate::results::Record;
 use crate::study::Done;
@@ -46,7 +46,7 @@ pub(super) fn culling(done: &Done, scene: &str, charts: &mut Charts) -> Html {
                 },
                 series: lines(&all)
                     .iter()
-                    .map(|(id, records)| points(id, records, frame, Marks::LineAndPoints))
+                    .map(|(id, records)| times_series(id, records, frame, Marks::LineAndPoints))
                     .collect(),
                 note: String::new(),
             };

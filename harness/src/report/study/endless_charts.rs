@@ -3,7 +3,6 @@
 
 use super::super::format::significant;
 use super::super::markup::Html;
-use super::data::class;
 use super::endless_data::{Case, seen, setting};
 use super::figure::Charts;
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
@@ -81,7 +80,7 @@ fn counted(
             class: String::new(),
             segments: vec![Segment {
                 name: label.to_owned(),
-                class: class(&record.strategy),
+                class: record.strategy.class(),
                 value,
             }],
             value_text: format!("{} {unit}", significant(value)).trim_end().to_owned(),

@@ -3,6 +3,7 @@
 use super::super::markup::{Html, html, with_names_whole};
 use super::super::panels::{self, Panel};
 use crate::chart::{BarChart, Histogram, XyChart, histograms_svg, histograms_svg_file};
+use crate::strategy::StrategyId;
 
 /// The charts of a page: each is drawn twice, for the page and for a file of its own.
 #[derive(Default)]
@@ -121,5 +122,5 @@ pub(super) fn dotted(class: &str, name: impl Into<Html>) -> Html {
 
 /// A strategy's name with the dot of its colour.
 pub(super) fn name(id: &str) -> Html {
-    dotted(&super::data::class(id), with_names_whole(id))
+    dotted(&StrategyId::read(id).class(), with_names_whole(id))
 }

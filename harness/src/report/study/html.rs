@@ -16,7 +16,7 @@ use super::{
     accuracy, area, area_cost, area_pictures, cdi, claims, culling, endless, overview, path,
     scaling, sizes, views,
 };
-use crate::chart::CHART_CSS;
+use crate::chart::{CHART_CSS, page_colours};
 use crate::results::{DeviceType, Results, TruthLevel};
 use crate::study::Done;
 
@@ -107,7 +107,7 @@ pub(super) fn page(done: &Done) -> Page {
     .unwrap_or_else(|_| "null".to_owned());
     let embedded = if data.len() <= MOST_DATA { data.as_str() } else { "null" };
     let view = shots.view().to_string();
-    let style = [STYLE, CHART_CSS, STUDY_STYLE].join("\n");
+    let style = [STYLE, &page_colours(), CHART_CSS, STUDY_STYLE].join("\n");
     let html = fill(
         PAGE,
         &[

@@ -9,7 +9,7 @@ use super::super::page;
 use super::super::pass_bars::{Counted, pass_bars, spread};
 use super::super::rank::{Ratio, first, listed, ranks, tie};
 use super::super::section::result_table;
-use super::data::{Entry, class, counts, entries, poses, stand};
+use super::data::{Entry, counts, entries, poses, stand};
 use super::figure::{Charts, panels, part};
 use crate::chart::{BarChart, Scale};
 use crate::results::{Record, Results};
@@ -127,7 +127,7 @@ fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarC
         true => Scale::Log,
         false => Scale::LinearFromZero,
     };
-    let class = |record: &Record| class(&record.strategy);
+    let class = |record: &Record| record.strategy.class();
     pass_bars(title, scale, counted, &records, &Colours::new(results), class)
 }
 

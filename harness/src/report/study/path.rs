@@ -2,7 +2,7 @@
 
 use super::super::format::{number, percent, significant};
 use super::super::markup::Html;
-use super::data::{Entry, class, counts, entries, laps, lines, poses, short};
+use super::data::{Entry, counts, entries, laps, lines, poses};
 use super::figure::{Charts, name, panels, part, table, unit};
 use super::order::Order;
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
@@ -91,8 +91,8 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
                 ..Point::default()
             };
             Series {
-                name: short(id),
-                class: class(id),
+                name: id.short(),
+                class: id.class(),
                 marks: Marks::Line,
                 points: times.iter().enumerate().map(point).collect(),
                 ..Series::default()

@@ -3,12 +3,11 @@
 use super::super::fit::Fit;
 use super::super::format::{ABSENT, number, percent, significant};
 use super::super::markup::{Html, html};
-use super::data::{
-    Entry, Line, class, counts, entries, is_bvh, lines, poses, ranking, short, stand,
-};
+use super::data::{Entry, Line, counts, entries, lines, poses, ranking, stand};
 use super::figure::{Charts, name, panels, part, table, unit};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::results::Record;
+use crate::strategy::StrategyId;
 use crate::study::Done;
 
 /// Points along a fitted line; on logarithmic axes it is a curve.
@@ -130,7 +129,7 @@ fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html
         let has_source = |entry: &&Entry<'_>| entry.record.culls();
         let own: Vec<Entry<'_>> = all
             .iter()
-            .filter(|entry| !has_source(entry) || is_bvh(&entry.record.strategy) == bvh)
+            .filter(|entry| !has_source(entry) || entry.record.strategy.is_bvh() == bvh)
             .copied()
             .collect();
         if own.iter().any(|entry| entry.record.culls()) {
@@ -144,7 +143,7 @@ fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html
 pub(super) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyChart {
     let mut series = Vec::new();
     for (id, records) in lines {
-        let class = class(id);
+        let class = id.class();
         let line = fit(records, time).filter(|fit| fit.points > 2);
         let ends = (records.first(), records.last());
         if let (Some(line), (Some(first), Some(last))) = (line, ends) {
@@ -158,14 +157,14 @@ pub(super) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyC
                 .collect();
             let marks = Marks::Dashed;
             series.push(Series {
-                name: short(id),
+                name: id.short(),
                 class: class.clone(),
                 marks,
                 points,
                 ..Series::default()
             });
         }
-        series.push(points(id, records, time, Marks::Points));
+        series.push(times_series(id, records, time, Marks::Points));
     }
     XyChart {
         title,
@@ -185,7 +184,18 @@ fn time_axis(scale: Scale) -> Axis {
 }
 
 /// A strategy's times against its lights.
-pub(super) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) -> Series {
+pub(super) fn times_series(
+    id: &StrategyId,
+    records: &[&Record],
+    time: Time,
+    marks: Marks,
+) -> Series {
+    let points = points(id, records, time);
+    Series { name: id.short(), class: id.class(), marks, points, ..Series::default() }
+}
+
+/// Times against lights, with the name of what took them.
+pub(super) fn points(name: &str, records: &[&Record], time: Time) -> Vec<Point> {
     let point = |record: &&Record| {
         let y = time(record);
         let lights = number(record.setting.lights as f64);
@@ -193,12 +203,11 @@ pub(super) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) ->
             x: record.setting.lights as f64,
             y,
             y_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
-            tip: format!("{id}\n{lights} lights\n{} ms", significant(y)),
+            tip: format!("{name}\n{lights} lights\n{} ms", significant(y)),
             ..Point::default()
         }
     };
-    let points = records.iter().map(point).collect();
-    Series { name: short(id), class: class(id), marks, points, ..Series::default() }
+    records.iter().map(point).collect()
 }
 
 /// Slope, offset and goodness of the line through each strategy's times; slopes of its passes.
@@ -259,7 +268,7 @@ fn r2(fit: &Fit) -> String {
 
 fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let scaling = entries(done, scene, "scaling");
-    let bvh = |entry: &&Entry<'_>| is_bvh(&entry.record.strategy);
+    let bvh = |entry: &&Entry<'_>| entry.record.strategy.is_bvh();
     let most = counts(&ranking(done, scene)).last().copied();
     let mut html = Html::default();
     for (section, title, base) in [
@@ -281,7 +290,7 @@ fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
         let time: Time = Record::assign_and_shade_ms;
         let series = lines(&all)
             .iter()
-            .map(|(id, records)| points(id, records, time, Marks::LineAndPoints))
+            .map(|(id, records)| times_series(id, records, time, Marks::LineAndPoints))
             .collect();
         let chart = XyChart {
             title: title.to_owned(),

@@ -101,8 +101,8 @@ impl<'a> Shots<'a> {
             Wanted::Truth => &record.image.truth_errors,
         };
         let name = match wanted {
-            Wanted::Truth => record.setting.area_model.as_ref().unwrap_or(&record.strategy),
-            _ => &record.strategy,
+            Wanted::Truth => record.setting.area_model.as_deref().unwrap_or(&record.strategy),
+            _ => record.strategy.as_str(),
         };
         let pair = PicturePair {
             scene: &record.setting.scene,

@@ -4,7 +4,7 @@ use super::super::format::{ABSENT, number, significant};
 use super::super::markup::{Html, html};
 use super::super::metrics::interval;
 use super::super::rank::{first, listed, ranks};
-use super::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
+use super::data::{Entry, entries, stand, tests};
 use super::figure::{Charts, name, panels, part, table, unit};
 use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::results::Record;
@@ -12,8 +12,8 @@ use crate::study::Done;
 
 /// A family with the source of its lights: `SC-E`, `SC-E/bvh`. Sizes of one compete.
 fn searched(record: &Record) -> String {
-    let family = family(&record.strategy);
-    if is_bvh(&record.strategy) { format!("{family}/bvh") } else { family.to_owned() }
+    let family = record.strategy.family();
+    if record.strategy.is_bvh() { format!("{family}/bvh") } else { family.to_owned() }
 }
 
 /// The records of each family and source, in the order of the jobs.
@@ -31,7 +31,7 @@ fn families<'a>(entries: &[Entry<'a>]) -> Vec<(String, Vec<&'a Record>)> {
 
 /// The parameters of a record, or what it has instead.
 fn size(record: &Record) -> &str {
-    match parameters(&record.strategy) {
+    match record.strategy.size() {
         "" => "whole",
         size => size,
     }
@@ -98,7 +98,7 @@ fn bars(family: &str, records: &[&Record]) -> BarChart {
         .iter()
         .map(|record| BarRow {
             name: size(record).to_owned(),
-            class: class(&record.strategy),
+            class: record.strategy.class(),
             segments: vec![
                 Segment {
                     name: "assign".to_owned(),
@@ -135,7 +135,7 @@ fn bars(family: &str, records: &[&Record]) -> BarChart {
 fn tests_table(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, "tests");
     let families = families(&all);
-    let mut unions: Vec<&str> = Vec::new();
+    let mut unions: Vec<String> = Vec::new();
     for union in all.iter().filter_map(|entry| tests(entry.record)) {
         if !unions.contains(&union) {
             unions.push(union);
@@ -147,7 +147,8 @@ fn tests_table(done: &Done, scene: &str) -> Html {
         .iter()
         .map(|union| {
             let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
-                let found = records.iter().find(|record| tests(record) == Some(*union));
+                let found =
+                    records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
                 found.map_or_else(
                     || ABSENT.into(),
                     |record| {

@@ -31,7 +31,7 @@ fn every_command_is_understood() {
             let Ok(Invocation::Compare(args)) = parsed else {
                 panic!("{}: {:?}", job.name, parsed.err());
             };
-            crate::choice::choices(&args).unwrap_or_else(|error| panic!("{}: {error}", job.name));
+            args.choices().unwrap_or_else(|error| panic!("{}: {error}", job.name));
         }
         let mut names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
         names.sort_unstable();

@@ -1,16 +1,19 @@
 //! What the engine paper (Dobetsberger 2025) claims of models of area lights, and what decides each claim
 //! in one scene: bounds, samples and points here, the rest in `area_ltc` and `area_cost`.
 
+use assign::AreaBounds;
+
 use super::super::super::format::{difference, percent, significant};
 use super::super::super::rank::Ratio;
 use super::super::area::model;
-use super::super::data::{entries, short};
+use super::super::data::entries;
 use super::area_cost::{FASTER, LIGHTS_OR_SAMPLES, MRP_GAIN, ONE_LIGHT, ONE_SAMPLE, SPOTS_RATIO};
 use super::area_ltc::{
     LEAST, POLYNOMIAL_FIT, POLYNOMIAL_IMAGE, SPLITTING, SPLITTING_COST, TABLE_OR_POLYNOMIAL, TABLES,
 };
 use super::{Answer, Check, Paper, Verdict};
 use crate::results::Record;
+use crate::strategy::Options;
 use crate::study::{BOUNDS, Done, MODELS};
 
 /// Dobetsberger 2025.
@@ -91,7 +94,11 @@ const BALLS: Check = Check {
         let all = entries(done, scene, BOUNDS);
         let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
         for ball in all.iter().map(|entry| entry.record) {
-            let Some(id) = ball.strategy.strip_suffix("/ball") else { continue };
+            let by_outline = |options: &mut Options| options.area_bounds = AreaBounds::Outline;
+            let Ok(id) = ball.strategy.with(by_outline) else { continue };
+            if id == ball.strategy {
+                continue;
+            }
             let outline = all.iter().map(|entry| entry.record).find(|r| r.strategy == id);
             let Some(outline) = outline.filter(|record| record.lists.entries > 0) else { continue };
             count += 1;
@@ -102,7 +109,7 @@ const BALLS: Check = Check {
             });
             figures.push(format!(
                 "{} by spheres: \u{d7} {} list entries{time}",
-                short(id),
+                outline.strategy.short(),
                 significant(ball.lists.entries as f64 / outline.lists.entries as f64)
             ));
         }

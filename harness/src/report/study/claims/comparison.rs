@@ -11,7 +11,7 @@ mod spread;
 use super::super::super::fit::Fit;
 use super::super::super::format::significant;
 use super::super::super::raster::MARK;
-use super::super::data::{Entry, entries, family, is_bvh, is_of_the_paper, lines, stand_in};
+use super::super::data::{Entry, entries, is_of_the_paper, lines};
 use super::super::order::Order;
 use super::super::scaling::fit;
 use super::{Answer, Check, Paper};
@@ -296,7 +296,7 @@ fn bounds(done: &Done, scene: &str) -> Answer {
     let lines = lines(&scaling);
     let of = |wanted: String, bvh: bool| {
         let (_, records) =
-            lines.iter().find(|(id, _)| family(id) == wanted && is_bvh(id) == bvh)?;
+            lines.iter().find(|(id, _)| id.family() == wanted && id.is_bvh() == bvh)?;
         let fit = |time| fit(records, time).filter(|fit: &Fit| fit.points > 2);
         Some((fit(Record::with_depth_ms)?, fit(Record::assign_and_shade_ms)?))
     };
@@ -339,8 +339,8 @@ fn bounds(done: &Done, scene: &str) -> Answer {
     }
     let mut notes: Vec<String> = lines
         .iter()
-        .filter(|(id, _)| family(id) == "T-I")
-        .filter_map(|(id, _)| Some(format!("with {}", stand_in(id)?)))
+        .filter(|(id, _)| id.family() == "T-I")
+        .filter_map(|(id, _)| Some(format!("with {}", id.stand_in()?)))
         .collect();
     notes.dedup();
     let verdict = pairs.verdict().qualified(&notes);

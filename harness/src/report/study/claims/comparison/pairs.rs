@@ -1,9 +1,9 @@
 //! Pairs of strategies that the paper orders, and what they come to together.
 
 use super::super::super::super::rank::listed;
-use super::super::super::data::stand_in;
 use super::super::super::order::Order;
 use super::super::Verdict;
+use crate::strategy::StrategyId;
 
 /// Names in a figure: more than this many pairs are counted and not named.
 const MOST_NAMED: usize = 6;
@@ -21,10 +21,10 @@ pub(super) enum Member {
 
 impl Member {
     /// By the id of the record, where there is one.
-    pub(super) fn of(id: Option<&str>) -> Self {
+    pub(super) fn of(id: Option<&StrategyId>) -> Self {
         match id {
             None => Self::Missing,
-            Some(id) => stand_in(id).map_or(Self::Measured, Self::StandIn),
+            Some(id) => id.stand_in().map_or(Self::Measured, Self::StandIn),
         }
     }
 }

@@ -1,10 +1,11 @@
 //! The records of the survey by renderer and method, and what several parts say together.
 
 use super::super::super::super::format::significant;
-use super::super::super::data::{counts, entries, family, knob};
+use super::super::super::data::{counts, entries};
 use super::super::super::order::Order;
 use super::{Answer, Verdict};
-use crate::results::{BASELINE, EARLY_EXIT, Record};
+use crate::results::Record;
+use crate::strategy::{RASTER_SPHERE, Role};
 use crate::study::Done;
 
 /// The sections of the study: how pixels are lit.
@@ -55,29 +56,29 @@ impl<'a> Mode<'a> {
 }
 
 pub(super) fn none(record: &Record) -> bool {
-    record.strategy == BASELINE
+    record.is_baseline()
 }
 
 pub(super) fn bounding_sphere(record: &Record) -> bool {
-    record.strategy == EARLY_EXIT
+    record.strategy.role() == Some(Role::EarlyExit)
 }
 
 pub(super) fn raster_sphere(record: &Record) -> bool {
-    record.strategy == "RasterSphere"
+    record.strategy.family() == RASTER_SPHERE
 }
 
 pub(super) fn is_cluster(record: &Record) -> bool {
-    family(&record.strategy) == "DC-I"
+    record.strategy.family() == "DC-I"
 }
 
 /// The paper's clusters, whose lists end at the cap.
 pub(super) fn capped(record: &Record) -> bool {
-    is_cluster(record) && knob(&record.strategy).is_some()
+    is_cluster(record) && record.strategy.knob().is_some()
 }
 
 /// The same with whole lists.
 pub(super) fn whole(record: &Record) -> bool {
-    is_cluster(record) && knob(&record.strategy).is_none()
+    is_cluster(record) && record.strategy.knob().is_none()
 }
 
 /// The methods of the survey that cull.

@@ -9,7 +9,8 @@ use super::modes::{
     Mode, Tally, bounding_sphere, capped, none, of_the_survey, raster_sphere, timed,
 };
 use super::{Answer, Verdict};
-use crate::results::{CONTROL, Record};
+use crate::results::Record;
+use crate::strategy::Role;
 use crate::study::Done;
 
 /// Points off their line by no more than this share of the growth, root mean square, are on it.
@@ -39,7 +40,9 @@ pub(super) fn linear(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         let all = entries(done, scene, mode.name);
         let (mut straight, mut count, mut worst) = (0, 0, (0.0, ""));
-        for (id, records) in lines(&all).into_iter().filter(|(id, _)| *id != CONTROL) {
+        for (id, records) in
+            lines(&all).into_iter().filter(|(id, _)| id.role() != Some(Role::Control))
+        {
             let points: Vec<(f64, f64)> = records
                 .iter()
                 .map(|record| (record.setting.lights as f64, record.times.frame_ms))
