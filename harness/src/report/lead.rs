@@ -5,9 +5,6 @@ use super::format::significant;
 use super::rank::{Ranked, Ratio, SURE, few_listed, first};
 use crate::results::Record;
 
-/// The segment of an id that stands for the hierarchy as the source of lights.
-const HIERARCHY: &str = "bvh";
-
 /// What makes a rank unsure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Doubt {

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::colours::Colours;
 use super::comparison::Comparison;
 use super::format::{number, significant};
 use super::markup::{Html, html};
@@ -15,11 +14,7 @@ use crate::results::Record;
 const MOST_OPEN: usize = 6;
 
 /// The viewer of a comparison's pictures, of those that were kept.
-pub(super) fn pictures(
-    comparison: &Comparison<'_>,
-    kept: &BTreeSet<&str>,
-    colours: &Colours<'_>,
-) -> Html {
+pub(super) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Html {
     let known =
         |name: &Option<String>| name.as_deref().filter(|name| kept.contains(name)).is_some();
     let has_one =
@@ -34,7 +29,7 @@ pub(super) fn pictures(
         shown = all().collect();
     }
     let viewer = |record: &&Record| Panel {
-        name: record.strategy.clone(),
+        name: record.strategy.to_string(),
         class: record.strategy.class(),
         body: html!("<div class=\"stage\">\n{}</div>\n", viewer(record, baseline, kept)),
     };
@@ -96,12 +91,12 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
 }
 
 /// The lengths of the lists that pixels read, a histogram per strategy; empty where none was counted.
-pub(super) fn list_lengths(comparison: &Comparison<'_>, colours: &Colours<'_>) -> Html {
+pub(super) fn list_lengths(comparison: &Comparison<'_>) -> Html {
     let records = comparison.records.iter().map(|(_, record)| *record);
     let all: Vec<Histogram> = records
         .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))
         .map(|record| Histogram {
-            title: record.strategy.clone(),
+            title: record.strategy.to_string(),
             x_label: "Lights in a list".to_owned(),
             bins: bins(&record.lists.histogram),
             class: record.strategy.class(),

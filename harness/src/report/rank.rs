@@ -133,7 +133,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
         .iter()
         .filter_map(|record| Ratio::of(record, leader))
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
-    let names = few_listed(first.iter().map(|record| record.strategy.clone()).collect());
+    let names = few_listed(first.iter().map(|record| record.strategy.to_string()).collect());
     if widest.coverage < SURE {
         let (rounds, option) =
             if leader.setting.along_path { ("laps", "--laps") } else { ("rounds", "--frames") };
