@@ -27,7 +27,7 @@ fn the_finding_is_computed_from_the_records() {
     let both = results.records[1].assign_and_shade_ms();
     let speedup = results.records[0].assign_and_shade_ms() / both;
     let expected = format!(
-        "On llvmpipe, DC-I/64x64x24 shades 1,000 lights {speedup:.1}\u{d7} as fast as no culling \
+        "On llvmpipe, DC-I/64x64x24 (dense clusters, implicit bounds) shades 1,000 lights {speedup:.1}\u{d7} as fast as no culling \
          and shows the same image, bit for bit."
     );
     assert!((15.0..17.0).contains(&speedup));
@@ -64,7 +64,9 @@ fn a_lossless_strategy_wins_over_a_faster_lossy_one_and_over_the_control() {
     results.records.push(record("Clay", Mode::Deferred, 0.0, 0.1));
     results.records.push(record("Broken", Mode::Deferred, 1.0, 1.0));
     spoil(&mut results.records[3]);
-    assert!(finding(&results)[0].contains("DC-I/64x64x24 shades"));
+    assert!(
+        finding(&results)[0].contains("DC-I/64x64x24 (dense clusters, implicit bounds) shades")
+    );
 }
 
 /// A copy of a record under another name, `factor` times as slow in every frame.
@@ -89,8 +91,13 @@ fn a_tie_has_no_winner_in_headline_terminal_or_page() {
     let headline = &finding(&results)[0];
     let tie = "DC-I/64x64x24 and T-E/28x28 tie for fastest: they shade 1,000 lights";
     assert!(headline.contains(tie), "{headline}");
-    assert!(headline.ends_with("and show the same image, bit for bit."), "{headline}");
-    assert!(!headline.contains("DC-I/64x64x24 shades"), "{headline}");
+    let names = "and show the same image, bit for bit. DC-I: dense clusters, implicit bounds; T-E: tiles, \
+                 explicit bounds.";
+    assert!(headline.ends_with(names), "{headline}");
+    assert!(
+        !headline.contains("DC-I/64x64x24 (dense clusters, implicit bounds) shades"),
+        "{headline}"
+    );
     assert!(render_table(&results).contains("DC-I/64x64x24 and T-E/28x28 tie: "));
     let page = render_html(&results, &[]);
     let best = page.matches("data-metric=\"both_ms\"").count();
@@ -100,7 +107,10 @@ fn a_tie_has_no_winner_in_headline_terminal_or_page() {
 
     // One that is surely slower leaves a winner.
     results.records[2] = copy(&results.records[1], "T-E/28x28", 1.1);
-    assert!(finding(&results)[0].contains("DC-I/64x64x24 shades 1,000 lights"));
+    assert!(
+        finding(&results)[0]
+            .contains("DC-I/64x64x24 (dense clusters, implicit bounds) shades 1,000 lights")
+    );
 }
 
 #[test]
@@ -191,7 +201,12 @@ fn odd_runs_still_read_well() {
     assert!(alone[0].starts_with("On llvmpipe, no culling takes "), "{}", alone[0]);
 
     let orphan = finding(&of([record("DC-I", Mode::Forward, 10.0, 40.0)]));
-    assert!(orphan[0].contains("DC-I assigns and shades 1,000 lights in "), "{}", orphan[0]);
+    assert!(
+        orphan[0]
+            .contains("DC-I (dense clusters, implicit bounds) assigns and shades 1,000 lights in "),
+        "{}",
+        orphan[0]
+    );
 
     let mut dark = pair();
     for record in &mut dark.records {

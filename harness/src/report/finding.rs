@@ -85,11 +85,11 @@ fn sentence(comparison: &Comparison<'_>) -> (String, Vec<String>) {
     };
     let Some(lead) = Lead::of_comparison(comparison) else {
         // All that cull lost something: the fastest says what.
-        let subject = Subject::one(fastest, comparison.name(fastest));
+        let subject = Subject::one(comparison, fastest);
         let details = over_exit(comparison, &subject).into_iter().collect();
         return (speed(comparison, &subject) + &image(fastest), details);
     };
-    let subject = Subject::lead(&lead);
+    let subject = Subject::lead(comparison, &lead);
     let image = match lead.is_tie() {
         true if lead.records.iter().all(|record| image(record) == SAME_IMAGE) => {
             " and show the same image, bit for bit".to_owned()
@@ -97,7 +97,7 @@ fn sentence(comparison: &Comparison<'_>) -> (String, Vec<String>) {
         true => String::new(),
         false => image(fastest),
     };
-    let details = [over_exit(comparison, &subject), lead.hierarchy()];
+    let details = [plain_names(&lead), over_exit(comparison, &subject), lead.hierarchy()];
     (speed(comparison, &subject) + &image + &lead.doubt(), details.into_iter().flatten().collect())
 }
 
@@ -109,21 +109,22 @@ fn is_dark(record: &Record) -> bool {
 /// The subject of a sentence: one strategy, or several that tie.
 struct Subject<'a> {
     records: Vec<&'a Record>,
-    /// `A`, or `A and B tie for fastest: they`.
+    /// `A (its plain name)`, or `A and B tie for fastest: they`.
     words: String,
     /// Follows a speed: for which lights it holds.
     still_lights: &'static str,
 }
 
 impl<'a> Subject<'a> {
-    fn one(record: &'a Record, words: String) -> Self {
+    fn one(comparison: &Comparison<'_>, record: &'a Record) -> Self {
+        let words = comparison.name(record) + &plain_name(record);
         Self { records: vec![record], words, still_lights: "" }
     }
 
-    fn lead(lead: &Lead<'a>) -> Self {
+    fn lead(comparison: &Comparison<'_>, lead: &Lead<'a>) -> Self {
         let words = match lead.is_tie() {
             true => format!("{}: they", lead.is_fastest()),
-            false => lead.names(),
+            false => comparison.name(lead.leader()) + &plain_name(lead.leader()),
         };
         Self { records: lead.records.clone(), words, still_lights: lead.still_lights() }
     }
@@ -137,6 +138,24 @@ impl<'a> Subject<'a> {
     fn span(&self, figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
         span(&self.records, figure)
     }
+}
+
+/// ` (sparse clusters, explicit bounds)`; empty for a family that the registry does not know.
+fn plain_name(record: &Record) -> String {
+    record.strategy.row().map_or_else(String::new, |row| format!(" ({})", row.name))
+}
+
+/// What the families of a tie are: `DC-I: dense clusters, implicit bounds.`; `None` where one leads, whose
+/// name its sentence explains.
+fn plain_names(lead: &Lead<'_>) -> Option<String> {
+    let mut names: Vec<String> = Vec::new();
+    for row in lead.records.iter().filter_map(|record| record.strategy.row()) {
+        let name = format!("{}: {}", row.family, row.name);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    (lead.is_tie() && !names.is_empty()).then(|| format!("{}.", names.join("; ")))
 }
 
 /// How fast the best is, compared with no culling where that was measured.

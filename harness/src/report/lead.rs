@@ -5,9 +5,6 @@ use super::format::significant;
 use super::rank::{Ranked, Ratio, SURE, few_listed, first};
 use crate::results::Record;
 
-/// The segment of an id that stands for the hierarchy as the source of lights.
-const HIERARCHY: &str = "bvh";
-
 /// What makes a rank unsure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Doubt {
@@ -36,7 +33,7 @@ impl<'a> Lead<'a> {
         let mut records = first(ranked);
         let leader = *records.first()?;
         let other = ranked.iter().map(|ranked| ranked.record).find(|r| !std::ptr::eq(*r, leader));
-        let doubt = match other.map(|other| Ratio::between(other, leader)) {
+        let doubt = match other.map(|other| Ratio::of(other, leader)) {
             None => Doubt::None,
             Some(None) => Doubt::NoRounds,
             Some(Some(ratio)) if ratio.coverage < SURE => {

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::colours::Colours;
 use super::comparison::Comparison;
 use super::format::{number, significant};
 use super::markup::{Html, html};
@@ -15,11 +14,7 @@ use crate::results::Record;
 const MOST_OPEN: usize = 6;
 
 /// The viewer of a comparison's pictures, of those that were kept.
-pub(super) fn pictures(
-    comparison: &Comparison<'_>,
-    kept: &BTreeSet<&str>,
-    colours: &Colours<'_>,
-) -> Html {
+pub(super) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Html {
     let known =
         |name: &Option<String>| name.as_deref().filter(|name| kept.contains(name)).is_some();
     let has_one =
@@ -96,7 +91,7 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
 }
 
 /// The lengths of the lists that pixels read, a histogram per strategy; empty where none was counted.
-pub(super) fn list_lengths(comparison: &Comparison<'_>, colours: &Colours<'_>) -> Html {
+pub(super) fn list_lengths(comparison: &Comparison<'_>) -> Html {
     let records = comparison.records.iter().map(|(_, record)| *record);
     let all: Vec<Histogram> = records
         .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))

@@ -30,7 +30,7 @@ pub(super) struct Ratio {
 impl Ratio {
     /// The times of `record` over those of `other`. `None` where they have fewer than two rounds in common.
     /// Along a path a round is a lap, so both need at least two laps, with equally many poses.
-    pub(super) fn between(record: &Record, other: &Record) -> Option<Self> {
+    pub(super) fn of(record: &Record, other: &Record) -> Option<Self> {
         let laps =
             |record: &Record| (record.setting.along_path, record.laps(), record.times.frames);
         let differ = if record.setting.along_path || other.setting.along_path {
@@ -64,13 +64,13 @@ impl Ratio {
 
 /// Whether two records tie. `None` where they were not timed in the same rounds.
 pub fn indistinguishable(record: &Record, other: &Record) -> Option<bool> {
-    Ratio::between(record, other).map(|ratio| ratio.is_tie())
+    Ratio::of(record, other).map(|ratio| ratio.is_tie())
 }
 
 /// Whether a record is faster than another, beyond chance. `None` where they were not timed in the same
 /// rounds.
 pub fn is_surely_faster(record: &Record, other: &Record) -> Option<bool> {
-    Ratio::between(record, other).map(|ratio| ratio.is_faster())
+    Ratio::of(record, other).map(|ratio| ratio.is_faster())
 }
 
 /// A record with its rank.
@@ -104,7 +104,7 @@ pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ra
         let Some(&leader) = left.first() else { break };
         let shares = |record: &Record| {
             std::ptr::eq(record, leader)
-                || Ratio::between(record, leader).is_some_and(|ratio| ratio.is_tie())
+                || Ratio::of(record, leader).is_some_and(|ratio| ratio.is_tie())
         };
         let (same, others) = left.into_iter().partition::<Vec<&Record>, _>(|r| shares(r));
         ranked.extend(same.into_iter().map(|record| Ranked { record, rank }));
@@ -131,7 +131,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     }
     let widest = others
         .iter()
-        .filter_map(|record| Ratio::between(record, leader))
+        .filter_map(|record| Ratio::of(record, leader))
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
     let names = few_listed(first.iter().map(|record| record.strategy.to_string()).collect());
     if widest.coverage < SURE {
@@ -248,7 +248,7 @@ mod tests {
         let records = [a, b, c];
         let ranked = ranks(&records);
         let ranks: Vec<u32> = ranked.iter().map(|r| r.rank).collect();
-        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::between(&records[1], &records[0]));
+        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::of(&records[1], &records[0]));
         let text = tie(&ranked).expect("two share the first rank");
         assert!(text.contains(" and ") && text.contains(" tie: "), "{text}");
         assert!(!text.contains('C'), "{text}");
@@ -268,7 +268,7 @@ mod tests {
         let records = [record("A", &[10.0]), record("B", &[10.0001]), record("C", &[9.0])];
         assert_eq!(places(&records), [place("C", 1), place("A", 2), place("B", 3)]);
         assert_eq!(tie(&ranks(&records)), None);
-        assert_eq!(Ratio::between(&records[0], &records[1]), None);
+        assert_eq!(Ratio::of(&records[0], &records[1]), None);
     }
 
     #[test]
@@ -323,12 +323,12 @@ mod tests {
         old.times.rounds = 40;
         for record in [&one, &old] {
             assert_eq!((record.laps(), record.interval_ms()), (1, None));
-            assert_eq!(Ratio::between(record, record), None);
+            assert_eq!(Ratio::of(record, record), None);
         }
         let said = tie(&ranks(&[one.clone(), old])).expect("one lap");
         assert!(said.starts_with("one lap") && said.contains("--laps 6"), "{said}");
         let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
-        assert_eq!(Ratio::between(&a, &b), None);
+        assert_eq!(Ratio::of(&a, &b), None);
         let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];
         let said = tie(&ranks(&few)).expect("five laps");
         assert!(

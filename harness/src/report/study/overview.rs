@@ -108,7 +108,7 @@ fn panel(
     };
     let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
     let mut body = html!("<p class=\"meta\">{}</p>\n", meta);
-    body += result_table(&format!("{scene}, {title}"), &comparison, |r| r.strategy.class());
+    body += result_table(&format!("{scene}, {title}"), &comparison);
     body += charts.bars(
         &format!("{scene}-passes-{slug}{count}"),
         &passes(format!("Passes that assign and shade, {title}"), results, &comparison),
@@ -127,8 +127,7 @@ fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarC
         true => Scale::Log,
         false => Scale::LinearFromZero,
     };
-    let class = |record: &Record| record.strategy.class();
-    pass_bars(title, scale, counted, &records, &Colours::new(results), class)
+    pass_bars(title, scale, counted, &records, &Colours::new(results))
 }
 
 /// What a scene's comparison found, one sentence per count of lights, the most lights first.
