@@ -7,7 +7,7 @@ use crate::{
     kernel::{self, Slot},
 };
 
-/// The pipelines of a build; those that it does not use are left out.
+/// The pipelines that a build uses.
 #[derive(Debug)]
 pub(crate) struct BuildKernels {
     pub(crate) build_layout: wgpu::BindGroupLayout,
@@ -20,7 +20,7 @@ pub(crate) struct BuildKernels {
     pub(crate) finders: Finders,
 }
 
-/// What finds fragments.
+/// The pipelines that find fragments.
 #[derive(Debug)]
 pub(crate) enum Finders {
     SinglePass {
@@ -34,24 +34,24 @@ pub(crate) enum Finders {
     },
 }
 
-/// What takes samples.
+/// The pipelines that take samples.
 #[derive(Debug)]
 pub(crate) enum Samplers {
     Compute { small: wgpu::ComputePipeline, large: wgpu::ComputePipeline },
     Fragment(Draw),
 }
 
-/// The rasteriser as sampler.
+/// The GPU's rasteriser takes samples.
 #[derive(Debug)]
 pub(crate) struct Draw {
     pub(crate) pipeline: wgpu::RenderPipeline,
     pub(crate) read_layout: wgpu::BindGroupLayout,
     pub(crate) write_layout: wgpu::BindGroupLayout,
-    /// What the pass draws on, and leaves as it is.
+    /// A render target that the pass needs but does not write.
     pub(crate) target: wgpu::TextureView,
 }
 
-/// The modules of the build's kernels; [`BUILD_ROOTS`] names the roots.
+/// The modules of the kernels of a build. [`BUILD_ROOTS`] names the root modules.
 pub fn build_shader(settings: &DeepImageSettings) -> Shader<'static> {
     let conservative =
         matches!(settings.build, Build::PerDirection { coverage: Coverage::Conservative, .. });

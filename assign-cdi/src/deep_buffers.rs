@@ -1,4 +1,4 @@
-//! The buffers of deep images: sized before a frame, grown to what earlier frames asked for.
+//! The buffers of deep images: sized before a frame, and grown to what earlier frames asked for.
 
 use assign::{AssignError, Gpu};
 use bytemuck::{Pod, Zeroable};
@@ -6,28 +6,28 @@ use glam::Vec4;
 
 use crate::{Build, DeepImageSettings, LinkedNode, Storage};
 
-/// Counters of a build: `deep_images.wesl`, `struct Header`.
+/// Counters of a build: `struct Header` of `deep_images.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct DeepImageCounters {
-    /// Samples asked for; none where each direction visits the geometry.
+    /// Samples asked for; 0 if each direction visits the geometry.
     pub sample_count: u32,
-    /// Fragments asked for by all images; [`u32::MAX`] where they are more.
+    /// Fragments asked for by all images, at most [`u32::MAX`].
     pub fragment_count: u32,
-    /// Triangles walked by a workgroup each.
+    /// Large triangles. Each takes a workgroup of its own.
     pub large_count: u32,
-    /// Triangles left out: they reach out of the scene's box, or are not made of numbers.
+    /// Triangles left out because they reach out of the scene's box or have a NaN coordinate.
     pub rejected_count: u32,
-    /// 1 where something did not fit: every ray's length is unknown.
+    /// 1: something did not fit, and the length of every ray is unknown.
     pub is_overflowed: u32,
-    /// Fragments of the longest list; 0 where lists are linked.
+    /// Fragments of the longest list; 0 if lists are linked.
     pub longest: u32,
 }
 
-/// Byte of [`DeepImageCounters::longest`], and of what it is copied from.
+/// Offset of [`DeepImageCounters::longest`] in bytes.
 pub(crate) const LONGEST_AT: u64 = 20;
 
-/// The buffers.
+/// The buffers of deep images.
 #[derive(Debug)]
 pub(crate) struct DeepBuffers {
     pub(crate) header: wgpu::Buffer,
@@ -42,7 +42,7 @@ pub(crate) struct DeepBuffers {
 }
 
 impl DeepBuffers {
-    /// Buffers of fixed size are as large as they will be, the others empty.
+    /// Makes the buffers of fixed size, and empty ones that grow.
     pub(crate) fn new(gpu: &Gpu, settings: &DeepImageSettings) -> Result<Self, AssignError> {
         let directions = settings.directions;
         let axes: Vec<[Vec4; 3]> = (0..directions.count())
@@ -52,7 +52,7 @@ impl DeepBuffers {
         let frames = gpu.storage("direction frames", axes.len() as u64 * 48)?;
         gpu.queue.write_buffer(&frames, 0, bytemuck::cast_slice(&axes));
         let pixels = u64::from(settings.pixel_count());
-        // Heads of linked lists are kept in the counts.
+        // Linked lists need no offsets: their heads are in the counts.
         let offsets = if settings.storage == Storage::Arrays { pixels + 1 } else { 1 };
         Ok(Self {
             header: gpu.storage("deep image counters", size_of::<DeepImageCounters>() as u64)?,
@@ -67,7 +67,8 @@ impl DeepBuffers {
         })
     }
 
-    /// Makes room for a frame, and for what an earlier one asked for. Returns whether fragments moved.
+    /// Makes room for a frame, and for what an earlier frame asked for. Returns whether the buffer of fragments
+    /// was replaced.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -91,7 +92,7 @@ impl DeepBuffers {
             Build::SinglePass { .. } => {
                 let guess = cells.saturating_mul(GUESS);
                 let wanted = wanted(self.sample_capacity, asked.sample_count, guess);
-                // All samples fit where their fragments do.
+                // No more samples than those whose fragments fit.
                 let samples = wanted.min((most / directions).max(1));
                 if samples > self.sample_capacity {
                     self.samples = gpu.storage("deep image samples", u64::from(samples) * 16)?;
@@ -120,11 +121,12 @@ impl DeepBuffers {
     }
 }
 
-/// Samples a cell of the grid until a frame has counted: the paper's scenes have about 6.5 fragments
-/// a pixel (4.5 million in 169 images of 64 x 64, from its 18 MB).
+/// Samples per cell of the grid that a first frame makes room for. The paper's scenes have about 6.5 fragments
+/// per pixel (its 18 MB are 4.5 million fragments in 169 images of 64 x 64).
 const GUESS: u32 = 8;
 
-/// Room for a quarter more than was asked, so that a scene in motion does not grow it each frame.
+/// Room for a quarter more than an earlier frame asked for, so that a scene in motion does not grow the buffers
+/// every frame.
 fn wanted(has: u32, asked: u32, guess: u32) -> u32 {
     if asked > has { asked.saturating_add(asked / 4).max(guess) } else { has.max(guess) }
 }

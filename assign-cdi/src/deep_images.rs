@@ -1,4 +1,4 @@
-//! Compound deep images on the GPU: built from triangles, read by rays.
+//! Compound deep images on the GPU: triangles fill them, rays read them.
 
 use assign::{AssignError, Gpu, Passes, Readback, Shader};
 use bytemuck::{Zeroable, bytes_of};
@@ -12,11 +12,11 @@ use crate::{
     stages::{COUNT, FILL, LARGE_AT, Stages, at_once},
 };
 
-/// The module that casts rays, `package::ray_cast`: [`DeepImages::mount`] mounts it.
+/// The module that casts rays. [`DeepImages::mount`] mounts it as `package::ray_cast`.
 pub const RAY_CAST_WESL: &str = include_str!("shaders/ray_cast.wesl");
 
-/// Lists up to here are sorted without rounds of merges, which take time and memory even where no list
-/// needs them; rounds are added when a frame has shown a longer one.
+/// Lists up to this length are sorted without rounds of merges. Rounds take time and memory even if no list needs
+/// them, so they are added only once a frame has had a longer list.
 const SORTED_AT_LEAST: u32 = 2048;
 
 /// Deep images of a scene from many directions.
@@ -47,7 +47,7 @@ struct Groups {
 }
 
 impl DeepImages {
-    /// Makes the kernels; `settings` are checked.
+    /// Makes the kernels. Checks `settings`.
     pub fn new(gpu: &Gpu, settings: DeepImageSettings) -> Result<Self, AssignError> {
         settings.check()?;
         let slots = [Slot::Uniform, Slot::Read, Slot::Read, Slot::Read, Slot::Read];
@@ -73,7 +73,7 @@ impl DeepImages {
         &self.settings
     }
 
-    /// Where the images of the last prepared frame lie.
+    /// The place of the images of the last prepared frame in the world.
     pub fn space(&self) -> &ImagesUniform {
         &self.space
     }
@@ -89,7 +89,7 @@ impl DeepImages {
         space.fragment_capacity = self.buffers.fragment_capacity;
         let is_longer = asked.longest > self.sorted_longest;
         if is_longer {
-            // A quarter more, so that a scene in motion does not add rounds each frame.
+            // A quarter more, so that a scene in motion does not add rounds every frame.
             self.sorted_longest = asked.longest.saturating_add(asked.longest / 4);
         }
         space.sorted_longest = self.sorted_longest;
@@ -103,7 +103,7 @@ impl DeepImages {
         Ok(())
     }
 
-    /// Binds counts, offsets and fragments for scan and sort.
+    /// Binds counts, offsets and fragments for the scan and the sort.
     fn prepare_lists(&mut self, gpu: &Gpu) -> Result<(), AssignError> {
         let pixels = self.settings.pixel_count();
         let buffers = &self.buffers;
@@ -156,9 +156,8 @@ impl DeepImages {
         }
     }
 
-    /// Records the build of a frame; nothing before [`prepare`](Self::prepare). Passes are
-    /// `cdi-samples`, `cdi-count`, `cdi-scan`, `cdi-fill` and `cdi-sort`, or those of them that the
-    /// settings ask for.
+    /// Records the build of a frame: those of the passes `cdi-samples`, `cdi-count`, `cdi-scan`, `cdi-fill` and
+    /// `cdi-sort` that the settings ask for. Before [`prepare`](Self::prepare) it records nothing.
     pub fn record(&mut self, passes: &mut dyn Passes) {
         let Some(groups) = &self.groups else { return };
         let encoder = passes.encoder();
@@ -239,7 +238,7 @@ impl DeepImages {
         }
     }
 
-    /// What is to be known before fragments are found.
+    /// Sizes the dispatches of the stages; per direction, it lists the large triangles first.
     fn before_stages(&self, groups: &Groups, pass: &mut wgpu::ComputePass<'_>) {
         match &self.kernels.finders {
             Finders::SinglePass { .. } => {
@@ -254,7 +253,7 @@ impl DeepImages {
         }
     }
 
-    /// Counts the fragments of all directions, or fills them in.
+    /// Counts the fragments of all directions, or writes them.
     fn put(&self, groups: &Groups, pass: &mut wgpu::ComputePass<'_>, mode: u32) {
         pass.set_bind_group(0, &groups.build, &[]);
         match &self.kernels.finders {
@@ -288,42 +287,41 @@ impl DeepImages {
         pass.dispatch_workgroups(1, 1, 1);
     }
 
-    /// The newest counters that have come back, which may be a few frames old.
+    /// The newest counters that were read back, which may be a few frames old.
     pub fn stats(&self) -> Option<DeepImageCounters> {
         self.readback.latest()
     }
 
-    /// Whether nothing was lost in the newest frame whose counters have come back. Where something was,
-    /// rays are of unknown length, and the next [`prepare`](Self::prepare) makes room.
+    /// Whether everything fitted in the newest frame whose counters were read back. If not, the lengths of its rays
+    /// are unknown, and the next [`prepare`](Self::prepare) makes room.
     pub fn is_complete(&self) -> Option<bool> {
         let stats = self.readback.latest()?;
         Some(stats.is_overflowed == 0 && stats.longest <= self.sorted_longest)
     }
 
-    /// Reads the lists of the last submitted frame back, blocking.
+    /// Reads back the lists of the last submitted frame. It blocks.
     pub fn snapshot(&self, gpu: &Gpu) -> Result<DeepImagesSnapshot, AssignError> {
         DeepImagesSnapshot::read(gpu, &self.settings, &self.buffers)
     }
 
     /// Bytes of all its buffers on the GPU.
     pub fn bytes(&self) -> u64 {
-        let own = self.uniform.size() + self.stages.bytes();
-        own + self.buffers.bytes() + self.sums.bytes() + self.sort.bytes()
+        let small = self.uniform.size() + self.stages.bytes();
+        small + self.buffers.bytes() + self.sums.bytes() + self.sort.bytes()
     }
 
-    /// Layout of [`bind_group`](Self::bind_group), for compute and fragment shaders: the images'
-    /// uniform, direction frames, counters, where lists begin, and fragments.
+    /// Layout of [`bind_group`](Self::bind_group), for compute and fragment shaders. It holds the images' uniform,
+    /// the frames of directions, the counters, the starts of lists, and the fragments.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.ray_layout
     }
 
-    /// What rays are cast with; `None` before [`prepare`](Self::prepare), and new after each.
+    /// The bind group that rays read. `None` before [`prepare`](Self::prepare), which replaces it every time.
     pub fn bind_group(&self) -> Option<&wgpu::BindGroup> {
         self.groups.as_ref().map(|groups| &groups.rays)
     }
 
-    /// Mounts `package::ray_cast` and what it imports, with [`bind_group`](Self::bind_group) as bind
-    /// group `group`.
+    /// Mounts `package::ray_cast` and what it imports. [`bind_group`](Self::bind_group) is then bind group `group`.
     pub fn mount<'a>(settings: &DeepImageSettings, shader: Shader<'a>, group: u32) -> Shader<'a> {
         let shader = shader
             .module("package::ray_slots", format!("const RAY_GROUP: u32 = {group}u;\n"))

@@ -1,48 +1,48 @@
-//! What deep images are to be like, and how they are built.
+//! Settings of deep images, and how they are built.
 
 use assign::AssignError;
 
 use crate::Directions;
 
-/// How triangles become samples of the single pass.
+/// What takes the samples of the single pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Raster {
-    /// A thread a triangle, a workgroup a large one.
+    /// Compute: one thread per triangle, one workgroup per large triangle.
     #[default]
     Compute,
-    /// The GPU's rasteriser. It counts neither large triangles nor rejected ones.
+    /// The GPU's rasteriser. It counts neither large nor rejected triangles.
     Fragment,
 }
 
 /// Which pixels a triangle covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Coverage {
-    /// Those whose centre it covers: small triangles may be missing.
+    /// Pixels whose centre it covers. Small triangles may be missing.
     #[default]
     Centres,
-    /// All that it touches. A fragment has the depth of the triangle's plane at the pixel's centre,
-    /// clamped to the triangle's own depths: what a ray through the pixel hits is at most as far from
-    /// it as the plane rises over 0.708 pixels.
+    /// All pixels that it touches. A fragment has the depth of the triangle's plane at the pixel's centre, clamped
+    /// to the triangle's own depths. The depth at which a ray through the pixel hits the triangle differs from it
+    /// by at most the plane's rise over 0.708 pixels.
     Conservative,
 }
 
 /// How fragments are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Build {
-    /// Geometry is visited once, and sampled on a grid across each triangle's dominant axis; each
-    /// sample is a fragment of every direction (Archer et al. 2019, section 3.1).
+    /// One visit to the geometry. It samples each triangle on a grid across the triangle's dominant axis. Each
+    /// sample becomes a fragment of every direction (Archer et al. 2019, section 3.1).
     SinglePass {
-        /// Samples a pixel's width, along each axis. 1 is the paper's, and leaves holes where a
-        /// direction sees a triangle better than its dominant axis does, at most 1.73 times.
+        /// Samples per pixel width along each axis. The paper has 1, which leaves holes: a direction may see a
+        /// triangle up to 1.73 times larger than the dominant axis does.
         oversampling: u32,
-        /// Who rasterises.
+        /// What takes the samples.
         raster: Raster,
     },
-    /// Geometry is visited for each direction (the paper's brute force).
+    /// One visit to the geometry per direction (the paper's brute force).
     PerDirection {
         /// Which pixels a triangle covers.
         coverage: Coverage,
-        /// Directions of a dispatch: 1 as a renderer would draw them, one by one.
+        /// Directions per dispatch. 1 draws them one by one, as a renderer would.
         at_once: u32,
     },
 }
@@ -56,14 +56,14 @@ impl Default for Build {
 /// How a pixel's fragments are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// One behind the other, in ascending depth.
+    /// One after the other, in ascending depth.
     #[default]
     Arrays,
-    /// In linked lists, unsorted: quicker to build, slower to cast rays through.
+    /// In unsorted linked lists: faster to build, slower to cast rays through.
     LinkedLists,
 }
 
-/// What deep images are to be like.
+/// Settings of deep images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DeepImageSettings {
     /// The directions.
@@ -74,13 +74,13 @@ pub struct DeepImageSettings {
     pub build: Build,
     /// How they are stored.
     pub storage: Storage,
-    /// The most fragments to make room for, for tests of overflow and tight budgets of memory. Images
-    /// that need more say nothing: every ray's length is unknown.
+    /// The most fragments to make room for: a limit on memory, and a means to test overflow. If images need more,
+    /// the length of every ray is unknown.
     pub most_fragments: u32,
 }
 
 impl Default for DeepImageSettings {
-    /// As the paper: 169 directions, 64 pixels.
+    /// The paper's: 169 directions of 64 x 64 pixels.
     fn default() -> Self {
         Self {
             directions: Directions::default(),
@@ -92,7 +92,7 @@ impl Default for DeepImageSettings {
     }
 }
 
-/// The most fragments: 4 GiB of arrays.
+/// The most fragments: 4 GiB as arrays.
 pub const MAX_FRAGMENTS: u32 = 1 << 30;
 
 /// The most samples along each side of an image.
@@ -116,7 +116,7 @@ impl DeepImageSettings {
         self.directions.count() * self.size_px * self.size_px
     }
 
-    /// Names the first setting out of its range.
+    /// Checks every setting. The error names the first one out of its range.
     pub fn check(&self) -> Result<(), AssignError> {
         let range = |field: &str, value: u32, most: u32| {
             if (1..=most).contains(&value) {
@@ -128,20 +128,20 @@ impl DeepImageSettings {
                 accepted: format!("1 to {most}"),
             })
         };
-        range("size_px", self.size_px, MOST_SIDE)?;
-        range("most_fragments", self.most_fragments, MAX_FRAGMENTS)?;
+        range("pixels along the side of a deep image (size_px)", self.size_px, MOST_SIDE)?;
+        range("fragments of deep images (most_fragments)", self.most_fragments, MAX_FRAGMENTS)?;
         match self.build {
             Build::SinglePass { oversampling, .. } => {
-                range("oversampling", oversampling, MOST_SIDE / self.size_px)?;
+                range("oversampling of deep images", oversampling, MOST_SIDE / self.size_px)?;
             }
             Build::PerDirection { at_once, .. } => {
-                range("at_once", at_once, self.directions.count())?;
+                range("directions per dispatch (at_once)", at_once, self.directions.count())?;
             }
         }
         let pixels = u64::from(self.directions.count()) * u64::from(self.size_px).pow(2);
         if pixels > MOST_PIXELS {
             return Err(AssignError::Parameter {
-                field: "directions x size_px^2".into(),
+                field: "pixels of all deep images (directions x size_px^2)".into(),
                 value: pixels.to_string(),
                 accepted: format!("at most {MOST_PIXELS}"),
             });
@@ -150,5 +150,5 @@ impl DeepImageSettings {
     }
 }
 
-/// The most pixels of all images: their prefix sum takes one dispatch a level.
+/// The most pixels of all images together, so that each level of their prefix sum takes one dispatch.
 const MOST_PIXELS: u64 = 1 << 26;

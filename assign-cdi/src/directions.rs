@@ -1,4 +1,5 @@
-//! The directions of deep images: spread over the upper hemisphere, found in constant time.
+//! The directions of deep images. They are spread over the upper hemisphere, and the nearest is found in constant
+//! time.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -8,13 +9,13 @@ use glam::{DVec2, DVec3, Mat3, Vec3};
 /// How directions are spread over the hemisphere around +z.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Spread {
-    /// Spherical coordinates (Archer et al. 2019, section 3.1 and figure 2): stacks of equal solid
-    /// angle, each cut into slices of equal azimuth.
+    /// Spherical coordinates (Archer et al. 2019, section 3.1 and figure 2): stacks of equal solid angle, each cut
+    /// into slices of equal azimuth.
     #[default]
     StacksAndSlices,
-    /// A square cut into `stacks` times `slices`, mapped to the disc (Shirley and Chiu 1997) and on
-    /// to the hemisphere with equal areas: cells are about as wide as high everywhere, and of an odd
-    /// number the middle one is +z.
+    /// A square cut into `stacks` times `slices` cells. It is mapped to the disc (Shirley and Chiu 1997) and from
+    /// there to the hemisphere, with equal areas. Cells are about as wide as high everywhere. If both counts are
+    /// odd, the middle direction is +z.
     Squares,
 }
 
@@ -31,8 +32,8 @@ impl Spread {
 /// The most directions.
 pub const MAX_DIRECTIONS: u32 = 1024;
 
-/// Directions `stack * slices + slice`, unit vectors with z > 0. Each stands for a cell of the
-/// hemisphere, all of the same solid angle, and its opposite for the opposite cell.
+/// Directions `stack * slices + slice`: unit vectors with z > 0. Each stands for a cell of the hemisphere, and its
+/// opposite for the opposite cell. All cells have the same solid angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Directions {
     spread: Spread,
@@ -41,7 +42,7 @@ pub struct Directions {
 }
 
 impl Default for Directions {
-    /// 13 stacks of 13 slices, as the paper.
+    /// The paper's 13 stacks of 13 slices.
     fn default() -> Self {
         Self { spread: Spread::default(), stacks: 13, slices: 13 }
     }
@@ -53,9 +54,9 @@ impl Directions {
         let count = u64::from(stacks) * u64::from(slices);
         if count == 0 || count > u64::from(MAX_DIRECTIONS) {
             return Err(AssignError::Parameter {
-                field: "stacks x slices".into(),
+                field: "directions (stacks x slices)".into(),
                 value: format!("{stacks} x {slices}"),
-                accepted: format!("1 to {MAX_DIRECTIONS} together"),
+                accepted: format!("1 to {MAX_DIRECTIONS} in all"),
             });
         }
         Ok(Self { spread, stacks, slices })
@@ -71,7 +72,7 @@ impl Directions {
         self.stacks * self.slices
     }
 
-    /// Unit direction of an index, in f64; indices wrap around.
+    /// Unit direction of an index, in f64. Indices wrap around.
     pub fn direction_f64(&self, ix: u32) -> DVec3 {
         let (stack, slice) = (ix / self.slices % self.stacks, ix % self.slices);
         let along = (f64::from(stack) + 0.5) / f64::from(self.stacks);
@@ -82,24 +83,27 @@ impl Directions {
                 let radius = (1.0 - along * along).sqrt();
                 DVec3::new(radius * cos, radius * sin, along)
             }
-            Spread::Squares => of_square(DVec2::new(2.0 * across - 1.0, 2.0 * along - 1.0)),
+            Spread::Squares => {
+                square_to_hemisphere(DVec2::new(2.0 * across - 1.0, 2.0 * along - 1.0))
+            }
         }
     }
 
-    /// Unit direction of an index; indices wrap around.
+    /// Unit direction of an index. Indices wrap around.
     pub fn direction(&self, ix: u32) -> Vec3 {
         self.direction_f64(ix).as_vec3()
     }
 
-    /// Columns right, up and forward of a direction's image: world to image is the transpose.
+    /// Axes of a direction's image in world space: columns right, up and forward. Its transpose turns world space to
+    /// the image's.
     pub fn frame(&self, ix: u32) -> Mat3 {
         let forward = self.direction_f64(ix);
         let (right, up) = forward.any_orthonormal_pair();
         Mat3::from_cols(right.as_vec3(), up.as_vec3(), forward.as_vec3())
     }
 
-    /// The direction whose cell holds a unit vector, and whether it is to be reversed: `directions.wesl`,
-    /// `nearest_direction`. It is at most [`max_angle`](Self::max_angle) away.
+    /// The direction whose cell holds a unit vector, and whether the vector runs against it: the twin of
+    /// `nearest_direction` in `directions.wesl`. The two are at most [`max_angle`](Self::max_angle) apart.
     pub fn nearest(&self, direction: Vec3) -> (u32, bool) {
         let is_reversed = direction.z < 0.0;
         let d = if is_reversed { -direction } else { direction }.as_dvec3();
@@ -109,7 +113,7 @@ impl Directions {
                 (d.z, turn - turn.floor())
             }
             Spread::Squares => {
-                let square = to_square(d);
+                let square = hemisphere_to_square(d);
                 (0.5 + 0.5 * square.y, 0.5 + 0.5 * square.x)
             }
         };
@@ -117,14 +121,14 @@ impl Directions {
         (cell(along, self.stacks) * self.slices + cell(across, self.slices), is_reversed)
     }
 
-    /// The largest angle, radians, between a unit vector and what [`nearest`](Self::nearest) gives
-    /// for it: measured at a fine mesh of each cell's rim, rounded up.
+    /// The largest angle between a unit vector and its [`nearest`](Self::nearest) direction, radians. It is measured
+    /// at points along each cell's border, and rounded up by 1 %.
     pub fn max_angle(&self) -> f64 {
-        let of_cell = |ix: u32| {
+        let cell_angle = |ix: u32| {
             let centre = self.direction_f64(ix);
             self.rim(ix).map(|at| centre.dot(at).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max)
         };
-        1.01 * (0..self.count()).map(of_cell).fold(0.0, f64::max)
+        1.01 * (0..self.count()).map(cell_angle).fold(0.0, f64::max)
     }
 
     /// Unit vectors along the border of a cell.
@@ -142,13 +146,15 @@ impl Directions {
                         let radius = (1.0 - along * along).max(0.0).sqrt();
                         DVec3::new(radius * cos, radius * sin, along)
                     }
-                    Spread::Squares => of_square(DVec2::new(2.0 * across - 1.0, 2.0 * along - 1.0)),
+                    Spread::Squares => {
+                        square_to_hemisphere(DVec2::new(2.0 * across - 1.0, 2.0 * along - 1.0))
+                    }
                 }
             })
         })
     }
 
-    /// Mounts `package::directions` with these counts.
+    /// Mounts `package::directions` with these counts of stacks and slices.
     pub fn mount<'a>(&self, shader: Shader<'a>) -> Shader<'a> {
         let counts = format!(
             "const STACKS: u32 = {}u;\nconst SLICES: u32 = {}u;\n",
@@ -161,9 +167,9 @@ impl Directions {
     }
 }
 
-/// A point of the square [-1, 1]^2 on the hemisphere, areas in proportion: Shirley and Chiu's map to
-/// the disc, then Lambert's azimuthal one.
-fn of_square(at: DVec2) -> DVec3 {
+/// Maps the square [-1, 1]^2 to the hemisphere with equal areas: Shirley and Chiu's map to the disc, then Lambert's
+/// azimuthal map.
+fn square_to_hemisphere(at: DVec2) -> DVec3 {
     if at == DVec2::ZERO {
         return DVec3::Z;
     }
@@ -178,8 +184,8 @@ fn of_square(at: DVec2) -> DVec3 {
     (disc * (2.0 - square).sqrt()).extend(1.0 - square)
 }
 
-/// The inverse of [`of_square`].
-fn to_square(d: DVec3) -> DVec2 {
+/// The inverse of [`square_to_hemisphere`].
+fn hemisphere_to_square(d: DVec3) -> DVec2 {
     let disc = d.truncate() / (1.0 + d.z).sqrt();
     let radius = disc.length();
     let (x, y) = (disc.x.abs(), disc.y.abs());
@@ -198,8 +204,8 @@ mod tests {
 
     fn all() -> impl Iterator<Item = Directions> {
         [Spread::StacksAndSlices, Spread::Squares].into_iter().flat_map(|spread| {
-            let of = move |(stacks, slices)| Directions::new(spread, stacks, slices).unwrap();
-            [(1, 1), (2, 4), (4, 4), (4, 8), (8, 8), (8, 16), (13, 13)].map(of)
+            let make = move |(stacks, slices)| Directions::new(spread, stacks, slices).unwrap();
+            [(1, 1), (2, 4), (4, 4), (4, 8), (8, 8), (8, 16), (13, 13)].map(make)
         })
     }
 
@@ -213,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_are_their_own_nearest() {
+    fn the_nearest_direction_of_a_direction_is_itself() {
         for directions in all() {
             for ix in 0..directions.count() {
                 let direction = directions.direction_f64(ix);
@@ -228,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn nearest_is_within_its_bound_and_cells_are_alike() {
+    fn the_nearest_direction_is_within_its_bound_and_cells_have_equal_shares() {
         let mut rng = Pcg64Mcg::seed_from_u64(7);
         for directions in all() {
             let bound = directions.max_angle();
@@ -247,13 +253,19 @@ mod tests {
                     .map(|ix| directions.direction_f64(ix).dot(ray).abs().min(1.0).acos())
                     .fold(f64::INFINITY, f64::min);
             }
-            assert!(farthest <= bound, "{directions:?}: {farthest} of {bound}");
-            assert!(farthest > 0.9 * bound, "{directions:?}: {farthest} of {bound}");
-            // Not the nearest of all, but hardly farther on average.
-            assert!(sum < 1.3 * best || directions.count() == 1, "{directions:?}: {sum} of {best}");
+            assert!(farthest <= bound, "{directions:?}: {farthest} exceeds the bound {bound}");
+            assert!(
+                farthest > 0.9 * bound,
+                "{directions:?}: the bound {bound} is loose, {farthest}"
+            );
+            // A cell's direction is not always the nearest one, but hardly farther on average.
+            assert!(
+                sum < 1.3 * best || directions.count() == 1,
+                "{directions:?}: sum of angles {sum}, by search {best}"
+            );
             let mean = f64::from(tries) / f64::from(directions.count());
-            let alike = counts.iter().all(|&c| (f64::from(c) - mean).abs() < 6.0 * mean.sqrt());
-            assert!(alike, "{directions:?}: {counts:?}");
+            let are_equal = counts.iter().all(|&c| (f64::from(c) - mean).abs() < 6.0 * mean.sqrt());
+            assert!(are_equal, "{directions:?}: vectors per cell {counts:?}");
             println!(
                 "{directions:?}: at most {:.1} degrees, {:.1} on average, {:.1} by search",
                 bound.to_degrees(),
@@ -264,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_checked() {
+    fn counts_out_of_range_are_refused() {
         for (stacks, slices) in [(0, 3), (3, 0), (33, 32), (u32::MAX, u32::MAX)] {
             assert!(Directions::new(Spread::Squares, stacks, slices).is_err());
         }

@@ -1,4 +1,4 @@
-//! Where deep images lie in the world.
+//! The place of deep images in the world.
 
 use assign::AssignError;
 use bytemuck::{Pod, Zeroable};
@@ -9,56 +9,56 @@ use crate::{DeepImageSettings, Directions};
 /// The triangles of a scene, on the GPU.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangles<'a> {
-    /// `array<f32>`: nine a triangle, world space, metres.
+    /// `array<f32>`: nine coordinates per triangle, world space, metres.
     pub positions: &'a wgpu::Buffer,
     /// Number of triangles.
     pub count: u32,
-    /// Corners of the box around them. Triangles that reach out of it are left out, and counted.
+    /// Lowest and highest corner of the box around them. Triangles that reach out of it are left out and counted.
     pub bounds_world: (Vec3, Vec3),
 }
 
-/// What kernels are told of the images: `deep_images.wesl`, `struct Images`.
+/// The images as kernels read them: `struct Images` of `deep_images.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ImagesUniform {
     /// Centre of the sphere around the scene, world space.
     pub centre_world: [f32; 3],
-    /// Its radius: half the box's diagonal, and a little more.
+    /// Radius of the sphere, metres: slightly more than half the box's diagonal.
     pub radius_m: f32,
-    /// Width of a pixel.
+    /// Width of a pixel, metres.
     pub footprint_m: f32,
-    /// Pixels along each side.
+    /// Pixels along each side of an image.
     pub size_px: u32,
     /// Number of images.
     pub direction_count: u32,
     /// Number of triangles.
     pub triangle_count: u32,
-    /// Samples that there is room for.
+    /// The most samples that fit.
     pub sample_capacity: u32,
-    /// Fragments that there is room for.
+    /// The most fragments that fit.
     pub fragment_capacity: u32,
-    /// Width of a cell of the grid that samples are taken on.
+    /// Width of a cell of the grid that triangles are sampled on, metres.
     pub cell_m: f32,
-    /// Its cells along each side.
+    /// Cells along each side of the grid.
     pub side_cells: u32,
-    /// Half the scene's box, and a little more.
+    /// Slightly more than half the size of the scene's box, metres.
     pub half_box_m: [f32; 3],
-    /// The longest list that is sorted: longer ones say nothing.
+    /// The longest list that is sorted. If a list is longer, every ray's length is unknown.
     pub sorted_longest: u32,
 }
 
-/// How much larger than its box the scene is taken to be: rounding of single precision.
+/// How much larger than its box the scene is assumed to be. It covers rounding of single precision.
 const SLACK: f32 = 1.001;
 
 impl ImagesUniform {
-    /// The images around `triangles`; capacities are left at zero.
+    /// The images around `triangles`. Capacities stay 0.
     pub(crate) fn new(
         settings: &DeepImageSettings,
         triangles: &Triangles<'_>,
     ) -> Result<Self, AssignError> {
         let (low, high) = triangles.bounds_world;
         let half = 0.5 * high - 0.5 * low;
-        // Squares of larger numbers, and of smaller ones, leave single precision.
+        // Single precision cannot hold the squares of much larger or smaller numbers.
         let is_good = half.cmpge(Vec3::ZERO).all()
             && low.abs().max(high.abs()).max_element() <= MOST_COORDINATE_M;
         let fail = |field: &str, value: String, accepted: &str| AssignError::Parameter {
@@ -67,20 +67,27 @@ impl ImagesUniform {
             accepted: accepted.into(),
         };
         if !is_good {
-            let accepted = format!("two corners, lower first, within {MOST_COORDINATE_M:e} m");
-            return Err(fail("bounds_world", format!("{low} to {high}"), &accepted));
+            let accepted = format!(
+                "the lower and the higher corner, within {MOST_COORDINATE_M:e} m of the origin"
+            );
+            return Err(fail(
+                "box around the triangles (bounds_world)",
+                format!("{low} to {high}"),
+                &accepted,
+            ));
         }
         let needed = u64::from(triangles.count) * 36;
         if triangles.positions.size() < needed {
             let accepted = format!("at least {needed} bytes for {} triangles", triangles.count);
-            return Err(fail("positions", triangles.positions.size().to_string(), &accepted));
+            let bytes = format!("{} bytes", triangles.positions.size());
+            return Err(fail("buffer of triangle positions", bytes, &accepted));
         }
         if triangles.count > MAX_TRIANGLES {
             let accepted = format!("at most {MAX_TRIANGLES}");
-            return Err(fail("count of triangles", triangles.count.to_string(), &accepted));
+            return Err(fail("number of triangles", triangles.count.to_string(), &accepted));
         }
         let centre = low + half;
-        // Rounding of coordinates far from the origin adds to the box.
+        // Coordinates far from the origin are rounded more, so the box grows by that.
         let rounding = 4.0 * f32::EPSILON * low.abs().max(high.abs()).max_element();
         let half = half * SLACK + rounding;
         let radius_m = half.length().max(LEAST_RADIUS_M) * SLACK;
@@ -100,21 +107,21 @@ impl ImagesUniform {
         })
     }
 
-    /// Metres right, up and forward of the near end of a direction's image.
+    /// Metres right, up and forward from the near corner of a direction's image.
     pub fn place(&self, directions: &Directions, direction: u32, point_world: Vec3) -> Vec3 {
         let from_centre = point_world - Vec3::from(self.centre_world);
         directions.frame(direction).transpose() * from_centre + self.radius_m
     }
 
-    /// The pixel of a place.
+    /// The pixel of a place in an image.
     pub fn pixel(&self, place: Vec3) -> UVec2 {
         (place.truncate() / self.footprint_m).as_uvec2().min(UVec2::splat(self.size_px - 1))
     }
 }
 
-/// The most triangles: nine coordinates each are indexed with 32 bits.
+/// The most triangles: 32 bits index nine coordinates each.
 const MAX_TRIANGLES: u32 = u32::MAX / 9;
-/// The largest coordinate of a scene.
+/// The largest coordinate of a scene, metres.
 const MOST_COORDINATE_M: f32 = 1e9;
-/// The least radius: a scene of one point has images, too.
+/// The least radius, metres: even a scene of one point has images.
 const LEAST_RADIUS_M: f32 = 1e-6;

@@ -1,4 +1,4 @@
-//! Short forms of wgpu's descriptors, for the crate's many small kernels.
+//! Short forms of wgpu's descriptors for this crate's many small kernels.
 
 pub(crate) use assign::kernel::{
     Slot, bind_buffers as group, bind_entries as group_of, layout, pipeline as compute, workgroups,

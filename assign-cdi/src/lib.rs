@@ -1,70 +1,77 @@
-//! Compound deep images: how far a virtual point light reaches, by rays cast through lists of
-//! depths; and a grid of light lists for the many small lights that come of it.
+//! Compound deep images: how far a virtual point light reaches, found by rays through lists of depths.
 //!
 //! # Idea
 //!
-//! A deep image keeps all depths of a pixel, not the nearest alone. A compound deep image is one for
-//! each of many directions over the hemisphere (Archer, Leach, Knowles 2019): a ray through the scene
-//! is then the list of one pixel.
+//! A deep image keeps all depths of a pixel, not only the nearest. A compound deep image is a set of deep
+//! images, one for each of many directions over the hemisphere (Archer, Leach, Knowles 2019). A ray through
+//! the scene then reads the list of one pixel: that of the direction nearest to its own.
 //!
 //! # Phases
 //!
 //! [`DeepImages`] builds the images of a frame:
 //!
-//! 1. `cdi-samples`: geometry is visited once. Each triangle is sampled on a grid across its dominant
-//!    axis, as fine as the images' pixels.
-//! 2. `cdi-count`: each sample is projected along each direction, and its pixel counts one more.
-//! 3. `cdi-scan`: [`PrefixSum`] makes of the counts where each pixel's list begins.
-//! 4. `cdi-fill`: as 2, but depths are written.
-//! 5. `cdi-sort`: [`ListSort`] sorts each list.
+//! 1. `cdi-samples` visits the geometry once. It samples each triangle on a grid across the triangle's dominant
+//!    axis, whose cells are as wide as the images' pixels.
+//! 2. `cdi-count` projects each sample along each direction, and adds 1 to the count of the pixel it meets.
+//! 3. `cdi-scan` sums the counts to the offsets at which the pixels' lists begin ([`PrefixSum`]).
+//! 4. `cdi-fill` projects again as in phase 2, and writes the depths.
+//! 5. `cdi-sort` sorts each list ([`ListSort`]).
 //!
-//! [`RangeCaster`], pass `cdi-ranges`, casts rays from points on surfaces: it takes the direction next
-//! to the ray's, the pixel of the point, and the first depth beyond it. Other ways to build and to
-//! store are there to compare with: [`Build::PerDirection`], [`Storage::LinkedLists`].
+//! [`RangeCaster`] then casts rays from points on surfaces, in the pass `cdi-ranges`. A ray picks the direction
+//! nearest to its own and the pixel of its origin, and takes the first depth beyond the origin.
 //!
-//! [`VplBuffer`] makes virtual point lights of the G-buffer of a spot's view ([`Rsm`]; far away and
-//! narrow, a spot is a sun): passes `rsm-mips` and `vpl-choose` before the rays, `vpl-keep` after them.
-//! [`HybridGrid`], HG, is a strategy like any other.
+//! Two other ways to build and to store are there for comparison: [`Build::PerDirection`] and
+//! [`Storage::LinkedLists`].
+//!
+//! [`VplBuffer`] makes virtual point lights (VPLs) from the G-buffer of a spot's view ([`Rsm`]; a distant narrow
+//! spot stands for a sun). Its passes are `rsm-mips` and `vpl-choose` before the rays, and `vpl-keep` after them.
 //!
 //! # Use
 //!
-//! Before a frame: `vpls.prepare(gpu, &rsm)`, `images.prepare(gpu, &triangles)` and
-//! `caster.prepare(gpu, &points)`, whose positions, normals and `ranges_m` are buffers of `vpls` and whose
-//! count is [`VplBuffer::capacity`]. In it, after the map is drawn: `vpls.record_choose`,
-//! `images.record`, `caster.record`, `vpls.record_keep`. The lights are then in
-//! [`VplBuffer::spheres`] and its neighbours; [`VplBuffer::read`] fetches them for a
-//! [`LightBuffer`](assign::LightBuffer). Set [`VplSettings::large`] to [`Large::Discard`], so that lights
-//! whose rays meet nothing are left out, and [`VplSettings::min_distance_m`] to about a hundredth of the
-//! scene. The uniforms, kernels and sorts that are exported beside these serve tests of layouts.
+//! Before a frame, call:
 //!
-//! Worked example: a floor at height 0 and a table top at 1 m, in a sphere of radius 2 m around
-//! height 0.5 m, seen along +z. The near end is at height -1.5 m, so a pixel that holds both has the
-//! depths `[1.5, 2.5]`. A ray upwards from the floor is at depth 1.5; the first depth beyond is 2.5,
-//! its length 1 m. A ray downwards from the table's underside steps from the last depth back, and
-//! finds 1.5, again 1 m.
+//! 1. `vpls.prepare(gpu, &rsm)`
+//! 2. `images.prepare(gpu, &triangles)`
+//! 3. `caster.prepare(gpu, &points)`; positions, normals and `ranges_m` of the points are buffers of `vpls`, and
+//!    their count is [`VplBuffer::capacity`].
+//!
+//! In the frame, after the map is drawn, call `vpls.record_choose`, `images.record`, `caster.record` and
+//! `vpls.record_keep`. The lights are then in [`VplBuffer::spheres`] and the buffers next to it.
+//! [`VplBuffer::read`] fetches them for a [`LightBuffer`](assign::LightBuffer).
+//!
+//! Two settings matter: set [`VplSettings::large`] to [`Large::Discard`], which drops lights whose rays meet
+//! nothing, and [`VplSettings::min_distance_m`] to about a hundredth of the scene's size. The uniforms, kernels
+//! and sorts that are exported as well serve tests of layouts.
+//!
+//! Worked example: a floor at height 0 and a table top at 1 m lie in a sphere of radius 2 m around height 0.5 m,
+//! seen along +z. The near end is at height -1.5 m, so a pixel that holds both has the depths `[1.5, 2.5]`. A ray
+//! upwards from the floor starts at depth 1.5; the next depth is 2.5, so the ray is 1 m long. A ray downwards from
+//! the table's underside starts at 2.5 and steps backwards through the list. It meets 1.5, so it is 1 m long too.
 //!
 //! # Cost
 //!
-//! With `s` samples, `d` directions and `p` pixels an image: `s d` fragments of 4 bytes and `p d`
-//! offsets and counts of 4 bytes each; the time to build is that of visiting the triangles once and of
-//! writing `s d` fragments twice. A ray reads one direction's frame, two offsets and its list up to
-//! the hit.
+//! With `s` samples, `d` directions and `p` pixels per image:
+//!
+//! - memory: `s d` fragments, and `p d` offsets and counts, of 4 bytes each;
+//! - time to build: one visit to the triangles, and two passes over `s d` fragments (count and fill);
+//! - a ray reads the frame of one direction, two offsets, and its list up to the hit.
 //!
 //! # Where it fails
 //!
-//! - A ray takes the direction of its cell, up to [`Directions::max_angle`] off, 6 degrees on average
-//!   with 13 stacks of 13 slices and 4.6 with [`Spread::Squares`]; and the pixel's list, up to 0.71
-//!   pixels aside. Measured in the room of this crate's tests, 10 x 6 x 8 m, with 4000 rays up to 60
-//!   degrees from their surface's normal, 169 directions and 64 x 64 pixels of 22 cm: the length is
-//!   15 cm off in the median and 62 cm on average, 13 cm and 56 cm with squares. The average is that
-//!   of rays that pass an edge on the other side.
-//! - Surfaces nearer than about `0.71 tan(angle)` pixels along a ray are passed over as its origin's own
-//!   (`ray_cast.wesl`), so corners and thin things close by are missed.
-//! - Triangles smaller than a cell of the grid are missed where they cover no cell's centre; a finer
-//!   grid or [`Coverage::Conservative`] finds them.
-//! - Images that do not fit their buffers say so: every range is infinite until they have grown, two
-//!   frames later at most. Of the VPLs of such a frame [`Large::Clamp`] keeps all, at the largest range,
-//!   and [`Large::Discard`] none: the frame has no indirect light.
+//! - A ray takes the direction at the middle of its cell. That is 6 degrees off on average with 13 stacks of 13
+//!   slices, 4.6 degrees with [`Spread::Squares`], and at most [`Directions::max_angle`].
+//! - A ray takes the list of its origin's pixel, whose centre is up to 0.71 pixels aside.
+//! - Measured effect of both: 4000 rays up to 60 degrees from their surface's normal, in this crate's test room of
+//!   10 x 6 x 8 m, with 169 directions and 64 x 64 pixels of 22 cm. Lengths are off by 15 cm in the median and by
+//!   62 cm on average; with squares, 13 cm and 56 cm. The averages are due to rays that pass an edge on the wrong
+//!   side.
+//! - Rays skip surfaces nearer than about `0.71 tan(angle)` pixels, because they may be the origin's own surface
+//!   (`ray_cast.wesl`). So corners, and thin things close by, are missed.
+//! - A triangle smaller than a cell of the grid is missed if it covers no cell's centre. A finer grid or
+//!   [`Coverage::Conservative`] finds it.
+//! - If images do not fit their buffers, their header says so, and every range is infinite until the buffers have
+//!   grown: two frames later at most. [`Large::Clamp`] then keeps all VPLs of such a frame at the largest range.
+//!   [`Large::Discard`] keeps none, so the frame has no indirect light.
 
 mod build_kernels;
 mod deep_buffers;
@@ -73,6 +80,7 @@ mod deep_settings;
 mod directions;
 mod image_space;
 mod kernel;
+mod linked_node;
 mod prefix_sum;
 mod random_ranges;
 mod ranges;
@@ -88,10 +96,11 @@ pub use deep_images::{DeepImages, RAY_CAST_WESL};
 pub use deep_settings::{Build, Coverage, DeepImageSettings, MAX_FRAGMENTS, Raster, Storage};
 pub use directions::{Directions, MAX_DIRECTIONS, Spread};
 pub use image_space::{ImagesUniform, Triangles};
+pub use linked_node::LinkedNode;
 pub use prefix_sum::{PrefixSum, ScanUniform};
 pub use random_ranges::{RandomRanges, RandomUniform};
 pub use ranges::{Combine, MAX_RAYS, Primary, RangeCaster, RangePoints, RangeRule, RangesUniform};
-pub use snapshot::{DeepImagesSnapshot, LinkedNode};
+pub use snapshot::DeepImagesSnapshot;
 pub use sort::{ListSort, RoundUniform, SortInput, SortUniform, SortWork};
 pub use stages::{DispatchSizes, PlanUniform, StageUniform};
 pub use vpl::{

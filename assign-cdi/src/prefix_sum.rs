@@ -1,31 +1,33 @@
-//! Exclusive prefix sums of counts: where each list begins.
+//! Exclusive prefix sums of counts: the offset at which each list begins.
 //!
-//! Blocks of 2048 are summed, the sums scanned likewise, and the blocks scanned from there. Every
-//! run gives the same result. Counts 2, 5 and 3 give 0, 2, 7 and the total, 10.
+//! First it sums blocks of 2048 counts. Then it scans these sums in the same way, level by level. Last it scans each
+//! block, starting from the block's offset. Every run gives the same result.
+//!
+//! Worked example: counts 2, 5 and 3 give offsets 0, 2 and 7, and the total 10.
 
 use assign::{AssignError, Gpu, Passes, Shader};
 use bytemuck::{Pod, Zeroable, bytes_of};
 
 use crate::kernel::{self, Slot};
 
-/// Values of a block: `BLOCK` of `prefix_sum.wesl`.
+/// Values per block: `BLOCK` of `prefix_sum.wesl`.
 const BLOCK: u32 = 2048;
-/// The most values: a dispatch has at most 65,535 workgroups.
+/// The most values, since a dispatch has at most 65,535 workgroups.
 const MOST: u32 = 65_535 * BLOCK - 1;
 
-/// What the kernels are told of a level: `prefix_sum.wesl`, `struct Scan`.
+/// A level as the kernels read it: `struct Scan` of `prefix_sum.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct ScanUniform {
-    /// Values read; behind them zeros.
+    /// Values to read. Values after these count as zero.
     pub in_count: u32,
-    /// Sums written.
+    /// Sums to write.
     pub out_count: u32,
-    /// 1 where each block starts at its entry of `bases`, 0 where at zero.
+    /// 1: each block starts from its entry of `bases`. 0: each block starts from zero.
     pub has_bases: u32,
 }
 
-/// Sums up to each of many counts.
+/// Sums counts up to each of them.
 #[derive(Debug)]
 pub struct PrefixSum {
     sum: wgpu::ComputePipeline,
@@ -39,7 +41,7 @@ pub struct PrefixSum {
 #[derive(Debug)]
 struct Level {
     blocks: u32,
-    /// Writes the blocks' sums; none at the top, which is one block.
+    /// Writes the sums of blocks. `None` at the top level, which is one block.
     sum: Option<wgpu::BindGroup>,
     scan: wgpu::BindGroup,
 }
@@ -59,14 +61,13 @@ impl PrefixSum {
         })
     }
 
-    /// The kernels' module: the root is `package::prefix_sum`.
+    /// The kernels' modules. The root is `package::prefix_sum`.
     pub fn shader() -> Shader<'static> {
         Shader::new(3).module("package::prefix_sum", include_str!("shaders/prefix_sum.wesl"))
     }
 
-    /// Binds `count` counts and room for `count + 1` offsets, two buffers of `u32`: `offsets[i]` will
-    /// be the sum of the counts before `i`, and `offsets[count]` the sum of all. Sums beyond 32 bits
-    /// stay at [`u32::MAX`].
+    /// Binds `count` counts and `count + 1` offsets, two buffers of `u32`. `offsets[i]` becomes the sum of the counts
+    /// before `i`, and `offsets[count]` the sum of all. Sums beyond 32 bits stay at [`u32::MAX`].
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -76,7 +77,7 @@ impl PrefixSum {
     ) -> Result<(), AssignError> {
         if count > MOST {
             return Err(AssignError::Parameter {
-                field: "count of a prefix sum".into(),
+                field: "number of values of a prefix sum".into(),
                 value: count.to_string(),
                 accepted: format!("at most {MOST}"),
             });
@@ -84,7 +85,7 @@ impl PrefixSum {
         self.levels.clear();
         self.bytes = 0;
         let none = gpu.storage("no bases", 4)?;
-        // Level by level: what is summed, how many values and results, and where the results go.
+        // For each level: the values, their number, the number of results, and the buffer of results.
         let (mut values, mut in_count, mut out_count) = (counts.clone(), count, count + 1);
         let mut results = offsets.clone();
         loop {
@@ -114,12 +115,12 @@ impl PrefixSum {
         }
     }
 
-    /// Records it as one pass.
+    /// Records the sum as one pass.
     pub fn record(&self, passes: &mut dyn Passes, name: &str) {
         passes.compute(name, &mut |pass| self.dispatch(pass));
     }
 
-    /// Records it into a pass that is open.
+    /// Records the sum into an open pass.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.sum);
         for level in &self.levels {

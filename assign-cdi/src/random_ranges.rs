@@ -1,28 +1,28 @@
-//! Ranges drawn at random: what ray casting is compared with (Archer et al. 2019, table 3).
+//! Random ranges, as a comparison for ray casting (Archer et al. 2019, table 3).
 
 use assign::{AssignError, Gpu, Passes, Shader};
 use bytemuck::{Pod, Zeroable, bytes_of};
 
 use crate::kernel::{self, Slot, workgroups};
 
-/// What the kernel is told: `random_ranges.wesl`, `struct Random`.
+/// What the kernel reads: `struct Random` of `random_ranges.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct RandomUniform {
     /// Number of points.
     pub point_count: u32,
-    /// Seed.
+    /// Seed of the random numbers.
     pub seed: u32,
-    /// Least range.
+    /// Least range, metres.
     pub low_m: f32,
-    /// Largest range.
+    /// Largest range, metres.
     pub high_m: f32,
-    /// 1: a range that is [`f32::MAX`] stays as it is.
+    /// 1: a range that is [`f32::MAX`] stays.
     pub keeps_unknown: u32,
 }
 
-/// Draws ranges at random, uniform between two bounds; the same for the same seed. Equal bounds give
-/// every light the same range.
+/// Draws ranges uniformly between two bounds. The same seed gives the same ranges. Equal bounds give every light the
+/// same range.
 #[derive(Debug)]
 pub struct RandomRanges {
     pipeline: wgpu::ComputePipeline,
@@ -49,18 +49,19 @@ impl RandomRanges {
         })
     }
 
-    /// The same, but ranges that are [`f32::MAX`] before the pass stay so: after ray casting these are
-    /// the lights whose rays met nothing. It tells what ranges by rays know from what they leave out.
+    /// As [`new`](Self::new), but ranges that are [`f32::MAX`] before the pass stay. After ray casting these are the
+    /// lights whose rays met nothing. The comparison then shows what the lengths of rays add to knowing which lights
+    /// to drop.
     pub fn keeping_unknown(gpu: &Gpu) -> Result<Self, AssignError> {
         Ok(Self { keeps_unknown: true, ..Self::new(gpu)? })
     }
 
-    /// The kernel's module: the root is `package::random_ranges`.
+    /// The kernel's modules. The root is `package::random_ranges`.
     pub fn shader() -> Shader<'static> {
         Shader::new(3).module("package::random_ranges", include_str!("shaders/random_ranges.wesl"))
     }
 
-    /// Binds `count` ranges, `array<f32>`, to be drawn from `low_m` to `high_m`.
+    /// Binds `count` ranges, `array<f32>`. They are drawn from `low_m` to `high_m`.
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -73,12 +74,12 @@ impl RandomRanges {
             return Err(AssignError::Parameter {
                 field: "bounds of random ranges".into(),
                 value: format!("{low_m} to {high_m}"),
-                accepted: "from 0 on, lower first, finite".into(),
+                accepted: "two finite numbers from 0 on, the lower first".into(),
             });
         }
         if ranges_m.size() < u64::from(count) * 4 {
             return Err(AssignError::Parameter {
-                field: "ranges_m".into(),
+                field: "buffer of ranges (ranges_m)".into(),
                 value: format!("{} bytes", ranges_m.size()),
                 accepted: format!("at least {} for {count} points", u64::from(count) * 4),
             });
@@ -96,7 +97,7 @@ impl RandomRanges {
         Ok(())
     }
 
-    /// Records the pass `random-ranges`; nothing before [`prepare`](Self::prepare).
+    /// Records the pass `random-ranges`. Before [`prepare`](Self::prepare) it records nothing.
     pub fn record(&self, passes: &mut dyn Passes) {
         let Some(group) = &self.group else { return };
         passes.compute("random-ranges", &mut |pass| {

@@ -1,4 +1,4 @@
-//! Ranges of points on surfaces, by rays through deep images.
+//! Ranges of points on surfaces, from rays through deep images.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -11,7 +11,7 @@ use crate::{
     kernel::{self, Slot, workgroups},
 };
 
-/// How the lengths of a point's rays become its range.
+/// How a point's range follows from the lengths of its rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Combine {
     /// Their mean.
@@ -21,15 +21,15 @@ pub enum Combine {
     Maximum,
 }
 
-/// Where a point's primary ray goes.
+/// The direction of a point's primary ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Primary {
     /// Along the normal.
     #[default]
     Normal,
-    /// As a mirror at the point reflects light from [`RangePoints::light_world`].
+    /// The direction in which a mirror at the point reflects light from [`RangePoints::light_world`].
     Reflected,
-    /// Along a direction given for each point.
+    /// A direction given for each point.
     Given,
 }
 
@@ -44,29 +44,29 @@ impl Primary {
     }
 }
 
-/// The rays of a point: the primary one, and the others evenly around it (Archer et al. 2019,
-/// section 3.2). Rays without a hit are left out; without any hit the range is [`f32::MAX`].
+/// The rays of a point: a primary ray, and others evenly around it (Archer et al. 2019, section 3.2). Rays without a
+/// hit do not count. If no ray has a hit, the range is [`f32::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeRule {
-    /// Rays, 1 to [`MAX_RAYS`].
+    /// Rays per point, 1 to [`MAX_RAYS`].
     pub rays: u32,
-    /// Angle of the others from the primary ray, radians, 0 to a quarter turn.
+    /// Angle between the primary ray and the others, radians, 0 to a quarter turn.
     pub cone_angle: f32,
-    /// How their lengths become a range.
+    /// How the range follows from their lengths.
     pub combine: Combine,
-    /// Where the primary ray goes.
+    /// The direction of the primary ray.
     pub primary: Primary,
-    /// Whether each ray is corrected by a second look-up (`ray_cast.wesl`, `cast_corrected_ray`): not
-    /// the paper's, nearer to exact rays, and slower.
+    /// Whether a second look-up corrects each ray (`cast_corrected_ray` of `ray_cast.wesl`). The paper does not do
+    /// this; it is more accurate and slower.
     pub is_corrected: bool,
 }
 
-/// The most rays of a point.
+/// The most rays per point.
 pub const MAX_RAYS: u32 = 16;
 
 impl Default for RangeRule {
-    /// The paper's six rays, and their mean. The paper leaves the angle open. Here it is 60 degrees: a
-    /// quarter of a Lambertian emitter's light leaves farther out, and no ray grazes the surface.
+    /// The paper's six rays and their mean. The paper does not state the angle. Here it is 60 degrees: only a quarter
+    /// of a Lambertian emitter's light leaves at larger angles, and no ray grazes the surface.
     fn default() -> Self {
         Self {
             rays: 6,
@@ -79,18 +79,18 @@ impl Default for RangeRule {
 }
 
 impl RangeRule {
-    /// Names the first field out of its range.
+    /// Checks every field. The error names the first one out of its range.
     pub fn check(&self) -> Result<(), AssignError> {
         if !(1..=MAX_RAYS).contains(&self.rays) {
             return Err(AssignError::Parameter {
-                field: "rays".into(),
+                field: "rays per point".into(),
                 value: self.rays.to_string(),
                 accepted: format!("1 to {MAX_RAYS}"),
             });
         }
         if !(0.0..=FRAC_PI_2).contains(&self.cone_angle) {
             return Err(AssignError::Parameter {
-                field: "cone_angle".into(),
+                field: "angle between rays (cone_angle)".into(),
                 value: self.cone_angle.to_string(),
                 accepted: format!("0 to {FRAC_PI_2} radians"),
             });
@@ -98,7 +98,7 @@ impl RangeRule {
         Ok(())
     }
 
-    /// Unit vector of a ray, +z being the primary direction.
+    /// Unit vector of a ray if the primary ray is +z.
     pub fn ray(&self, ix: u32) -> Vec3 {
         if ix == 0 {
             return Vec3::Z;
@@ -110,43 +110,42 @@ impl RangeRule {
     }
 }
 
-/// Points whose ranges are wanted, on the GPU.
+/// The points whose ranges are estimated, on the GPU.
 #[derive(Clone, Copy, Debug)]
 pub struct RangePoints<'a> {
-    /// `array<vec4f>`: world-space positions, metres; the fourth number is not read.
+    /// `array<vec4f>`: world-space positions, metres. The fourth number is not read.
     pub positions: &'a wgpu::Buffer,
-    /// `array<vec4f>`: unit normals; a point whose normal is 0 casts no ray, and its range is
-    /// [`f32::MAX`].
+    /// `array<vec4f>`: unit normals. A point whose normal is 0 casts no ray, and its range is [`f32::MAX`].
     pub normals: &'a wgpu::Buffer,
     /// `array<vec4f>`: unit primary directions, for [`Primary::Given`].
     pub primaries: Option<&'a wgpu::Buffer>,
-    /// Where the light is that the points reflect, for [`Primary::Reflected`].
+    /// Position of the light that the points reflect, for [`Primary::Reflected`].
     pub light_world: Option<Vec3>,
     /// Number of points.
     pub count: u32,
-    /// `array<f32>`: where ranges go, metres.
+    /// `array<f32>`: receives the ranges, metres.
     pub ranges_m: &'a wgpu::Buffer,
 }
 
-/// What the kernel is told: `ranges.wesl`, `struct Ranges`.
+/// What the kernel reads: `struct Ranges` of `ranges.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct RangesUniform {
     /// Number of points.
     pub point_count: u32,
-    /// Rays of a point.
+    /// Rays per point.
     pub ray_count: u32,
-    /// 1 for the longest ray, 0 for the mean.
+    /// 1: the range is the longest ray. 0: it is the mean.
     pub is_maximum: u32,
     /// Pads to a multiple of 16 bytes.
     pub padding: u32,
-    /// The light that points reflect, world space.
+    /// Position of the light that points reflect, world space.
     pub light_world: [f32; 4],
-    /// Directions of the rays around +z.
+    /// Unit vectors of the rays if the primary ray is +z.
     pub rays: [[f32; 4]; MAX_RAYS as usize],
 }
 
-/// Estimates ranges.
+/// Estimates the ranges of points.
 #[derive(Debug)]
 pub struct RangeCaster {
     settings: DeepImageSettings,
@@ -159,7 +158,7 @@ pub struct RangeCaster {
 }
 
 impl RangeCaster {
-    /// Makes the kernel for images of these settings; the rule is checked.
+    /// Makes the kernel for images with the settings of `images`. Checks the rule.
     pub fn new(gpu: &Gpu, images: &DeepImages, rule: RangeRule) -> Result<Self, AssignError> {
         rule.check()?;
         let shader = Self::shader(images.settings(), rule);
@@ -178,7 +177,7 @@ impl RangeCaster {
         })
     }
 
-    /// The kernel's modules: the root is `package::ranges`.
+    /// The kernel's modules. The root is `package::ranges`.
     pub fn shader(settings: &DeepImageSettings, rule: RangeRule) -> Shader<'static> {
         DeepImages::mount(settings, Shader::new(3), 0)
             .module("package::ranges", include_str!("shaders/ranges.wesl"))
@@ -194,17 +193,17 @@ impl RangeCaster {
             (Primary::Given, Some(primaries)) => primaries,
             (Primary::Given, None) => {
                 return Err(AssignError::Parameter {
-                    field: "primaries".into(),
-                    value: "none".into(),
-                    accepted: "a buffer, where primary directions are given".into(),
+                    field: "buffer of primary directions (primaries)".into(),
+                    value: "missing".into(),
+                    accepted: "present if the rule is Primary::Given".into(),
                 });
             }
         };
         if self.rule.primary == Primary::Reflected && points.light_world.is_none() {
             return Err(AssignError::Parameter {
-                field: "light_world".into(),
-                value: "none".into(),
-                accepted: "a position, where primary rays are reflected".into(),
+                field: "position of the light (light_world)".into(),
+                value: "missing".into(),
+                accepted: "present if the rule is Primary::Reflected".into(),
             });
         }
         let buffers = [
@@ -217,9 +216,9 @@ impl RangeCaster {
             let needed = u64::from(points.count) * bytes;
             if buffer.size() < needed {
                 return Err(AssignError::Parameter {
-                    field: field.into(),
+                    field: format!("buffer `{field}` of the points"),
                     value: format!("{} bytes", buffer.size()),
-                    accepted: format!("at least {needed} for {} points", points.count),
+                    accepted: format!("at least {needed} bytes for {} points", points.count),
                 });
             }
         }
@@ -240,8 +239,8 @@ impl RangeCaster {
         Ok(())
     }
 
-    /// Records the pass `cdi-ranges`, after those of the images. Refused before both are prepared, and
-    /// for images of other settings than the kernel was made for.
+    /// Records the pass `cdi-ranges`, after the passes of the images. An error before both are prepared, or if the
+    /// images have other settings than the kernel was made for.
     pub fn record(&self, images: &DeepImages, passes: &mut dyn Passes) -> Result<(), AssignError> {
         let missing = |missing| AssignError::Missing { strategy: "cdi-ranges".into(), missing };
         let group = self.group.as_ref().ok_or_else(|| missing("prepared points"))?;

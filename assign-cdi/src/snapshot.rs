@@ -1,22 +1,12 @@
 //! Deep images copied to the CPU.
 
 use assign::{AssignError, Gpu};
-use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
+use bytemuck::pod_collect_to_vec;
 use glam::UVec2;
 
-use crate::{DeepImageCounters, DeepImageSettings, Storage, deep_buffers::DeepBuffers};
+use crate::{DeepImageCounters, DeepImageSettings, LinkedNode, Storage, deep_buffers::DeepBuffers};
 
-/// A fragment of a linked list: `build.wesl`, `struct Node`, and `ray_cast.wesl`, `struct RayNode`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct LinkedNode {
-    /// Depth, metres from the near end of the image.
-    pub depth_m: f32,
-    /// Index of the next node plus one; 0 at the end.
-    pub next: u32,
-}
-
-/// Every pixel's depths, as a frame left them.
+/// The depths of every pixel after a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeepImagesSnapshot {
     /// The counters of the frame.
@@ -52,8 +42,8 @@ impl DeepImagesSnapshot {
         Ok(Self { counters, size_px: settings.size_px, offsets, depths_m })
     }
 
-    /// Depths of a pixel, metres from the near end of its image: ascending where lists are arrays.
-    /// `None` where there is no such pixel, or its list did not fit.
+    /// Depths of a pixel, metres from the near end of its image. With [`Storage::Arrays`] they ascend. `None` if
+    /// there is no such pixel, or its list did not fit.
     pub fn list(&self, direction: u32, pixel: UVec2) -> Option<&[f32]> {
         if pixel.max_element() >= self.size_px {
             return None;
@@ -70,7 +60,7 @@ impl DeepImagesSnapshot {
     }
 }
 
-/// Offsets and depths of linked lists; a list that leaves the nodes, or turns in a circle, ends there.
+/// Offsets and depths of linked lists. A list that leaves the nodes or closes a circle ends there.
 fn follow(heads: &[u32], nodes: &[LinkedNode]) -> (Vec<u32>, Vec<f32>) {
     let mut offsets = vec![0];
     let mut depths_m = Vec::with_capacity(nodes.len());

@@ -1,15 +1,15 @@
-//! Many lists of keys sorted at once.
+//! Sorts many lists of keys at once.
 //!
-//! 1. `sort_short`: a thread a list of up to 32 keys, by a network of exchanges in registers (Archer
-//!    et al. 2019, section 3.1); longer lists are noted, in parts of 2048 keys.
-//! 2. `sort_parts`: a workgroup a part, by a bitonic network in workgroup memory.
-//! 3. `merge_round`, for lists of several parts: a workgroup writes 2048 keys of the merge of two
-//!    runs, which it finds by a search along the merge path. Rounds go to and fro between the entries
-//!    and a scratch buffer.
+//! 1. `sort_short` gives each list one thread. The thread sorts up to 32 keys in registers, by a network of exchanges
+//!    (Archer et al. 2019, section 3.1). It appends a longer list to the work list, in parts of 2048 keys.
+//! 2. `sort_parts` gives each part one workgroup, which sorts it by a bitonic network in workgroup memory.
+//! 3. `merge_round` merges lists of several parts, two sorted runs at a time. Each workgroup writes 2048 keys of the
+//!    merged run; a search along the merge path tells it which keys to read. Rounds alternate between the entries and
+//!    a scratch buffer.
 //!
-//! Worked example: lists of 5, 100 and 5000 keys. The first is sorted by its thread; the second is
-//! one part; the third is parts of 2048, 2048 and 904, which round 0 merges to runs of 4096 and 904
-//! in the scratch buffer and round 1 to 5000 in the entries.
+//! Worked example: three lists of 5, 100 and 5000 keys. The thread of the first list sorts it. The second list is one
+//! part. The third has parts of 2048, 2048 and 904 keys. Round 0 merges these to runs of 4096 and 904 in the scratch
+//! buffer, and round 1 merges those to 5000 keys in the entries.
 
 use assign::{AssignError, Gpu, Passes, Shader};
 use bytemuck::{Pod, Zeroable, bytes_of};
@@ -19,24 +19,23 @@ use crate::{
     sort_network,
 };
 
-/// What to sort.
+/// The lists to sort.
 #[derive(Clone, Copy, Debug)]
 pub struct SortInput<'a> {
-    /// `array<u32>`: list `i` is the entries `offsets[i]` to `offsets[i + 1]`, and none where offsets
-    /// fall.
+    /// `array<u32>`: list `i` is entries `offsets[i]` to `offsets[i + 1]`. It is empty if offsets decrease.
     pub offsets: &'a wgpu::Buffer,
     /// The keys: `array<u32>`.
     pub entries: &'a wgpu::Buffer,
     /// Number of lists.
     pub list_count: u32,
-    /// Entries that there are: lists that reach beyond are left alone.
+    /// Number of entries. Lists that reach beyond it are not sorted.
     pub entry_count: u32,
-    /// The most keys of a list; keys of longer lists come out in no order.
+    /// The most keys per list. A longer list stays unsorted.
     pub longest: u32,
 }
 
 impl SortInput<'_> {
-    /// Names a buffer that is too small for its counts.
+    /// Checks that the buffers are large enough for their counts.
     fn check(&self) -> Result<(), AssignError> {
         let lists = u64::from(self.list_count);
         if self.entry_count > MOST_ENTRIES || lists > u64::from(MOST_ENTRIES) {
@@ -53,9 +52,9 @@ impl SortInput<'_> {
         for (field, has, needed) in buffers {
             if has < needed {
                 return Err(AssignError::Parameter {
-                    field: format!("{field} of a sort"),
+                    field: format!("buffer of {field} of a sort"),
                     value: format!("{has} bytes"),
-                    accepted: format!("at least {needed}"),
+                    accepted: format!("at least {needed} bytes"),
                 });
             }
         }
@@ -63,52 +62,52 @@ impl SortInput<'_> {
     }
 }
 
-/// What the kernels are told: `sort_keys.wesl`, `struct Sort`.
+/// What the kernels read: `struct Sort` of `sort_keys.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct SortUniform {
-    /// Lists to sort.
+    /// Number of lists.
     pub list_count: u32,
-    /// Entries that there are.
+    /// Number of entries.
     pub entry_count: u32,
-    /// Most parts.
+    /// The most parts that fit the work list.
     pub part_capacity: u32,
-    /// Most blocks.
+    /// The most blocks that fit the work list.
     pub block_capacity: u32,
 }
 
-/// One round of merges: `sort_long.wesl`, `struct Round`.
+/// One round of merges: `struct Round` of `sort_long.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct RoundUniform {
     /// Keys of a sorted run before the round, as a power of two.
     pub run_log2: u32,
-    /// 1 where runs lie in the scratch buffer and merge into the entries; 0 for the other way round.
+    /// 1: runs are in the scratch buffer and merge into the entries. 0: the other way round.
     pub is_odd: u32,
 }
 
-/// The work left to workgroups: `sort_work.wesl`, `struct WorkHeader`.
+/// The work for whole workgroups: `struct WorkHeader` of `sort_work.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct SortWork {
     /// Workgroups over parts.
     pub part_groups: [u32; 3],
-    /// Parts.
+    /// Number of parts.
     pub part_count: u32,
     /// Workgroups over blocks.
     pub block_groups: [u32; 3],
-    /// Blocks.
+    /// Number of blocks.
     pub block_count: u32,
-    /// Keys of the longest list of the last sort.
+    /// Number of keys of the longest list in the last sort.
     pub longest: u32,
     /// Pads to a multiple of 16 bytes.
     pub padding: [u32; 3],
 }
 
-/// Keys that a workgroup sorts in its memory: `PART` of `sort_keys.wesl`.
+/// The most keys that a workgroup sorts in its memory: `PART` of `sort_keys.wesl`.
 const PART: u32 = 2048;
 
-/// Sorts lists of keys, ascending, in place.
+/// Sorts lists of keys in ascending order, in place.
 #[derive(Debug)]
 pub struct ListSort {
     short: wgpu::ComputePipeline,
@@ -116,7 +115,7 @@ pub struct ListSort {
     merge: wgpu::ComputePipeline,
     layouts: [wgpu::BindGroupLayout; 4],
     uniform: wgpu::Buffer,
-    /// The header before the first list.
+    /// The header of an empty work list.
     empty_work: wgpu::Buffer,
     work: wgpu::Buffer,
     /// A `struct Round` every 256 bytes.
@@ -128,7 +127,7 @@ pub struct ListSort {
     round_count: u32,
 }
 
-/// The most entries of a buffer, 4 GiB, and the rounds that sort a list of so many.
+/// The most entries of a buffer, 4 GiB, and the rounds that merge a list of that length.
 const MOST_ENTRIES: u32 = 1 << 30;
 const MOST_ROUNDS: u32 = MOST_ENTRIES.ilog2() - PART.ilog2() + 1;
 
@@ -172,7 +171,7 @@ impl ListSort {
         Ok(sort)
     }
 
-    /// The kernels' modules: roots are `package::sort_short` and `package::sort_long`.
+    /// The kernels' modules. The roots are `package::sort_short` and `package::sort_long`.
     pub fn shader() -> Shader<'static> {
         Shader::new(3)
             .module("package::sort_network", sort_network::module(&[8, 16, 32]))
@@ -182,13 +181,13 @@ impl ListSort {
             .module("package::sort_long", include_str!("shaders/sort_long.wesl"))
     }
 
-    /// Sizes the scratch buffers and binds the input's buffers; call whenever one is made anew.
+    /// Sizes the scratch buffers and binds the buffers of the input. Call it again whenever one is replaced.
     pub fn prepare(&mut self, gpu: &Gpu, input: &SortInput<'_>) -> Result<(), AssignError> {
         input.check()?;
         let longest = input.longest.min(input.entry_count);
         let is_merged = longest > PART;
-        // Every part holds more than 32 keys, every list of several more than 2048; a list's last
-        // part may be short.
+        // A part holds more than 32 keys, and a list of several parts more than 2048. Only a list's last part may
+        // be shorter.
         let part_capacity = input.entry_count / 32 + 1;
         let block_capacity = if is_merged { input.entry_count / (PART / 2) + 2 } else { 0 };
         let scratch_bytes = if is_merged { u64::from(input.entry_count) * 4 } else { 0 };
@@ -205,7 +204,7 @@ impl ListSort {
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
         self.list_count = input.list_count;
         let merges = longest.div_ceil(PART).max(1).next_power_of_two().ilog2();
-        // One more takes lists home that end in the scratch buffer.
+        // One more round copies back lists that end in the scratch buffer.
         self.round_count = if is_merged { merges + 1 } else { 0 };
         let [keys, append, read, round] = &self.layouts;
         let key_buffers = [&self.uniform, input.offsets, input.entries, &self.scratch];
@@ -233,13 +232,13 @@ impl ListSort {
         passes.compute(name, &mut |pass| self.dispatch(pass));
     }
 
-    /// Empties the work list; call before each [`dispatch`](Self::dispatch), in the same encoder.
+    /// Empties the work list. Call it before each [`dispatch`](Self::dispatch), in the same encoder.
     pub fn record_reset(&self, encoder: &mut wgpu::CommandEncoder) {
         let bytes = size_of::<SortWork>() as u64;
         encoder.copy_buffer_to_buffer(&self.empty_work, 0, &self.work, 0, bytes);
     }
 
-    /// Records the sort into a pass that is open. Nothing, before [`prepare`](Self::prepare).
+    /// Records the sort into an open pass. Before [`prepare`](Self::prepare) it records nothing.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         let Some([keys, append, read, round]) = &self.groups else { return };
         if self.list_count == 0 {
@@ -259,10 +258,10 @@ impl ListSort {
         }
     }
 
-    /// Byte of [`SortWork::longest`] in [`work`](Self::work).
+    /// Offset of [`SortWork::longest`] in [`work`](Self::work), bytes.
     pub const LONGEST_AT: u64 = 32;
 
-    /// The header of the work list, [`SortWork`]: its longest list.
+    /// The header of the work list: [`SortWork`].
     pub fn work(&self) -> &wgpu::Buffer {
         &self.work
     }
@@ -281,7 +280,7 @@ fn work_buffer(gpu: &Gpu) -> Result<wgpu::Buffer, AssignError> {
     gpu.buffer("sort work", size_of::<SortWork>() as u64, usage)
 }
 
-/// Makes a storage buffer anew where it is smaller than `bytes`.
+/// Replaces a storage buffer that is smaller than `bytes`.
 fn grow(gpu: &Gpu, buffer: &mut wgpu::Buffer, label: &str, bytes: u64) -> Result<(), AssignError> {
     if buffer.size() < bytes {
         *buffer = gpu.storage(label, bytes)?;

@@ -1,11 +1,11 @@
-//! Sorting networks as WESL: every exchange written out, so that keys stay in registers.
+//! Sorting networks as WESL. Every exchange is written out, so keys stay in registers.
 
 use std::fmt::Write;
 
-/// A module with a function `sort_N(list: Range)` for each width, a power of two: Batcher's odd-even
-/// merge sort, 19, 63 and 191 exchanges for 8, 16 and 32 keys.
+/// A module with a function `sort_N(list: Range)` for each width N, a power of two. It is Batcher's odd-even merge sort,
+/// which takes 19, 63 and 191 exchanges for 8, 16 and 32 keys.
 pub(crate) fn module(widths: &[u32]) -> String {
-    let mut wesl = "// Sorts a list of up to N keys in registers, every exchange written out.\n\
+    let mut wesl = "// Sorts a list of up to N keys in registers.\n\
                     import package::sort_keys::{Range, load, store};\n"
         .to_owned();
     // Writing to a string does not fail.
@@ -28,7 +28,7 @@ pub(crate) fn module(widths: &[u32]) -> String {
     wesl
 }
 
-/// Pairs of places whose keys are put in order, one after the other (Batcher 1968).
+/// Pairs of places in the order in which their keys are compared and exchanged (Batcher 1968).
 fn exchanges(width: u32) -> Vec<(u32, u32)> {
     let mut pairs = Vec::new();
     let powers = |end: u32| (0..end.ilog2()).map(|log2| 1 << log2);
@@ -52,9 +52,9 @@ mod tests {
     fn networks_sort() {
         for (width, count) in [(2, 1), (8, 19), (16, 63), (32, 191)] {
             let pairs = exchanges(width);
-            assert_eq!(pairs.len(), count, "{width}");
-            // A network that sorts every sequence of zeros and ones sorts all; for 32, rotations and
-            // pseudo-random ones.
+            assert_eq!(pairs.len(), count, "exchanges of width {width}");
+            // A network that sorts every sequence of zeros and ones sorts every sequence. A width of 32 has too
+            // many of those, so pseudo-random ones stand for them.
             let sequences = (0..1_u64 << width.min(16)).map(|bits| {
                 if width <= 16 { bits } else { bits.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32 }
             });
@@ -65,7 +65,7 @@ mod tests {
                         keys.swap(low as usize, high as usize);
                     }
                 }
-                assert!(keys.is_sorted(), "{width}: {bits:b}");
+                assert!(keys.is_sorted(), "width {width}, keys {bits:b}");
             }
         }
     }

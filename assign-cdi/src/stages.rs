@@ -1,33 +1,34 @@
-//! Stages of a build: the directions that one dispatch finds fragments of, and the sizes of dispatches.
+//! Stages of a build: the directions that one dispatch covers, and the sizes of dispatches.
 
 use assign::{AssignError, Gpu};
 use bytemuck::{Pod, Zeroable, bytes_of};
 
 use crate::{Build, DeepImageSettings};
 
-/// One dispatch over directions: `build.wesl`, `struct Stage`.
+/// One dispatch over directions: `struct Stage` of `build.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct StageUniform {
     /// First direction of the dispatch.
     pub first_direction: u32,
-    /// 0 counts, 1 fills in.
+    /// 0 counts fragments, 1 writes them.
     pub mode: u32,
 }
 
-/// Modes of a stage: `build.wesl`.
+/// Mode of a stage that counts fragments: `COUNT` of `build.wesl`.
 pub(crate) const COUNT: u32 = 0;
+/// Mode of a stage that writes fragments: `FILL` of `build.wesl`.
 pub(crate) const FILL: u32 = 1;
 
-/// What the kernels that size dispatches are told: `plan.wesl`, `struct Plan`.
+/// What the kernels that size dispatches read: `struct Plan` of `plan.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct PlanUniform {
-    /// Directions of a stage over large triangles.
+    /// Directions per stage over large triangles.
     pub directions_at_once: u32,
 }
 
-/// Sizes of indirect dispatches: `plan.wesl`, `struct Dispatches`.
+/// Sizes of indirect dispatches: `struct Dispatches` of `plan.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct DispatchSizes {
@@ -41,18 +42,18 @@ pub struct DispatchSizes {
     pub padding_end: u32,
 }
 
-/// Byte of the dispatch over large triangles.
+/// Offset of the dispatch over large triangles, bytes.
 pub(crate) const LARGE_AT: u64 = 16;
 
-/// Bytes from one `Stage` to the next.
+/// Bytes from one [`StageUniform`] to the next.
 const STAGE_STRIDE: u32 = 256;
 
-/// Buffers of the stages and of what sizes them.
+/// The buffers of the stages, and of the sizes of their dispatches.
 #[derive(Debug)]
 pub(crate) struct Stages {
-    /// A [`StageUniform`] every 256 bytes: those that count, then those that fill in.
+    /// One [`StageUniform`] every 256 bytes: first those that count, then those that write.
     uniforms: wgpu::Buffer,
-    /// Stages of a mode.
+    /// Stages per mode.
     count: u32,
     /// [`PlanUniform`].
     pub(crate) plan: wgpu::Buffer,
@@ -83,7 +84,7 @@ impl Stages {
         Ok(Self { uniforms, count, plan, dispatches })
     }
 
-    /// One stage at binding 0; which one, a dynamic offset says.
+    /// One stage at binding 0. A dynamic offset selects it.
     pub(crate) fn entry(&self) -> wgpu::BindGroupEntry<'_> {
         wgpu::BindGroupEntry {
             binding: 0,
@@ -107,7 +108,7 @@ impl Stages {
     }
 }
 
-/// Directions of a stage.
+/// Directions per stage.
 pub(crate) fn at_once(settings: &DeepImageSettings) -> u32 {
     match settings.build {
         Build::SinglePass { .. } => settings.directions.count(),

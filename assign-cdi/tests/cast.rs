@@ -1,4 +1,4 @@
-//! Rays through deep images against rays among triangles.
+//! Compares rays through deep images with rays against all triangles.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -15,11 +15,11 @@ use scene::{
     room, settled, unit,
 };
 
-/// What rays through images that overflowed return.
+/// The length of rays through images that overflowed: `UNKNOWN` of `ray_cast.wesl`.
 const UNKNOWN: f32 = -2.0;
 
-/// Median and mean error of rays that hit in truth, metres, and the footprint. A ray that hits
-/// nothing in the images counts as 10 m off: the room's size.
+/// Median and mean error of the rays that truly hit, and the footprint, metres. A ray that hits nothing in the
+/// images counts as 10 m off, the size of the room.
 struct Errors {
     median_m: f32,
     mean_m: f32,
@@ -44,7 +44,7 @@ fn errors(scene: &Scene, images: &DeepImages, rays: &[Ray], lengths: &[f32]) -> 
 }
 
 #[test]
-fn rays_along_stored_directions_are_exact_to_a_pixel() {
+fn rays_along_stored_directions_are_off_by_less_than_a_pixel() {
     let gpu = Gpu::open(None).unwrap();
     let scene = Scene::new(&gpu, room(10, 8, 0));
     let settings = settings(32, 64, Spread::StacksAndSlices);
@@ -60,20 +60,20 @@ fn rays_along_stored_directions_are_exact_to_a_pixel() {
         .collect();
     let all = errors(&scene, &images, &rays, &cast(&gpu, &images, &rays));
     assert!(all.median_m < 0.5 * all.footprint_m, "{} m", all.median_m);
-    // A pixel that is not the ray's.
+    // Negative control: rays read the list of another pixel.
     let wrong = RAY_CAST_WESL.replace("vec2u(at))", "vec2u(at) ^ vec2u(7u))");
     assert_ne!(wrong, RAY_CAST_WESL);
     let wrong = errors(&scene, &images, &rays, &cast_with(&gpu, &images, &rays, &wrong));
     assert!(wrong.median_m > 2.0 * all.median_m, "{} m", wrong.median_m);
     assert!(wrong.median_m > 0.5 * all.footprint_m, "{} m", wrong.median_m);
-    // The opposite way.
+    // Negative control: rays run the opposite way.
     let wrong = RAY_CAST_WESL.replace("sign > 0.0", "sign < 0.0");
     assert_ne!(wrong, RAY_CAST_WESL);
     let wrong = errors(&scene, &images, &rays, &cast_with(&gpu, &images, &rays, &wrong));
     assert!(wrong.mean_m > 2.0 * all.mean_m, "{} m", wrong.mean_m);
 }
 
-/// Errors of rays from surfaces, with given directions and pixels.
+/// Errors of rays from surfaces through images of these settings.
 fn errors_of(gpu: &Gpu, scene: &Scene, rays: &[Ray], settings: DeepImageSettings) -> Errors {
     let images = settled(gpu, settings, scene);
     errors(scene, &images, rays, &cast(gpu, &images, rays))
@@ -85,8 +85,10 @@ fn errors_fall_with_directions_and_pixels() {
     let scene = Scene::new(&gpu, room(11, 12, 100));
     let rays = rays_from_surfaces(&scene.triangles, 2000, 12);
     for spread in [Spread::StacksAndSlices, Spread::Squares] {
-        let of = |count, size| errors_of(&gpu, &scene, &rays, settings(count, size, spread));
-        let (full, few, coarse) = (of(169, 64), of(8, 64), of(169, 16));
+        let errors_with =
+            |count, size| errors_of(&gpu, &scene, &rays, settings(count, size, spread));
+        let full = errors_with(169, 64);
+        let (few, coarse) = (errors_with(8, 64), errors_with(169, 16));
         assert!(full.median_m < full.footprint_m, "{spread:?} {} m", full.median_m);
         assert!(few.median_m > 2.0 * full.median_m, "{spread:?} {} m", few.median_m);
         assert!(coarse.median_m > 2.0 * full.median_m, "{spread:?} {} m", coarse.median_m);
@@ -96,7 +98,7 @@ fn errors_fall_with_directions_and_pixels() {
 }
 
 #[test]
-fn a_second_look_corrects_for_the_angle() {
+fn a_second_look_up_halves_the_median_error() {
     let gpu = Gpu::open(None).unwrap();
     let scene = Scene::new(&gpu, room(15, 12, 0));
     let rays = rays_from_surfaces(&scene.triangles, 2000, 16);
@@ -116,12 +118,12 @@ fn a_second_look_corrects_for_the_angle() {
 }
 
 #[test]
-fn the_origins_surface_is_passed_over() {
+fn rays_skip_the_surface_of_their_origin() {
     let gpu = Gpu::open(None).unwrap();
     let scene = Scene::new(&gpu, room(13, 0, 0));
     let images = settled(&gpu, settings(64, 64, Spread::Squares), &scene);
     let mut rays = rays_from_surfaces(&scene.triangles, 1000, 14);
-    // Away from the room's edges, a hit within two pixels' widths is the origin's own wall.
+    // Away from the room's edges, a hit within two pixel widths is the origin's own wall.
     rays.retain(|ray| true_length(&scene.triangles, ray).is_some_and(|length| length > 2.0));
     let is_early = |length: &&f32| (0.0..2.0 * images.space().footprint_m).contains(*length);
     let share =
@@ -130,8 +132,8 @@ fn the_origins_surface_is_passed_over() {
     let unguarded = RAY_CAST_WESL.replace("PIXEL_REACH * tilt", "-9.0 * tilt");
     assert_ne!(unguarded, RAY_CAST_WESL);
     let unguarded = share(&cast_with(&gpu, &images, &rays, &unguarded));
-    assert!(kept < 0.01, "{kept}");
-    assert!(unguarded > 0.1, "{unguarded}");
+    assert!(kept < 0.01, "{kept} of the rays hit their own wall");
+    assert!(unguarded > 0.1, "without the guard only {unguarded} of the rays hit their own wall");
     // Rays into the surface hit nothing.
     let into: Vec<Ray> = rays.iter().map(|ray| Ray { direction: -ray.normal, ..*ray }).collect();
     assert!(cast(&gpu, &images, &into).iter().all(|length| *length == -1.0));
@@ -144,17 +146,16 @@ fn linked_lists_give_the_same_lengths() {
     let rays = rays_from_surfaces(&scene.triangles, 2000, 16);
     let arrays = settings(32, 32, Spread::Squares);
     let linked = DeepImageSettings { storage: Storage::LinkedLists, ..arrays };
-    let of = |settings| cast(&gpu, &settled(&gpu, settings, &scene), &rays);
-    let lengths = of(arrays);
-    let linked = of(linked);
+    let [lengths, linked] =
+        [arrays, linked].map(|settings| cast(&gpu, &settled(&gpu, settings, &scene), &rays));
     let differing = lengths.iter().zip(&linked).filter(|(a, b)| (*a - *b).abs() > 1e-4).count();
-    // The kernels differ, and may round differently at the borders of pixels.
-    assert!(differing <= 4, "{differing} of 2000");
+    // The kernels differ, so they may round differently at the borders of pixels.
+    assert!(differing <= 4, "{differing} of 2000 rays differ");
     assert!(lengths.iter().filter(|length| **length > 0.0).count() > 1000);
 }
 
 #[test]
-fn images_that_overflowed_say_nothing() {
+fn rays_through_images_that_overflowed_are_unknown() {
     let gpu = Gpu::open(None).unwrap();
     let scene = Scene::new(&gpu, room(17, 3, 0));
     let rays = rays_from_surfaces(&scene.triangles, 100, 18);
@@ -190,7 +191,7 @@ fn odd_rays_hit_nothing() {
     ];
     let lengths = cast(&gpu, &images, &rays);
     assert!(lengths[..4].iter().all(|length| *length == -1.0), "{lengths:?}");
-    // Whatever they are, the kernel of ranges drops them.
+    // The kernel of ranges ignores such rays.
     let ranges = ranges_of(&gpu, &images, &rays, RangeRule::default());
     assert_eq!(ranges[0], f32::MAX);
     assert_eq!(ranges[1], f32::MAX);
@@ -198,7 +199,7 @@ fn odd_rays_hit_nothing() {
     assert_eq!(ranges[3], f32::MAX);
 }
 
-/// The shader finds the directions that Rust finds, but for rounding at the borders of cells.
+/// The shader and Rust find the same directions, except for rounding at the borders of cells.
 #[test]
 fn shader_and_rust_find_the_same_directions() {
     let gpu = Gpu::open(None).unwrap();
@@ -207,24 +208,24 @@ fn shader_and_rust_find_the_same_directions() {
         .map(|_| Ray { origin: MIDDLE, direction: unit(&mut rng), normal: Vec3::ZERO })
         .collect();
     let scene = Scene::new(&gpu, room(24, 0, 0));
-    // In place of a length, the direction's index and sign.
+    // The changed shader returns the direction's index and sign instead of a length.
     let body = "let nearest = nearest_direction(direction);";
-    let tell = format!(
+    let replacement = format!(
         "{body}\n  if nearest.ix >= 0u {{ return (f32(nearest.ix) + 1.0) * nearest.sign; }}"
     );
-    let told = RAY_CAST_WESL.replace(body, &tell);
-    assert_ne!(told, RAY_CAST_WESL);
+    let changed = RAY_CAST_WESL.replace(body, &replacement);
+    assert_ne!(changed, RAY_CAST_WESL);
     for spread in [Spread::StacksAndSlices, Spread::Squares] {
         for count in [8, 32, 169] {
             let settings = settings(count, 8, spread);
             let images = settled(&gpu, settings, &scene);
-            let found = cast_with(&gpu, &images, &rays, &told);
+            let found = cast_with(&gpu, &images, &rays, &changed);
             let differing = rays.iter().zip(found).filter(|(ray, found)| {
                 let (ix, is_reversed) = settings.directions.nearest(ray.direction);
                 *found != (ix as f32 + 1.0) * if is_reversed { -1.0 } else { 1.0 }
             });
             let differing = differing.count();
-            assert!(differing <= 25, "{spread:?} {count}: {differing} of 5000");
+            assert!(differing <= 25, "{spread:?}, {count} directions: {differing} of 5000 differ");
         }
     }
 }

@@ -2,37 +2,24 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-mod linked;
-
-use std::mem::offset_of;
-
-use assign::Shader;
+use assign::{Shader, conformance::LinkedModule, struct_layout};
 use assign_cdi::{
     BUILD_ROOTS, Build, Coverage, DeepImageCounters, DeepImageSettings, Directions, DispatchSizes,
     ImagesUniform, LinkedNode, ListSort, PlanUniform, PrefixSum, Primary, RandomRanges,
     RandomUniform, RangeCaster, RangeRule, RangesUniform, RoundUniform, ScanUniform, SortUniform,
     SortWork, Spread, StageUniform, Storage, build_shader,
 };
-use linked::members;
 
 /// A root, linked and validated with what WebGPU has without any optional feature.
-fn validated(shader: &Shader<'_>, root: &str) -> naga::Module {
-    let source = shader.link(root).unwrap_or_else(|e| panic!("{root}: {e}"));
-    let module = linked::validated(&source, root);
+fn validated(shader: &Shader<'_>, root: &str) -> LinkedModule {
+    let linked = LinkedModule::new(root, &shader.link(root).unwrap());
     // WebGPU's default limits.
-    for entry_point in &module.entry_points {
+    for entry_point in &linked.module().entry_points {
         assert!(entry_point.workgroup_size.iter().product::<u32>() <= 256, "{root}");
     }
-    let mut layouter = naga::proc::Layouter::default();
-    layouter.update(module.to_ctx()).unwrap();
-    let shared: u32 = module
-        .global_variables
-        .iter()
-        .filter(|(_, variable)| variable.space == naga::AddressSpace::WorkGroup)
-        .map(|(_, variable)| layouter[variable.ty].size)
-        .sum();
+    let shared = linked.workgroup_bytes();
     assert!(shared <= 16_384, "{root}: {shared} bytes of workgroup memory");
-    module
+    linked
 }
 
 fn all_settings() -> Vec<DeepImageSettings> {
@@ -71,13 +58,10 @@ fn kernels_validate() {
     validated(&RandomRanges::shader(), "package::random_ranges");
 }
 
-/// Asserts that a Rust struct has the fields of a WESL one, at their offsets, and its size.
+/// Asserts that a WESL struct is laid out as a Rust one.
 macro_rules! assert_same {
-    ($module:expr, $wesl:literal, $name:ty: $($field:ident),+) => {
-        let (fields, size) = members(&$module, $wesl);
-        let rust = vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),+];
-        assert_eq!(fields, rust, "fields of WESL, then of Rust: {}", $wesl);
-        assert_eq!(size, size_of::<$name>(), "{}", $wesl);
+    ($module:expr, $wesl:literal, $($rust:tt)+) => {
+        assert_eq!($module.layout_of($wesl), struct_layout!($($rust)+), "WESL, then Rust: {}", $wesl);
     };
 }
 
@@ -110,7 +94,7 @@ fn structs() {
     assert_same!(long, "Round", RoundUniform: run_log2, is_odd);
     assert_same!(long, "WorkHeader", SortWork: part_groups, part_count, block_groups, block_count,
         longest);
-    assert_eq!(offset_of!(SortWork, longest) as u64, ListSort::LONGEST_AT);
+    assert_eq!(std::mem::offset_of!(SortWork, longest) as u64, ListSort::LONGEST_AT);
 }
 
 /// Linked lists are written by the build, and read by rays and on the CPU.
@@ -128,5 +112,6 @@ fn linked_nodes() {
 #[test]
 fn direction_frames() {
     let module = validated(&build_shader(&DeepImageSettings::default()), "package::from_samples");
-    assert_eq!(members(&module, "DirectionFrame"), (vec![("axes".to_owned(), 0)], 48));
+    let frame = module.layout_of("DirectionFrame");
+    assert_eq!((frame.fields, frame.bytes), (vec![("axes".to_owned(), 0)], 48));
 }

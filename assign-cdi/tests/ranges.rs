@@ -1,4 +1,4 @@
-//! Ranges of points: by rays, and at random.
+//! Ranges of points: from rays, and at random.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -26,7 +26,7 @@ fn ranges_are_the_mean_or_the_longest_of_their_rays() {
     let mut points = rays_from_surfaces(&scene.triangles, 700, 21);
     let mut rng = Pcg64Mcg::seed_from_u64(22);
     for point in &mut points {
-        // Around a normal along an axis, rays would lie on the borders between directions.
+        // Around a normal along an axis, rays would lie on the borders between cells of directions.
         point.normal = (point.normal + 0.2 * unit(&mut rng)).normalize();
     }
     for rays in [1, 6, 16] {
@@ -41,13 +41,13 @@ fn ranges_are_the_mean_or_the_longest_of_their_rays() {
             let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-3;
             let expected = expected_ranges(&gpu, &images, &points, rule);
             let differing = ranges.iter().zip(&expected).filter(|pair| differs(*pair)).count();
-            // Rounding may take a ray to another pixel.
-            assert!(differing <= 14, "{rule:?}: {differing}");
+            // Rounding may move a ray to another pixel.
+            assert!(differing <= 14, "{rule:?}: {differing} of 700 differ");
         }
     }
 }
 
-/// Ranges from single rays, combined here.
+/// Ranges from single rays, combined on the CPU.
 fn expected_ranges(gpu: &Gpu, images: &DeepImages, points: &[Ray], rule: RangeRule) -> Vec<f32> {
     let rays: Vec<Ray> = points
         .iter()
@@ -86,7 +86,7 @@ fn points_without_hits_are_infinite() {
     let at = Vec3::new(0.3, 0.3, 0.0);
     let up = Ray { origin: at, direction: Vec3::Z, normal: Vec3::Z };
     assert_eq!(ranges_of(&gpu, &images, &[up], RangeRule::default()), [f32::MAX]);
-    // From above, the floor is met.
+    // A ray from above meets the floor.
     let down = Ray { origin: at + 0.5 * Vec3::Z, direction: -Vec3::Z, normal: -Vec3::Z };
     let rule = RangeRule { rays: 1, ..RangeRule::default() };
     let range = ranges_of(&gpu, &images, &[down], rule)[0];
@@ -94,7 +94,7 @@ fn points_without_hits_are_infinite() {
 }
 
 #[test]
-fn points_without_surface_or_axis_cast_nothing() {
+fn points_without_a_normal_or_a_primary_direction_cast_no_ray() {
     let gpu = Gpu::open(None).unwrap();
     let scene = Scene::new(&gpu, room(20, 8, 50));
     let images = settled(&gpu, settings(64, 32, Spread::Squares), &scene);
@@ -107,7 +107,7 @@ fn points_without_surface_or_axis_cast_nothing() {
     for primary in [Primary::Normal, Primary::Reflected, Primary::Given] {
         for is_corrected in [false, true] {
             let rule = RangeRule { primary, is_corrected, ..RangeRule::default() };
-            // The light is outside: off walls that face away from it, reflected rays leave the room.
+            // The light is outside the room. Rays reflected by walls that face away from it leave the room.
             assert!(finite(&points, rule) > 30, "{rule:?}");
             for normal in [Vec3::ZERO, Vec3::NAN] {
                 let flat: Vec<Ray> = points.iter().map(|p| Ray { normal, ..*p }).collect();
@@ -131,12 +131,12 @@ fn rays_of_a_rule_lie_evenly_on_its_cone() {
     }
     assert_eq!(rule.ray(0), Vec3::Z);
     let refused = |rule: RangeRule| rule.check().unwrap_err().to_string();
-    assert_eq!(refused(RangeRule { rays: 17, ..rule }), "rays is 17: it must be 1 to 16");
-    assert!(refused(RangeRule { cone_angle: f32::NAN, ..rule }).starts_with("cone_angle is NaN"));
+    assert_eq!(refused(RangeRule { rays: 17, ..rule }), "rays per point is 17: it must be 1 to 16");
+    assert!(refused(RangeRule { cone_angle: f32::NAN, ..rule }).contains("(cone_angle) is NaN"));
 }
 
 #[test]
-fn random_ranges_are_uniform_and_repeat() {
+fn random_ranges_are_uniform_and_repeatable() {
     let gpu = Gpu::open(None).unwrap();
     let count = 20_000;
     let ranges_m = gpu.storage("ranges", u64::from(count) * 4).unwrap();
@@ -155,18 +155,18 @@ fn random_ranges_are_uniform_and_repeat() {
     for tenth in 0..10 {
         let low = 2.0 + 0.4 * tenth as f32;
         let share = drawn.iter().filter(|r| (low..low + 0.4).contains(*r)).count();
-        // 2000 in each, give or take five standard deviations.
-        assert!((1788..2212).contains(&share), "{tenth}: {share}");
+        // Each tenth holds 2000, within five standard deviations.
+        assert!((1788..2212).contains(&share), "tenth {tenth} holds {share} of 20000");
     }
     let error = random.prepare(&gpu, &ranges_m, count, (3.0, 2.0), 1).unwrap_err().to_string();
     assert!(error.starts_with("bounds of random ranges is 3 to 2"), "{error}");
 }
 
 #[test]
-fn ranges_without_what_they_need_are_refused() {
+fn missing_or_small_buffers_are_refused() {
     let gpu = Gpu::noop().unwrap();
-    let of = |count| DeepImages::new(&gpu, settings(count, 32, Spread::Squares)).unwrap();
-    let (mut images, mut others) = (of(16), of(32));
+    let make = |count| DeepImages::new(&gpu, settings(count, 32, Spread::Squares)).unwrap();
+    let (mut images, mut others) = (make(16), make(32));
     let mut caster = RangeCaster::new(&gpu, &images, RangeRule::default()).unwrap();
     let record = |caster: &RangeCaster, images: &DeepImages| {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -184,7 +184,9 @@ fn ranges_without_what_they_need_are_refused() {
         ranges_m: &buffer,
     };
     let message = caster.prepare(&gpu, &points).unwrap_err().to_string();
-    assert_eq!(message, "positions is 160 bytes: it must be at least 176 for 11 points");
+    let expected = "buffer `positions` of the points is 160 bytes: it must be at least 176 bytes for \
+                    11 points";
+    assert_eq!(message, expected);
     points.count = 10;
     let ranges_m = gpu.storage("ranges", 40).unwrap();
     points.ranges_m = &ranges_m;
@@ -198,5 +200,5 @@ fn ranges_without_what_they_need_are_refused() {
     let given = RangeRule { primary: Primary::Given, ..RangeRule::default() };
     let mut given = RangeCaster::new(&gpu, &images, given).unwrap();
     let message = given.prepare(&gpu, &points).unwrap_err().to_string();
-    assert!(message.starts_with("primaries is none"), "{message}");
+    assert!(message.contains("(primaries) is missing"), "{message}");
 }

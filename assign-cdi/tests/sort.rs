@@ -1,4 +1,4 @@
-//! Sorts and prefix sums against the standard library's.
+//! Compares sorts and prefix sums with those of the standard library.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -18,7 +18,7 @@ fn download(gpu: &Gpu, buffer: &wgpu::Buffer, count: usize) -> Vec<u32> {
     pod_collect_to_vec(&gpu.read(buffer, count as u64 * 4).unwrap())
 }
 
-/// Lists of these lengths one behind the other, and their keys below `below`.
+/// Lists of keys, one after the other.
 struct Lists {
     offsets: Vec<u32>,
     keys: Vec<u32>,
@@ -55,7 +55,7 @@ impl Lists {
             longest,
         };
         sort.prepare(gpu, &input).unwrap();
-        // Twice: the second run sorts what is sorted, with work lists that the first one filled.
+        // The second run sorts sorted lists, and must clear the work list of the first.
         for _ in 0..2 {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             sort.record(&mut EncoderPasses { encoder: &mut encoder }, "sort");
@@ -73,18 +73,18 @@ const LENGTHS: [u32; 22] = [
 ];
 
 #[test]
-fn lists_of_all_lengths() {
+fn lists_of_all_lengths_are_sorted() {
     let gpu = Gpu::open(None).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(1);
-    // All keys, and many repeats.
+    // Keys of all sizes, then keys with many repeats.
     for below in [u32::MAX, 50] {
         let lists = Lists::random(&mut rng, &LENGTHS, below);
-        assert!(lists.on_gpu(&gpu) == lists.sorted(), "{below}");
+        assert!(lists.on_gpu(&gpu) == lists.sorted(), "keys below {below}");
     }
 }
 
 #[test]
-fn many_short_lists() {
+fn many_short_lists_are_sorted() {
     let gpu = Gpu::open(None).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(2);
     let lengths: Vec<u32> = (0..3000).map(|_| rng.random_range(0..60)).collect();
@@ -93,11 +93,11 @@ fn many_short_lists() {
 }
 
 #[test]
-fn lists_outside_are_left_alone() {
+fn lists_outside_the_entries_stay_unsorted() {
     let gpu = Gpu::open(None).unwrap();
     let keys: Vec<u32> = (0..100).rev().collect();
     let entries = upload(&gpu, &keys);
-    // Inside; falling; beyond the last entry; falling; to the end of 32 bits; falling; empty.
+    // Inside; decreasing; beyond the last entry; decreasing; to the end of 32 bits; decreasing; empty.
     let offsets = upload(&gpu, &[20, 70, 65, 101, 0, u32::MAX, 100, 100]);
     let mut sort = ListSort::new(&gpu).unwrap();
     let input = SortInput {
@@ -117,7 +117,7 @@ fn lists_outside_are_left_alone() {
 }
 
 #[test]
-fn prefix_sums() {
+fn prefix_sums_are_exact_up_to_32_bits() {
     let gpu = Gpu::open(None).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(5);
     let mut sum = PrefixSum::new(&gpu).unwrap();
@@ -130,10 +130,10 @@ fn prefix_sums() {
         gpu.queue.submit([encoder.finish()]);
         let mut expected = vec![0_u32];
         for count in counts {
-            // The last case passes 32 bits.
+            // The sums of the last case exceed 32 bits.
             expected.push(expected.last().unwrap().saturating_add(count));
         }
-        assert!(download(&gpu, &to, count + 1) == expected, "{count}");
+        assert!(download(&gpu, &to, count + 1) == expected, "{count} values");
     }
 }
 
@@ -152,12 +152,12 @@ fn small_buffers_are_refused() {
     sort.prepare(&gpu, &input).unwrap();
     let mut refused = |input| sort.prepare(&gpu, &input).unwrap_err().to_string();
     let message = refused(SortInput { list_count: 20, ..input });
-    assert_eq!(message, "offsets of a sort is 80 bytes: it must be at least 84");
+    assert_eq!(message, "buffer of offsets of a sort is 80 bytes: it must be at least 84 bytes");
     let message = refused(SortInput { entry_count: 21, ..input });
-    assert_eq!(message, "entries of a sort is 80 bytes: it must be at least 84");
+    assert_eq!(message, "buffer of entries of a sort is 80 bytes: it must be at least 84 bytes");
     assert!(refused(SortInput { list_count: u32::MAX, ..input }).starts_with("a sort of 20"));
     assert!(refused(SortInput { entry_count: u32::MAX, ..input }).starts_with("a sort of 4294"));
     let mut sum = PrefixSum::new(&gpu).unwrap();
     let message = sum.prepare(&gpu, &entries, u32::MAX, &entries).unwrap_err().to_string();
-    assert!(message.starts_with("count of a prefix sum is 4294967295"), "{message}");
+    assert!(message.starts_with("number of values of a prefix sum is 4294967295"), "{message}");
 }

@@ -1,4 +1,4 @@
-//! VPLs chosen from maps that are filled by hand: light is conserved, order is fixed.
+//! VPLs chosen from maps that the tests fill: light is conserved, and the order is fixed.
 
 #![allow(dead_code, reason = "the module of maps serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -16,7 +16,7 @@ fn total(lights: &[Light]) -> DVec3 {
     lights.iter().map(|light| light.intensity.as_dvec3()).sum()
 }
 
-/// The room's surfaces: which coordinate has which value, the base colour, and how metallic it is.
+/// The room's surfaces: the axis of the plane, its coordinate on that axis, base colour and metallic.
 const SURFACES: [(usize, f32, Vec3, f32); 5] = [
     (1, 0.0, Vec3::new(0.8, 0.7, 0.6), 0.0),
     (0, -HALF_WALL_M, Vec3::new(0.9, 0.1, 0.1), 0.0),
@@ -25,15 +25,15 @@ const SURFACES: [(usize, f32, Vec3, f32); 5] = [
     (2, HALF_WALL_M, Vec3::ZERO, 0.0),
 ];
 
-/// Off the room's surfaces, metres.
+/// Distance from the nearest of the room's surfaces, metres.
 fn off_surface(p: Vec3) -> f32 {
     let off = |(axis, at, ..): (usize, f32, Vec3, f32)| (p[axis] - at).abs();
     SURFACES.map(off).into_iter().fold(f32::INFINITY, f32::min)
 }
 
-/// Integral over the hemisphere of a surface's diffuse term times the cosine, by the midpoint rule in
-/// f64: `base_color (1 - metallic) (1 - F) / pi` with Schlick's F at the half vector. It shares no code
-/// with the polynomial that the shader has.
+/// The integral of a surface's diffuse term times the cosine over the hemisphere, by the midpoint rule in f64. The term
+/// is `base_color (1 - metallic) (1 - F) / pi` with Schlick's F at the half vector. This shares no code with the
+/// shader's polynomial.
 fn diffuse_sent_out(base_color: Vec3, metallic: f32, cos_incidence: f64) -> Vec3 {
     let to_light = DVec3::new((1.0 - cos_incidence * cos_incidence).sqrt(), 0.0, cos_incidence);
     let (rings, sectors) = (48, 48);
@@ -55,7 +55,7 @@ fn diffuse_sent_out(base_color: Vec3, metallic: f32, cos_incidence: f64) -> Vec3
     base_color * (1.0 - metallic) * (Vec3::ONE - f0) * (1.0 - schlick as f32)
 }
 
-/// Diffuse albedo, for light from `light`, of the surface nearest to a point.
+/// Diffuse albedo of the surface nearest to a point, for light from the position `light`.
 fn albedo(p: Vec3, light: Vec3) -> Vec3 {
     let off = |(axis, at, ..): &(usize, f32, Vec3, f32)| (p[*axis] - at).abs();
     let &(axis, _, color, metallic) =
@@ -70,7 +70,7 @@ fn texel_area(map: &Map, size: [u32; 2]) -> f32 {
     (max - min).element_product() / (size[0] * size[1]) as f32
 }
 
-/// Intensity that a texel of the room reflects whose surface is at `position`.
+/// The intensity that a texel of the room reflects if its surface is at `position`.
 fn reflected(map: &Map, size: [u32; 2], position: Vec3) -> Vec3 {
     let LightShape::Spot { outer_angle, .. } = map.light.shape else { panic!("a spot") };
     let to = position - map.light.position;
@@ -81,7 +81,7 @@ fn reflected(map: &Map, size: [u32; 2], position: Vec3) -> Vec3 {
 }
 
 #[test]
-fn a_vpl_sends_out_what_the_brdf_reflects_diffusely() {
+fn a_vpl_emits_what_the_brdf_reflects_diffusely() {
     for cos in [0.05_f32, 0.3, 0.6, 1.0] {
         for (color, metallic) in
             [(Vec3::ONE, 0.0), (Vec3::new(0.8, 0.4, 0.1), 0.0), (Vec3::new(0.9, 0.5, 0.2), 0.4)]
@@ -90,7 +90,7 @@ fn a_vpl_sends_out_what_the_brdf_reflects_diffusely() {
             let found = lambertian_albedo(color, metallic, cos);
             let off = (found - expected).abs().max_element();
             assert!(off < 1e-4, "{cos}, {color}, {metallic}: {found}, not {expected}");
-            // Without Fresnel's term it would be at least 4 % more.
+            // Without Fresnel's term it would be at least 4 % brighter.
             assert!(found.x < 0.9601 * color.x * (1.0 - metallic), "{cos}: {found}");
         }
     }
@@ -100,17 +100,17 @@ fn a_vpl_sends_out_what_the_brdf_reflects_diffusely() {
 fn the_brightest_texel_stands_for_its_block() {
     let light = spot(0.9);
     let size = [13, 9];
-    for lucky in (0..size[0] * size[1]).step_by(11) {
+    for brightest_texel in (0..size[0] * size[1]).step_by(11) {
         let texel = std::cell::Cell::new(0);
         let map = Map::new(size, light, |ray| {
-            let bright = texel.replace(texel.get() + 1) == lucky;
+            let bright = texel.replace(texel.get() + 1) == brightest_texel;
             let color = Vec3::splat(if bright { 1.0 } else { 1e-6 }).extend(0.0);
-            // A slope, so that depths differ.
+            // The plane is sloped, so depths differ.
             Some((light.position.y / (0.2 * ray.x - ray.y), Vec3::new(-0.2, 1.0, 0.0), color))
         });
         let all = map.lights(VplSettings::default());
         let brightest = all.iter().max_by(|a, b| a.intensity.x.total_cmp(&b.intensity.x)).unwrap();
-        // In the corners, outside the cone, none is bright.
+        // A texel in the corners, outside the cone, is not lit.
         if brightest.intensity.x < 1e-3 * light.intensity.x / (size[0] * size[1]) as f32 {
             continue;
         }
@@ -119,7 +119,7 @@ fn the_brightest_texel_stands_for_its_block() {
         assert_eq!(
             (one[0].position, one[0].shape),
             (brightest.position, brightest.shape),
-            "{lucky}"
+            "texel {brightest_texel}"
         );
     }
 }
@@ -136,7 +136,7 @@ fn choice_conserves_light_and_stays_on_surfaces() {
             assert!(off < 2e-3 * expected.max_element() + 1e-9, "{vpl:?}, not {expected}");
         }
         let (mut last, texels) = (all.len(), (size[0] * size[1]) as usize);
-        // The black wall and what lies outside the cone reflect nothing.
+        // The black wall and texels outside the cone reflect nothing.
         assert!(last > texels / 2 && last < texels * 4 / 5, "{last} of {texels}");
         for spacing_m in [0.5, 1.0, 2.0, 1e3] {
             let lights = map.lights(VplSettings { spacing_m, ..VplSettings::default() });
@@ -157,7 +157,7 @@ fn choice_conserves_light_and_stays_on_surfaces() {
     }
 }
 
-/// Positions of the VPLs chosen, and the sides of the squares that they stand for.
+/// Positions of the chosen VPLs, and in `w` the sides of the squares that they stand for.
 fn widths(map: &Map, spacing_m: f32) -> Vec<[f32; 4]> {
     let settings = VplSettings { spacing_m, ..VplSettings::default() };
     let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
@@ -166,13 +166,13 @@ fn widths(map: &Map, spacing_m: f32) -> Vec<[f32; 4]> {
     pod_collect_to_vec(&map.gpu.read(buffer.positions(), count * 16).unwrap())
 }
 
-/// Of a plane: rays through the four corners of the texel meet it around the texel's patch.
+/// On a plane, the rays through a texel's four corners meet the corners of the texel's patch.
 #[test]
 fn a_width_is_the_side_of_the_texels_patch() {
     let light = spot(0.9);
     for slope in [0.0, 0.3] {
         let normal = Vec3::new(-slope, 1.0, 0.0);
-        // Through the point 3 m below the light.
+        // The plane passes through the point 3 m below the light.
         let depth = |ray: Vec3| -light.position.y / ray.dot(normal);
         let map = Map::new([128, 128], light, |ray| Some((depth(ray), normal, WHITE)));
         let Projection::Perspective { max: reach, .. } = map.view.projection else { panic!() };
@@ -196,12 +196,12 @@ fn a_width_is_the_side_of_the_texels_patch() {
     }
 }
 
-/// A shading normal that leans away from the light reflects nothing; nor is it turned.
+/// A texel whose shading normal faces away from the light reflects nothing, and its normal is not flipped.
 #[test]
-fn texels_turned_away_give_no_vpl() {
+fn texels_that_face_away_give_no_vpl() {
     let light = spot(0.9);
     let floor = |ray: Vec3, normal| Some((light.position.y / -ray.y, normal, WHITE));
-    // Just below the horizon of the light.
+    // Normals from which the light is just below the horizon.
     let away = |ray: Vec3| {
         let to_light = -ray.normalize();
         let across = to_light.any_orthonormal_vector();
@@ -223,9 +223,9 @@ fn texels_turned_away_give_no_vpl() {
     }
 }
 
-/// Blocks are no wider than asked, and as wide as they may be: near the light fewer texels suffice.
+/// Blocks are no wider than the spacing, and nearly as wide.
 #[test]
-fn spacing_is_even_where_texels_allow_it() {
+fn blocks_are_as_wide_as_the_spacing_allows() {
     let light = spot(0.9);
     let map = Map::new([128, 128], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
     let spacing_m = 0.3;
@@ -233,22 +233,21 @@ fn spacing_is_even_where_texels_allow_it() {
     let widths: Vec<f32> = widths.iter().map(|position| position[3]).collect();
     let count = widths.len();
     assert!(widths.iter().all(|w| *w > 0.0 && *w <= spacing_m), "{widths:?}");
-    // Twice as wide would be too wide for the widest texel of most blocks.
+    // A block twice as wide would exceed the spacing for most blocks.
     let wide = widths.iter().filter(|w| **w > 0.4 * spacing_m).count();
     assert!(wide * 10 > count * 9, "{wide} of {count}");
     assert!((300..1500).contains(&count), "{count}");
 }
 
-/// A spot of intensity I and half angle a over a white plane: the plane reflects I times the integral
-/// of the cone's ramp over solid angle. With the ramp ((cos t - cos a) / (1 - cos a))^2 that is
-/// 2 pi (1 - cos a) / 3. Fresnel's term leaves 0.96 of it to diffuse reflection, and takes less than half
-/// a per cent more at these angles.
+/// A spot of intensity I and half angle a lights a white plane. The plane reflects I times the integral of the cone's
+/// ramp over solid angle. With the ramp ((cos t - cos a) / (1 - cos a))^2 the integral is 2 pi (1 - cos a) / 3. Fresnel's
+/// term leaves 0.96 of it to diffuse reflection, and less than half a per cent less at these angles.
 #[test]
-fn reflected_flux_is_the_spots() {
+fn the_reflected_flux_is_that_of_the_spot() {
     for outer_angle in [0.3, 1.0] {
         let light = spot(outer_angle);
         let plane = |ray: Vec3| Some((light.position.y / -ray.y, Vec3::Y, WHITE));
-        // A sphere around the light: the same light whatever the distance and the slope.
+        // On a sphere around the light, all texels have the same distance and slope.
         let sphere = |ray: Vec3| Some((1.5 / ray.length(), -ray.normalize(), WHITE));
         let hits: [&dyn Fn(Vec3) -> Option<Hit>; 2] = [&plane, &sphere];
         for hit in hits {
@@ -272,7 +271,7 @@ fn order_is_fixed_and_neighbours_are_near() {
     let first = buffer.read(&map.gpu).unwrap();
     map.run(&mut buffer, |_| 1.0);
     assert!(first == buffer.read(&map.gpu).unwrap());
-    // Sixteen texels of a row are some 2.5 m long.
+    // Sixteen texels of a row would be about 2.5 m long.
     let spread = |run: &[Light]| {
         let ends = run.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), light| {
             (low.min(light.position), high.max(light.position))
@@ -281,13 +280,13 @@ fn order_is_fixed_and_neighbours_are_near() {
     };
     let runs: Vec<f32> = first.chunks(16).map(spread).collect();
     let mean = runs.iter().sum::<f32>() / runs.len() as f32;
-    assert!(mean < 1.6, "{mean} m");
+    assert!(mean < 1.6, "16 neighbours in the buffer are {mean} m apart on average");
     let reversed: Vec<Light> = first.iter().rev().copied().collect();
     assert!(first != reversed);
 }
 
 #[test]
-fn normals_behind_the_last_are_zero() {
+fn normals_after_the_last_vpl_are_zero() {
     let light = spot(0.9);
     let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
     let mut buffer = VplBuffer::new(&map.gpu, VplSettings::default()).unwrap();

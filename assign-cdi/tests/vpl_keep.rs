@@ -1,4 +1,4 @@
-//! VPLs kept as lights: what drops out is counted, and what cannot be is refused.
+//! VPLs kept as lights: dropped VPLs are counted, and unusable maps are refused.
 
 #![allow(dead_code, reason = "the module of maps serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -11,12 +11,12 @@ use glam::{Vec2, Vec3};
 use vpl_map::{Map, WHITE, room, spot};
 
 #[test]
-fn what_drops_out_is_counted() {
+fn dropped_vpls_are_counted() {
     let light = spot(0.9);
     let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
     let all = map.lights(VplSettings::default());
     let count = all.len() as u32;
-    // In turn: kept, too small, too large, unknown.
+    // VPLs are in turn kept, too small, too large and unknown.
     let given = |ix: u32| [1.0, 0.1, 50.0, f32::MAX][(ix % 4) as usize];
     let settings = VplSettings {
         min_range_m: 0.5,
@@ -51,9 +51,9 @@ fn what_drops_out_is_counted() {
     }
 }
 
-/// Records of the lights kept are those that `LightBuffer` would upload.
+/// The records of kept lights equal those that `LightBuffer` uploads.
 #[test]
-fn records_are_those_of_lights() {
+fn records_equal_those_of_uploaded_lights() {
     let light = spot(1.2);
     let map = Map::new([32, 32], light, room(&light));
     let settings = VplSettings { min_distance_m: 0.5, min_range_m: 20.0, ..VplSettings::default() };
@@ -68,13 +68,13 @@ fn records_are_those_of_lights() {
     assert!(same(buffer.emissions(), uploaded.emissions(), count * 16));
     let floats =
         |buffer| -> Vec<f32> { pod_collect_to_vec(&map.gpu.read(buffer, count * 32).unwrap()) };
-    // `Light` makes its normal unit once more.
-    let (own, given) = (floats(buffer.shapes()), floats(uploaded.shapes()));
-    assert!(own.iter().zip(&given).all(|(a, b)| (a - b).abs() < 1e-6));
+    // `LightBuffer` normalises the normal once more, which may round it.
+    let (kept, given) = (floats(buffer.shapes()), floats(uploaded.shapes()));
+    assert!(kept.iter().zip(&given).all(|(a, b)| (a - b).abs() < 1e-6));
 }
 
 #[test]
-fn a_limit_that_is_passed_is_an_error() {
+fn more_vpls_than_the_limit_are_an_error() {
     let light = spot(0.9);
     let map = Map::new([32, 32], light, |ray| Some((light.position.y / -ray.y, Vec3::Y, WHITE)));
     let all = map.lights(VplSettings::default());
@@ -84,7 +84,10 @@ fn a_limit_that_is_passed_is_an_error() {
     let error = buffer.read(&map.gpu).unwrap_err().to_string();
     assert_eq!(
         error,
-        format!("limit of VPLs is 100: it must be at least {}, the VPLs chosen", all.len())
+        format!(
+            "limit of VPLs is 100: it must be at least {}, the number of VPLs chosen",
+            all.len()
+        )
     );
     buffer.set_settings(limited(all.len() as u32)).unwrap();
     map.run(&mut buffer, |_| 0.5);
@@ -92,7 +95,7 @@ fn a_limit_that_is_passed_is_an_error() {
 }
 
 #[test]
-fn maps_that_cannot_be_used_are_refused() {
+fn unusable_maps_are_refused() {
     let light = spot(0.9);
     let map = Map::new([32, 32], light, |_| None);
     let mut buffer = VplBuffer::new(&map.gpu, VplSettings::default()).unwrap();

@@ -1,8 +1,7 @@
-//! A renderer of one's own that uses dense clusters: a plane seen from above, one light loop.
+//! A renderer of your own that uses dense clusters: a plane seen from above, and one light loop.
 //!
-//! Run it with `cargo run -p assign-clustered --example own_renderer`. It draws a plane under
-//! 500 lights by a compute shader that knows nothing of lightbench but the look-up, and prints
-//! how many lights a pixel looped over.
+//! Run it with `cargo run -p assign-clustered --example own_renderer`. It draws a plane under 500 lights with a
+//! compute shader that uses only the look-up of lightbench. It prints how many lights each pixel looped over.
 
 use std::error::Error;
 
@@ -13,7 +12,7 @@ use assign::{
 use assign_clustered::{Clustered, Occupancy};
 use glam::Vec3;
 
-/// The renderer's own shader: it finds the plane under each pixel and sums its list's lights.
+/// The renderer's own shader. It finds the plane under each pixel and sums the lights of the pixel's list.
 const SHADE: &str = "
 import package::lights::light_spheres;
 import package::lists::{entries, list_of, ENTRY_LIGHT};
@@ -29,7 +28,7 @@ fn shade(@builtin(global_invocation_id) thread: vec3u) {
   if any(pixel > view.viewport_size) {
     return;
   }
-  // Where the pixel's ray meets the plane y = 0: at `t` view depths from the eye.
+  // The pixel's ray meets the plane y = 0 at view depth `t`.
   let ahead = world_of_view(position_view_at(ndc_of_pixel(pixel), 1.0)) - eye_world();
   let t = -eye_world().y / ahead.y;
   let position = eye_world() + t * ahead;
@@ -111,7 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let listed = pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / pixels.len() as f64;
     let lit = pixels.iter().filter(|p| p[0] > 0.0).count();
     println!(
-        "{} on {}: {listed:.1} of {} lights a pixel, {lit} of {} pixels lit",
+        "{} on {}: {listed:.1} of {} lights per pixel, {lit} of {} pixels lit",
         strategy.id(),
         gpu.info.name,
         lights.count(),

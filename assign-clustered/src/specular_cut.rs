@@ -1,34 +1,36 @@
-//! Which specular terms of area lights lists leave out on purpose.
+//! Which specular terms of area lights a list leaves out on purpose.
 
 use assign::{AssignError, Facing};
 
 use crate::Normals;
 
-/// Which specular terms of area lights a list leaves out beyond those that cannot reach its group. All but
+/// Which specular terms of area lights a list leaves out although they may reach its group. All variants but
 /// [`None`](Self::None) are **lossy**.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SpecularCut {
-    /// None.
+    /// No term.
     #[default]
     None,
-    /// Those whose upper bound over the group stays below this radiance: `gloss.wesl`. It takes normals.
+    /// Terms whose upper bound over the group stays below this radiance (`gloss.wesl`). It needs bins of
+    /// normals.
     Below(f32),
-    /// Beyond the reach of the light's diffuse term, those that the group's normals do not mirror to the
-    /// eye, as Swarbrick 2025 tests it: middles only, and a lobe of this half angle, degrees
-    /// (`reflected.wesl`). It takes 6, 24 or 54 bins of normals, and nothing else is left out by them.
+    /// Terms of lights whose diffuse term does not reach the group, if the group's normals do not mirror the
+    /// light to the eye. Swarbrick 2025 tests only the middles of light and group, with a lobe of this half
+    /// angle in degrees (`reflected.wesl`). It needs 6, 24 or 54 bins of normals, which leave out nothing else.
     ReflectedCone(f32),
-    /// All beyond the reach of the light's diffuse term: the paper's rows `dif`. It takes no normals.
+    /// All terms of lights whose diffuse term does not reach the group: the paper's rows `dif`. It allows no bins
+    /// of normals.
     WhereDiffuse,
 }
 
-/// The half angle of a lobe in the paper (section 3.4.1), degrees.
+/// Swarbrick's half angle of a lobe (2025, section 3.4.1), degrees.
 pub const PAPERS_LOBE_DEGREES: f32 = 45.0;
 
-/// How far the cut below a radiance goes.
+/// Accepted limits of the cut below a radiance, without 0 itself.
 const THRESHOLDS: std::ops::RangeInclusive<f32> = 0.0..=1e18;
 
 impl SpecularCut {
-    /// Checks the number, and that the normals are those that it takes.
+    /// Checks the number, and that the bins of normals are what the cut needs.
     pub fn check(self, normals: Normals) -> Result<(), AssignError> {
         let fail = |field: &str, value: String, accepted: &str| {
             Err(AssignError::Parameter { field: field.into(), value, accepted: accepted.into() })
@@ -44,22 +46,22 @@ impl SpecularCut {
                 fail("specular threshold", threshold.to_string(), accepted)
             }
             Self::Below(threshold) if !normals.is_some() => {
-                fail("specular threshold", threshold.to_string(), "0 without bins of normals")
+                fail("specular threshold", threshold.to_string(), "0, or come with bins of normals")
             }
             Self::ReflectedCone(degrees) if !(0.0..=180.0).contains(&degrees) => {
                 fail("half angle of the lobe", degrees.to_string(), "0 to 180 degrees")
             }
             Self::ReflectedCone(_) if normals.bins() == 1 => {
-                fail("normals of the cone test", bins(), "6, 24 or 54 bins")
+                fail("number of normal bins of the cone test", bins(), "6, 24 or 54 bins")
             }
             Self::WhereDiffuse if normals.is_some() => {
-                fail("normals where specular light ends with diffuse light", bins(), "no bins")
+                fail("number of normal bins of the cut `dif`", bins(), "no bins")
             }
             Self::Below(_) | Self::ReflectedCone(_) | Self::WhereDiffuse => Ok(()),
         }
     }
 
-    /// What an id says of it: `/s0.001`, `/cone45`, `/dif`, or nothing.
+    /// Its segment of an id: `/s0.001`, `/cone45`, `/dif`, or nothing.
     pub(crate) fn segment(self) -> String {
         match self {
             Self::None => String::new(),
@@ -69,7 +71,7 @@ impl SpecularCut {
         }
     }
 
-    /// The number that the shaders get: a radiance, or a half angle in radians.
+    /// The number that shaders read: a radiance, or a half angle in radians.
     pub(crate) fn limit(self) -> f32 {
         match self {
             Self::None | Self::WhereDiffuse => 0.0,
@@ -83,7 +85,7 @@ impl SpecularCut {
         matches!(self, Self::Below(_))
     }
 
-    /// What the kernel has to know of the groups.
+    /// What the kernel must know about how groups face.
     pub(crate) fn facing(self, normals: Normals) -> Facing {
         match self {
             Self::None if normals.is_some() => Facing::Horizon,
@@ -100,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_does_not_go_together_is_refused() {
+    fn cuts_with_the_wrong_normals_are_refused() {
         let bins = Normals::Bins;
         for (cut, normals) in [
             (SpecularCut::None, Normals::None),
@@ -112,7 +114,9 @@ mod tests {
             cut.check(normals).unwrap();
         }
         let refused = |cut: SpecularCut, normals| cut.check(normals).unwrap_err().to_string();
-        assert!(refused(SpecularCut::Below(0.01), Normals::None).contains("without bins"));
+        assert!(
+            refused(SpecularCut::Below(0.01), Normals::None).contains("come with bins of normals")
+        );
         assert!(refused(SpecularCut::Below(-1.0), bins(6)).contains("above 0"));
         assert!(refused(SpecularCut::Below(f32::NAN), bins(6)).contains("NaN"));
         let cone = SpecularCut::ReflectedCone(45.0);

@@ -1,4 +1,4 @@
-//! Area lights bounded by balls, a baseline: lists are as complete as with outlines, and longer.
+//! Area lights bounded by balls, a baseline: lists are as complete as with outlines, but longer.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -22,7 +22,7 @@ fn clusters(gpu: &Gpu, bounds: Bounds, settings: CullSettings) -> Clustered {
 }
 
 #[test]
-fn lists_by_balls_are_complete() {
+fn lists_with_balls_are_complete() {
     for bounds in [Bounds::Explicit, Bounds::Implicit] {
         for case in ["area-lights", "area-lights-grazing"] {
             let make = |gpu: &Gpu| -> Result<Box<dyn Assignment>, assign::AssignError> {
@@ -33,7 +33,7 @@ fn lists_by_balls_are_complete() {
     }
 }
 
-/// Entries of all lists of a wall two metres from the eye.
+/// The number of entries in all lists of a wall two metres from the eye.
 fn entries(gpu: &Gpu, bounds: Bounds, area_bounds: AreaBounds, lights: &[Light]) -> u64 {
     let view = View::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 1.0, 0.1, SIZE);
     let depth = flat_depth(gpu, SIZE, 0.05);
@@ -50,27 +50,31 @@ fn entries(gpu: &Gpu, bounds: Bounds, area_bounds: AreaBounds, lights: &[Light])
 }
 
 #[test]
-fn balls_list_what_lies_behind_an_emitter_or_beside_a_long_one() {
+fn balls_also_list_groups_behind_an_emitter_or_beside_a_long_one() {
     let gpu = Gpu::open(None).expect("an adapter: scripts/test installs the software one");
     let at = |emitter, z: f32, range| Light::area(emitter, Vec3::Z * z, range, Vec3::ONE);
-    // One emits away from the wall; the other is a long bar that faces it from beyond its range.
+    // One light emits away from the wall. The other is a long bar that faces the wall from beyond its range.
     let behind = at(Emitter::rectangle(Vec3::X, Vec3::Y), 1.0, 5.0);
     let long = at(Emitter::rectangle(Vec3::X * 3.0, Vec3::NEG_Y * 0.01), 2.0, 0.5);
     for bounds in [Bounds::Explicit, Bounds::Implicit] {
         for light in [behind, long] {
-            let of = |area_bounds| entries(&gpu, bounds, area_bounds, &[light]);
-            let (outline, ball) = (of(AreaBounds::Outline), of(AreaBounds::Ball));
-            assert!(outline == 0 && ball > 0, "{bounds:?}: {outline} by outline, {ball} by ball");
+            let [outline, ball] = [AreaBounds::Outline, AreaBounds::Ball]
+                .map(|area_bounds| entries(&gpu, bounds, area_bounds, &[light]));
+            assert!(
+                outline == 0 && ball > 0,
+                "{bounds:?}: {outline} entries by outline, {ball} by ball"
+            );
         }
-        // A point is its own ball.
+        // The outline of a point light is the ball.
         let point = [Light::point(Vec3::Z, 5.0, Vec3::ONE)];
-        let of = |area_bounds| entries(&gpu, bounds, area_bounds, &point);
-        assert_eq!(of(AreaBounds::Outline), of(AreaBounds::Ball));
+        let [outline, ball] = [AreaBounds::Outline, AreaBounds::Ball]
+            .map(|area_bounds| entries(&gpu, bounds, area_bounds, &point));
+        assert_eq!(outline, ball, "{bounds:?}");
     }
 }
 
-/// Dobetsberger 2025, section 5.1: a box around the reach of a one-sided rectangle is always smaller
-/// than the ball, by a factor of pi / 3 at least. What the outline bounds is smaller still.
+/// Dobetsberger 2025, section 5.1: the box around the reach of a one-sided rectangle is smaller than the ball by
+/// a factor of at least pi / 3. The outline's volume is smaller still.
 #[test]
 fn the_ball_is_larger_than_the_box_and_the_box_than_the_reach() {
     let pi = std::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! DC-I, DC-E, SC-I and SC-E keep the contract, and the suite would notice if they did not.
+//! DC-I, DC-E, SC-I and SC-E pass the conformance suite, and the suite rejects them with each planted fault.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -42,7 +42,7 @@ fn dense_implicit_conforms() {
 }
 
 #[test]
-fn dense_implicit_conforms_with_other_tests() {
+fn dense_implicit_conforms_with_other_unions_of_tests() {
     conforms(DC_I, "32x32x8", tests("hs"));
     conforms(DC_I, "32x32x8", tests("sat-e+sat-n+sat-p"));
     conforms(DC_I, "32x32x8", tests("hs+sat-e+sat-p+sat-v"));
@@ -89,7 +89,7 @@ fn split(
 }
 
 #[test]
-fn split_by_normals_conforms() {
+fn clusters_split_by_normals_conform() {
     for bins in [1, 6, 54] {
         let strategy = split("48x48x40", bins, CullSettings::default());
         println!("{}", conformance::run(&strategy).expect("conforms"));
@@ -97,12 +97,12 @@ fn split_by_normals_conforms() {
 }
 
 #[test]
-fn split_by_normals_conforms_through_the_hierarchy() {
+fn clusters_split_by_normals_conform_through_the_hierarchy() {
     conformance::run(&split("16x16x8", 24, through_hierarchy())).expect("conforms");
 }
 
 #[test]
-fn only_sparse_explicit_clusters_are_split() {
+fn only_sparse_explicit_clusters_can_be_split() {
     let gpu = Gpu::noop().unwrap();
     for (bounds, occupancy) in [DC_I, DC_E, SC_I, SC_E] {
         let size = "32x32x8".parse().unwrap();
@@ -137,7 +137,7 @@ fn all_conform_through_the_hierarchy() {
 }
 
 #[test]
-fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
+fn only_dense_implicit_clusters_serve_look_ups_at_any_depth() {
     for (variant, served) in [(DC_I, true), (DC_E, false), (SC_I, false), (SC_E, false)] {
         let gpu = Gpu::open(None).unwrap();
         let mut strategy = clustered(variant, "32x32x8", CullSettings::default())(&gpu).unwrap();
@@ -149,7 +149,7 @@ fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
             Ok(()) => assert!(served),
             Err(error) => {
                 assert!(!served && matches!(error, AssignError::Unsupported { .. }), "{error}");
-                // Nor without a depth buffer.
+                // Without a depth buffer it refuses too.
                 let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
                 assert!(error.contains("needs depth"), "{error}");
             }
@@ -157,7 +157,7 @@ fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
     }
 }
 
-/// A strategy that lists every light for every sample conforms: lists must also be short.
+/// A strategy that lists every light for every sample conforms too, so this test checks that lists are short.
 #[test]
 fn lists_are_short() {
     let listed = |variant| {
@@ -166,8 +166,10 @@ fn lists_are_short() {
         case.listed_per_sample().expect("passed")
     };
     let [dense, dense_boxes, sparse, sparse_boxes] = [DC_I, DC_E, SC_I, SC_E].map(listed);
-    println!("{dense:.1}, {dense_boxes:.1}, {sparse:.1} and {sparse_boxes:.1} of 600 lights");
-    // What a cluster holds does not depend on how clusters are stored.
+    println!(
+        "{dense:.1}, {dense_boxes:.1}, {sparse:.1} and {sparse_boxes:.1} of 600 lights per sample"
+    );
+    // Dense and sparse clusters with the same bounds list the same lights.
     assert!((dense_boxes / sparse_boxes - 1.0).abs() < 1e-9, "{dense_boxes}, {sparse_boxes}");
     assert!(sparse < 250.0 && sparse_boxes < 0.95 * sparse, "{sparse}, {sparse_boxes}");
 }
@@ -184,7 +186,7 @@ fn faults_are_rejected() {
     }
 }
 
-/// Emitters that are a little too small show where groups are small.
+/// Small groups show an emitter that is a little too small.
 #[test]
 fn tight_emitters_are_rejected() {
     let make = clustered(SC_E, "2x2x128", CullSettings::default());
@@ -192,9 +194,9 @@ fn tight_emitters_are_rejected() {
     conformance::rejects_fault(Fault::TightEmitter, &make).expect("rejects");
 }
 
-/// A frame's counters are its own, whatever the frames before held: none here, all there.
+/// Counters are those of the frame, whether earlier frames held nothing or everything.
 #[test]
-fn counters_start_anew_even_where_nothing_is_in_view() {
+fn counters_restart_even_if_nothing_is_in_view() {
     let gpu = Gpu::open(None).unwrap();
     let view = assign::View::look_at(glam::Vec3::ONE, glam::Vec3::ZERO, 1.0, 0.1, [64, 48]);
     let light = assign::Light::point(glam::Vec3::ZERO, 50.0, glam::Vec3::ONE);

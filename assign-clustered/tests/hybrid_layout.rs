@@ -3,15 +3,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-mod linked;
-
-use assign::{LightKinds, LiveGroups};
+use assign::{
+    LightKinds, LiveGroups,
+    conformance::{LinkedModule, StructLayout},
+    struct_layout,
+};
 use assign_clustered::HybridShader;
-use linked::members;
 
-fn validated(shader: HybridShader, kinds: LightKinds) -> naga::Module {
+fn validated(shader: HybridShader, kinds: LightKinds) -> LinkedModule {
     let source = shader.source(kinds).unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {e}"));
-    linked::validated(&source, &format!("{shader:?}, {kinds:?}"))
+    LinkedModule::new(&format!("{shader:?}, {kinds:?}"), &source)
 }
 
 #[test]
@@ -28,13 +29,9 @@ fn all_permutations_validate() {
 #[test]
 fn reservations_at_once_cannot_wrap_the_cursor() {
     let module = validated(HybridShader::Reserve, LightKinds::default());
-    let is_it = |name: &Option<String>| name.as_deref().is_some_and(|n| n.ends_with("CAREFUL"));
-    let (_, careful) = module.constants.iter().find(|(_, c)| is_it(&c.name)).unwrap();
-    let init = &module.global_expressions[careful.init];
-    let naga::Expression::Literal(naga::Literal::U32(careful)) = *init else {
-        panic!("{init:?}: not a number");
-    };
-    let entry_point = module.entry_points.iter().find(|e| e.name == "reserve_lists").unwrap();
+    let careful = module.constant("CAREFUL");
+    let entry_point =
+        module.module().entry_points.iter().find(|e| e.name == "reserve_lists").unwrap();
     let lanes: u32 = entry_point.workgroup_size.iter().product();
     let most = 65_535 * u64::from(lanes) * u64::from(careful) + (1 << 30);
     assert!(careful > 0 && most < 1 << 32, "{lanes} lanes of {careful}: {most}");
@@ -45,11 +42,11 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
 fn live_cells_have_one_layout() {
     assert!(LiveGroups::WESL.contains("struct LiveGroups"));
     let kinds = LightKinds::default();
-    let (written, _) = members(&validated(HybridShader::Reserve, kinds), "LiveGroups");
-    let (read, _) = members(&validated(HybridShader::Sort, kinds), "LiveGroups");
-    let offsets = |fields: Vec<(String, usize)>| {
+    let layout = |shader| validated(shader, kinds).layout_of("LiveGroups");
+    let (written, read) = (layout(HybridShader::Reserve), layout(HybridShader::Sort));
+    let offsets = |layout: StructLayout| {
         let known = ["dispatch", "dispatch_x", "count", "ids"];
-        let known = fields.into_iter().filter(|(name, _)| known.contains(&name.as_str()));
+        let known = layout.fields.into_iter().filter(|(name, _)| known.contains(&name.as_str()));
         known.map(|(_, offset)| offset).collect::<Vec<_>>()
     };
     assert_eq!(offsets(written), [0, 12, 16]);

@@ -1,6 +1,6 @@
-//! Cuts take the specular flag, and that alone, from the area lights that they are meant for: those too dull
-//! over a group, as the bound's mirror in Rust says; those that no normal mirrors to the eye; those whose
-//! diffuse term does not reach.
+//! Each cut takes only the specular flag, and only from the area lights that it is meant for: those too dim over a
+//! group, by the bound's twin in Rust; those that no normal mirrors to the eye; those whose diffuse term does not
+//! reach the group.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -20,7 +20,7 @@ fn gpu() -> Gpu {
     Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"))
 }
 
-/// A wall in the plane z = 0 faces the eye two metres away, of roughness 1 and white.
+/// The eye is two metres in front of a white wall of roughness 1 in the plane z = 0.
 fn view() -> View {
     View::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, 1.0, 0.1, SIZE)
 }
@@ -34,7 +34,7 @@ fn wall(view: &View) -> Aabb {
     Aabb::new(view, -corner, corner)
 }
 
-/// An image of one colour, half floats: of 0 and 1 alone, whose bits are told here.
+/// An image of one colour in half floats. Components must be 0 or 1.
 fn flat(gpu: &Gpu, texel: [f32; 4]) -> wgpu::TextureView {
     let bits = texel.map(|x| if x == 0.0 { 0_u16 } else { 0x3c00 });
     let size = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
@@ -58,7 +58,7 @@ fn flat(gpu: &Gpu, texel: [f32; 4]) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
 
-/// The flags of the lights that any group lists.
+/// For each light, the flags with which any group lists it.
 fn flags(gpu: &Gpu, lights: &[Light], normals: Normals, cut: SpecularCut) -> Vec<u32> {
     let view = view();
     // A clip depth of near / 2.
@@ -67,7 +67,7 @@ fn flags(gpu: &Gpu, lights: &[Light], normals: Normals, cut: SpecularCut) -> Vec
     let base_color = flat(gpu, [1.0, 1.0, 1.0, 0.0]);
     let buffer = LightBuffer::new(gpu, lights).unwrap();
     assert!(buffer.rejected().is_empty());
-    // One tile, whose slices all hold the same wall.
+    // One tile; the wall lies in one of its slices.
     let (size, settings) = ("64x64x8".parse().unwrap(), CullSettings::default());
     let (bounds, occupancy) = (Bounds::Explicit, Occupancy::Sparse);
     let mut strategy =
@@ -95,26 +95,34 @@ fn below(threshold: f32) -> SpecularCut {
 }
 
 #[test]
-fn dull_area_lights_lose_their_specular_flag() {
+fn dim_area_lights_lose_their_specular_flag() {
     let gpu = gpu();
     let emitter = |share: f32| Emitter::rectangle(Vec3::X, Vec3::NEG_Y).with_diffuse_share(share);
     let position = Vec3::new(0.0, 0.0, 3.0);
     let lights = [
         Light::point(position, 20.0, Vec3::ONE),
         Light::area(emitter(1.0), position, 20.0, Vec3::ONE),
-        // Its diffuse light ends before the wall.
+        // Its diffuse light ends in front of the wall.
         Light::area(emitter(0.05), position, 20.0, Vec3::ONE),
     ];
     for bins in [1, 6] {
         let flags = |threshold| flags(&gpu, &lights, Normals::Bins(bins), below(threshold));
         assert_eq!(flags(0.0), [BOTH, BOTH, ENTRY_SPECULAR], "lossless");
-        assert_eq!(flags(1e-9), [BOTH, BOTH, ENTRY_SPECULAR], "brighter than that");
+        assert_eq!(
+            flags(1e-9),
+            [BOTH, BOTH, ENTRY_SPECULAR],
+            "lights brighter than the threshold keep their flags"
+        );
         // The light's own radiance is 1/4, and roughness 1 reflects a small part of it.
-        assert_eq!(flags(10.0), [BOTH, ENTRY_DIFFUSE, 0], "duller than that");
+        assert_eq!(
+            flags(10.0),
+            [BOTH, ENTRY_DIFFUSE, 0],
+            "lights dimmer than the threshold lose the specular flag"
+        );
     }
 }
 
-/// Area lights before the wall, near and far, to its side, bright and dim, and two tubes of 100 : 1.
+/// Area lights in front of the wall and to its side, near and far, bright and dim, and two tubes of 100 : 1.
 fn lamps() -> Vec<Light> {
     let square = Emitter::rectangle(0.3 * Vec3::X, 0.3 * Vec3::NEG_Y);
     let tube = Emitter::rectangle(8.0 * Vec3::X, 0.08 * Vec3::NEG_Y);
@@ -132,17 +140,17 @@ fn lamps() -> Vec<Light> {
     ]
 }
 
-/// What the mirror of the bound in Rust says of the wall, if its roughness were this.
+/// The lights' bounds over the wall by their twin in Rust, for a wall of this roughness.
 fn bounds_of(lights: &[Light], roughness: f32) -> Vec<f32> {
     let view = view();
-    // The slacks of `by_bin.wesl` and `gloss_of_bin.wesl`.
+    // The slacks of `normal_bins.wesl` and of `clusters.wesl`.
     let cone = NormalCone::of_box(Vec3::Z, Vec3::Z).widened(2e-3);
     let roughness = [0.999 * roughness, 1.001 * roughness];
     let seen = SeenGroup::new(&view, wall(&view), &cone, Gloss { roughness, f0: 0.05 });
     lights.iter().map(|light| seen.specular_bound(light)).collect()
 }
 
-/// At every threshold between two lights' bounds, those below lose the flag and no others.
+/// At a threshold between two lights' bounds, exactly the lights below it lose the flag.
 #[test]
 fn lights_are_cut_one_by_one_as_the_threshold_rises() {
     let gpu = gpu();
@@ -156,21 +164,21 @@ fn lights_are_cut_one_by_one_as_the_threshold_rises() {
     let expected = |bounds: &[f32], threshold: f32| -> Vec<u32> {
         bounds.iter().map(|bound| if *bound < threshold { ENTRY_DIFFUSE } else { BOTH }).collect()
     };
-    // Negative control: the bounds of a smoother wall part the lights elsewhere.
+    // Negative control: with the bounds of a smoother wall, other lights lose the flag.
     let smoother = bounds_of(&lights, 0.5);
-    let mut unlike = 0;
+    let mut differing = 0;
     for bins in [1, 54] {
         for &threshold in &thresholds {
             let found = flags(&gpu, &lights, Normals::Bins(bins), below(threshold));
             assert_eq!(found, expected(&bounds, threshold), "{bins} bins, {threshold}: {bounds:?}");
-            unlike += usize::from(found != expected(&smoother, threshold));
+            differing += usize::from(found != expected(&smoother, threshold));
         }
     }
-    assert!(unlike > 0, "{bounds:?}, smoother {smoother:?}");
+    assert!(differing > 0, "bounds {bounds:?}, of a smoother wall {smoother:?}");
 }
 
-/// A tube of 100 : 1 above a group is cut: from inside the ball around it, the ball's own bound is that of
-/// light from everywhere.
+/// A tube of 100 : 1 above a group is cut. The group is inside the ball around the tube, so the bound by that ball
+/// would be that of light from all directions.
 #[test]
 fn a_long_tube_is_cut() {
     let gpu = gpu();
@@ -190,16 +198,16 @@ fn a_long_tube_is_cut() {
     }
 }
 
-/// Swarbrick's cone test and his `dif`: only lights whose diffuse term does not reach lose anything.
+/// Swarbrick's cone test and his `dif`: only lights whose diffuse term does not reach lose the flag.
 #[test]
-fn the_papers_cuts_leave_out_what_he_leaves_out() {
+fn the_papers_cuts_leave_out_what_the_paper_does() {
     let gpu = gpu();
     let view = view();
     let lamp = |x: f32, z: f32, share: f32| {
         let square = Emitter::rectangle(0.3 * Vec3::X, 0.3 * Vec3::NEG_Y).two_sided();
         Light::area(square.with_diffuse_share(share), Vec3::new(x, 0.0, z), 40.0, Vec3::ONE)
     };
-    // Where the mirror direction is 0, 63, 90, 108 and 174 degrees off the eye.
+    // Places whose mirror direction is 0, 63, 90, 108 and 174 degrees off the eye.
     let places = [(0.0, 5.0), (6.0, 3.0), (8.0, 0.0), (9.0, -3.0), (0.3, -3.0)];
     let outer: Vec<Light> = places.iter().map(|&(x, z)| lamp(x, z, 0.01)).collect();
     let inner: Vec<Light> = places.iter().map(|&(x, z)| lamp(x, z, 1.0)).collect();
@@ -214,12 +222,12 @@ fn the_papers_cuts_leave_out_what_he_leaves_out() {
             outer.iter().map(|light| if mirrors(light) { ENTRY_SPECULAR } else { 0 }).collect();
         assert_eq!(flags(&gpu, &outer, Normals::Bins(bins), cut), expected, "{bins} bins");
         rejected.push(expected.iter().filter(|flags| **flags == 0).count());
-        // Lights behind the wall too: the paper knows no horizon.
+        // Lights behind the wall are kept too: the paper tests no horizon.
         assert_eq!(flags(&gpu, &inner, Normals::Bins(bins), cut), [BOTH; 5], "{bins} bins");
     }
-    assert_eq!(rejected, [1, 2], "beyond 154 and beyond 95 degrees");
+    assert_eq!(rejected, [1, 2], "rejected: lights beyond 154 and beyond 95 degrees");
     let dif = |lights: &[Light]| flags(&gpu, lights, Normals::None, SpecularCut::WhereDiffuse);
     assert_eq!((dif(&outer), dif(&inner)), (vec![0; 5], vec![BOTH; 5]));
     let all = flags(&gpu, &outer, Normals::None, SpecularCut::None);
-    assert_eq!(all, [ENTRY_SPECULAR; 5], "by position");
+    assert_eq!(all, [ENTRY_SPECULAR; 5], "without a cut all lights reach the wall");
 }

@@ -1,4 +1,4 @@
-//! How a box is cut into cells.
+//! Cuts a box into cells.
 
 use std::{fmt, str::FromStr};
 
@@ -10,7 +10,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellCounts(pub [u32; 3]);
 
-/// More cells than this are refused: their records alone would take 128 MiB.
+/// The most cells. Their records take 128 MiB.
 const MAX_CELLS: u64 = 1 << 24;
 
 impl CellCounts {
@@ -59,13 +59,13 @@ impl FromStr for CellCounts {
     }
 }
 
-/// What the shaders know of the cells: `struct Cells`. 80 bytes.
+/// The cells as shaders read them: `struct Cells` of `grid.wesl`. 80 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CellsUniform {
     /// Lowest corner of the first cell, world space, metres.
     pub min_world: [f32; 3],
-    /// By how much a cell's box is wider than the cell, on each side, metres.
+    /// How much a cell's box extends beyond the cell on each side, metres.
     pub slack_m: f32,
     /// Size of a cell, metres, above 0.
     pub cell_m: [f32; 3],
@@ -75,30 +75,30 @@ pub struct CellsUniform {
     pub counts: [u32; 3],
     /// Pads to 48 bytes.
     pub padding_2: u32,
-    /// Lowest corner of the box around all lights, world space, metres: cells at the border reach
-    /// that far.
+    /// Lowest corner of the box around all lights' supports, world space, metres. Cells at the
+    /// border extend to it.
     pub lights_min: [f32; 3],
     /// Pads to 64 bytes.
     pub padding_3: f32,
-    /// Highest corner of that box.
+    /// Highest corner of the box around all lights' supports.
     pub lights_max: [f32; 3],
     /// Pads to 80 bytes.
     pub padding_4: f32,
 }
 
-/// Rounding of a sample's place among the cells, a share of the largest coordinate involved:
-/// a division good to 2.5 units in the last place, and four roundings to half a unit, of the
-/// difference before it and of the product and two sums of a cell's bounds. With room.
+/// Bound of the rounding of a sample's place among the cells, as a share of the largest coordinate
+/// involved. A division is accurate to 2.5 units in the last place. Four operations round to half a
+/// unit: the difference before the division, and the product and two sums of a cell's bounds. The
+/// bound leaves room.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
-/// No cell is smaller than this share of the largest coordinate: below it, f32 cannot tell them
-/// apart.
+/// The smallest cell, as a share of the largest coordinate. f32 cannot distinguish smaller cells.
 const LEAST_CELL: f32 = 32.0 * f32::EPSILON;
 
 impl CellsUniform {
-    /// Cuts a box into cells; `lights` is the box around all lights, `None` without any. An axis along
-    /// which the box has no extent gets one cell: of more, only the first and the last would hold
-    /// samples.
+    /// Cuts the box `cut` into cells. `lights` is the box around all lights' supports, `None`
+    /// without lights. An axis along which the box has no extent gets one cell, because only the
+    /// first and the last of several cells would hold samples.
     pub fn new(counts: CellCounts, cut: (Vec3, Vec3), lights: Option<(Vec3, Vec3)>) -> Self {
         let finite = |v: Vec3| v.clamp(Vec3::splat(-1e30), Vec3::splat(1e30));
         let (min, max) = (finite(cut.0.min(cut.1)), finite(cut.1.max(cut.0)));
@@ -163,7 +163,7 @@ mod tests {
         assert_eq!(cells.group_count(), 8);
     }
 
-    /// Lamps in one ceiling: their positions' box has no height.
+    /// Lamps on one ceiling: the box around their positions has no height.
     #[test]
     fn an_axis_without_extent_has_one_cell() {
         let counts = CellCounts([20, 20, 20]);
@@ -171,7 +171,7 @@ mod tests {
         let reach = Vec3::splat(3.0);
         let flat = CellsUniform::new(counts, (min, max), Some((min - reach, max + reach)));
         assert_eq!((flat.counts, flat.group_count()), ([20, 1, 20], 400));
-        // Its one layer reaches from the floor to above the lamps, as far as they do.
+        // Its one layer extends as far down and up as the lamps reach.
         assert_eq!((flat.lights_min[1], flat.lights_max[1]), (-1.0, 5.0));
         let top = max + Vec3::Y * 0.01;
         let thin = CellsUniform::new(counts, (min, top), Some((min - reach, top + reach)));

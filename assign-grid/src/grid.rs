@@ -1,4 +1,4 @@
-//! G: a grid of cells in world space.
+//! The strategy G: a grid of cells in world space.
 
 use std::str::FromStr;
 
@@ -12,26 +12,26 @@ use glam::Vec3;
 
 use crate::cells::{CellCounts, CellsUniform};
 
-/// Which box is cut into cells. Look-ups outside the box stay exact: a sample belongs to the nearest
-/// cell, and the cells at the border reach outwards as far as any light does.
+/// The box that is cut into cells. Look-ups outside the box stay exact: a sample belongs to the
+/// nearest cell, and cells at the border extend outwards as far as any light reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum GridBox {
     /// The box around the lights' positions, as in the comparison paper (Enhuber 2019, sections 3.3
     /// and 4.1).
     ///
-    /// Reaching outwards adds no point light to a border cell: its centre lies in the box, so the
-    /// point of the longer cell that is nearest to it lies in the box as well.
+    /// Extending a border cell adds no point light to its list: the light's centre lies in the box,
+    /// so the nearest point of the extended cell lies in the box as well.
     #[default]
     Positions,
-    /// The box around the lights' supports: beyond it no sample is lit. Larger than that of the
-    /// positions by a range on each side, so cells are coarser.
+    /// The box around the lights' supports. No light reaches a sample outside it. It is larger than
+    /// the box of the positions by a range on each side, so cells are coarser.
     Supports,
-    /// The box around the supports, cut to the box around the surfaces.
+    /// The intersection of the box around the supports and the box around the surfaces.
     Surfaces,
 }
 
 impl GridBox {
-    /// As an id says it: `positions`, `supports` or `surfaces`.
+    /// The name in ids: `positions`, `supports` or `surfaces`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Positions => "positions",
@@ -44,7 +44,8 @@ impl GridBox {
 impl FromStr for GridBox {
     type Err = AssignError;
 
-    /// Reads `positions`, `supports` or `surfaces`, and `lights`, the former name of `supports`.
+    /// Reads `positions`, `supports` or `surfaces`. Also reads `lights`, the former name of
+    /// `supports`.
     fn from_str(text: &str) -> Result<Self, AssignError> {
         match text {
             "positions" => Ok(Self::Positions),
@@ -59,7 +60,7 @@ impl FromStr for GridBox {
     }
 }
 
-/// Cells, each with a list of lights.
+/// The grid strategy: each cell has a list of lights.
 #[derive(Debug)]
 pub struct Grid {
     counts: CellCounts,
@@ -73,7 +74,7 @@ pub struct Grid {
 pub const GRID_WESL: &str = include_str!("shaders/grid.wesl");
 
 impl Grid {
-    /// Makes the strategy; `counts` are checked.
+    /// Makes the strategy. Checks `counts`.
     pub fn new(
         gpu: &Gpu,
         counts: CellCounts,
@@ -104,7 +105,7 @@ impl Grid {
         })
     }
 
-    /// The box to cut, world space; a unit box where there are no lights.
+    /// The box to cut, world space; a unit box without lights.
     fn cut(&self, frame: &Frame<'_>) -> Result<(Vec3, Vec3), AssignError> {
         let none = (Vec3::ZERO, Vec3::ONE);
         let lights = frame.lights.bounds().unwrap_or(none);
@@ -122,7 +123,7 @@ impl Grid {
                 accepted: "two corners, in numbers".into(),
             });
         }
-        // Where the boxes are apart no light reaches a surface, and any cells will do.
+        // If the boxes do not overlap, no light reaches a surface, and any cells are right.
         Ok((lights.0.max(surfaces.0), lights.1.min(surfaces.1)))
     }
 }
@@ -184,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_box_of_an_id_is_the_one_that_is_cut() {
+    fn ids_name_the_box_that_is_cut() {
         let gpu = Gpu::noop().unwrap();
         let at = |place: f32| Light::point(Vec3::splat(place), 2.0, Vec3::ONE);
         let lights = LightBuffer::new(&gpu, &[at(0.0), at(8.0)]).unwrap();
@@ -201,7 +202,7 @@ mod tests {
             let cut = (Vec3::splat(low), Vec3::splat(high));
             assert_eq!((grid.cut(&frame).unwrap(), grid.id().as_str()), (cut, id));
             assert_eq!(grid_box.name().parse::<GridBox>().unwrap(), grid_box);
-            // Samples beyond the box find every light that may reach them there.
+            // Samples outside the box find every light that may reach them.
             let cells = CellsUniform::new(grid.counts, cut, lights.bounds());
             assert_eq!((cells.lights_min, cells.lights_max), ([-2.0; 3], [10.0; 3]), "{id}");
         }

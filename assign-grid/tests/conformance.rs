@@ -1,4 +1,4 @@
-//! G keeps the contract, and the suite would notice if it did not.
+//! G keeps the contract's promises, and the suite rejects it with planted faults.
 
 use assign::{
     AssignError, Assignment, CullSettings, Frame, Gpu, Light, LightBuffer, LightSource, Reuse,
@@ -46,7 +46,7 @@ fn all_conform_through_the_hierarchy() {
     conforms("8x8x8", GridBox::Surfaces, settings);
 }
 
-/// A grid whose lists are used for some frames.
+/// A grid that reuses its lists for some frames.
 fn reused(frames: u32) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
     let make = grid("8x8x8", GridBox::Surfaces, CullSettings::default());
     move |gpu| Ok(Box::new(Reuse::new(make(gpu)?, frames)?))
@@ -80,7 +80,7 @@ fn boxes_of_surfaces_are_checked() {
     let nowhere = frame.with_surface_bounds(Vec3::NAN, Vec3::ONE);
     let error = strategy.prepare(&gpu, &nowhere).unwrap_err().to_string();
     assert!(error.contains("surface_bounds is"), "{error}");
-    // Apart from the lights, inside out and infinite: any cells will do.
+    // Boxes apart from the lights, inside out, and infinite: any cells are right.
     for (min, max) in [
         (Vec3::splat(50.0), Vec3::splat(60.0)),
         (Vec3::INFINITY, Vec3::NEG_INFINITY),
@@ -90,7 +90,8 @@ fn boxes_of_surfaces_are_checked() {
     }
 }
 
-/// A strategy that lists every light for every sample conforms: lists must also be short.
+/// A strategy that lists every light for every sample would conform, so this test checks that lists
+/// are short.
 #[test]
 fn lists_are_short() {
     let listed = |counts| {

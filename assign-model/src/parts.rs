@@ -1,16 +1,16 @@
-//! Models cut into parts.
+//! Cuts models into parts.
 
 use assign::{AssignError, ModelBox};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// Parts along one axis of a model's box, at most: those of a larger model are larger.
+/// The most parts along one axis of a model's box. Larger models get larger parts.
 const MAX_PARTS_PER_AXIS: f32 = 64.0;
 
-/// More parts than this are refused: their records alone would take 128 MiB.
+/// The most parts. Their records take 128 MiB.
 const MAX_PARTS: u64 = 1 << 24;
 
-/// A model as the shaders know it: `struct Model`. 96 bytes.
+/// A model as shaders read it: `struct Model` of `models.wesl`. 80 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ModelRecord {
@@ -30,32 +30,33 @@ pub struct ModelRecord {
     pub axis_z: [f32; 3],
     /// Parts along the third axis.
     pub parts_z: u32,
-    /// Half the size of the box along its axes, metres, widened by `slack_m`.
+    /// Half the size of the box along its axes, metres, extended by `slack_m`.
     pub half_extents_m: [f32; 3],
-    /// By how much the box and its parts are widened on each side, metres.
+    /// How much the box and its parts are extended on each side, metres.
     pub slack_m: f32,
 }
 
 /// The records of all models, and the model of each part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parts {
-    /// One per model.
+    /// One record per model.
     pub models: Vec<ModelRecord>,
     /// The model of each group.
     pub model_of_group: Vec<u32>,
 }
 
-/// A box is widened by this share of its distance from the origin: sixteen units in the last place
+/// A box is extended by this share of its distance from the origin. Sixteen units in the last place
 /// bound how far rounding moves a sample in the box's frame.
 const ROUNDING: f32 = 16.0 * f32::EPSILON;
 
-/// And by this share of its size: a rasteriser's depth of a large triangle is off by as much, and
-/// walls are models without thickness. What depth moves further is outside, and gets all lights.
+/// A box is also extended by this share of its size, because a rasteriser's depth of a large
+/// triangle is off by as much, and walls are models without thickness. Samples that depth moves
+/// further are outside and read the list of all lights.
 const DEPTH_ERROR: f32 = 1.0e-3;
 
 impl Parts {
-    /// Cuts boxes into parts of at most `limit_m` along each axis, or a 64th of the model where
-    /// that is more; `None` leaves them whole.
+    /// Cuts boxes into parts of at most `limit_m` along each axis, or a 64th of the model if that
+    /// is more. `None` leaves them whole.
     pub fn new(models: &[ModelBox], limit_m: Option<f32>) -> Result<Self, AssignError> {
         let mut parts = Self::default();
         for model in models {
@@ -73,7 +74,7 @@ impl Parts {
                 return Err(AssignError::Parameter {
                     field: "size of a part".into(),
                     value: format!(
-                        "{} m, more than {MAX_PARTS} parts",
+                        "{} m, which makes more than {MAX_PARTS} parts",
                         limit_m.unwrap_or(f32::INFINITY)
                     ),
                     accepted: format!("large enough for {MAX_PARTS} parts of all models together"),

@@ -1,4 +1,4 @@
-//! M: models, whole or in parts.
+//! The strategy M: models, whole or in parts.
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
@@ -9,12 +9,12 @@ use bytemuck::cast_slice;
 
 use crate::parts::{ModelRecord, Parts};
 
-/// Models, each or each part of it with a list of lights.
+/// The strategy M: each model, or each part of a model, has a list of lights.
 #[derive(Debug)]
 pub struct PerModel {
     limit_m: Option<f32>,
     settings: CullSettings,
-    /// What the buffers hold.
+    /// The boxes whose parts the buffers hold.
     boxes: Option<Vec<ModelBox>>,
     models: wgpu::Buffer,
     model_of_group: wgpu::Buffer,
@@ -68,7 +68,7 @@ impl PerModel {
         })
     }
 
-    /// Cuts the models and uploads the parts, where they are not those of the last frame.
+    /// Cuts the models and uploads the parts, unless the models are the last frame's.
     fn upload(&mut self, gpu: &Gpu, boxes: &[ModelBox]) -> Result<(), AssignError> {
         if self.boxes.as_deref() == Some(boxes) {
             return Ok(());

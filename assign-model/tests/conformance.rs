@@ -1,4 +1,4 @@
-//! M keeps the contract, and the suite would notice if it did not.
+//! M keeps the contract's promises, and the suite rejects it with planted faults.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -30,7 +30,8 @@ fn whole_models_conform() {
 #[test]
 fn models_in_parts_conform() {
     conforms(Some(20.0), CullSettings::default());
-    // Finer parts are in `lists_are_short` and `faults_are_rejected`: over all cases they take minutes.
+    // `lists_are_short` and `faults_are_rejected` use finer parts, which take minutes over all
+    // cases.
 }
 
 #[test]
@@ -40,7 +41,7 @@ fn all_conform_through_the_hierarchy() {
 }
 
 #[test]
-fn what_it_cannot_serve_is_refused() {
+fn any_depth_missing_models_and_bad_limits_are_refused() {
     let gpu = Gpu::open(None).unwrap();
     let lights = LightBuffer::new(&gpu, &[]).unwrap();
     let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
@@ -50,7 +51,7 @@ fn what_it_cannot_serve_is_refused() {
     assert!(matches!(error, AssignError::Unsupported { .. }), "{error}");
     let error = strategy.prepare(&gpu, &frame).unwrap_err().to_string();
     assert!(error.contains("needs models"), "{error}");
-    // A scene without models is served: no sample lies on any.
+    // A scene without models is served, because no sample lies on a model.
     strategy.prepare(&gpu, &frame.with_models(&[])).unwrap();
     for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let error = PerModel::new(&gpu, Some(bad), CullSettings::default()).unwrap_err();
@@ -58,7 +59,8 @@ fn what_it_cannot_serve_is_refused() {
     }
 }
 
-/// A strategy that lists every light for every sample conforms: lists must also be short.
+/// A strategy that lists every light for every sample would conform, so this test checks that lists
+/// are short.
 #[test]
 fn lists_are_short() {
     let listed = |limit_m| {
@@ -68,7 +70,7 @@ fn lists_are_short() {
     };
     let (whole, parts) = (listed(None), listed(Some(1.0)));
     println!("{whole:.1} by models, {parts:.1} by parts, of 600 lights");
-    // The boxes of the plane and the wall, askew as they are, hold about two thirds of the lights.
+    // The tilted boxes of the plane and the wall contain about two thirds of the lights.
     assert!(whole < 480.0 && parts < 0.8 * whole, "{whole}, {parts}");
 }
 

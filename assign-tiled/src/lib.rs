@@ -1,4 +1,4 @@
-//! Tiled light assignment: the screen cut into tiles of pixels.
+//! Tiled light assignment: tiles of pixels, each with one list of lights.
 //!
 //! # Idea
 //!
@@ -12,32 +12,39 @@
 //!
 //! # Phases
 //!
-//! 1. `bounds` (T-E): one workgroup per tile reads the tile's depths and reduces them to a range
-//!    in workgroup memory. No global atomic; a tile without samples keeps an empty range.
-//! 2. `cull`: one workgroup per tile tests lights against the tile's frustum and writes its list.
+//! 1. `bounds` (only T-E) gives each tile one workgroup, which reads the tile's depths and reduces them to a
+//!    range in workgroup memory. It needs no global atomics. A tile without samples gets an empty range.
+//! 2. `cull` gives each tile one workgroup, which tests lights against the tile's frustum and writes its list.
 //!
 //! # Cost
 //!
-//! `cull` grows with tiles times lights, `bounds` with pixels. Memory is 8 bytes a tile (16 with
-//! T-E's depth range) and 4 bytes a listed light: the least of all strategies in screen space.
+//! `cull` grows with tiles times lights, `bounds` with pixels. Memory is 8 bytes per tile (16 with T-E's depth
+//! range) and 4 bytes per listed light: the least of all strategies in screen space.
 //!
-//! Figures, ms, of 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
-//! `results/h200-all/sponza-1.6.json`, whose command is in `results/README.md`): T-I/28x28 0.114
-//! to assign and 0.622 to shade lists of 141 lights a sample; T-E/28x28 0.126 and 0.154 with 22.4.
+//! Measured for 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25; `results/h200-all/sponza-1.6.json`,
+//! whose command is in `results/README.md`):
+//!
+//! | strategy | assign, ms | shade, ms | lights listed per sample |
+//! |---|---|---|---|
+//! | T-I/28x28 | 0.114 | 0.622 | 141 |
+//! | T-E/28x28 | 0.126 | 0.154 | 22.4 |
 //!
 //! # Where it fails
 //!
-//! A tile's list holds every light between its nearest and its farthest sample. At a depth
-//! discontinuity, a fence before a far wall, that is every light in the void between, which no
-//! sample meets; T-I lists the lights behind the wall too. Small tiles do not help: the longest
-//! lists are at silhouettes, where every tile size sees both depths.
+//! - T-E lists every light between the nearest and the farthest sample of a tile. At a depth discontinuity, such
+//!   as a fence in front of a far wall, these include all lights in the gap between, which reach no sample. T-I
+//!   also lists the lights beyond the wall.
+//! - Smaller tiles do not help there. The longest lists are at silhouettes, where tiles of any size see both
+//!   depths.
 //!
-//! T-E serves opaque surfaces alone: look-ups at any depth are refused. T-I serves any depth.
+//! T-I serves look-ups at any depth. T-E serves only opaque surfaces, and refuses any other look-up.
 
 mod tile_bounds;
+mod tile_wesl;
 mod tiled;
 mod tiles;
 
 pub use tile_bounds::bounds_source;
-pub use tiled::{EXPLICIT_WESL, IMPLICIT_WESL, Tiled};
+pub use tile_wesl::{EXPLICIT_WESL, IMPLICIT_WESL};
+pub use tiled::Tiled;
 pub use tiles::{TileSize, TilesUniform, UNBOUNDED};

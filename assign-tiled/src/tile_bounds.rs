@@ -1,13 +1,13 @@
-//! The pass `bounds`: the depth range of each tile's samples.
+//! The pass `bounds`: finds the depth range of each tile's samples.
 
 use assign::{
     AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, Passes, Shader, entry,
     storage_entry, uniform_entry,
 };
 
-use crate::EXPLICIT_WESL;
+use crate::tile_wesl::EXPLICIT_WESL;
 
-/// Bind group of the pass's own resources, and of the tiles' uniform.
+/// Bind group of the pass's own resources and of the tiles' uniform.
 const BOUNDS_GROUP: u32 = 1;
 
 /// Reads the depth buffer once.
@@ -38,17 +38,17 @@ impl TileBounds {
             [depth, storage_entry(1, stages, false), uniform_entry(FIRST_STRATEGY_BINDING, stages)];
         let layout = gpu.bind_group_layout("tile bounds", &entries);
         let frame = FrameBindings::new(gpu);
-        // SAFETY: its one loop counts up to the pixels of a tile.
+        // SAFETY: its one loop counts up to the number of pixels of a tile.
         #[allow(unsafe_code, reason = "its loop ends")]
         let module = unsafe { bounds_shader().create_uncounted(gpu, "package::tile_bounds") }?;
         let layouts = [Some(frame.layout()), Some(&layout)];
-        // The kernel writes the workgroup memory that it reads.
+        // Workgroup memory need not start as zero: the kernel writes it before it reads it.
         let pipeline = gpu.compute_pipeline(&module, "reduce", &layouts, false);
         let depths = gpu.storage("tile depths", 0)?;
         Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0] })
     }
 
-    /// Sizes the buffer for `counts` tiles along x and y and binds it: outside the clock.
+    /// Sizes the buffer for `counts` tiles along x and y, and binds it: outside the clock.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,

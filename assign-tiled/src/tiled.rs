@@ -1,18 +1,19 @@
-//! T-I and T-E: tiles on the axis of bounds.
+//! T-I and T-E: tiles with implicit and with explicit bounds.
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
     FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs,
-    Passes, SampleDomain, StrategyModule, StrategyWesl, entry, storage_entry, uniform_entry,
+    Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
     tile_bounds::TileBounds,
+    tile_wesl::{EXPLICIT_WESL, IMPLICIT_WESL},
     tiles::{TileSize, TilesUniform},
 };
 
-/// Tiles, each with a list of lights.
+/// Tiles that each have a list of lights.
 #[derive(Debug)]
 pub struct Tiled {
     size: TileSize,
@@ -22,18 +23,8 @@ pub struct Tiled {
     culler: Culler,
 }
 
-/// The WESL of tiles bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: StrategyWesl<'static> = tiles_wesl(&[("explicit_bounds", false)]);
-
-/// The WESL of tiles bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: StrategyWesl<'static> = tiles_wesl(&[("explicit_bounds", true)]);
-
-const fn tiles_wesl(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'static> {
-    StrategyWesl { main: include_str!("shaders/tiles.wesl"), imports: &[], flags }
-}
-
 impl Tiled {
-    /// Makes the strategy; `size` is checked.
+    /// Makes the strategy. Checks `size`.
     pub fn new(
         gpu: &Gpu,
         size: TileSize,
@@ -64,7 +55,7 @@ impl Tiled {
                     settings,
                     sparse: false,
                     facing: Facing::Unknown,
-                    // SAFETY: it has no loop.
+                    // SAFETY: the module of tiles has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
                     module: unsafe { StrategyModule::new(module) },
                     bindings: &bindings,
@@ -94,7 +85,7 @@ impl Assignment for Tiled {
                 return Err(AssignError::Unsupported {
                     strategy: id,
                     asked: "look-ups at any depth".into(),
-                    reason: "its lists are made for the opaque surfaces in the depth buffer".into(),
+                    reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
                 });
             }
             let missing = || AssignError::Missing { strategy: id, missing: "depth" };

@@ -1,4 +1,4 @@
-//! How the viewport is cut into tiles.
+//! The tile grid: the viewport cut into rectangles of pixels.
 
 use std::{fmt, str::FromStr};
 
@@ -37,7 +37,7 @@ impl FromStr for TileSize {
         let fail = || AssignError::Parameter {
             field: "tile size".into(),
             value: text.into(),
-            accepted: "WIDTHxHEIGHT, pixels, such as 28x28".into(),
+            accepted: "WIDTHxHEIGHT in pixels, such as 28x28".into(),
         };
         let numbers: Vec<u32> = text
             .split('x')
@@ -52,31 +52,31 @@ impl FromStr for TileSize {
     }
 }
 
-/// What the shaders know of the tiles: `struct Tiles`. 40 bytes.
+/// The tiles as shaders read them: `struct Tiles` of `tiles.wesl`. 40 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TilesUniform {
     /// Tiles along x and y.
     pub counts: [u32; 2],
-    /// Pixels of a tile.
+    /// Width and height of a tile, pixels.
     pub tile_px: [u32; 2],
     /// Upper left pixel of the viewport.
     pub origin_px: [u32; 2],
-    /// Least view depth of a sample, metres, as shading rebuilds it.
+    /// Least view depth of a sample, metres: the near plane, as shading rebuilds it.
     pub near_m: f32,
-    /// Greatest view depth of a sample, metres, as shading rebuilds it, or [`UNBOUNDED`].
+    /// Greatest view depth of a sample, metres: the far plane, as shading rebuilds it, or [`UNBOUNDED`].
     pub far_m: f32,
-    /// 1 where lists are made for the surfaces in the depth buffer alone.
+    /// 1: lists serve only the surfaces in the depth buffer. 0: lists serve any depth.
     pub surfaces_only: u32,
     /// Pads to 40 bytes.
     pub padding: u32,
 }
 
-/// The far end of a view without a far plane: `bounds_frustum.wesl`, `UNBOUNDED`.
+/// The far end of a view without a far plane: `UNBOUNDED` of `bounds_frustum.wesl`.
 pub const UNBOUNDED: f32 = 3.4e38;
 
 impl TilesUniform {
-    /// Cuts `view` into tiles.
+    /// Cuts `view` into tiles; lists serve any depth.
     pub fn new(size: TileSize, view: &View) -> Self {
         let viewport = [view.viewport.width, view.viewport.height];
         Self {
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_parse_and_print_alike() {
+    fn sizes_print_as_they_parse() {
         let size: TileSize = "28x16".parse().unwrap();
         assert_eq!(size.to_string(), "28x16");
         for bad in ["", "28", "0x28", "28x16385", "axb", "28x28x2"] {
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_tile_may_be_cut() {
+    fn the_last_tile_may_reach_beyond_the_viewport() {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
         let tiles = TilesUniform::new(TileSize([64, 64]), &view);
         assert_eq!(tiles.counts, [3, 1]);

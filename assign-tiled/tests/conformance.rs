@@ -1,4 +1,4 @@
-//! T-I and T-E keep the contract, and the suite would notice if they did not.
+//! T-I and T-E pass the conformance suite, and the suite rejects them with each planted fault.
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Frame, Gpu, LightBuffer, LightSource,
@@ -36,7 +36,7 @@ fn explicit_conforms() {
 }
 
 #[test]
-fn other_tests_conform() {
+fn other_unions_of_tests_conform() {
     for union in ["hs", "sat-n+sat-p", "hs+sat-e+sat-p+sat-v"] {
         let settings = CullSettings { tests: union.parse().unwrap(), ..CullSettings::default() };
         conforms(Bounds::Explicit, "28x28", settings);
@@ -44,14 +44,14 @@ fn other_tests_conform() {
 }
 
 #[test]
-fn all_conform_through_the_hierarchy() {
+fn both_conform_through_the_hierarchy() {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
     conforms(Bounds::Implicit, "28x28", settings);
     conforms(Bounds::Explicit, "28x28", settings);
 }
 
 #[test]
-fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
+fn only_explicit_tiles_refuse_look_ups_at_any_depth() {
     let gpu = Gpu::open(None).unwrap();
     let lights = LightBuffer::new(&gpu, &[]).unwrap();
     let view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [64, 48]);
@@ -66,7 +66,7 @@ fn look_ups_at_any_depth_are_refused_where_samples_are_read() {
     assert!(error.contains("needs depth"), "{error}");
 }
 
-/// A strategy that lists every light for every sample conforms: lists must also be short.
+/// A strategy that lists every light for every sample conforms too, so this test checks that lists are short.
 #[test]
 fn lists_are_short() {
     let listed = |bounds| {
@@ -75,8 +75,11 @@ fn lists_are_short() {
         case.listed_per_sample().expect("passed")
     };
     let (implicit, explicit) = (listed(Bounds::Implicit), listed(Bounds::Explicit));
-    println!("{implicit:.1} and {explicit:.1} of 600 lights");
-    assert!(implicit < 400.0 && explicit < 0.9 * implicit, "{implicit}, {explicit}");
+    println!("{implicit:.1} and {explicit:.1} of 600 lights listed per sample");
+    assert!(
+        implicit < 400.0 && explicit < 0.9 * implicit,
+        "listed per sample: T-I {implicit}, T-E {explicit}"
+    );
 }
 
 #[test]

@@ -1,7 +1,8 @@
-//! What a device has compiled: one layout, shader module and compute pipeline per distinct input.
+//! A store of what a device has compiled: one layout, shader module and compute pipeline per
+//! distinct input.
 //!
-//! A search over sizes, or a suite of cases, makes the same strategy many times. Its kernels differ
-//! only in uniforms, so the first instance compiles them and the others share them.
+//! A search over sizes, or a suite of cases, makes the same strategy many times. The instances'
+//! kernels differ only in uniforms, so the first instance compiles them and the others share them.
 
 use std::{
     collections::HashMap,
@@ -11,8 +12,8 @@ use std::{
 
 use crate::AssignError;
 
-/// What a compute pipeline is made from. Layouts and modules are equal where they are the same object,
-/// so both must come from this store to be found again.
+/// What a compute pipeline is made from. Two layouts or modules are equal only if they are the same
+/// object, so the store finds a pipeline again only if both come from this store.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct PipelineKey {
     module: wgpu::ShaderModule,
@@ -58,7 +59,7 @@ impl Compiled {
         })
     }
 
-    /// The module of `key`, which `make` makes where it is new.
+    /// The module of `key`. `make` makes it if the store does not hold it.
     pub(crate) fn module(
         &self,
         key: ModuleKey,
@@ -98,7 +99,8 @@ impl Compiled {
                 cache: None,
             })
         };
-        // Objects from elsewhere would never be found again, and their pipelines never be released.
+        // The store would never find objects from elsewhere again, and would never release their
+        // pipelines.
         let is_known = lock(&self.modules).values().any(|known| known == module) && {
             let known = lock(&self.layouts);
             layouts.iter().flatten().all(|layout| known.values().any(|own| own == *layout))
@@ -116,7 +118,7 @@ impl Compiled {
     }
 }
 
-/// The value of `key`; two threads that make it at once get the same one.
+/// The value of `key`. Two threads that make it at the same time get the same one.
 fn find_or_make<K: Eq + Hash, V: Clone>(
     known: &Mutex<HashMap<K, V>>,
     key: K,
@@ -125,12 +127,12 @@ fn find_or_make<K: Eq + Hash, V: Clone>(
     if let Some(found) = lock(known).get(&key) {
         return found.clone();
     }
-    // Compiling takes long: others may look things up meanwhile.
+    // Compiling takes long, so the lock stays open for other threads.
     let made = make();
     lock(known).entry(key).or_insert(made).clone()
 }
 
-/// Every value in the store is whole, even where another thread has panicked.
+/// Every value in the store is whole, even after a panic of another thread.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

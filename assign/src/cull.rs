@@ -1,11 +1,13 @@
-//! The shared culling driver: lights against groups, lists in order.
+//! The shared culling driver: it tests lights against groups and writes ordered lists.
 //!
 //! A strategy supplies a WESL module with `group_bounds(group)` and `group_of(sample)`, and the
-//! resources it reads. The driver supplies the kernel (`cull.wesl`), the tests and the lists.
+//! resources that the module reads. The driver supplies the kernel (`cull.wesl`), the tests and the
+//! lists.
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule, StrategyWesl,
+    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule,
+    StrategyWesl,
     frame::{entry, storage_entry},
     kernel::MAX_WORKGROUPS,
 };
@@ -13,7 +15,7 @@ use crate::{
 /// Bind group of the lists inside the driver's own kernels.
 const LISTS_GROUP: u32 = 1;
 
-/// Bind group of what is culled: live groups and light nodes.
+/// Bind group of the kernel's input: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
 
 /// What a strategy hands to [`Culler::new`].
@@ -23,16 +25,16 @@ pub struct CullerDescriptor<'a> {
     pub label: &'a str,
     /// The shape of its groups.
     pub shape: GroupShape,
-    /// The user's choice.
+    /// The user's settings.
     pub settings: CullSettings,
     /// Whether only [`Groups::Live`] get a list.
     pub sparse: bool,
-    /// What it knows of how its groups' surfaces face.
+    /// What the strategy knows about the directions in which its groups' surfaces face.
     pub facing: Facing,
     /// WESL with `group_bounds(group: u32) -> GroupBounds` and `group_of(sample: ViewSample) -> u32`.
     pub module: StrategyModule,
-    /// Layout of its resources, bindings from
-    /// [`FIRST_STRATEGY_BINDING`](crate::FIRST_STRATEGY_BINDING), read-only.
+    /// Layout of the strategy's read-only resources. Bindings start at
+    /// [`FIRST_STRATEGY_BINDING`](crate::FIRST_STRATEGY_BINDING).
     pub bindings: &'a [wgpu::BindGroupLayoutEntry],
 }
 
@@ -49,11 +51,11 @@ pub struct Culler {
     source: Option<wgpu::BindGroup>,
     lists: LightLists,
     dispatch: Dispatch,
-    /// Bytes of the hierarchy over the lights, where it is used.
+    /// Bytes of the light hierarchy, if the driver uses it.
     hierarchy_bytes: u64,
 }
 
-/// What the kernel is compiled for, beside the kinds of lights.
+/// What the kernel is compiled for, besides the kinds of lights.
 #[derive(Clone, Copy, Debug)]
 struct Variant {
     shape: GroupShape,
@@ -79,8 +81,8 @@ impl Variant {
         if self.facing != Facing::Unknown && self.shape != GroupShape::Box {
             return Err(AssignError::Unsupported {
                 strategy: strategy.into(),
-                asked: format!("{:?} of groups that are a {:?}", self.facing, self.shape),
-                reason: "normals are tested of groups that are a Box alone".into(),
+                asked: format!("facing {:?} with groups of shape {:?}", self.facing, self.shape),
+                reason: "only groups of shape Box can know normals".into(),
             });
         }
         Ok(())
@@ -88,7 +90,7 @@ impl Variant {
 }
 
 impl Culler {
-    /// Makes the layouts; pipelines follow at the first [`prepare`](Self::prepare).
+    /// Makes the layouts. The first `prepare` makes the pipelines: see [`prepare`](Self::prepare).
     pub fn new(gpu: &Gpu, descriptor: &CullerDescriptor<'_>) -> Result<Self, AssignError> {
         let CullerDescriptor { label, shape, settings, sparse, facing, module, bindings } =
             *descriptor;
@@ -109,7 +111,7 @@ impl Culler {
         })
     }
 
-    /// Sizes the lists and binds the strategy's resources: outside the clock.
+    /// Sizes the lists and binds the strategy's resources. No clock counts it.
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -149,7 +151,7 @@ impl Culler {
         }));
     }
 
-    /// The linked WGSL of the kernel, for a scene with lights of these kinds.
+    /// The kernel's linked WGSL for a scene with lights of these kinds.
     pub fn kernel_source<'a>(
         shape: GroupShape,
         settings: CullSettings,
@@ -161,7 +163,7 @@ impl Culler {
         kernel_shader(variant, wesl.into(), kinds).link("package::cull")
     }
 
-    /// The linked WGSL of the kernel of live groups that are boxes and know how they face.
+    /// The kernel's linked WGSL for live groups that are boxes and know how their surfaces face.
     pub fn facing_kernel_source<'a>(
         settings: CullSettings,
         facing: Facing,
@@ -174,21 +176,21 @@ impl Culler {
 
     fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
         let shader = kernel_shader(self.variant, self.module.wesl(), kinds);
-        // SAFETY: the driver's loops count up, without wrapping, to a number that is no greater than
-        // the length of a buffer and does not change meanwhile, test the next of finitely many
-        // nodes, clear a bit of a word a round, or try to take what fits from a pool that only
-        // fills up: a swap fails because another lane's succeeded, or weakly, a few times at most.
-        // The strategy's author vouches for its module.
+        // SAFETY: every loop of the driver ends. A loop counts up without wrapping to a fixed
+        // number, at most a buffer's length; or tests the next of finitely many nodes; or clears
+        // one bit of a word per round; or tries to take entries from a pool that only fills up.
+        // Such a try fails only because another lane succeeded, or spuriously a few times at most.
+        // The strategy's author guarantees the same for its module.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::cull") }?;
         let layouts =
             [Some(self.frame.layout()), Some(self.cull.layout()), Some(&self.source_layout)];
-        // The kernel writes the workgroup memory that it reads.
+        // The kernel writes workgroup memory before it reads it.
         let pipeline = gpu.compute_pipeline(&module, "cull_groups", &layouts, false);
         Ok(Kernel { pipeline, kinds })
     }
 
-    /// Records the pass `cull`: inside the clock, after [`prepare`](Self::prepare).
+    /// Records the pass `cull`, which a clock times. Call it after [`prepare`](Self::prepare).
     pub fn record(&mut self, passes: &mut dyn Passes) {
         let Some(kernel) = &self.kernel else {
             return;
@@ -227,8 +229,8 @@ impl Culler {
         &mut self.lists
     }
 
-    /// Bytes of its buffers, and of the hierarchy over the lights where it uses that; the strategy's
-    /// own resources are not among them. See
+    /// Bytes of the driver's buffers, and of the light hierarchy if the driver uses it. The
+    /// strategy's own resources are not included. See
     /// [`Assignment::memory_bytes`](crate::Assignment::memory_bytes).
     pub fn memory_bytes(&self) -> u64 {
         self.frame.bytes() + self.lists.memory_bytes() + self.hierarchy_bytes
@@ -244,6 +246,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, kinds: LightKinds
     let tests = variant.settings.tests;
     Shader::new(LISTS_GROUP)
         .module("package::cull", include_str!("shaders/cull.wesl"))
+        .module("package::terms", include_str!("shaders/terms.wesl"))
         .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
         .strategy(wesl)
@@ -264,7 +267,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, kinds: LightKinds
         .light_kinds(kinds)
 }
 
-/// Layout of what is culled: live groups where sparse, light nodes where there is a hierarchy.
+/// Layout of the kernel's input: live groups if sparse, light nodes if there is a hierarchy.
 fn source_layout(gpu: &Gpu, variant: Variant) -> wgpu::BindGroupLayout {
     let stages = wgpu::ShaderStages::COMPUTE;
     let mut entries = Vec::new();

@@ -1,31 +1,32 @@
-//! What a user chooses of the culling driver: the tests, and where lights come from.
+//! The user's settings of the culling driver: the tests, and where lights come from.
 
 use std::{fmt, str::FromStr};
 
 use crate::{AssignError, GroupShape};
 
-/// Tests of a light against a frustum; a light is a hit unless one of them separates it.
+/// Tests of a light against a frustum. A light is a hit unless a test separates it from the
+/// frustum.
 ///
-/// HS tests the half spaces of the planes. The others are separating axes (Enhuber 2019, section
-/// 3.5.2): SAT-E the frustum's edges, SAT-N from the light's centre to the nearest corner, SAT-P
-/// the planes' normals, SAT-V from the light's centre to every corner.
+/// HS tests the half spaces of the planes. The other tests try separating axes (Enhuber 2019,
+/// section 3.5.2): SAT-E the frustum's edges, SAT-N the axis from the light's centre to the nearest
+/// corner, SAT-P the planes' normals, SAT-V the axes from the light's centre to every corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(clippy::struct_excessive_bools, reason = "a set of tests")]
 pub struct FrustumTests {
     /// The half spaces of the six planes.
     pub hs: bool,
-    /// The directions of the edges.
+    /// Axes along the edges.
     pub sat_e: bool,
-    /// The axis from the nearest corner to the light.
+    /// The axis between the nearest corner and the light.
     pub sat_n: bool,
-    /// The normals of the planes, both ends.
+    /// The normals of the planes, in both directions.
     pub sat_p: bool,
-    /// The axes from all corners to the light.
+    /// The axes between all corners and the light.
     pub sat_v: bool,
 }
 
 impl FrustumTests {
-    /// No test at all: a start to add to.
+    /// No test at all. Parsing starts from it.
     const NONE: Self = Self { hs: false, sat_e: false, sat_n: false, sat_p: false, sat_v: false };
 
     /// Names of the tests and whether each is on, in the order in which they run.
@@ -41,8 +42,8 @@ impl FrustumTests {
 }
 
 impl Default for FrustumTests {
-    /// HS+SAT-N, the comparison paper's choice (Enhuber 2019, section 4.3.2), and the fastest on an
-    /// H200: T-E/28x28 culls and shades Sponza in 0.280 ms with it, 0.334 with HS, 0.303 with
+    /// HS+SAT-N: the comparison paper's choice (Enhuber 2019, section 4.3.2), and the fastest union
+    /// on an H200: T-E/28x28 culls and shades Sponza in 0.280 ms with it, 0.334 with HS, 0.303 with
     /// HS+SAT-V and 0.322 with all but SAT-N (`results/h200-all/tests.json`).
     fn default() -> Self {
         Self { hs: true, sat_n: true, ..Self::NONE }
@@ -86,52 +87,53 @@ impl FromStr for FrustumTests {
     }
 }
 
-/// What bounds a group for the test of a light.
+/// The volume that stands for a group in light tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Bounds {
-    /// The whole group.
+    /// The whole volume of the group.
     Implicit,
-    /// The samples in it.
+    /// A volume around the samples in the group.
     Explicit,
 }
 
 /// Which lights a group's workgroup tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LightSource {
-    /// All of them.
+    /// All lights.
     #[default]
     Linear,
-    /// Those below the nodes of the light hierarchy that reach the group; see
+    /// The lights below those nodes of the light hierarchy that reach the group; see
     /// [`LightBuffer`](crate::LightBuffer).
     Hierarchy,
 }
 
-/// What bounds the reach of an area light.
+/// The volume that stands for an area light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AreaBounds {
-    /// The outline blown up by the range, cut by the emitter's plane where it is one-sided: the reach
-    /// itself for a rectangle.
+    /// The emitter's outline extended by the range, cut by the emitter's plane if it is one-sided.
+    /// For a rectangle this is the exact support.
     #[default]
     Outline,
-    /// The ball around it: the range and half the diagonal (Dobetsberger 2025, equation 5.1). A
-    /// baseline: its lists are longer and as complete.
+    /// The ball around the support: range plus half the diagonal (Dobetsberger 2025, equation 5.1).
+    /// A baseline: its lists are complete too, but longer.
     Ball,
 }
 
-/// What a user chooses of the culling driver; the lists hold what they must under any choice.
+/// The user's settings of the culling driver. Lists are complete under any settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CullSettings {
-    /// Tests of groups that are frusta; boxes take the nearest point (NP, NPT), which is exact.
+    /// Tests of groups that are frusta. Boxes use the nearest point (NP, NPT), which is exact for
+    /// balls.
     pub tests: FrustumTests,
-    /// Where lights come from.
+    /// Which lights a group tests.
     pub source: LightSource,
-    /// What bounds the reach of an area light.
+    /// The volume that stands for an area light.
     pub area_bounds: AreaBounds,
 }
 
 impl CullSettings {
-    /// What an id says of these settings behind its parameters: nothing of a default, tests only
-    /// where groups are frusta. `/hs`, `/bvh`, `/hs/bvh`, `/ball`.
+    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`. Defaults add
+    /// nothing, and tests appear only if groups are frusta.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
         if shape == GroupShape::Frustum && self.tests != FrustumTests::default() {

@@ -1,10 +1,10 @@
 //! Flat emitters: rectangles and convex polygons.
 //!
-//! An emitter lies in a plane through its light's position. Its light reaches the points closer to
-//! it than the light's range, in front of its plane where it is one-sided: the support is the
-//! outline blown up by a ball, or by the front half of one. So along any axis it extends as far as
-//! the outline does, and then as far as a ball, or as a cone of half angle π/2 around the normal:
-//! what culling knows of spots serves here too.
+//! An emitter lies in a plane through its light's position. Its light reaches the points that are
+//! closer to the emitter than the light's range; if the emitter is one-sided, only those in front
+//! of its plane. So the support is the outline extended by a ball, or by the front half of a ball.
+//! Along any axis it extends as far as the outline plus a ball, or plus a cone of half angle π/2
+//! around the normal. Culling therefore reuses its code for spots.
 
 use glam::{DVec3, Vec3};
 
@@ -13,14 +13,14 @@ use crate::light_fault::LightFault;
 /// The most vertices of a polygon.
 pub const MAX_VERTICES: usize = 10;
 
-/// How far vertices may lie off their plane, and corners turn the wrong way, as a share of the
-/// emitter's size.
+/// How far vertices may lie off their plane, and how far corners may turn the wrong way, as a share
+/// of the emitter's size.
 const FLATNESS: f32 = 1e-4;
 
-/// The smallest ratio of an emitter's area to the square of its size: a hair of 1 to 10,000.
+/// The smallest ratio of an emitter's area to the square of its size: a strip of 1 : 10,000.
 const MIN_AREA_SHARE: f32 = 1e-4;
 
-/// Outline of an emitter.
+/// The shape of an emitter's outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outline {
     /// Four right angles.
@@ -29,7 +29,7 @@ pub enum Outline {
     Polygon,
 }
 
-/// A flat emitter around its light's position.
+/// A flat emitter. Its vertices are relative to its light's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emitter {
     outline: Outline,
@@ -40,8 +40,8 @@ pub struct Emitter {
     half_y: Vec3,
     /// Whether it emits from its back as well.
     pub two_sided: bool,
-    /// Where the window of its diffuse light reaches 0, as a share of the light's range, above 0
-    /// and at most 1. Specular light goes on to the range (Swarbrick 2025, section 3.4).
+    /// Where the window of the diffuse term reaches 0, as a share of the light's range, above 0 and
+    /// at most 1. The specular term extends to the full range (Swarbrick 2025, section 3.4).
     pub diffuse_share: f32,
 }
 
@@ -67,15 +67,16 @@ impl Emitter {
         }
     }
 
-    /// A one-sided convex polygon from its vertices, world space, metres, counter-clockwise seen
-    /// from the front; and the light's position, the middle of the smallest rectangle around it.
+    /// Makes a one-sided convex polygon from its vertices: world space, metres, counter-clockwise
+    /// seen from the front. Returns it with the light's position, the centre of the smallest
+    /// rectangle around it.
     ///
     /// # Errors
     ///
-    /// [`LightFault::OutOfRange`] where there are fewer than 3 vertices or more than
-    /// [`MAX_VERTICES`], or one lies off the plane of the others by more than 1e-4 of their size;
-    /// below that it is moved into the plane. Everything else is for
-    /// [`Light::check`](crate::Light::check).
+    /// [`LightFault::OutOfRange`] if there are fewer than 3 or more than [`MAX_VERTICES`] vertices,
+    /// or if a vertex lies off the plane of the others by more than 1e-4 of their size. A vertex
+    /// that is closer to the plane is moved into it. [`Light::check`](crate::Light::check) finds
+    /// all other faults.
     pub fn polygon(vertices_world: &[Vec3]) -> Result<(Self, Vec3), LightFault> {
         let count = vertices_world.len();
         if !(3..=MAX_VERTICES).contains(&count) {
@@ -89,7 +90,7 @@ impl Emitter {
         let normal = half_x.as_dvec3().cross(half_y.as_dvec3()).normalize_or_zero();
         let size = half_x.length() + half_y.length();
         let mut vertices = [Vec3::ZERO; MAX_VERTICES];
-        for (own, world) in vertices.iter_mut().zip(vertices_world) {
+        for (vertex, world) in vertices.iter_mut().zip(vertices_world) {
             let offset = world.as_dvec3() - center.as_dvec3();
             let off_plane = normal.dot(offset);
             let value = (off_plane.abs() / f64::from(size)) as f32;
@@ -97,8 +98,8 @@ impl Emitter {
                 let field = "polygon vertex off its plane over size";
                 return Err(LightFault::OutOfRange { field, value, accepted: "at most 1e-4" });
             }
-            // Bounds are those of the rectangle: what sticks out of its plane would be lost.
-            *own = (offset - normal * off_plane).as_vec3();
+            // Culling bounds the rectangle, so it would lose a part outside the rectangle's plane.
+            *vertex = (offset - normal * off_plane).as_vec3();
         }
         let outline = Outline::Polygon;
         let count = count as u8;
@@ -107,19 +108,19 @@ impl Emitter {
         Ok((emitter, center))
     }
 
-    /// The same from both sides.
+    /// The same emitter, emitting from both sides.
     #[must_use]
     pub fn two_sided(self) -> Self {
         Self { two_sided: true, ..self }
     }
 
-    /// The same with diffuse light up to a share of the range.
+    /// The same emitter, with diffuse light up to a share of the range.
     #[must_use]
     pub fn with_diffuse_share(self, diffuse_share: f32) -> Self {
         Self { diffuse_share, ..self }
     }
 
-    /// The same, `factor` times as large.
+    /// The same emitter, `factor` times as large.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
         Self {
@@ -178,8 +179,8 @@ impl Emitter {
         on_edges.reduce(nearer).unwrap_or_default()
     }
 
-    /// How far `offset` lies in front of the emitter's plane, metres; without a sign where it
-    /// emits to both sides.
+    /// How far `offset` lies in front of the emitter's plane, metres. The distance has no sign if
+    /// the emitter is two-sided.
     pub fn in_front(&self, offset: DVec3) -> f64 {
         let along = self.area_vector().normalize_or_zero().dot(offset);
         if self.two_sided { along.abs() } else { along }
@@ -191,7 +192,8 @@ impl Emitter {
         vertices.map(move |(ix, v)| (v.as_dvec3(), next(ix).as_dvec3()))
     }
 
-    /// Half the sum of the edges' cross products: the normal, as long as the area is large.
+    /// Half the sum of the edges' cross products: a vector along the normal, whose length is the
+    /// area.
     fn area_vector(&self) -> DVec3 {
         0.5 * self.edges().map(|(a, b)| a.cross(b)).sum::<DVec3>()
     }
@@ -246,12 +248,12 @@ impl Emitter {
     }
 }
 
-/// The smallest and the largest distance of an emitter's farthest vertex from its middle, metres.
+/// The accepted distances of an emitter's farthest vertex from its centre, metres.
 const MIN_SIZE_M: f32 = 1e-4;
 const MAX_SIZE_M: f32 = 1e5;
 
-/// The rectangle of least area around a convex polygon, in its plane: one side lies along an edge.
-/// Centre and half axes, turned so that their cross product is along the polygon's normal.
+/// The rectangle of least area around a convex polygon, in its plane. One of its sides lies along
+/// an edge. Returns centre and half axes; their cross product points along the polygon's normal.
 fn smallest_rectangle(vertices: &[Vec3]) -> (Vec3, Vec3, Vec3) {
     let count = vertices.len();
     let origin = vertices[0].as_dvec3();
@@ -317,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_that_are_hardly_off_their_plane_are_moved_into_it() {
+    fn vertices_slightly_off_their_plane_are_moved_into_it() {
         let bent = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 1e-4), Vec3::Y];
         let (emitter, _) = Emitter::polygon(&bent).unwrap();
         let [x, y] = emitter.half_axes();
@@ -348,7 +350,7 @@ mod tests {
         assert!(fault_of_bent.contains("off its plane"), "{fault_of_bent}");
         let arrow = [Vec3::ZERO, Vec3::new(2.0, -1.0, 0.0), Vec3::X, Vec3::new(2.0, 1.0, 0.0)];
         assert!(fault_of(&arrow).contains("convex"), "{}", fault_of(&arrow));
-        // Goes round twice: every corner turns the right way.
+        // A star goes round twice, but every corner turns the right way.
         let star: Vec<Vec3> = (0..5)
             .map(|ix| {
                 let angle = 2.0 * std::f32::consts::TAU * ix as f32 / 5.0;

@@ -1,30 +1,31 @@
-//! What can go wrong before a frame.
+//! Errors before a frame.
 
 use thiserror::Error;
 
 use crate::ViewError;
 
-/// Why lists cannot be made. Raised before the first pass of a frame, never as a wrong image.
+/// Why a strategy cannot make lists. Errors come before the first pass of a frame; they never
+/// become a wrong image.
 #[derive(Clone, Debug, Error)]
 pub enum AssignError {
-    /// No adapter that wgpu can drive.
+    /// wgpu finds no adapter.
     #[error(
         "no GPU adapter found ({looked_for}): install a Vulkan driver, or the software one (Debian: mesa-vulkan-drivers)"
     )]
     NoAdapter {
-        /// What was looked for.
+        /// The back ends that were searched.
         looked_for: String,
     },
-    /// No adapter of that name.
-    #[error("no adapter called {name:?}: known are {known}")]
+    /// No adapter has that name.
+    #[error("no adapter has {name:?} in its name: the adapters are {known}")]
     UnknownAdapter {
-        /// The name, or part of it, asked for.
+        /// The requested name, or part of it.
         name: String,
         /// The adapters' names.
         known: String,
     },
     /// The adapter refused a device.
-    #[error("adapter {adapter}: no device: {reason}")]
+    #[error("adapter {adapter} gives no device: {reason}")]
     NoDevice {
         /// The adapter's name.
         adapter: String,
@@ -38,10 +39,10 @@ pub enum AssignError {
         field: String,
         /// The offending value.
         value: String,
-        /// What would be accepted.
+        /// The accepted values.
         accepted: String,
     },
-    /// The view cannot be used.
+    /// The view is faulty.
     #[error(transparent)]
     View(#[from] ViewError),
     /// The strategy cannot serve what the frame asks for.
@@ -49,35 +50,35 @@ pub enum AssignError {
     Unsupported {
         /// The strategy's id.
         strategy: String,
-        /// What the frame asked for.
+        /// What the frame asks for.
         asked: String,
         /// Why not.
         reason: String,
     },
-    /// The renderer left out something the strategy needs.
-    #[error("{strategy} needs {missing}, which the frame does not hold")]
+    /// The frame lacks something that the strategy needs.
+    #[error("{strategy} needs {missing}, which the frame lacks")]
     Missing {
         /// The strategy's id.
         strategy: String,
         /// What is missing.
         missing: &'static str,
     },
-    /// A buffer would exceed the device's limit.
-    #[error("{what} needs {bytes} bytes: this device binds at most {limit}")]
+    /// A buffer is larger than the device can bind.
+    #[error("{what} needs {bytes} bytes: this device can bind at most {limit}")]
     TooLarge {
         /// What the buffer holds.
         what: String,
-        /// The size asked for, bytes.
+        /// The requested size, bytes.
         bytes: u64,
         /// The device's limit, bytes.
         limit: u64,
     },
     /// The device has no memory left for a buffer.
-    #[error("{what} needs {bytes} bytes: the device has no room for them")]
+    #[error("{what} needs {bytes} bytes: the device has too little free memory")]
     OutOfMemory {
         /// What the buffer holds.
         what: String,
-        /// The size asked for, bytes.
+        /// The requested size, bytes.
         bytes: u64,
     },
     /// A WESL module does not link or does not validate.

@@ -1,12 +1,12 @@
-//! No culling: every sample's list holds all lights. The ground truth of lists, and `None` in
-//! the comparison.
+//! No culling: every sample's list holds all lights. It is the ground truth for lists, and `None`
+//! in the comparison.
 
 use crate::{
     AssignError, Assignment, Frame, Gpu, LightLists, ListsBindings, Lookup, Needs, Passes,
     StrategyModule,
 };
 
-/// Assigns every light to every sample.
+/// The strategy that assigns every light to every sample.
 #[derive(Debug)]
 pub struct Everything {
     lists: LightLists,

@@ -1,4 +1,4 @@
-//! What the renderer hands to a strategy each frame.
+//! The inputs that a renderer gives to a strategy each frame.
 
 use bytemuck::bytes_of;
 
@@ -6,17 +6,17 @@ use glam::Vec3;
 
 use crate::{AssignError, Gpu, LightBuffer, ModelBox, View, ViewUniform};
 
-/// Where shading will look lists up.
+/// Where shading looks up lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SampleDomain {
-    /// At the opaque surfaces in the depth buffer only.
+    /// Only at the opaque surfaces in the depth buffer.
     #[default]
     OpaqueSurfaces,
-    /// At any depth inside the view: transparent layers, volumes, particles.
+    /// At any depth inside the view, as for transparent layers, volumes and particles.
     AnyDepth,
 }
 
-/// What a strategy reads beside the view and the lights.
+/// What a strategy reads besides the view and the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// The depth buffer of the opaque surfaces.
@@ -31,8 +31,8 @@ pub struct Needs {
     pub triangles: bool,
 }
 
-/// One frame, as the renderer hands it over. Optional parts are what some strategies
-/// [`need`](crate::Assignment::needs).
+/// One frame's inputs. The optional fields are there for the strategies that
+/// [need](crate::Assignment::needs) them.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Frame<'a> {
@@ -40,17 +40,17 @@ pub struct Frame<'a> {
     pub view: &'a View,
     /// The lights.
     pub lights: &'a LightBuffer,
-    /// Where lists will be looked up.
+    /// Where shading looks up lists.
     pub samples: SampleDomain,
-    /// Depth of the opaque surfaces, `texture_depth_2d`, the size of the target.
+    /// Depth of the opaque surfaces: a `texture_depth_2d` as large as the target.
     pub depth: Option<&'a wgpu::TextureView>,
-    /// Shading normals, world space, of unit length, and perceptual roughness in `w`:
-    /// `texture_2d<f32>`, half floats or better, the size of the target.
+    /// Unit shading normals in world space, with perceptual roughness in `w`: a `texture_2d<f32>`
+    /// of half floats or better, as large as the target.
     pub normals: Option<&'a wgpu::TextureView>,
-    /// Base colour, linear as it is read, and metallic in `w`: `texture_2d<f32>`, the size of the
+    /// Base colour, linear when sampled, with metallic in `w`: a `texture_2d<f32>` as large as the
     /// target.
     pub base_color: Option<&'a wgpu::TextureView>,
-    /// The models' boxes; `ViewSample.model_ix` is an index here.
+    /// The models' boxes. `ViewSample.model_ix` is an index into them.
     pub models: Option<&'a [ModelBox]>,
     /// A box that holds all surfaces: lowest and highest corner, world space, metres.
     pub surface_bounds: Option<(Vec3, Vec3)>,
@@ -106,7 +106,7 @@ impl<'a> Frame<'a> {
         self
     }
 
-    /// Says where lists will be looked up.
+    /// Sets where shading looks up lists.
     #[must_use]
     pub fn sampled_at(mut self, samples: SampleDomain) -> Self {
         self.samples = samples;
@@ -148,7 +148,7 @@ impl FrameBindings {
         }
     }
 
-    /// Checks and uploads the view and binds the lights.
+    /// Checks and uploads the view, and binds the lights.
     pub fn update(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&frame.view.uniform()));
@@ -165,7 +165,7 @@ impl FrameBindings {
         Ok(())
     }
 
-    /// Bytes of its own buffer, without the lights.
+    /// Bytes of the view's buffer, without the lights.
     pub fn bytes(&self) -> u64 {
         self.uniform.size()
     }

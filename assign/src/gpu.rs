@@ -1,10 +1,10 @@
-//! The device, opened once and shared by everything that records passes.
+//! The device. A program opens it once; everything that records passes shares it.
 
 use std::sync::Arc;
 
 use crate::{AssignError, compiled::Compiled};
 
-/// A device with its queue and what is known of its adapter. Cloning shares the device.
+/// A device with its queue and the description of its adapter. Clones share the device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// The device.
@@ -16,7 +16,8 @@ pub struct Gpu {
     pub(crate) compiled: Arc<Compiled>,
 }
 
-/// Asked for where the adapter has them: GPU time, and adding up light volumes in f32.
+/// Features that the device uses if the adapter has them: GPU time, and blending of light volumes
+/// in f32.
 const OPTIONAL_FEATURES: wgpu::Features =
     wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::FLOAT32_BLENDABLE);
 
@@ -26,11 +27,11 @@ impl Gpu {
         Self { device, queue, info, compiled: Arc::default() }
     }
 
-    /// Opens the fastest adapter: discrete before integrated before virtual before software.
-    /// `name` narrows the choice to adapters whose name holds it, in any case.
+    /// Opens the first adapter in this order: discrete, integrated, virtual, software. If `name` is
+    /// given, only adapters whose name contains it are considered, ignoring case.
     ///
     /// The device has WebGPU's default limits, buffers as large as the adapter allows, and
-    /// timestamp queries where the adapter has them.
+    /// timestamp queries if the adapter has them.
     pub fn open(name: Option<&str>) -> Result<Self, AssignError> {
         let adapters = enumerate()?;
         let wanted = name.unwrap_or_default().to_lowercase();
@@ -45,12 +46,13 @@ impl Gpu {
         Self::from_adapter(adapter)
     }
 
-    /// Every adapter that can be opened, the one that [`open`](Self::open) prefers first.
+    /// Every adapter that can be opened. The first is the one that [`open`](Self::open) prefers
+    /// first.
     pub fn adapters() -> Result<Vec<wgpu::AdapterInfo>, AssignError> {
         Ok(enumerate()?.iter().map(wgpu::Adapter::get_info).collect())
     }
 
-    /// A device of wgpu's noop back end: it checks every call and runs none.
+    /// A device of wgpu's noop back end, which checks every call and runs none.
     pub fn noop() -> Result<Self, AssignError> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::NOOP;
@@ -69,9 +71,9 @@ impl Gpu {
             max_buffer_size: available.max_buffer_size,
             max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
             max_texture_dimension_2d: available.max_texture_dimension_2d,
-            // A G-buffer with every image takes 36 bytes of WebGPU's 32.
+            // A G-buffer with every image takes 36 bytes per sample; WebGPU's default is 32.
             max_color_attachment_bytes_per_sample: available.max_color_attachment_bytes_per_sample,
-            // Of WebGPU's eight, lights and lists take up to six.
+            // Lights and lists take up to six of WebGPU's eight storage buffers.
             max_storage_buffers_per_shader_stage: available
                 .max_storage_buffers_per_shader_stage
                 .min(16),
@@ -87,21 +89,21 @@ impl Gpu {
         Ok(Self::new(device, queue, info))
     }
 
-    /// Whether passes run on the CPU: its timestamps say nothing.
+    /// Whether passes run on the CPU. Its timestamps are meaningless.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// The most rounds that all loops of an invocation may take here together; `None` where nothing
-    /// bounds them.
+    /// The most loop rounds that one invocation may take in total on this adapter; `None` if there
+    /// is no limit.
     ///
-    /// llvmpipe ends an invocation's loops after 65,535 rounds without a word: with more lights
-    /// its image of no culling is wrong.
+    /// llvmpipe silently ends an invocation's loops after 65,535 rounds. With more lights, its
+    /// image of no culling is wrong.
     pub fn max_loop_rounds(&self) -> Option<u32> {
         self.info.name.contains("llvmpipe").then_some(65_535)
     }
 
-    /// Blocks until all submitted work is done.
+    /// Blocks until the device has finished all submitted work.
     pub fn wait(&self) -> Result<(), AssignError> {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
@@ -109,13 +111,13 @@ impl Gpu {
             .map_err(|e| AssignError::Device(e.to_string()))
     }
 
-    /// The largest storage buffer a shader may bind, bytes.
+    /// The largest storage buffer that a shader can bind, bytes.
     pub fn max_storage_bytes(&self) -> u64 {
         let limits = self.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// The layout of a bind group; equal entries share one layout.
+    /// The layout of a bind group. Equal entries share one layout.
     pub fn bind_group_layout(
         &self,
         label: &str,
@@ -124,10 +126,10 @@ impl Gpu {
         self.compiled.layout(&self.device, label, entries)
     }
 
-    /// The compute pipeline of an entry point over bind groups 0, 1, …. It is compiled once where
-    /// `module` comes from [`Shader`](crate::Shader) and the layouts from
-    /// [`bind_group_layout`](Self::bind_group_layout). `zero_memory`: workgroup memory starts as zero;
-    /// kernels that write what they read do without.
+    /// The compute pipeline of an entry point over bind groups 0, 1, and so on. It is compiled once
+    /// if `module` comes from [`Shader`](crate::Shader) and the layouts from
+    /// [`bind_group_layout`](Self::bind_group_layout). With `zero_memory`, workgroup memory starts
+    /// as zero. Kernels that write before they read do not need it.
     pub fn compute_pipeline(
         &self,
         module: &wgpu::ShaderModule,
@@ -138,13 +140,14 @@ impl Gpu {
         self.compiled.pipeline(&self.device, module, entry_point, layouts, zero_memory)
     }
 
-    /// A storage buffer of `bytes`, at least 16, with room for copies in and out.
+    /// A storage buffer of `bytes`, at least 16, which can be copied from and to.
     pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, AssignError> {
         let copies = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         self.buffer(label, bytes, wgpu::BufferUsages::STORAGE | copies)
     }
 
-    /// A buffer of `bytes`, at least 16, that shaders bind as storage, for other uses as well.
+    /// A buffer of `bytes`, at least 16, for the given uses. Its size is limited to what a shader
+    /// can bind as storage.
     pub fn buffer(
         &self,
         label: &str,
@@ -165,7 +168,8 @@ impl Gpu {
         })
     }
 
-    /// Runs `make`, which allocates about `bytes` on the device; an error where there is no room.
+    /// Runs `make`, which allocates about `bytes` on the device. Returns an error if the device has
+    /// no memory left.
     pub fn allocate<T>(
         &self,
         what: &str,
@@ -190,7 +194,7 @@ impl Gpu {
         })
     }
 
-    /// Reads `bytes` from the start of a buffer, blocking.
+    /// Reads `bytes` from the start of a buffer. Blocks until the device has written them.
     pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, AssignError> {
         let size = bytes.next_multiple_of(4);
         if size == 0 {
@@ -203,7 +207,7 @@ impl Gpu {
         self.map(&staging)
     }
 
-    /// A buffer to copy to and [`map`](Self::map).
+    /// A buffer for copies that [`map`](Self::map) reads.
     pub fn staging(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, AssignError> {
         self.allocate(label, bytes, || {
             self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -215,7 +219,7 @@ impl Gpu {
         })
     }
 
-    /// Maps a staging buffer whose copy was submitted, and returns its bytes.
+    /// Maps a staging buffer after its copy was submitted, and returns its bytes.
     pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, AssignError> {
         let (sender, receiver) = std::sync::mpsc::channel();
         staging.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -237,7 +241,7 @@ fn enumerate() -> Result<Vec<wgpu::Adapter>, AssignError> {
     let backends = wgpu::Backends::all() - wgpu::Backends::NOOP;
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
-    // GPU-based validation and debug layers would be on the bill of every pass.
+    // GPU-based validation and debug layers would slow every measured pass.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));

@@ -2,7 +2,7 @@
 
 use crate::LiveGroups;
 
-/// The shape of a strategy's groups, and with it the test.
+/// The shape of a strategy's groups. It decides which tests run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GroupShape {
     /// A pixel rectangle and a depth range: `bounds_frustum.wesl`.
@@ -13,37 +13,37 @@ pub enum GroupShape {
     OrientedBox,
 }
 
-/// What the kernel knows of how a group's surfaces face.
+/// What the kernel knows about the directions in which a group's surfaces face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
     /// Nothing.
     #[default]
     Unknown,
-    /// A cone around their normals, of groups that are boxes: the strategy's module has
-    /// `group_facing(group: u32) -> NormalCone`, and lights that rise above no horizon are left
-    /// out (`facing.wesl`).
+    /// A cone around the normals of groups that are boxes. The strategy's module has
+    /// `group_facing(group: u32) -> NormalCone`. Lists omit lights below the horizon of every
+    /// surface (`facing.wesl`).
     Horizon,
-    /// The same, and how they reflect: `group_gloss(group: u32) -> Gloss`. Specular terms of area
-    /// lights that add less than a threshold are left out (`gloss.wesl`). Lossy.
+    /// `Horizon`, and how the surfaces reflect: `group_gloss(group: u32) -> Gloss`. Lists omit
+    /// specular terms of area lights that add less than a threshold (`gloss.wesl`). Lossy.
     HorizonAndGloss,
-    /// How groups mirror light in the terms of Swarbrick 2025: `group_reflection(group: u32) ->
-    /// Reflection`, of groups that are boxes. Where a light's diffuse term does not reach, its specular
-    /// one is left out unless it is mirrored to the eye (`reflected.wesl`). Lossy.
+    /// How groups that are boxes mirror light, after Swarbrick 2025: `group_reflection(group: u32)
+    /// -> Reflection`. Where a light's diffuse term does not reach, lists omit its specular term
+    /// unless the group mirrors it to the eye (`reflected.wesl`). Lossy.
     ReflectedCone,
-    /// Nothing, and a light's specular term is left out where its diffuse term does not reach. Lossy.
+    /// Nothing. Lists omit a light's specular term where its diffuse term does not reach. Lossy.
     WhereDiffuse,
 }
 
 /// Which groups get a list in a frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Groups<'a> {
-    /// All of them: their number.
+    /// All groups; the value is their number.
     All(u32),
-    /// Those that the strategy's own pass appended.
+    /// The groups that the strategy's own pass appended.
     Live {
         /// Number of all groups, live or not.
         count: u32,
-        /// The live ones.
+        /// The live groups.
         live: &'a LiveGroups,
     },
 }

@@ -1,26 +1,26 @@
 //! Light assignment: which lights may reach which view samples.
 //!
-//! A strategy is three things: a set of *groups* of view samples, a function from a view sample
-//! to its group, and for each group the list of lights that may reach it. Each strategy crate
-//! implements [`Assignment`]; this crate holds what they share.
+//! A strategy is three things: a set of *groups* of view samples, a function from a view sample to
+//! its group, and, for each group, the list of lights that may reach it. Each strategy crate
+//! implements [`Assignment`]. This crate holds what they share.
 //!
 //! # A frame
 //!
-//! 1. The renderer fills a [`Frame`]: the [`View`], the [`LightBuffer`] and what the strategy
-//!    [`needs`](Assignment::needs).
-//! 2. [`Assignment::prepare`] sizes buffers (outside the clock), [`Assignment::record`] records
-//!    named passes (inside it).
-//! 3. Shading calls `list_of(group_of(sample))`, spliced in through [`Lookup`], and sums the
-//!    lights of the list in ascending index: the same order whatever the strategy, so images
-//!    compare bit for bit.
+//! 1. The renderer fills a [`Frame`]: the [`View`], the [`LightBuffer`] and whatever the strategy
+//!    [needs](Assignment::needs).
+//! 2. [`Assignment::prepare`] sizes buffers and is not timed. [`Assignment::record`] records named
+//!    passes, which are timed.
+//! 3. Shading calls `list_of(group_of(sample))`, which [`Lookup`] supplies, and sums the list's
+//!    lights in ascending index. The order is the same for every strategy, so images can be
+//!    compared bit for bit.
 //!
 //! # Promises
 //!
-//! Lists hold every light whose support holds one of the group's samples, in ascending index,
-//! without repeats. A list that does not fit becomes the list of all lights, is counted, and the
-//! pool grows before a later frame. No input makes a strategy drop a light silently;
-//! the module `conformance` (feature `conformance`) checks that of any strategy, and rejects
-//! faulty ones.
+//! A group's list holds every light whose support contains one of the group's samples, in ascending
+//! index, without repeats. If a list does not fit into the entry pool, the group reads the list of
+//! all lights, the overflow is counted, and the pool grows before a later frame. No input makes a
+//! strategy drop a light silently. The module `conformance` (feature `conformance`) checks this for
+//! any strategy and rejects faulty ones.
 
 mod assignment;
 mod compiled;

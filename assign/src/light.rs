@@ -1,21 +1,22 @@
 //! Lights with compact support.
 //!
 //! Every light's contribution is multiplied by the window `(1 - (d / range)^4)^2`, clamped at 0,
-//! with `d` the distance to the closest point of the emitter, so its *support*, the set of points
-//! it can reach, is exact: a ball, a ball cut by a cone, half a ball, or a rounded rectangle or
-//! polygon, cut by its plane where one-sided. Culling and shading read the same `range`.
+//! where `d` is the distance to the closest point of the emitter. So a light reaches exactly one
+//! set of points, its *support*: a ball, a ball cut by a cone, half a ball, or a rounded rectangle
+//! or polygon that its plane cuts if it is one-sided. Culling and shading read the same `range`.
 
 use glam::{DVec3, Vec3};
 
 use crate::{emitter::Emitter, light_fault::LightFault};
 
-/// What a light is, beside its position, range and intensity.
+/// The kind of a light, with the parameters of that kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightShape {
-    /// Emits alike in all directions.
+    /// Emits equally in all directions.
     Point,
-    /// Emits into a cone (KHR_lights_punctual), with full intensity up to the inner angle. The
-    /// fall-off between the two angles is `((cos θ - cos outer) / (cos inner - cos outer))^2`.
+    /// Emits into a cone (KHR_lights_punctual) with full intensity up to the inner angle. Between
+    /// the two angles the intensity falls off as `((cos θ - cos outer) / (cos inner - cos
+    /// outer))^2`.
     Spot {
         /// The cone's axis, of unit length, world space.
         direction: Vec3,
@@ -24,15 +25,17 @@ pub enum LightShape {
         /// Half angle at which the light ends, radians, [`MIN_SPOT_ANGLE`] to π.
         outer_angle: f32,
     },
-    /// Emits the same radiance from every point of a flat emitter, in all directions in front.
+    /// Emits the same radiance from every point of a flat emitter, in every direction in front of
+    /// it.
     Area(Emitter),
-    /// Emits from a point into the half space in front as a matte surface does, by the cosine to its
-    /// normal: a virtual point light.
+    /// A virtual point light: emits from a point into the half space in front of it, by the cosine
+    /// to its normal, as a matte surface does.
     Vpl {
-        /// The surface's normal, of unit length, world space. The light's intensity is that along it.
+        /// The surface's unit normal, world space. The light's intensity is the intensity along it.
         normal: Vec3,
-        /// Its inverse-square fall-off grows no further within this distance, metres, 0 to
-        /// [`MAX_RANGE_M`]: light from a point close by is not what a surface would send.
+        /// Distance below which inverse-square fall-off stops growing, metres, 0 to
+        /// [`MAX_RANGE_M`]. A point close by would send more light than the surface that it stands
+        /// for.
         min_distance_m: f32,
     },
 }
@@ -40,13 +43,13 @@ pub enum LightShape {
 /// One light, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it is, metres; of a rectangle the middle, of a polygon that of the smallest rectangle
-    /// around it.
+    /// Position, metres. An area light's position is the centre of its rectangle, or of the
+    /// smallest rectangle around its polygon.
     pub position: Vec3,
-    /// Distance at which its window reaches 0, metres, [`MIN_RANGE_M`] to [`MAX_RANGE_M`].
+    /// Distance at which the light's window reaches 0, metres, [`MIN_RANGE_M`] to [`MAX_RANGE_M`].
     pub range_m: f32,
-    /// Radiant intensity, linear RGB, each 0 to [`MAX_INTENSITY`] and not all 0; of an area light
-    /// the intensity along its normal, its radiance times its area.
+    /// Radiant intensity, linear RGB, each channel 0 to [`MAX_INTENSITY`] and not all 0. For an
+    /// area light it is the intensity along the normal: radiance times area.
     pub intensity: Vec3,
     /// What kind of light it is.
     pub shape: LightShape,
@@ -58,7 +61,8 @@ impl Light {
         Self { position, range_m, intensity, shape: LightShape::Point }
     }
 
-    /// An area light; `position` is the one that [`Emitter::polygon`] gave, or any of a rectangle.
+    /// An area light. A polygon's `position` is the one that [`Emitter::polygon`] returned; a
+    /// rectangle's is free.
     pub fn area(emitter: Emitter, position: Vec3, range_m: f32, intensity: Vec3) -> Self {
         Self { position, range_m, intensity, shape: LightShape::Area(emitter) }
     }
@@ -69,21 +73,22 @@ impl Light {
         Self { position, range_m, intensity, shape }
     }
 
-    /// The range at which an unbounded light's unoccluded intensity over squared distance falls
-    /// to `threshold`: `sqrt(max(intensity) / threshold)` (Watrous 2024, "Light volumes").
+    /// The range at which an unbounded light's intensity over squared distance falls to
+    /// `threshold`: `sqrt(max(intensity) / threshold)` (Watrous 2024, "Light volumes").
     pub fn range_from_threshold(intensity: Vec3, threshold: f32) -> f32 {
         (intensity.max_element() / threshold).sqrt()
     }
 
-    /// How far from an area light its diffuse light goes on by the rule of Swarbrick 2025 (listing 4.1),
-    /// metres: where its flux, times a factor tuned by eye, spread over a hemisphere falls to an irradiance
-    /// of `least`. The flux there is the sum of the channels of radiance times area.
+    /// The range of an area light's diffuse term by the rule of Swarbrick 2025 (listing 4.1),
+    /// metres. At this distance the light's flux, times a factor tuned by eye, spread over a
+    /// hemisphere falls to the irradiance `least`. The rule's flux is the sum over channels of
+    /// radiance times area.
     pub fn influence_radius(intensity: Vec3, least: f32) -> f32 {
         const TUNED: f32 = 4.4;
         (TUNED * intensity.element_sum() / (std::f32::consts::TAU * least)).sqrt()
     }
 
-    /// Radius of a ball around its position that holds its support, metres.
+    /// Radius of a ball around the light's position that contains its support, metres.
     pub fn radius_m(&self) -> f32 {
         match &self.shape {
             LightShape::Area(emitter) => (self.range_m + emitter.radius()).next_up(),
@@ -91,7 +96,7 @@ impl Light {
         }
     }
 
-    /// Where the window of its diffuse light reaches 0, metres.
+    /// Distance at which the window of the diffuse term reaches 0, metres.
     pub fn diffuse_range_m(&self) -> f32 {
         match &self.shape {
             LightShape::Area(emitter) => self.range_m * emitter.diffuse_share,
@@ -99,7 +104,7 @@ impl Light {
         }
     }
 
-    /// Checks every field. [`LightBuffer`](crate::LightBuffer) leaves a faulty light out.
+    /// Checks every field. [`LightBuffer`](crate::LightBuffer) omits faulty lights.
     pub fn check(&self) -> Result<(), LightFault> {
         let finite = |field, v: Vec3| {
             v.to_array()
@@ -154,14 +159,14 @@ impl Light {
         Ok(())
     }
 
-    /// How far `point` lies inside the light's support, in f64, as a share of the range (and of
-    /// the cone): positive inside, 0 on the edge, negative outside. This is the truth that lists
-    /// are checked against.
+    /// How far `point` lies inside the light's support, in f64, as a share of the range (and of the
+    /// cone). It is positive inside, 0 on the edge and negative outside. Lists are checked against
+    /// it.
     pub fn reach(&self, point: DVec3) -> f64 {
         let to_point = point - self.position.as_dvec3();
         let distance = to_point.length();
         let ball = 1.0 - distance / f64::from(self.range_m);
-        // A share of what the axis has, so that the narrowest cone has an inside.
+        // Relative to the value on the axis, so that even the narrowest cone has an inside.
         let cone = |axis: Vec3, cos_outer: f64| {
             let inside = axis.as_dvec3().normalize().dot(to_point) / distance - cos_outer;
             if distance == 0.0 { ball } else { ball.min(inside / (1.0 - cos_outer).min(1.0)) }
@@ -184,14 +189,13 @@ impl Light {
         }
     }
 
-    /// How far `point` lies inside the support of the light's diffuse part, as [`reach`](Self::reach)
-    /// says it of the whole light's.
+    /// As [`reach`](Self::reach), for the support of the light's diffuse term.
     pub fn diffuse_reach(&self, point: DVec3) -> f64 {
         Self { range_m: self.diffuse_range_m(), ..*self }.reach(point)
     }
 
     /// How far the light rises above the horizon of a surface at `point`, in f64, as a share of its
-    /// range: a surface that it does not rise above is not lit.
+    /// range. A light at or below the horizon does not light the surface.
     pub fn above_horizon(&self, point: DVec3, normal: DVec3) -> f64 {
         let height = normal.dot(self.position.as_dvec3() - point);
         let rise = match &self.shape {
@@ -205,17 +209,17 @@ impl Light {
     }
 }
 
-/// The shortest range accepted, metres: its square stays far above f32's smallest number.
+/// The shortest accepted range, metres. Its square stays far above f32's smallest number.
 pub const MIN_RANGE_M: f32 = 1e-6;
 
-/// The longest range accepted, metres: its square stays far inside f32.
+/// The longest accepted range, metres. Its square stays far below f32's largest number.
 pub const MAX_RANGE_M: f32 = 1e9;
 
-/// The narrowest spot accepted, radians: a unit vector in f32 is good to 1e-7.
+/// The smallest accepted half angle of a spot, radians. A unit vector in f32 is accurate to 1e-7.
 pub const MIN_SPOT_ANGLE: f32 = 1e-5;
 
-/// The greatest radiant intensity accepted in a channel. The fall-off multiplies it by up to 1e4,
-/// GGX's peak by up to 8e4, and 2^20 such lights still sum to a finite f32.
+/// The greatest accepted radiant intensity of a channel. Fall-off multiplies it by up to 1e4 and
+/// GGX's peak by up to 8e4; 2^20 such lights still sum to a finite f32.
 pub const MAX_INTENSITY: f32 = 1e18;
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Lights on the GPU: faulty ones quarantined, the others in order, and the hierarchy over them.
+//! Lights on the GPU: the sound lights in order, the hierarchy over them, and the faulty lights
+//! that were omitted.
 
 use std::time::{Duration, Instant};
 
@@ -10,20 +11,21 @@ use crate::{
     light_nodes::{LightNode, nodes},
 };
 
-/// A light that was left out.
+/// A faulty light that was omitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RejectedLight {
-    /// Its index in the renderer's list.
+    /// The light's index in the renderer's list.
     pub index: usize,
     /// What is wrong with it.
     pub fault: LightFault,
 }
 
-/// The lights of a frame on the GPU: spheres and the hierarchy for culling, emissions and shapes
-/// for shading.
+/// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
+/// shading.
 ///
-/// Faulty lights are left out. The others lie in the buffer's [`LightOrder`], and a light's index
-/// is its place there: [`given_index`](Self::given_index) leads back to the renderer's list.
+/// The buffer omits faulty lights and sorts the others by its [`LightOrder`]. A light's index is
+/// its place in that order; [`given_index`](Self::given_index) converts it to an index in the
+/// renderer's list.
 #[derive(Debug)]
 pub struct LightBuffer {
     order: LightOrder,
@@ -40,16 +42,16 @@ pub struct LightBuffer {
     build_time: Duration,
 }
 
-/// The most lights that an entry's 30 bits can name.
+/// The most lights that a list entry's 30 bits can index.
 pub const MAX_LIGHTS: usize = (1 << 30) - 1;
 
 impl LightBuffer {
-    /// Uploads `lights` in their order, leaving out those that [`Light::check`] faults.
+    /// Uploads `lights` in the order of the slice. Omits the lights that [`Light::check`] rejects.
     pub fn new(gpu: &Gpu, lights: &[Light]) -> Result<Self, AssignError> {
         Self::ordered(gpu, lights, LightOrder::Given)
     }
 
-    /// Uploads `lights` in the given order, leaving out those that [`Light::check`] faults.
+    /// Uploads `lights` sorted by `order`. Omits the lights that [`Light::check`] rejects.
     pub fn ordered(gpu: &Gpu, lights: &[Light], order: LightOrder) -> Result<Self, AssignError> {
         let mut buffer = Self {
             order,
@@ -69,8 +71,8 @@ impl LightBuffer {
         Ok(buffer)
     }
 
-    /// Replaces the lights. The buffers grow as needed, so bind groups that hold them must be
-    /// made anew: [`FrameBindings`](crate::FrameBindings) does.
+    /// Replaces the lights. Buffers grow as needed, so bind groups that hold them must be made
+    /// again, as [`FrameBindings`](crate::FrameBindings) does.
     pub fn update(&mut self, gpu: &Gpu, lights: &[Light]) -> Result<(), AssignError> {
         if lights.len() > MAX_LIGHTS {
             return Err(AssignError::Parameter {
@@ -92,7 +94,7 @@ impl LightBuffer {
             }
         }
         let began = Instant::now();
-        let order = self.order.of(&sound);
+        let order = self.order.indices(&sound);
         let accepted: Vec<Light> = order.iter().map(|&ix| sound[ix as usize]).collect();
         let given: Vec<u32> = order.iter().map(|&ix| indices[ix as usize]).collect();
         let nodes = nodes(&accepted);
@@ -101,7 +103,8 @@ impl LightBuffer {
         let mut shapes = Vec::new();
         let emissions: Vec<LightEmission> =
             accepted.iter().map(|l| l.emission(&mut shapes)).collect();
-        // All buffers before any field: after an error the old lights are whole.
+        // Makes all buffers before it changes any field, so that the old lights stay whole after an
+        // error.
         let [sphere_bytes, emission_bytes, shape_bytes, node_bytes] =
             [cast_slice(&spheres), cast_slice(&emissions), cast_slice(&shapes), cast_slice(&nodes)];
         let larger = [
@@ -115,7 +118,7 @@ impl LightBuffer {
         gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
         gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
-        self.kinds = LightKinds::of(&accepted);
+        self.kinds = LightKinds::among(&accepted);
         let around = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
         self.bounds = accepted
             .iter()
@@ -134,32 +137,33 @@ impl LightBuffer {
         self.lights.len() as u32
     }
 
-    /// The accepted lights, in the order of their indices.
+    /// The accepted lights by index.
     pub fn lights(&self) -> &[Light] {
         &self.lights
     }
 
-    /// Where in the renderer's list a light of this buffer stood; `None` beyond the last.
+    /// The index in the renderer's list of a light of this buffer; `None` if there is no such
+    /// light.
     pub fn given_index(&self, light: u32) -> Option<u32> {
         self.given.get(light as usize).copied()
     }
 
-    /// The order in which the lights lie.
+    /// The order of the lights.
     pub fn order(&self) -> LightOrder {
         self.order
     }
 
-    /// How long the CPU took to order the lights and to build the hierarchy over them.
+    /// How long the CPU took to sort the lights and to build the hierarchy over them.
     pub fn build_time(&self) -> Duration {
         self.build_time
     }
 
-    /// The lights that were left out.
+    /// The faulty lights that were omitted.
     pub fn rejected(&self) -> &[RejectedLight] {
         &self.rejected
     }
 
-    /// The kinds that there are: shaders are compiled for them.
+    /// The kinds of the accepted lights. Shaders are compiled for them.
     pub fn kinds(&self) -> LightKinds {
         self.kinds
     }
@@ -169,7 +173,7 @@ impl LightBuffer {
         self.bounds
     }
 
-    /// World-space box around all positions, metres, whatever the ranges; `None` without lights.
+    /// World-space box around all positions, metres, without the ranges; `None` without lights.
     pub fn position_bounds(&self) -> Option<(Vec3, Vec3)> {
         self.position_bounds
     }
@@ -189,13 +193,13 @@ impl LightBuffer {
         &self.shapes
     }
 
-    /// The hierarchy: `array<LightNode>`, a box around every 64 lights.
+    /// The hierarchy: `array<LightNode>`, one box per 64 lights.
     pub fn nodes(&self) -> &wgpu::Buffer {
         &self.nodes
     }
 }
 
-/// The buffer where `bytes` fit, else a larger one.
+/// The buffer if `bytes` fit into it, else a larger one.
 fn fitting(
     gpu: &Gpu,
     buffer: &wgpu::Buffer,

@@ -1,17 +1,17 @@
 //! The light hierarchy: boxes around consecutive lights.
 //!
-//! Two levels serve a workgroup: it tests a box a lane, and lights only below the boxes that reach
-//! its group. A box holds the supports of [`NODE_LIGHTS`] consecutive lights, so nodes need no
-//! pointers, lists made through them ascend as others do, and one kernel over the light buffer
-//! could build them on the GPU for lights that move. How small the boxes are is up to the
-//! [`LightOrder`](crate::LightOrder).
+//! The hierarchy has two levels. Each lane of a workgroup tests one box; the workgroup then tests
+//! only the lights below boxes that reach its group. A box holds the supports of [`NODE_LIGHTS`]
+//! consecutive lights. So nodes need no pointers, lists still ascend, and one kernel over the light
+//! buffer could build the nodes on the GPU for moving lights. The [`LightOrder`](crate::LightOrder)
+//! decides how small the boxes are.
 //!
-//! Boxes hold the full range of every light, and the outlines of area lights. Two settings then test
-//! each light by another volume. `WhereDiffuse` tests the diffuse range only, so it tests some lights
-//! in vain. `AreaBounds::Ball` tests balls around the outlines, which are larger: through nodes it lists
-//! fewer lights than it does from the linear list.
+//! Boxes hold the full range of every light, and the outlines of area lights. Two settings test
+//! each light by another volume. `WhereDiffuse` tests only the diffuse range, so it tests some
+//! lights in vain. `AreaBounds::Ball` tests balls around the outlines, which are larger than the
+//! boxes' contents; it lists fewer lights through nodes than from the linear list.
 //!
-//! Worked example: 130 lights have three nodes: lights 0 to 63, 64 to 127, 128 and 129.
+//! Worked example: 130 lights have three nodes, over lights 0 to 63, 64 to 127, and 128 to 129.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -49,13 +49,13 @@ pub(crate) fn nodes(lights: &[Light]) -> Vec<LightNode> {
         .collect()
 }
 
-/// A box around a light's support, its centre included, world space, metres.
+/// A box around a light's support and its position, world space, metres.
 pub(crate) fn light_box(light: &Light) -> (Vec3, Vec3) {
     let volume = LightVolume::from(light);
     let along = |axis: Vec3| volume.extent_along(axis);
     let low = Vec3::new(along(Vec3::NEG_X), along(Vec3::NEG_Y), along(Vec3::NEG_Z));
     let high = Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z));
-    // Rounded outwards: the sums are good to half a unit in the last place.
+    // Rounded outwards: each sum is accurate to half a unit in the last place.
     let down = |v: Vec3| Vec3::from_array(v.to_array().map(f32::next_down));
     let up = |v: Vec3| Vec3::from_array(v.to_array().map(f32::next_up));
     (down(light.position - low), up(light.position + high))

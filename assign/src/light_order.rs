@@ -1,7 +1,7 @@
 //! The order of lights in their buffer.
 //!
-//! Lists ascend in light index, so an order that follows space makes neighbours in space neighbours
-//! in every list and in memory, and boxes around consecutive lights small: see
+//! Lists ascend in light index. If the order follows space, lights that are close in space are
+//! close in every list and in memory, and boxes around consecutive lights are small: see
 //! [`light_nodes`](crate::light_nodes).
 
 use std::{fmt, str::FromStr, time::Duration};
@@ -11,26 +11,26 @@ use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 
 use crate::{AssignError, Light, light_nodes::light_box};
 
-/// In which order lights lie in the buffer.
+/// The order of lights in the buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LightOrder {
-    /// As the renderer gave them.
+    /// The renderer's order.
     #[default]
     Given,
-    /// By the Morton code of their centres, 21 bits an axis.
+    /// By the Morton code of the lights' positions, 21 bits per axis.
     Morton,
-    /// As the leaves of a bounding volume hierarchy over their supports, depth first: for lights
-    /// that stand still. Built on the CPU.
+    /// The leaves, depth first, of a bounding volume hierarchy over the lights' supports. The CPU
+    /// builds it, so it suits lights that do not move.
     Bvh,
 }
 
-/// Lights that share one place, beyond which a hierarchy is not built over them: the search for
-/// pairs to merge is quadratic in coincident boxes.
+/// The most lights at one place for which a hierarchy is built. The search for pairs to merge is
+/// quadratic in coincident boxes.
 const MOST_COINCIDENT: usize = 20_000;
 
 impl LightOrder {
-    /// The lights' indices in this order: a permutation.
-    pub(crate) fn of(self, lights: &[Light]) -> Vec<u32> {
+    /// The lights' indices in this order.
+    pub(crate) fn indices(self, lights: &[Light]) -> Vec<u32> {
         match self {
             Self::Given => (0..lights.len() as u32).collect(),
             Self::Morton => morton(lights),
@@ -42,7 +42,7 @@ impl LightOrder {
 fn morton(lights: &[Light]) -> Vec<u32> {
     let codes = morton_codes(lights);
     let mut order: Vec<u32> = (0..lights.len() as u32).collect();
-    // Stable: lights at one place keep the order they were given in.
+    // The sort is stable, so lights at one place keep the renderer's order.
     order.sort_by_key(|&light| codes[light as usize]);
     order
 }
@@ -100,7 +100,7 @@ fn bvh(lights: &[Light]) -> Vec<u32> {
             open.extend([node.first_index + 1, node.first_index]);
         }
     }
-    // A hierarchy that lost or repeated a light orders nothing.
+    // Falls back to Morton order if the hierarchy lost or repeated a light.
     let mut seen = vec![false; lights.len()];
     order.retain(|&light| {
         seen.get_mut(light as usize).is_some_and(|seen| !std::mem::replace(seen, true))
@@ -108,8 +108,9 @@ fn bvh(lights: &[Light]) -> Vec<u32> {
     if order.len() == lights.len() { order } else { morton(lights) }
 }
 
-/// Whether most neighbours are as near as the next ones, as in a row of equal lights: there too, the
-/// search joins one pair at a time. Pairs, fours and so on may be such a row as well.
+/// Whether most boxes are equally close to both neighbours, as in a row of equal lights. There too,
+/// the search merges only one pair at a time. Pairs, groups of four and so on may form such a row
+/// as well.
 fn is_row(mut boxes: Vec<Aabb>) -> bool {
     while boxes.len() > MOST_COINCIDENT {
         let costs: Vec<f32> = boxes.windows(2).map(|w| w[0].union(&w[1]).half_area()).collect();
@@ -170,9 +171,9 @@ mod tests {
             .collect()
     }
 
-    /// Mean diagonal of the boxes around 64 consecutive lights, metres.
+    /// Mean diagonal of the boxes around every 64 consecutive lights, metres.
     fn spread_of(order: LightOrder, lights: &[Light]) -> f32 {
-        let order = order.of(lights);
+        let order = order.indices(lights);
         let diagonals: Vec<f32> = order
             .chunks(64)
             .map(|chunk| {
@@ -188,7 +189,7 @@ mod tests {
     fn orders_are_permutations() {
         for count in [0, 1, 2, 63, 64, 65, 1000] {
             for order in [LightOrder::Given, LightOrder::Morton, LightOrder::Bvh] {
-                let mut indices = order.of(&lights(count));
+                let mut indices = order.indices(&lights(count));
                 indices.sort_unstable();
                 assert_eq!(indices, (0..count).collect::<Vec<_>>(), "{order}");
             }
@@ -209,7 +210,7 @@ mod tests {
     fn coincident_lights_keep_their_order() {
         let lights = vec![Light::point(Vec3::ONE, 1.0, Vec3::ONE); 30_000];
         for order in [LightOrder::Morton, LightOrder::Bvh] {
-            assert!(order.of(&lights).is_sorted(), "{order}");
+            assert!(order.indices(&lights).is_sorted(), "{order}");
         }
     }
 
@@ -220,7 +221,7 @@ mod tests {
             let lights: Vec<Light> =
                 (0..150_000).map(|ix| Light::point(at(ix), 1.5, Vec3::ONE)).collect();
             let start = std::time::Instant::now();
-            let mut order = LightOrder::Bvh.of(&lights);
+            let mut order = LightOrder::Bvh.indices(&lights);
             let seconds = start.elapsed().as_secs_f64();
             println!("{at_one_place} at each place: {seconds:.2} s");
             assert!(seconds < 30.0, "{at_one_place} at each place: {seconds} s");
@@ -236,7 +237,7 @@ mod tests {
         lights[5].position = Vec3::splat(-3e38);
         lights[7].range_m = 1e9;
         for order in [LightOrder::Morton, LightOrder::Bvh] {
-            let mut indices = order.of(&lights);
+            let mut indices = order.indices(&lights);
             indices.sort_unstable();
             assert_eq!(indices, (0..100).collect::<Vec<_>>(), "{order}");
         }

@@ -1,4 +1,5 @@
-//! The record of a light on the GPU: its kind, what culling reads, and what shading reads.
+//! A light's record on the GPU: its kind, the part that culling reads, and the part that shading
+//! reads.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -24,10 +25,10 @@ pub enum LightKind {
     Vpl = 4,
 }
 
-/// The kinds beside points that some lights are of: shaders are compiled for what there is.
+/// The kinds besides points that occur among some lights. Shaders are compiled for exactly these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct LightKinds {
-    /// Spots or virtual point lights, whose supports are cones: the flag `spots`.
+    /// Spots or virtual point lights, whose supports are cut by cones: the flag `spots`.
     pub spots: bool,
     /// Rectangles or polygons: the flag `areas`.
     pub areas: bool,
@@ -42,8 +43,8 @@ impl LightKinds {
         Self { spots: true, areas: true },
     ];
 
-    /// The kinds of some lights.
-    pub fn of(lights: &[Light]) -> Self {
+    /// The kinds that occur among `lights`.
+    pub fn among(lights: &[Light]) -> Self {
         Self {
             spots: lights
                 .iter()
@@ -52,7 +53,7 @@ impl LightKinds {
         }
     }
 
-    /// Whether a shader that is compiled for these kinds lights all of `others`.
+    /// Whether a shader compiled for these kinds can shade all lights of `others`.
     pub fn cover(self, others: Self) -> bool {
         self.spots >= others.spots && self.areas >= others.areas
     }
@@ -64,7 +65,7 @@ impl LightKinds {
 pub struct LightSphere {
     /// World-space position, metres.
     pub position_world: [f32; 3],
-    /// Radius of a ball that holds the support, metres: the range, and an emitter's own radius.
+    /// Radius of a ball that contains the support, metres: the range plus the emitter's radius.
     pub radius_m: f32,
 }
 
@@ -74,13 +75,12 @@ pub struct LightSphere {
 pub struct LightEmission {
     /// Radiant intensity, linear RGB.
     pub intensity: [f32; 3],
-    /// [`LightKind`] in the top 4 bits; in the low 28 the index of the light's first vector in
-    /// the shape buffer.
+    /// [`LightKind`] in the top 4 bits; the index of the light's first shape vector in the low 28.
     pub kind_and_shape: u32,
 }
 
 impl Light {
-    /// Its kind.
+    /// The light's kind.
     pub fn kind(&self) -> LightKind {
         match self.shape {
             LightShape::Point => LightKind::Point,
@@ -98,13 +98,18 @@ impl Light {
         LightSphere { position_world: self.position.to_array(), radius_m: self.radius_m() }
     }
 
-    /// The light's record for shading; appends what its kind needs to `shapes`.
+    /// The light's record for shading. Appends the vectors of its kind to `shapes`.
     ///
-    /// Shape vectors: a point light has none; a spot has `(direction, cos outer)` and
-    /// `(scale, sin outer, squared chord, 0)` of its [`SpotRamp`]; a virtual point light has
-    /// `(normal, cos outer = 0)` and `(0, sin outer = 1, least distance squared, 0)`; an area light has `(normal,
-    /// range)`, `(half x, diffuse range)`, `(half y, vertex count)` with the count negative where
-    /// two-sided, `(area, 0, 0, 0)`, and its vertices relative to its position, `(vertex, 0)` each.
+    /// Shape vectors by kind:
+    ///
+    /// - A point light has none.
+    /// - A spot has `(direction, cos outer)` and `(scale, sin outer, squared chord, 0)` of its
+    ///   [`SpotRamp`].
+    /// - A virtual point light has `(normal, cos outer = 0)` and `(0, sin outer = 1, least distance
+    ///   squared, 0)`.
+    /// - An area light has `(normal, range)`, `(half x, diffuse range)`, `(half y, vertex count)`,
+    ///   `(area, 0, 0, 0)` and one `(vertex, 0)` per vertex. The count is negative if the emitter is
+    ///   two-sided; vertices are relative to the light's position.
     pub(crate) fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
         let first_shape = shapes.len() as u32;
         if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {

@@ -1,8 +1,9 @@
-//! The light lists on the GPU: their layout, fall-back and growth.
+//! The light lists on the GPU: their layout, what happens on overflow, and how they grow.
 //!
-//! `lists[g + 1] = (first, count)` points into `entries`. Record 0 lists all lights, and the
-//! entries begin with all lights in order; the pool that groups reserve from lies behind them.
-//! A group whose list does not fit gets `(0, light_count)`: slow, correct, counted.
+//! `lists[g + 1] = (first, count)` points into `entries`. Record 0 lists all lights. The entries
+//! begin with all lights in order; the pool from which groups reserve follows them. A group whose
+//! list does not fit gets the record `(0, light_count)`, which is slow but correct, and the
+//! overflow is counted.
 //!
 //! Worked example: 5 lights, capacity for 8, lists of 2, 0 and 3 entries:
 //! `lists = [(0, 5), (8, 2), (0, 0), (10, 3)]`, `entries = [0 1 2 3 4 - - - | a b c d e]`.
@@ -11,19 +12,19 @@ use bytemuck::{Pod, Zeroable, cast_slice, pod_collect_to_vec};
 
 use crate::{AssignError, Gpu, readback::Readback};
 
-/// Flag of an entry: the light's diffuse term may reach the group.
+/// Entry flag: the light's diffuse term may reach the group.
 pub const ENTRY_DIFFUSE: u32 = 1 << 30;
-/// Flag of an entry: the light's specular term may reach the group.
+/// Entry flag: the light's specular term may reach the group.
 pub const ENTRY_SPECULAR: u32 = 1 << 31;
-/// The low bits of an entry: the light's index.
+/// Mask of an entry's low bits, which hold the light's index.
 pub const ENTRY_LIGHT: u32 = ENTRY_DIFFUSE - 1;
-/// What `group_of` returns for a sample outside all groups: its list holds all lights.
+/// The value that `group_of` returns for a sample outside all groups. Its list holds all lights.
 pub const ALL_LIGHTS: u32 = u32::MAX;
 
-/// The most entries of the pool, 4 GiB: `CAREFUL` of `reserve.wesl` counts on it.
+/// The most entries of the pool, 4 GiB. `CAREFUL` in `reserve.wesl` relies on it.
 const MAX_POOL: u64 = 1 << 30;
 
-/// The most entries that the pool begins with: 64 MiB.
+/// The most entries with which the pool starts, 64 MiB.
 const MAX_GUESS: u64 = 16 << 20;
 
 /// A light list: `count` entries from `first`.
@@ -36,32 +37,32 @@ pub struct LightList {
     pub count: u32,
 }
 
-/// The counters as the GPU writes them: `reserve.wesl`, `struct Counters`.
+/// The counters that the GPU writes: `struct Counters` of `reserve.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Counters {
-    /// Entries taken from the pool, and those of lists that came too late to fit.
+    /// Entries taken from the pool, plus the entries of lists that no longer fitted.
     pub cursor: u32,
-    /// Entries asked for, low 32 bits.
+    /// Requested entries, low 32 bits.
     pub requested_low: u32,
-    /// Entries asked for, high 32 bits.
+    /// Requested entries, high 32 bits.
     pub requested_high: u32,
     /// Groups that fell back to all lights.
     pub overflowed_groups: u32,
     /// Groups with at least one light.
     pub occupied_groups: u32,
-    /// Entries of the longest list asked for.
+    /// Entries of the longest requested list.
     pub longest: u32,
 }
 
 impl Counters {
-    /// Entries asked for by all groups together.
+    /// Entries that all groups requested together.
     pub fn requested(&self) -> u64 {
         u64::from(self.requested_high) << 32 | u64::from(self.requested_low)
     }
 }
 
-/// What the culling kernel is told: `reserve.wesl`, `struct Cull`.
+/// The culling kernel's parameters: `struct Cull` of `reserve.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct CullUniform {
@@ -73,9 +74,9 @@ pub struct CullUniform {
     pub pool_first: u32,
     /// Entries in the pool.
     pub pool_capacity: u32,
-    /// 1 where the reserved entries could exceed 32 bits.
+    /// 1 if the reserved entries could exceed 32 bits.
     pub guard_cursor: u32,
-    /// The most lights of a list: the ones behind are dropped.
+    /// The most lights of a list. Later lights are dropped.
     pub list_cap: u32,
     /// Pads to 32 bytes.
     pub padding: [u32; 2],
@@ -84,7 +85,7 @@ pub struct CullUniform {
 /// Bytes of one set of counters.
 const COUNTERS_BYTES: u64 = size_of::<Counters>() as u64;
 
-/// The lists of one strategy. Buffers grow outside the clock, between frames.
+/// The lists of one strategy. Buffers grow between frames, which no clock times.
 #[derive(Debug)]
 pub struct LightLists {
     lists: wgpu::Buffer,
@@ -93,7 +94,7 @@ pub struct LightLists {
     uniform: wgpu::Buffer,
     light_capacity: u32,
     pool_capacity: u32,
-    /// Upper limit set by the user; the device's limit applies as well.
+    /// The user's upper limit. The device's limit applies as well.
     pool_limit: u32,
     list_cap: u32,
     generation: u32,
@@ -152,15 +153,15 @@ impl LightLists {
         self.light_capacity = 0;
     }
 
-    /// Keeps the first `lights` of each list alone. **Lossy**: it drops the others, as renderers
-    /// with lists of a fixed length do; [`u32::MAX`] drops none. A list that overflows the pool
-    /// still becomes all lights.
+    /// Keeps only the first `lights` of each list. **Lossy**: it drops the others, as renderers
+    /// with fixed-length lists do. [`u32::MAX`] drops none. A list that overflows the pool still
+    /// becomes all lights.
     pub fn cap_lists(&mut self, lights: u32) {
         self.list_cap = lights;
     }
 
-    /// Says that what the lists hold is of no use any more: whoever keeps them over frames
-    /// ([`Reuse`](crate::Reuse)) makes them anew.
+    /// Marks the lists as outdated. A strategy that keeps lists over frames
+    /// ([`Reuse`](crate::Reuse)) then makes them again.
     pub fn expire(&mut self) {
         self.generation = self.generation.wrapping_add(1);
     }
@@ -170,8 +171,8 @@ impl LightLists {
         self.generation
     }
 
-    /// Sizes the buffers for a frame and grows the pool to what earlier frames asked for.
-    /// Returns whether a buffer was made anew, so that bind groups must be.
+    /// Sizes the buffers for a frame and grows the pool to what earlier frames requested. Returns
+    /// whether it replaced a buffer; bind groups must then be made again.
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -209,7 +210,7 @@ impl LightLists {
         Ok(changed)
     }
 
-    /// Makes the entry buffer anew where all lights or the pool outgrew it.
+    /// Replaces the entry buffer if all lights or the pool no longer fit.
     fn size_entries(
         &mut self,
         gpu: &Gpu,
@@ -226,10 +227,11 @@ impl LightLists {
                 limit: room * 4,
             });
         }
-        // A guess until a frame has counted: 16 entries a group, or every pair if fewer.
+        // A guess until a frame has counted: 16 entries per group, or every (light, group) pair if
+        // those are fewer.
         let guess = (u64::from(group_count) * u64::from(light_count.min(16))).min(MAX_GUESS);
         let has = u64::from(self.pool_capacity);
-        // A quarter more than asked, so that a moving camera does not grow it each frame.
+        // A quarter more than requested, so that a moving camera does not grow the pool each frame.
         let grown = if asked > has { asked + asked / 4 } else { has };
         let most = (room - u64::from(light_capacity)).min(MAX_POOL);
         let wanted = grown.max(guess).min(most).min(u64::from(self.pool_limit)) as u32;
@@ -240,7 +242,7 @@ impl LightLists {
             (0..light_capacity).map(|light| light | ENTRY_DIFFUSE | ENTRY_SPECULAR).collect();
         let bytes = (u64::from(light_capacity) + u64::from(wanted)) * 4;
         self.entries = match gpu.storage("light entries", bytes) {
-            // The lists that do not fit stay all lights: the pool there is must do.
+            // Keeps the pool as it is. Lists that do not fit stay all lights.
             Err(AssignError::OutOfMemory { .. }) if light_capacity == self.light_capacity => {
                 self.pool_limit = self.pool_capacity;
                 return Ok(false);
@@ -253,23 +255,23 @@ impl LightLists {
         Ok(true)
     }
 
-    /// Empties the counters; call before the pass that fills them, in the same encoder, so that
-    /// they are a frame's own whatever became of the frames before.
+    /// Resets the counters. Call it in the encoder of the pass that fills them, before that pass.
+    /// So they count one frame only, whatever happened to earlier frames.
     pub fn record_reset(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.counters, 0, None);
     }
 
-    /// Copies the counters for [`stats`](Self::stats); call between passes, after the last.
+    /// Copies the counters for [`stats`](Self::stats). Call it after the last pass that counts.
     pub fn record_readback(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.readback.record(encoder, &self.counters);
     }
 
-    /// The newest counters that have come back, which may be a few frames old.
+    /// The newest counters that have arrived. They may be a few frames old.
     pub fn stats(&self) -> Option<Counters> {
         self.readback.latest()
     }
 
-    /// Reads everything back, blocking.
+    /// Reads everything back. Blocks until the device has finished.
     pub fn snapshot(&self, gpu: &Gpu) -> Result<ListsSnapshot, AssignError> {
         let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
         let counters = gpu.read(&self.counters, COUNTERS_BYTES)?;
@@ -293,7 +295,7 @@ impl LightLists {
         self.lists.size() + self.entries.size() + self.counters.size() + self.uniform.size()
     }
 
-    /// The same with what the counters are read back through.
+    /// As [`bytes`](Self::bytes), plus the read-back buffers of the counters.
     pub fn memory_bytes(&self) -> u64 {
         self.bytes() + self.readback.bytes()
     }
@@ -313,7 +315,7 @@ impl LightLists {
         &self.counters
     }
 
-    /// What the culling kernel is told: `struct Cull`.
+    /// The culling kernel's parameters: `struct Cull`.
     pub fn uniform(&self) -> &wgpu::Buffer {
         &self.uniform
     }

@@ -1,15 +1,15 @@
-//! Lists and a strategy's own resources in one bind group: in kernels that make lists, and where
-//! shading looks them up.
+//! One bind group for the lists and a strategy's own resources, in kernels that make lists and in
+//! shading.
 
 use crate::{
     Gpu, LightLists,
     frame::{entry, storage_entry, uniform_entry},
 };
 
-/// First binding of a strategy's own resources, in the kernel and in the look-up alike.
+/// First binding of a strategy's own resources, both in the kernel and in the look-up.
 pub const FIRST_STRATEGY_BINDING: u32 = 4;
 
-/// A bind group of lists and of what a strategy reads beside them.
+/// A bind group of the lists and of a strategy's own resources.
 ///
 /// | binding | WESL | kernel | look-up |
 /// |---|---|---|---|
@@ -26,23 +26,23 @@ pub struct ListsBindings {
 }
 
 impl ListsBindings {
-    /// For kernels that make lists; `bindings` are the strategy's own.
+    /// For kernels that make lists. `bindings` are the strategy's own.
     pub fn of_kernel(gpu: &Gpu, label: &str, bindings: &[wgpu::BindGroupLayoutEntry]) -> Self {
         let stages = wgpu::ShaderStages::COMPUTE;
-        let own = [
+        let lists = [
             storage_entry(0, stages, false),
             storage_entry(1, stages, false),
             storage_entry(2, stages, false),
             uniform_entry(3, stages),
         ];
-        Self::new(gpu, label, true, &[&own, bindings].concat())
+        Self::new(gpu, label, true, &[&lists, bindings].concat())
     }
 
     /// For the look-up: [`Lookup::layout`](crate::Lookup::layout).
     pub fn of_look_up(gpu: &Gpu, label: &str, bindings: &[wgpu::BindGroupLayoutEntry]) -> Self {
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-        let own = [storage_entry(0, stages, true), storage_entry(1, stages, true)];
-        Self::new(gpu, label, false, &[&own, bindings].concat())
+        let lists = [storage_entry(0, stages, true), storage_entry(1, stages, true)];
+        Self::new(gpu, label, false, &[&lists, bindings].concat())
     }
 
     fn new(
@@ -55,8 +55,8 @@ impl ListsBindings {
         Self { layout, in_kernel, bind_group: None }
     }
 
-    /// Binds the lists and the strategy's resources: after each
-    /// [`LightLists::prepare`], which may make buffers anew.
+    /// Binds the lists and the strategy's resources. Call it after each [`LightLists::prepare`],
+    /// which may replace buffers.
     pub fn bind(&mut self, gpu: &Gpu, lists: &LightLists, resources: &[wgpu::BindGroupEntry<'_>]) {
         let mut entries = vec![entry(0, lists.lists()), entry(1, lists.entries())];
         if self.in_kernel {

@@ -1,13 +1,14 @@
-//! The groups that a sparse strategy gives a list: a list of group indices on the GPU, and the
-//! size of the indirect dispatch over it.
+//! The groups to which a sparse strategy gives lists: group indices on the GPU, and the size of the
+//! indirect dispatch over them.
 
 use crate::{AssignError, Gpu};
 
-/// Ids of the groups to cull, made by a strategy's own pass: `struct LiveGroups` of `live.wesl`.
+/// The indices of the groups to cull, which a strategy's own pass writes: `struct LiveGroups` of
+/// `live.wesl`.
 ///
-/// A strategy clears it at the start of a frame (`clear_live`), and appends each group once
-/// (`append_live`); [`Culler`](crate::Culler) then culls those groups and no others. Groups that
-/// are not appended must never be looked up: their records are those of an earlier frame.
+/// A strategy clears it at the start of a frame (`clear_live`) and appends each group once
+/// (`append_live`). [`Culler`](crate::Culler) then culls only those groups. Shading must never look
+/// up other groups: their records are from an earlier frame.
 #[derive(Debug)]
 pub struct LiveGroups {
     buffer: wgpu::Buffer,
@@ -18,13 +19,13 @@ pub struct LiveGroups {
 const HEADER: u64 = 16;
 
 impl LiveGroups {
-    /// Room for no group.
+    /// Makes it without room for groups.
     pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
         Ok(Self { buffer: allocate(gpu, 0)?, most: 0 })
     }
 
-    /// Makes room for `most` groups. Returns whether the buffer was made anew, so that bind groups
-    /// must be.
+    /// Makes room for `most` groups. Returns whether it replaced the buffer; bind groups must then
+    /// be made again.
     pub fn prepare(&mut self, gpu: &Gpu, most: u32) -> Result<bool, AssignError> {
         if most <= self.most {
             return Ok(false);
@@ -44,13 +45,14 @@ impl LiveGroups {
         &self.buffer
     }
 
-    /// The WESL module that clears and appends, to mount as `package::live`: it has the buffer,
-    /// writable, at binding 0 of bind group 2.
+    /// The WESL module that clears and appends. Mount it as `package::live`. It declares the
+    /// buffer, writable, at binding 0 of bind group 2.
     pub const WESL: &str = include_str!("shaders/live.wesl");
 }
 
 fn allocate(gpu: &Gpu, most: u32) -> Result<wgpu::Buffer, AssignError> {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-    // Read with a vector of three for workgroup counts, the struct is a multiple of 16 bytes.
+    // Shaders that read the workgroup counts as a vector of three see a struct of a multiple of 16
+    // bytes.
     gpu.buffer("live groups", HEADER + u64::from(most.max(4)) * 4, usage)
 }

@@ -1,8 +1,8 @@
-//! The models of a scene as a strategy sees them.
+//! The boxes around a scene's models.
 
 use glam::{Mat4, Vec3};
 
-/// The oriented box around a model: every sample of the model lies in it, up to the rounding of
+/// The oriented box around a model. Every sample of the model lies in it, up to the rounding of
 /// depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelBox {
@@ -15,12 +15,12 @@ pub struct ModelBox {
 }
 
 impl ModelBox {
-    /// The box, along axes of its own, around the image of the box from `min_object` to
-    /// `max_object`. Any affine transform will do: scaled, mirrored, sheared, flat.
+    /// The oriented box around the transformed box from `min_object` to `max_object`. The transform
+    /// may be any affine one: scaled, mirrored, sheared or flat.
     pub fn new(object_to_world: Mat4, min_object: Vec3, max_object: Vec3) -> Self {
         let half = 0.5 * (max_object - min_object);
         let edges = [0, 1, 2].map(|i| object_to_world.col(i).truncate() * half[i]);
-        // Gram and Schmidt, longest edge first: it is the one that a box must follow.
+        // Gram-Schmidt, longest edge first, because the box must follow that edge most closely.
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| edges[b].length_squared().total_cmp(&edges[a].length_squared()));
         let first = edges[order[0]].normalize_or(Vec3::X);
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn sheared_and_flat_boxes_are_held() {
+    fn boxes_contain_sheared_and_flat_models() {
         let mut shear = Mat4::from_rotation_x(0.3);
         shear.y_axis.x = 1.5;
         for transform in [shear, Mat4::from_scale(Vec3::new(1.0, 0.0, 3.0)), Mat4::ZERO] {

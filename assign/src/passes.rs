@@ -1,7 +1,7 @@
-//! Named passes: what a strategy records, and what a clock can time.
+//! Named passes, which strategies record and a clock can time.
 
-/// Where passes are recorded. A renderer passes [`EncoderPasses`]; a benchmark passes a recorder
-/// that times each name.
+/// A recorder of passes. A renderer passes [`EncoderPasses`]; a benchmark passes a recorder that
+/// times each name.
 pub trait Passes {
     /// Records one compute pass.
     fn compute(&mut self, name: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>));
@@ -14,11 +14,11 @@ pub trait Passes {
         record: &mut dyn FnMut(&mut wgpu::RenderPass<'_>),
     );
 
-    /// The encoder between passes, for copies that no clock should count.
+    /// The encoder between passes, for copies that no clock should time.
     fn encoder(&mut self) -> &mut wgpu::CommandEncoder;
 }
 
-/// Passes recorded into a renderer's own encoder, untimed.
+/// Records passes into a renderer's own encoder, untimed.
 pub struct EncoderPasses<'a> {
     /// The encoder.
     pub encoder: &'a mut wgpu::CommandEncoder,

@@ -1,4 +1,4 @@
-//! Small values read back without waiting: a ring of staging buffers.
+//! Reads small values back without waiting, through a ring of staging buffers.
 
 use std::{
     marker::PhantomData,
@@ -9,29 +9,31 @@ use bytemuck::Pod;
 
 use crate::Gpu;
 
-/// Frames that may be in flight before a read-back is skipped.
+/// Read-backs that may be in flight at once; further ones are skipped.
 const DEPTH: usize = 4;
 
 #[derive(Debug)]
 enum State {
     Free,
-    /// Copied to by an encoder that has been, or is about to be, submitted; its number.
+    /// An encoder that has been or will be submitted copies to it. The value is the record's
+    /// number.
     Recorded(u64),
     Mapping(u64, Receiver<bool>),
 }
 
-/// Reads a `T`, the first bytes of a buffer, back from the GPU without waiting, a frame or more late.
+/// Reads a `T` from the start of a GPU buffer without waiting. The value arrives one or more frames
+/// late.
 #[derive(Debug)]
 pub struct Readback<T> {
     slots: Vec<(wgpu::Buffer, State)>,
-    /// The newest value, and the number of its record.
+    /// The newest value, with the number of its record.
     latest: Option<(u64, T)>,
     recorded: u64,
     value: PhantomData<T>,
 }
 
 impl<T: Pod> Readback<T> {
-    /// Nothing read yet.
+    /// Makes the staging buffers.
     pub fn new(gpu: &Gpu, label: &str) -> Self {
         let slot = || {
             let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -50,7 +52,7 @@ impl<T: Pod> Readback<T> {
         }
     }
 
-    /// Copies the value; skipped while all slots are in flight.
+    /// Copies the value. Does nothing while all staging buffers are in flight.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer) {
         let free = self.slots.iter_mut().find(|(_, state)| matches!(state, State::Free));
         if let Some((buffer, state)) = free {
@@ -60,19 +62,19 @@ impl<T: Pod> Readback<T> {
         }
     }
 
-    /// Takes what has arrived. Call after the recorded encoder was submitted.
+    /// Takes the values that have arrived. Call it after the recorded encoder was submitted.
     pub fn poll(&mut self, gpu: &Gpu) {
         for (buffer, state) in &mut self.slots {
             if let State::Recorded(number) = *state {
                 let (sender, receiver) = channel();
                 buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-                    // The receiver is gone where the lists were dropped meanwhile.
+                    // The receiver is gone if the lists were dropped meanwhile.
                     let _ = sender.send(result.is_ok());
                 });
                 *state = State::Mapping(number, receiver);
             }
         }
-        // A lost device shows at the next submission; here it only means no news.
+        // A lost device shows at the next submission. Here it only means that nothing arrives.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         for (buffer, state) in &mut self.slots {
             let State::Mapping(number, receiver) = state else {

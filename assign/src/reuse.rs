@@ -1,18 +1,17 @@
-//! Lists that are used for several frames: the `update` axis.
+//! Reuse of lists over several frames: the `update` axis.
 
 use crate::{AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, SampleDomain};
 
-/// A strategy whose lists are made every `frames` frames and read in between.
+/// A strategy that makes its lists only every `frames` frames.
 ///
-/// Lossy where the groups move with the camera, or lights or models move: a sample then reads the
-/// list that its group had. Lossless where neither does, as with the cells of a grid under lights
-/// that stand still.
+/// It is lossy if groups move with the camera, or if lights or models move: a sample then reads its
+/// group's old list. It is lossless if nothing of that moves, as with grid cells and still lights.
 pub struct Reuse {
     inner: Box<dyn Assignment>,
     frames: u32,
-    /// Frames since the lists were made; `None` where they must be made anew.
+    /// Frames since the lists were made; `None` if they must be made again.
     age: Option<u32>,
-    /// What the lists were made into, and for how many lights, groups and look-ups.
+    /// The buffers and counts for which the lists were made.
     made: Option<Made>,
 }
 
@@ -27,7 +26,7 @@ struct Made {
 }
 
 impl Reuse {
-    /// Wraps a strategy; 1 frame is every frame.
+    /// Wraps a strategy. With `frames` 1 it makes its lists every frame.
     pub fn new(inner: Box<dyn Assignment>, frames: u32) -> Result<Self, AssignError> {
         if frames == 0 {
             return Err(AssignError::Parameter {
@@ -60,7 +59,7 @@ impl Assignment for Reuse {
             samples: frame.samples,
             generation: lists.generation(),
         };
-        // A buffer that was made anew holds no lists.
+        // A new buffer holds no lists.
         if self.made.as_ref() != Some(&now) {
             self.made = Some(now);
             self.age = None;

@@ -6,10 +6,11 @@ use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
 use crate::{AssignError, Gpu, LightKinds, StrategyWesl, compiled::ModuleKey};
 
-/// A set of WESL modules, flags and the bind group that lists are read from, linked to WGSL.
+/// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
+/// to WGSL.
 ///
-/// It starts with the contract's own modules: `package::view`, `package::sample`,
-/// `package::lights`, `package::volume`, `package::lists` and, for kernels that make lists,
+/// It starts with the contract's modules: `package::view`, `package::sample`, `package::lights`,
+/// `package::volume`, `package::window`, `package::lists` and, for kernels that make lists,
 /// `package::reserve`.
 #[derive(Clone, Debug)]
 pub struct Shader<'a> {
@@ -18,9 +19,12 @@ pub struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    /// The contract's modules; lists are read from bind group `lists_group`. The flag `lanes_reserve`
-    /// is off: `package::reserve` may reserve one list a workgroup at once, and with the flag on one a
-    /// lane of workgroups of 256.
+    /// The contract's modules, which read lists from bind group `lists_group`. These flags start
+    /// off:
+    ///
+    /// - `lanes_reserve`: with it, every lane of workgroups of 256 may reserve a list at once
+    ///   (`package::reserve`); without it, one lane per workgroup.
+    /// - `hard_cut`: with it, lights end at their range without a window (`package::window`).
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         Self { modules: Vec::new(), flags: Vec::new() }
@@ -37,7 +41,7 @@ impl<'a> Shader<'a> {
             .light_kinds(LightKinds::default())
     }
 
-    /// Compiles what lights of these kinds take.
+    /// Compiles the code for lights of these kinds.
     pub fn light_kinds(self, kinds: LightKinds) -> Self {
         self.flag("spots", kinds.spots).flag("areas", kinds.areas)
     }
@@ -58,14 +62,14 @@ impl<'a> Shader<'a> {
         flags.iter().fold(shader, |shader, (name, value)| shader.flag(name, *value))
     }
 
-    /// Sets a flag that `@if` reads. A flag that a module reads and nothing sets is an error.
+    /// Sets a flag that `@if` reads. Linking fails if a module reads a flag that is not set.
     pub fn flag(mut self, name: &str, value: bool) -> Self {
         self.flags.retain(|(known, _)| known != name);
         self.flags.push((name.to_owned(), value));
         self
     }
 
-    /// Links `root` and what it imports; keeps all its entry points.
+    /// Links `root` and everything that it imports. Keeps all its entry points.
     pub fn link(&self, root: &str) -> Result<String, AssignError> {
         let fail = |reason: String| AssignError::Shader { module: root.to_owned(), reason };
         let mut resolver = VirtualResolver::new();
@@ -86,20 +90,20 @@ impl<'a> Shader<'a> {
         compiler.compile(&root).map(|linked| linked.to_string()).map_err(|e| fail(e.to_string()))
     }
 
-    /// Links `root` and makes a shader module of it, once per device. Every index is checked on the GPU,
-    /// and on Vulkan, Metal and DX12 every loop is counted, so that none is endless.
+    /// Links `root` and makes a shader module from it, once per device. The GPU checks every index.
+    /// On Vulkan, Metal and DX12 it also counts loop rounds, so that no loop is endless.
     pub fn create(&self, gpu: &Gpu, root: &str) -> Result<wgpu::ShaderModule, AssignError> {
-        self.module_of(gpu, root, true, |descriptor| gpu.device.create_shader_module(descriptor))
+        self.make_module(gpu, root, true, |descriptor| gpu.device.create_shader_module(descriptor))
     }
 
-    /// As [`create`](Self::create), but loops are not counted. Counters keep a loop from being
-    /// unrolled: on an H200 they made the passes `bounds` and `shade` of SC-E/48x48x40 27 % and 9 %
-    /// slower, and `cull` of SC-E/48x48x40/bvh 19 %.
+    /// As [`create`](Self::create), but without loop counters. Counters prevent unrolling: on an
+    /// H200 they made the passes `bounds` and `shade` of SC-E/48x48x40 27 % and 9 % slower, and
+    /// `cull` of SC-E/48x48x40/bvh 19 %.
     ///
     /// # Safety
     ///
-    /// Every loop of `root`, and of whatever it imports, must end by itself, whatever its buffers
-    /// hold: a driver may answer an endless loop with anything.
+    /// Every loop of `root` and of its imports must end by itself, whatever the buffers hold. An
+    /// endless loop is undefined behaviour in the driver.
     #[allow(unsafe_code, reason = "the one way to a module without loop counters")]
     pub unsafe fn create_uncounted(
         &self,
@@ -110,13 +114,13 @@ impl<'a> Shader<'a> {
             force_loop_bounding: false,
             ..wgpu::ShaderRuntimeChecks::checked()
         };
-        self.module_of(gpu, root, false, |descriptor| {
-            // SAFETY: loop counters alone are left out, and the caller vouches for the loops.
+        self.make_module(gpu, root, false, |descriptor| {
+            // SAFETY: only loop counters are omitted, and the caller guarantees that the loops end.
             unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
         })
     }
 
-    fn module_of(
+    fn make_module(
         &self,
         gpu: &Gpu,
         root: &str,
@@ -162,11 +166,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_the_same_is_compiled_once_and_what_differs_is_not_shared() {
+    fn equal_inputs_are_compiled_once_and_different_ones_are_not_shared() {
         let gpu = Gpu::noop().expect("a noop device");
         let stages = wgpu::ShaderStages::COMPUTE;
         let layout = gpu.bind_group_layout("out", &[storage_entry(0, stages, false)]);
-        assert_eq!(layout, gpu.bind_group_layout("again", &[storage_entry(0, stages, false)]));
+        assert_eq!(layout, gpu.bind_group_layout("same", &[storage_entry(0, stages, false)]));
         let wider = [storage_entry(0, stages, false), uniform_entry(1, stages)];
         let wider = gpu.bind_group_layout("wider", &wider);
         assert_ne!(layout, wider);

@@ -1,23 +1,23 @@
-//! The fall-off of a spot between its two cones, for f32 at every angle.
+//! The fall-off of a spot between its two cones, accurate in f32 at every angle.
 //!
-//! KHR_lights_punctual ramps by `(cos θ - cos outer) / (cos inner - cos outer)`, clamped to 0..1 and
-//! squared. The cosines of a narrow cone differ by less than f32 can tell: those of 0 and 0.05
-//! degrees by 4e-7. The squared chord between two unit vectors, `|u - v|^2 = 2 - 2 cos θ`, has full
-//! precision there, and the ramp is the same ratio of squared chords:
-//! `(outer^2 - chord^2) / (outer^2 - inner^2)`.
+//! KHR_lights_punctual ramps by `(cos θ - cos outer) / (cos inner - cos outer)`, clamped to 0..1
+//! and squared. In a narrow cone these cosines are too close for f32: those of 0 and 0.05 degrees
+//! differ by 4e-7. The squared chord between two unit vectors, `|u - v|^2 = 2 - 2 cos θ`, keeps
+//! full precision there. The ramp is the same ratio of squared chords: `(outer^2 - chord^2) /
+//! (outer^2 - inner^2)`.
 
-/// What shaders read of a spot's two angles.
+/// A spot's two angles in the form that shaders read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotRamp {
-    /// Squared chord of the outer angle: no light from there on.
+    /// Squared chord of the outer angle, where the light ends.
     pub outer_chord_2: f32,
-    /// 1 over the difference to the squared chord of the inner angle; [`STEP`](Self::STEP) where
-    /// both angles are the same, so that the light ends at once.
+    /// 1 over the difference to the squared chord of the inner angle; [`STEP`](Self::STEP) if both
+    /// angles are equal, so that the light ends at once.
     pub scale: f32,
 }
 
 impl SpotRamp {
-    /// The steepest ramp: a product with any difference of squared chords is finite.
+    /// The steepest ramp. Its product with any difference of squared chords is finite.
     pub const STEP: f32 = 1e30;
 
     /// The ramp between two half angles, radians, `0 <= inner <= outer <= π`.

@@ -1,24 +1,25 @@
-//! Suns: lights so far away that a whole scene sees them in the same direction.
+//! Suns: lights so far away that the whole scene sees them in one direction.
 //!
-//! A sun reaches every sample, so no list could leave it out, whatever the strategy. Suns therefore lie
-//! beside the lists: a shader sums the list's lights and then adds the suns, in their order.
+//! A sun reaches every sample, so every list of every strategy would hold it. Suns are therefore
+//! kept outside the lists: a shader sums the list's lights and then adds the suns in their order.
 
 use glam::Vec3;
 
 use crate::{AssignError, LightFault};
 
-/// The most suns of a scene: shaders evaluate all of them at every sample.
+/// The most suns of a scene. Shaders evaluate all of them at every sample.
 pub const MAX_SUNS: usize = 8;
 
-/// The greatest irradiance accepted in a channel: GGX's peak multiplies it by up to 8e4.
+/// The greatest accepted irradiance of a channel. GGX's peak multiplies it by up to 8e4.
 pub const MAX_IRRADIANCE: f32 = 1e18;
 
 /// A light from one direction (KHR_lights_punctual's `directional`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sun {
-    /// The way its light goes, of unit length, world space.
+    /// Unit vector along which its light travels, world space.
     pub direction: Vec3,
-    /// What a surface that faces it receives, linear RGB, each 0 to [`MAX_IRRADIANCE`] and not all 0.
+    /// Irradiance of a surface that faces the sun, linear RGB, each channel 0 to [`MAX_IRRADIANCE`]
+    /// and not all 0.
     pub irradiance: Vec3,
 }
 
@@ -27,7 +28,7 @@ impl Sun {
     ///
     /// # Errors
     ///
-    /// A [`LightFault`] that names the first field at fault.
+    /// A [`LightFault`] that names the first faulty field.
     pub fn check(&self) -> Result<(), LightFault> {
         let out = |field, value, accepted| Err(LightFault::OutOfRange { field, value, accepted });
         for (field, v) in [("sun direction", self.direction), ("sun irradiance", self.irradiance)] {
@@ -53,7 +54,7 @@ impl Sun {
     }
 }
 
-/// The suns of a scene, at most [`MAX_SUNS`], each without fault.
+/// The suns of a scene: at most [`MAX_SUNS`], none faulty.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Suns {
     suns: [Sun; MAX_SUNS],
@@ -61,11 +62,11 @@ pub struct Suns {
 }
 
 impl Suns {
-    /// Those of a list, in its order.
+    /// Takes suns in the order of a slice.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] where there are too many or one is faulty.
+    /// [`AssignError::Parameter`] if there are too many or one is faulty.
     pub fn new(suns: &[Sun]) -> Result<Self, AssignError> {
         let refuse = |value: String, accepted: String| {
             Err(AssignError::Parameter { field: "suns".into(), value, accepted })
@@ -81,12 +82,12 @@ impl Suns {
         Ok(all)
     }
 
-    /// Whether there is none.
+    /// Whether the scene has no sun.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// All of them.
+    /// All suns.
     pub fn as_slice(&self) -> &[Sun] {
         &self.suns[..self.count]
     }

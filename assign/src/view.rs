@@ -1,7 +1,7 @@
 //! The camera: world → view → clip → pixel, for every projection a renderer uses.
 //!
-//! View space is right-handed with +X right, +Y up and the camera looking down -Z; *view depth*
-//! is `-z`, positive in front. Clip depth runs 0..1, reversed or not.
+//! View space is right-handed: +X right, +Y up, and the camera looks along -Z. *View depth* is
+//! `-z`, positive in front of the camera. Clip depth runs from 0 to 1, reversed or not.
 
 mod extent;
 mod uniform;
@@ -14,7 +14,7 @@ pub use uniform::ViewUniform;
 /// The window that the camera looks through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// Perspective. The bounds are tangents: the window at view depth 1.
+    /// Perspective. The bounds are tangents: the window's corners at view depth 1.
     Perspective {
         /// Lower left corner `(left, bottom)` at view depth 1.
         min: Vec2,
@@ -35,11 +35,11 @@ pub enum Projection {
 pub enum DepthMapping {
     /// Near plane at 0, far plane at 1.
     Standard,
-    /// Near plane at 1, far plane at 0: even precision in floating point.
+    /// Near plane at 1, far plane at 0, which gives floating-point depth an even precision.
     Reversed,
 }
 
-/// The part of the render target that is drawn to, pixels.
+/// The part of the render target in which the image lies, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Viewport {
     /// Left edge inside the target.
@@ -57,21 +57,22 @@ pub struct Viewport {
 pub struct View {
     /// World to view space: a rotation and a translation.
     pub world_to_view: Mat4,
-    /// The window looked through.
+    /// The window that the camera looks through.
     pub projection: Projection,
     /// View depth of the near plane, metres: `> 0` for perspective, `>= 0` for orthographic.
     pub near_m: f32,
-    /// View depth of the far plane, metres, `> near`; `None` is infinitely far (perspective only).
+    /// View depth of the far plane, metres, `> near`; `None` means infinitely far (perspective
+    /// only).
     pub far_m: Option<f32>,
     /// Direction of clip depth.
     pub depth: DepthMapping,
-    /// Where in the target the image lies.
+    /// The part of the target in which the image lies.
     pub viewport: Viewport,
     /// Shift of the image in pixels, +X right and +Y down, as temporal anti-aliasing uses it.
     pub jitter: Vec2,
 }
 
-/// A view that cannot be used.
+/// Why a view is faulty.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("view: {field} is {value}: it must be {accepted}")]
 pub struct ViewError {
@@ -79,20 +80,22 @@ pub struct ViewError {
     pub field: &'static str,
     /// The offending value.
     pub value: String,
-    /// What would be accepted.
+    /// The accepted values.
     pub accepted: &'static str,
 }
 
 impl View {
-    /// A perspective camera at `eye` looking at `target`, reversed infinite depth, no jitter.
+    /// A perspective camera at `eye` that looks at `target`, with reversed infinite depth and no
+    /// jitter.
     pub fn look_at(eye: Vec3, target: Vec3, fov_y: f32, near_m: f32, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize_or(Vec3::NEG_Z);
         let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
         Self::looking(eye, forward, up, fov_y, near_m, size)
     }
 
-    /// A perspective camera at `eye` looking along the unit vector `forward`, reversed infinite depth,
-    /// no jitter. A direction holds its precision however far from the origin the eye is.
+    /// A perspective camera at `eye` that looks along the unit vector `forward`, with reversed
+    /// infinite depth and no jitter. A direction keeps its precision however far the eye is from
+    /// the origin.
     pub fn looking(
         eye: Vec3,
         forward: Vec3,
@@ -163,7 +166,8 @@ impl View {
         Ok(())
     }
 
-    /// Whether `world_to_view` keeps lengths and handedness: lights have one range in all spaces.
+    /// Whether `world_to_view` preserves lengths and handedness, so that a light's range is the
+    /// same in all spaces.
     fn is_rigid(&self) -> bool {
         let matrix = self.world_to_view;
         let linear = glam::Mat3::from_mat4(matrix);
@@ -174,14 +178,14 @@ impl View {
             && linear.determinant() > 0.0
     }
 
-    /// Whether perspective, and the window's corners with the jitter applied.
+    /// Whether the view is perspective, and the window's corners with jitter applied.
     fn window(&self) -> (bool, Vec2, Vec2) {
         let (perspective, min, max) = match self.projection {
             Projection::Perspective { min, max } => (true, min, max),
             Projection::Orthographic { min, max } => (false, min, max),
         };
         let size = Vec2::new(self.viewport.width.max(1) as f32, self.viewport.height.max(1) as f32);
-        // Moving the image right moves the window left; image y points down.
+        // To move the image right, the window moves left. Image y points down.
         let shift = Vec2::new(-self.jitter.x, self.jitter.y) * (max - min) / size;
         (perspective, min + shift, max + shift)
     }
@@ -191,7 +195,7 @@ impl View {
         self.world_to_view.inverse().w_axis.truncate()
     }
 
-    /// View to clip space, jitter included; clip depth as [`View::depth`] says.
+    /// View to clip space, with jitter. [`View::depth`] sets the direction of clip depth.
     pub fn view_to_clip(&self) -> Mat4 {
         let (perspective, min, max) = self.window();
         let near = self.near_m;
@@ -235,7 +239,7 @@ impl View {
         self.view_to_clip() * self.world_to_view
     }
 
-    /// The clip depth to clear a depth buffer to: the far end.
+    /// The clip depth to which a depth buffer is cleared: the far end.
     pub fn depth_clear(&self) -> f32 {
         match self.depth {
             DepthMapping::Standard => 1.0,

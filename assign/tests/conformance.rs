@@ -1,4 +1,4 @@
-//! The conformance suite on no culling, and what the suite itself promises.
+//! Runs the conformance suite on no culling, and tests the suite's own promises.
 
 use assign::{
     AssignError, Assignment, Everything, Frame, Gpu, LightLists, Lookup, Needs, Passes,
@@ -17,7 +17,7 @@ fn no_culling_conforms() {
     assert_eq!(report.cases.len(), CASES.len());
 }
 
-/// What a strategy is measured against that must list fewer.
+/// Other strategies must list fewer lights than this.
 #[test]
 fn no_culling_lists_every_light_for_every_sample() {
     let case = conformance::run_case("mixed-kinds", &everything).expect("conforms");
@@ -42,7 +42,8 @@ fn names_are_unique_and_unknown_ones_errors() {
     assert!(matches!(error, ConformanceError::NoCase(_)));
 }
 
-/// No culling that refuses orthographic views, and look-ups in the open where told to.
+/// A strategy without culling that refuses orthographic views and, if told to, look-ups at any
+/// depth.
 struct Picky {
     inner: Everything,
     opaque_only: bool,

@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-use assign::{AreaBounds, CullSettings, Culler, GroupShape, LightKinds, LightSource};
+use assign::{
+    AreaBounds, CullSettings, Culler, GroupShape, LightKinds, LightSource,
+    conformance::LinkedModule,
+};
 
 const GROUP_OF: &str = "
 import package::sample::ViewSample;
@@ -20,14 +23,15 @@ const BOXES: [(GroupShape, &str); 2] = [
     ),
 ];
 
-/// A shape with its bounds, settings, and whether only live groups are culled.
+/// A shape with its bounds, its settings, and whether only live groups are culled.
 type Permutation = (GroupShape, &'static str, CullSettings, bool);
 
 fn settings(tests: &str, source: LightSource) -> CullSettings {
     CullSettings { tests: tests.parse().unwrap(), source, ..CullSettings::default() }
 }
 
-/// Every subset of the frustum tests but none, and the boxes; from both sources, all or live.
+/// Every non-empty subset of the frustum tests, and the boxes, from both light sources, for all and
+/// for live groups.
 fn permutations() -> Vec<Permutation> {
     let names = ["hs", "sat-e", "sat-n", "sat-p", "sat-v"];
     let union = |bits: usize| {
@@ -48,7 +52,7 @@ fn permutations() -> Vec<Permutation> {
     all
 }
 
-/// A strategy of one group with the given bounds.
+/// A strategy with one group of the given bounds.
 fn strategy(bounds: &str) -> String {
     format!(
         "import package::bounds::GroupBounds;
@@ -59,18 +63,6 @@ fn strategy(bounds: &str) -> String {
     )
 }
 
-fn validate(source: &str) -> Result<naga::Module, String> {
-    let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
-    // What WebGPU has without any optional feature.
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .map_err(|e| e.emit_to_string(source))?;
-    Ok(module)
-}
-
 #[test]
 fn every_permutation_of_the_kernel_validates() {
     for (shape, bounds, settings, sparse) in permutations() {
@@ -79,7 +71,8 @@ fn every_permutation_of_the_kernel_validates() {
             let source =
                 Culler::kernel_source(shape, settings, sparse, strategy(bounds).as_str(), kinds)
                     .unwrap_or_else(|e| panic!("{what}: {e}"));
-            let module = validate(&source).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let linked = LinkedModule::new(&what, &source);
+            let module = linked.module();
             let mut entry_points: Vec<_> = module.entry_points.iter().map(|e| &e.name).collect();
             entry_points.sort();
             assert_eq!(entry_points, ["cull_groups"], "{what}");
@@ -96,7 +89,8 @@ fn every_permutation_of_the_kernel_validates() {
     }
 }
 
-/// Of a pool of 2^30 entries and 65,535 workgroups, each of which adds one list up to `CAREFUL`.
+/// The pool has 2^30 entries, and each of 65,535 workgroups adds one list of up to `CAREFUL`
+/// entries.
 #[test]
 fn reservations_at_once_cannot_wrap_the_cursor() {
     let (_, bounds, settings, sparse) = permutations()[0];
@@ -104,18 +98,12 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
     let kinds = LightKinds::default();
     let source =
         Culler::kernel_source(FRUSTUM.0, settings, sparse, strategy.as_str(), kinds).unwrap();
-    let module = validate(&source).unwrap();
-    let is_it = |name: &Option<String>| name.as_deref().is_some_and(|n| n.ends_with("CAREFUL"));
-    let (_, careful) = module.constants.iter().find(|(_, c)| is_it(&c.name)).unwrap();
-    let init = &module.global_expressions[careful.init];
-    let naga::Expression::Literal(naga::Literal::U32(careful)) = *init else {
-        panic!("{init:?}: not a number");
-    };
+    let careful = LinkedModule::new("the culling kernel", &source).constant("CAREFUL");
     let most = 65_535 * u64::from(careful) + (1 << 30);
     assert!(careful > 0 && most < 1 << 32, "{careful}: {most}");
 }
 
-/// Bounds of area lights change the kernel of scenes with area lights, and no other.
+/// The setting for area lights changes only the kernels of scenes with area lights.
 #[test]
 fn area_bounds_change_only_kernels_with_area_lights() {
     let boxes = BOXES.map(|(shape, bounds)| (shape, bounds, CullSettings::default(), true));
@@ -131,7 +119,7 @@ fn area_bounds_change_only_kernels_with_area_lights() {
                     kinds,
                 );
                 let source = linked.unwrap();
-                validate(&source).unwrap();
+                LinkedModule::new("the culling kernel", &source);
                 source
             };
             let differs = source(AreaBounds::Ball) != source(AreaBounds::Outline);
@@ -140,7 +128,7 @@ fn area_bounds_change_only_kernels_with_area_lights() {
     }
 }
 
-/// Permutations differ where they should: the flags reach the module.
+/// Every flag changes the linked kernel.
 #[test]
 fn flags_change_the_kernel() {
     let mut sources = Vec::new();
@@ -169,5 +157,6 @@ fn a_strategy_of_the_wrong_shape_is_rejected() {
         boxes.as_str(),
         LightKinds::default(),
     );
-    assert!(linked.map_err(|e| e.to_string()).and_then(|source| validate(&source)).is_err());
+    let validate = |source: String| LinkedModule::validate("boxes as frusta", &source);
+    assert!(linked.map_err(|e| e.to_string()).and_then(validate).is_err());
 }

@@ -22,8 +22,9 @@ pub use verdict::{METRIC, Verdict, error_of, verdict};
 use std::time::Instant;
 
 use crate::{
+    bench::Bench,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
-    compare::Bench,
+    compare::compare_on,
     error::HarnessError,
     messages::say,
     out_folder::OutFolder,
@@ -103,7 +104,7 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
         finals.warnings.push(ONE_POSE.to_owned());
     }
     finals.write(&args.out.join("results.json"))?;
-    let pictures = crate::again::pictures(&finals, &args.out.join("final"));
+    let pictures = crate::stored_report::pictures(&finals, &args.out.join("final"));
     let page = report::write_html(&finals, &pictures, &args.out)?;
     Ok(format!("{text}\n{table}\nreport   {}\nrounds   {}\n", page.display(), args.out.display()))
 }
@@ -184,7 +185,7 @@ impl<'a> Search<'a> {
         };
         let stage = self.args.stage.clone();
         let (results, _) =
-            self.bench.compare(&CompareArgs { out: out.clone(), stage, ..compare }, words)?;
+            compare_on(self.bench, &CompareArgs { out: out.clone(), stage, ..compare }, words)?;
         results.write(&out.join("results.json"))?;
         say(format!("         {name} took {:.1} s", began.elapsed().as_secs_f64()));
         Ok(results)

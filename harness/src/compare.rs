@@ -1,48 +1,39 @@
 //! `lightbench compare`: the main job.
 
-use std::{path::Path, sync::Arc};
+use std::path::Path;
 
 use assign::Gpu;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use scenes::Scene;
-use shading::{EDGE, HdrImage, LightBvh, Mode, WorldTriangles};
+use shading::{EDGE, HdrImage, LightBvh, Mode};
 
 use crate::{
+    bench::Bench,
     checks::{check_area_options, check_options, checked, remove_stale, served},
     choice::Choice,
-    cli::{CompareArgs, MAX_CHECKS, StageArgs},
-    described::{describe, note_faults},
+    cli::{CompareArgs, MAX_CHECKS},
+    described::note_faults,
     drift::note_drift,
     error::HarnessError,
-    errors::ImagePair,
+    image_errors::ImagePair,
     machine::machine,
     measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
-    messages::{say, say_error},
-    out_folder::{OutFolder, leave_all},
+    messages::say,
+    out_folder::OutFolder,
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{Machine, Results, Truth, TruthLevel, Untested},
+    results::{Results, Truth, TruthLevel, Untested},
+    schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
     strategy::BASELINE,
 };
 
-/// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
-pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
-/// The same along a path.
+/// Frames on the clock along a path: on a GPU, and on a software adapter.
 const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames before the clock, likewise.
 const DEFAULT_WARMUP: [u32; 2] = [16, 1];
-
-/// A device with the scene that was drawn last.
-pub struct Bench {
-    gpu: Gpu,
-    machine: Machine,
-    stage: Option<(String, Stage)>,
-    triangles: Option<(String, Scene, WorldTriangles)>,
-}
 
 /// Runs a comparison, writes its report, and returns what to print. `command` is the command
 /// line, for provenance.
@@ -51,7 +42,7 @@ pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, Harne
     check_options(args, &args.choices()?)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
-    let (results, pictures) = bench.compare(args, command)?;
+    let (results, pictures) = compare_on(&mut bench, args, command)?;
     write(&results, &pictures, &args.out)
 }
 
@@ -72,98 +63,40 @@ fn write(
     ))
 }
 
-impl Bench {
-    /// Opens a device.
-    pub fn open(adapter: Option<&str>) -> Result<Self, HarnessError> {
-        let gpu = Gpu::open(adapter)?;
-        end_on_device_error(&gpu);
-        let machine = machine(&gpu);
-        say(format!("adapter  {} ({}, {})", machine.adapter, machine.backend, machine.driver));
-        Ok(Self { gpu, machine, stage: None, triangles: None })
-    }
-
-    /// The machine that results come from.
-    pub fn machine(&self) -> &Machine {
-        &self.machine
-    }
-
-    /// The device.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// The stage that arguments ask for; the scene is opened once while it stays the same.
-    pub fn stage(&mut self, args: &StageArgs) -> Result<&mut Stage, HarnessError> {
-        let bounce = args.bounce.is_on();
-        let key = format!("{} {} {} {bounce}", args.scene, args.scene_scale, args.replicate);
-        let (_, stage) = match self.stage.take().filter(|(known, _)| *known == key) {
-            Some((key, mut stage)) => {
-                stage.set_up(&self.gpu, args)?;
-                self.stage.insert((key, stage))
-            }
-            None => {
-                let stage = Stage::new(&self.gpu, args)?;
-                describe(&stage);
-                self.stage.insert((key, stage))
-            }
-        };
-        Ok(stage)
-    }
-
-    /// A scene and its triangles on the GPU; opened once while it stays the same.
-    pub fn triangles(
-        &mut self,
-        scene: &str,
-        scale: f64,
-    ) -> Result<(&Scene, &WorldTriangles), HarnessError> {
-        let key = format!("{scene} {scale}");
-        let known = self.triangles.take().filter(|(known, ..)| *known == key);
-        let (_, scene, triangles) = match known {
-            Some(known) => self.triangles.insert(known),
-            None => {
-                let scene = scenes::open(scene)?.scaled(scale)?;
-                let triangles = WorldTriangles::new(&self.gpu, &scene)?;
-                self.triangles.insert((key, scene, triangles))
-            }
-        };
-        Ok((scene, triangles))
-    }
-
-    /// Runs a comparison; returns its results and the pictures that they name.
-    pub fn compare(
-        &mut self,
-        args: &CompareArgs,
-        command: Vec<String>,
-    ) -> Result<(Results, Pictures), HarnessError> {
-        let choices = args.choices()?;
-        check_options(args, &choices)?;
-        let gpu = self.gpu.clone();
-        let choices = checked(choices, &gpu)?;
-        let machine = machine(&gpu);
-        let stage = self.stage(&args.stage)?;
-        check_area_options(args, stage)?;
-        stage.area_model = args.area_model.unwrap_or_default();
-        stage.compensation = args.compensate.map(|lights| lights as f32);
-        // Refuse strategies that cannot serve the scene before any long work starts.
-        let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
-        let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
-        let mut run = Run {
-            results: Results::new(machine, command, truth),
-            args,
-            plan: plan(&gpu, args),
-            gpu,
-            stage,
-            pictures: Vec::new(),
-            untested: None,
-        };
-        run.follow_path();
-        run.results.warnings.extend(left_out);
-        run.warn(&choices);
-        remove_stale(&args.out)?;
-        run.look()?;
-        run.measure_all(&choices)?;
-        Ok((run.results, run.pictures))
-    }
+/// Runs a comparison on an open device; returns its results and the pictures that they name.
+pub fn compare_on(
+    bench: &mut Bench,
+    args: &CompareArgs,
+    command: Vec<String>,
+) -> Result<(Results, Pictures), HarnessError> {
+    let choices = args.choices()?;
+    check_options(args, &choices)?;
+    let gpu = bench.gpu().clone();
+    let choices = checked(choices, &gpu)?;
+    let machine = machine(&gpu);
+    let stage = bench.stage(&args.stage)?;
+    check_area_options(args, stage)?;
+    stage.area_model = args.area_model.unwrap_or_default();
+    stage.compensation = args.compensate.map(|lights| lights as f32);
+    // Refuse strategies that cannot serve the scene before any long work starts.
+    let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
+    let truth = Truth { level: args.truth, edge_tolerance: EDGE, notes: Vec::new() };
+    let mut run = Run {
+        results: Results::new(machine, command, truth),
+        args,
+        plan: plan(&gpu, args),
+        gpu,
+        stage,
+        pictures: Vec::new(),
+        untested: None,
+    };
+    run.follow_path();
+    run.results.warnings.extend(left_out);
+    run.warn(&choices);
+    remove_stale(&args.out)?;
+    run.look()?;
+    run.measure_all(&choices)?;
+    Ok((run.results, run.pictures))
 }
 
 /// The frames asked for, or the defaults of the kind of device.
@@ -360,13 +293,4 @@ fn progress_bar(total: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} frames, {eta} left  {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
-}
-
-/// An error that no call returned is the device's: one line, exit code 1, no panic.
-fn end_on_device_error(gpu: &Gpu) {
-    gpu.device.on_uncaptured_error(Arc::new(|error: wgpu::Error| {
-        say_error(format!("device: {error}"));
-        leave_all();
-        std::process::exit(1);
-    }));
 }

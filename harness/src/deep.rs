@@ -4,6 +4,7 @@ use assign::{AssignError, EncoderPasses, Gpu};
 use assign_cdi::{
     Build, Coverage, DeepImageSettings, DeepImages, Directions, Raster, Storage, Triangles,
 };
+use shading::WorldTriangles;
 
 use crate::{
     cli::{BuildChoice, DeepArgs, name_of},
@@ -46,6 +47,15 @@ pub fn settings_of(args: &DeepArgs) -> Result<DeepImageSettings, AssignError> {
     };
     settings.check()?;
     Ok(settings)
+}
+
+/// The buffer of a scene's triangles, as deep images take it.
+pub fn triangles_of(triangles: &WorldTriangles) -> Triangles<'_> {
+    Triangles {
+        positions: &triangles.positions,
+        count: triangles.count,
+        bounds_world: triangles.bounds_world,
+    }
 }
 
 /// Builds prepared images once, untimed, and waits for them.

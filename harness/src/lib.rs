@@ -3,9 +3,8 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod advise;
-pub mod again;
+pub mod bench;
 pub mod camera;
-pub mod cdi;
 pub mod chart;
 mod checks;
 pub mod choice;
@@ -13,12 +12,13 @@ pub mod cli;
 pub mod clock;
 pub mod compare;
 pub mod deep;
+pub mod deep_image_run;
 mod described;
 mod digits;
 pub mod drift;
 pub mod error;
-pub mod errors;
 pub mod fit_ltc;
+pub mod image_errors;
 pub mod interrupted;
 pub mod list_lengths;
 pub mod machine;
@@ -38,6 +38,7 @@ pub mod schedule;
 pub mod sight;
 pub mod stage;
 pub mod stored;
+pub mod stored_report;
 pub mod strategy;
 pub mod study;
 pub mod truth;

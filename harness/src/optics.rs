@@ -101,7 +101,7 @@ impl Optics {
     fn check(&self) -> Result<(), CliError> {
         match self.far {
             Far::Infinite if matches!(self.lens, Some(Lens::Orthographic { .. })) => {
-                let accepted = "a number of metres: the file's camera is orthographic";
+                let accepted = "a number of metres, because the file's camera is orthographic";
                 Err(CliError::out_of_range("--far", "infinite", accepted))
             }
             Far::At(far, source) if far <= self.near_m => {
@@ -110,9 +110,7 @@ impl Optics {
                         let near = format!("above the near plane, {}", self.near());
                         ("--far", far, near)
                     }
-                    _ => {
-                        ("--near", self.near_m, format!("below the far plane of the file, {far} m"))
-                    }
+                    _ => ("--near", self.near_m, format!("below the file's far plane, {far} m")),
                 };
                 Err(CliError::out_of_range(option, &value.to_string(), &accepted))
             }
@@ -120,7 +118,7 @@ impl Optics {
         }
     }
 
-    /// The near plane in words: where it is, and what says so.
+    /// The depth of the near plane and its source, in words.
     fn near(&self) -> String {
         format!("{} m {}", self.near_m, source_words(self.near_from, "of --near"))
     }
@@ -178,7 +176,8 @@ impl Optics {
             let near_m = f64::from(self.near_m);
             if span.nearest_m < near_m * (1.0 - SLACK) {
                 notes.push(format!(
-                    "surfaces from {} m on lie in front of the near plane, {} m {}: they are cut away",
+                    "the nearest surface, at {} m, lies in front of the near plane, {} m {}: the view cuts such surfaces \
+                     away",
                     shown(span.nearest_m),
                     shown(near_m),
                     source_words(self.near_from, "of --near"),
@@ -188,7 +187,8 @@ impl Optics {
                 && span.farthest_m > f64::from(far_m) * (1.0 + SLACK)
             {
                 notes.push(format!(
-                    "surfaces up to {} m away lie behind the far plane, {} m {}: they are not drawn",
+                    "the farthest surface, at {} m, lies behind the far plane, {} m {}: the view does not show such \
+                     surfaces",
                     shown(span.farthest_m),
                     shown(f64::from(far_m)),
                     source_words(from, "of --far"),
@@ -203,8 +203,8 @@ impl Optics {
         let step_m = off_m * f32::EPSILON;
         if step_m > finest_m(scene, view) {
             notes.push(format!(
-                "the camera stands {} m from the scene's origin, where positions are up to {} m apart: \
-                 surfaces and lights are off by as much",
+                "the camera is {} m from the scene's origin, where f32 positions are up to {} m apart: the \
+                 positions of surfaces and lights have errors of this size",
                 shown(f64::from(off_m)),
                 shown(f64::from(step_m)),
             ));
@@ -248,7 +248,7 @@ fn finest_m(scene: &Scene, view: &View) -> f32 {
     }
 }
 
-/// What says where a plane is, in words.
+/// The source of a plane's depth, in words.
 fn source_words(from: PlaneSource, option: &'static str) -> &'static str {
     match from {
         PlaneSource::Option => option,

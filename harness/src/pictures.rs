@@ -9,7 +9,7 @@ use crate::{
     choice::Choice,
     cli::{CompareArgs, PicturesChoice},
     error::HarnessError,
-    errors::{ImagePair, errors},
+    image_errors::{ImagePair, errors},
     measure::Checked,
     record::Seen,
     results::{Images, write_atomically},

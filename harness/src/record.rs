@@ -8,7 +8,7 @@ use crate::{
     cli::{CompareArgs, name_of},
     clock::clock_of,
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
     results::{
         Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, mean,

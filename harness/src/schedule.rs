@@ -4,6 +4,9 @@
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_pcg::Pcg64Mcg;
 
+/// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
+pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
+
 /// The most rounds of a still camera: as many as a confidence interval of the median can use.
 const MAX_ROUNDS: u32 = 16;
 

@@ -21,10 +21,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::{
-    cdi::measure,
+    bench::Bench,
     checks::check_options,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, StudyName, TruthArgs},
-    compare::Bench,
+    compare::compare_on,
+    deep_image_run::measure,
     error::HarnessError,
     messages::say,
     out_folder::OutFolder,
@@ -58,7 +59,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     if let Some(known) = known.as_ref().filter(|known| known.identity != wanted) {
         let value = out.display().to_string();
         let accepted = format!(
-            "a folder without a study, or with this one; it holds `{}`: give another --out",
+            "a folder without a study or with this study; it holds `{}`: choose another --out",
             known.identity.join(" ")
         );
         return Err(CliError::out_of_range("--out", &value, &accepted).into());
@@ -77,7 +78,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     manifest.jobs.iter().try_for_each(Job::check).map_err(|error| match is_new {
         true => error,
         false => CliError::new(format!(
-            "{}: {error}: another version listed the jobs there; give another --out",
+            "{}: {error}: another version of lightbench listed these jobs; choose another --out",
             out.display()
         )),
     })?;
@@ -156,7 +157,7 @@ fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError>
                 .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
         }
         let results = match asked {
-            Asked::Compare(args) => bench.compare(&args, job.command.clone())?.0,
+            Asked::Compare(args) => compare_on(bench, &args, job.command.clone())?.0,
             Asked::Truth(args) => render(bench, &args, job.command.clone())?,
             Asked::Cdi(args) => measure(bench, &args, job.command.clone())?,
         };

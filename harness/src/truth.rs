@@ -14,12 +14,12 @@ use shading::traced::{
 use shading::{EDGE, HdrImage, luminance};
 
 use crate::{
+    bench::Bench,
     checks::remove_stale,
     cli::{CliError, TruthArgs},
-    compare::Bench,
     described::note_faults,
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     machine::machine,
     messages::say,
     out_folder::OutFolder,

@@ -10,10 +10,9 @@ use scenes::Scene;
 use shading::{Renderer, WorldTriangles, rsm_view};
 
 use crate::{
-    cdi::triangles_of,
     cli::{RangeChoice, Span, StageArgs, VplArgs, name_of},
     clock::PassClock,
-    deep::{figures, settings_of, settle},
+    deep::{figures, settings_of, settle, triangles_of},
     drift::WarmUp,
     error::HarnessError,
     pass_samples::PassSamples,

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use harness::{
+    bench::Bench,
     cli::{CompareArgs, Invocation, parse},
-    compare::Bench,
+    compare::compare_on,
     report::{finding, render_table},
     results::{Results, Untested},
 };
@@ -139,7 +140,7 @@ impl Runs {
         let moved = kept.join("room.gltf");
         std::fs::rename(path, &moved).expect("moves");
         let args = args(&moved, &self.folder.path().join("out"), more);
-        self.bench.compare(&args, Vec::new()).expect("runs").0
+        compare_on(&mut self.bench, &args, Vec::new()).expect("runs").0
     }
 
     /// The picture of no culling.
@@ -232,10 +233,10 @@ fn cameras_follow_their_file_and_empty_views_count_as_untested() {
             assert_eq!(record.lists.untested, Some(why), "{camera}");
             assert!(!record.is_exact() && record.shows_no_loss(), "{camera}");
         }
-        let said = [finding(&results)[0].clone(), render_table(&results)];
+        let texts = [finding(&results)[0].clone(), render_table(&results)];
         assert!(results.warnings[0].starts_with("NOTHING WAS TESTED: "), "{:?}", results.warnings);
-        assert!(said.iter().all(|text| !text.contains("same image")), "{said:?}");
-        assert!(said[1].contains("NOTHING WAS TESTED"), "{said:?}");
+        assert!(texts.iter().all(|text| !text.contains("same image")), "{texts:?}");
+        assert!(texts[1].contains("NOTHING WAS TESTED"), "{texts:?}");
         assert!(harness::advise::verdict(&results, 0.0).is_none(), "{camera}");
         let advice = harness::advise::answer(&results, 0.0);
         assert!(advice.starts_with("No advice: "), "{advice}");

@@ -6,7 +6,7 @@ use std::{
 };
 
 use harness::{
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     results::{Errors, Results, TruthImage},
     study::Manifest,
 };

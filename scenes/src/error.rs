@@ -48,7 +48,7 @@ pub enum SceneError {
     },
     /// The file requires a glTF extension that this importer does not know.
     #[error(
-        "{}: extensionsRequired names {}: supported are {supported}",
+        "{}: extensionsRequired names {}: the supported extensions are {supported}",
         one_line(file.display()), quoted(extension)
     )]
     Extension {

@@ -12,7 +12,7 @@ pub enum ShadingError {
     #[error(transparent)]
     Assign(#[from] AssignError),
     /// The image size lies outside what the device draws.
-    #[error("size is {width}x{height}: it must be 1 to {limit} pixels each way on this device")]
+    #[error("size is {width}x{height}: it must be 1 to {limit} pixels on each side on this device")]
     Size {
         /// Width asked for, pixels.
         width: u32,
@@ -22,7 +22,9 @@ pub enum ShadingError {
         limit: u32,
     },
     /// A texture exceeds what the device holds.
-    #[error("image {name} is {width}x{height}: this device holds at most {limit} pixels each way")]
+    #[error(
+        "image {name} is {width}x{height}: this device allows at most {limit} pixels on each side"
+    )]
     Texture {
         /// The image's name.
         name: String,
@@ -34,7 +36,7 @@ pub enum ShadingError {
         limit: u32,
     },
     /// Two images differ in size and cannot be compared.
-    #[error("an image of {}x{} pixels does not go with one of {}x{}", left[0], left[1], right[0], right[1])]
+    #[error("an image of {}x{} pixels cannot be compared with one of {}x{}", left[0], left[1], right[0], right[1])]
     Mismatch {
         /// Width and height of the first, pixels.
         left: [u32; 2],
@@ -43,7 +45,7 @@ pub enum ShadingError {
     },
     /// A lighting pass meets a kind of light that its shader was not made for.
     #[error(
-        "the lighting pass was made for {made:?}, and the lights are of {lights:?}: make it anew"
+        "the lighting pass was made for {made:?}, and the lights are of {lights:?}: create it again"
     )]
     Kinds {
         /// The kinds that it was made for.

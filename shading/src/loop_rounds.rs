@@ -27,7 +27,7 @@ impl LightTotals {
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
         });
         let (areas, vertices) = areas.fold((0, 0), |(areas, sum), n| (areas + 1, sum + n));
-        Self { kinds: LightKinds::of(lights), count: lights.len() as u64, areas, vertices }
+        Self { kinds: LightKinds::among(lights), count: lights.len() as u64, areas, vertices }
     }
 
     /// Rounds of lighting a sample by all of them: a round a light; of an area light one a vertex for

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use assign::StrategyWesl;
+use assign::{StrategyWesl, conformance::LinkedModule};
 
 /// A strategy's look-up: name, WESL, bindings.
 type LookUp = (&'static str, StrategyWesl<'static>, &'static [u32]);
@@ -87,25 +87,9 @@ fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
         shader = shader.strategy(wesl);
     }
     let source = shader.link(root).unwrap_or_else(|e| panic!("{what}: {e}"));
-    let module = naga::front::wgsl::parse_str(&source)
-        .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
-    // What WebGPU has without any optional feature.
-    let info = naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(&source)));
-    let used = |handle: naga::Handle<naga::GlobalVariable>| {
-        (0..module.entry_points.len()).any(|i| !info.get_entry_point(i)[handle].is_empty())
-    };
-    let bindings = module
-        .global_variables
-        .iter()
-        .filter(|&(handle, _)| used(handle))
-        .filter_map(|(_, variable)| variable.binding.map(|b| (b.group, b.binding)))
-        .collect();
-    let entry_points = module.entry_points.iter().map(|e| e.name.clone()).collect();
+    let linked = LinkedModule::new(&what, &source);
+    let bindings = linked.used_bindings();
+    let entry_points = linked.module().entry_points.iter().map(|e| e.name.clone()).collect();
     Linked { entry_points, bindings, source }
 }
 

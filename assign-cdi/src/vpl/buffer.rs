@@ -1,4 +1,4 @@
-//! The buffer of VPLs, from the map to lights.
+//! The buffer of VPLs, from the map to the lights.
 
 use assign::{AssignError, Gpu, Light, LightEmission, LightShape, LightSphere, Passes, Readback};
 use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
@@ -11,21 +11,22 @@ use super::{
     settings::VplSettings,
 };
 
-/// How many VPLs there were at each stage: `vpl_keep.wesl`, `struct Counts`. 16 bytes.
+/// The number of VPLs at each stage: `struct Counts` of `vpl_keep.wesl`. 16 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct VplCounts {
-    /// Chosen from the map, whether there was room for them or not.
+    /// Chosen from the map, whether they fitted or not.
     pub chosen: u32,
-    /// Lights that were kept.
+    /// Kept as lights.
     pub kept: u32,
-    /// Dropped for too small a range.
+    /// Dropped because the range was too small.
     pub too_small: u32,
-    /// Dropped, or clamped, for too large or an unknown range.
+    /// Dropped or clamped because the range was too large or unknown.
     pub too_large: u32,
 }
 
-/// VPLs on the GPU: chosen from a reflective shadow map, given ranges by the caller, kept as lights.
+/// VPLs on the GPU. They are chosen from a reflective shadow map; the caller gives them ranges; then they are kept as
+/// lights.
 #[derive(Debug)]
 pub struct VplBuffer {
     settings: VplSettings,
@@ -40,11 +41,11 @@ pub struct VplBuffer {
 }
 
 impl VplBuffer {
-    /// Makes the kernels, and buffers without room.
+    /// Makes the kernels, and empty buffers.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] where a setting is out of its range; what the device refuses.
+    /// [`AssignError::Parameter`] if a setting is out of its range, and any error of the device.
     pub fn new(gpu: &Gpu, settings: VplSettings) -> Result<Self, AssignError> {
         settings.check()?;
         Ok(Self {
@@ -60,11 +61,11 @@ impl VplBuffer {
         })
     }
 
-    /// Changes the settings, from the next [`prepare`](Self::prepare) on.
+    /// Changes the settings. They apply from the next [`prepare`](Self::prepare) on.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] where one is out of its range; the old ones stay.
+    /// [`AssignError::Parameter`] if one is out of its range. Then the old settings stay.
     pub fn set_settings(&mut self, settings: VplSettings) -> Result<(), AssignError> {
         settings.check()?;
         self.settings = settings;
@@ -76,14 +77,14 @@ impl VplBuffer {
         &self.settings
     }
 
-    /// Sizes buffers and binds the map: outside the clock, before each frame's passes. Buffers may be
-    /// made anew, so those who bind them must do so after it.
+    /// Sizes buffers and binds the map: outside the clock, before the passes of each frame. It may replace buffers, so
+    /// bind them after it.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] where the map's light is no spot, its view not perspective, its
-    /// size above [`MAX_RSM_SIDE`](crate::MAX_RSM_SIDE) or its textures too small for the viewport;
-    /// [`AssignError::View`], [`AssignError::TooLarge`], [`AssignError::OutOfMemory`].
+    /// [`AssignError::Parameter`] if the map's light is not a spot, if its view is not perspective, if it is larger than
+    /// [`MAX_RSM_SIDE`](crate::MAX_RSM_SIDE), or if its textures are too small for the viewport. Also
+    /// [`AssignError::View`], [`AssignError::TooLarge`] and [`AssignError::OutOfMemory`].
     pub fn prepare(&mut self, gpu: &Gpu, rsm: &Rsm<'_>) -> Result<(), AssignError> {
         self.readback.poll(gpu);
         let mut uniform = rsm.uniform()?;
@@ -103,29 +104,29 @@ impl VplBuffer {
         self.keep.prepare(gpu, &self.settings, capacity, found, &self.kept)
     }
 
-    /// Records `rsm-mips` and `vpl-choose`: positions, normals and intensities.
+    /// Records `rsm-mips` and `vpl-choose`, which write positions, normals and intensities.
     pub fn record_choose(&self, passes: &mut dyn Passes) {
         self.choose.record(passes, &self.counts);
     }
 
-    /// Records `vpl-keep`, after what fills the ranges: the lights.
+    /// Records `vpl-keep`, which writes the lights. Call it after the pass that fills the ranges.
     pub fn record_keep(&mut self, passes: &mut dyn Passes) {
         self.keep.record(passes, &self.counts);
         self.readback.record(passes.encoder(), &self.counts);
     }
 
-    /// VPLs that there is room for: the length of every array.
+    /// The most VPLs that fit: the length of every array.
     pub fn capacity(&self) -> u32 {
         self.capacity
     }
 
-    /// `array<vec4f>`: world-space positions on surfaces, and the side of the square on the surface
-    /// that each stands for, metres. The first [`VplCounts::chosen`] are in use.
+    /// `array<vec4f>`: world-space positions on surfaces, and in `w` the side of the square on the surface that a VPL
+    /// stands for, metres. The first [`VplCounts::chosen`] are in use.
     pub fn positions(&self) -> &wgpu::Buffer {
         &self.chosen.positions
     }
 
-    /// `array<vec4f>`: unit normals on the light's side; zero behind the last in use.
+    /// `array<vec4f>`: unit normals on the light's side; zero after the last one in use.
     pub fn normals(&self) -> &wgpu::Buffer {
         &self.chosen.normals
     }
@@ -135,23 +136,22 @@ impl VplBuffer {
         &self.chosen.intensities
     }
 
-    /// `array<f32>`: for the caller to fill with distances to surfaces, metres; [`f32::MAX`] is an
-    /// unknown one.
+    /// `array<f32>`: the caller fills it with distances to surfaces, metres. [`f32::MAX`] is an unknown distance.
     pub fn ranges_m(&self) -> &wgpu::Buffer {
         &self.ranges_m
     }
 
-    /// `array<LightSphere>` of the lights kept; the first [`VplCounts::kept`] are in use.
+    /// `array<LightSphere>` of the kept lights. The first [`VplCounts::kept`] are in use.
     pub fn spheres(&self) -> &wgpu::Buffer {
         &self.kept.spheres
     }
 
-    /// `array<LightEmission>` of the lights kept.
+    /// `array<LightEmission>` of the kept lights.
     pub fn emissions(&self) -> &wgpu::Buffer {
         &self.kept.emissions
     }
 
-    /// `array<vec4f>`, two a light: what the emissions' indices name.
+    /// `array<vec4f>`, two per light: the shapes that the emissions' indices point to.
     pub fn shapes(&self) -> &wgpu::Buffer {
         &self.kept.shapes
     }
@@ -161,17 +161,17 @@ impl VplBuffer {
         &self.counts
     }
 
-    /// The counts of a frame or more ago, without waiting; `None` before they arrive.
+    /// The newest counts that were read back, without waiting. They are at least one frame old. `None` before the first.
     pub fn latest_counts(&self) -> Option<VplCounts> {
         self.readback.latest()
     }
 
-    /// The counts of what was last submitted, blocking.
+    /// The counts of the last submitted frame. It blocks.
     ///
     /// # Errors
     ///
-    /// [`AssignError::Device`], [`AssignError::OutOfMemory`]; [`AssignError::Parameter`] where more
-    /// VPLs were chosen than [`VplSettings::limit`] has room for.
+    /// [`AssignError::Device`], [`AssignError::OutOfMemory`], and [`AssignError::Parameter`] if more VPLs were chosen
+    /// than [`VplSettings::limit`] allows.
     pub fn read_counts(&self, gpu: &Gpu) -> Result<VplCounts, AssignError> {
         let bytes = gpu.read(&self.counts, size_of::<VplCounts>() as u64)?;
         let counts: VplCounts = bytemuck::pod_read_unaligned(&bytes);
@@ -179,13 +179,13 @@ impl VplBuffer {
             return Err(AssignError::Parameter {
                 field: "limit of VPLs".into(),
                 value: self.capacity.to_string(),
-                accepted: format!("at least {}, the VPLs chosen", counts.chosen),
+                accepted: format!("at least {}, the number of VPLs chosen", counts.chosen),
             });
         }
         Ok(counts)
     }
 
-    /// The lights kept, in their order, blocking.
+    /// The kept lights, in their order. It blocks.
     ///
     /// # Errors
     ///
@@ -213,7 +213,7 @@ impl VplBuffer {
 
     /// Bytes of its buffers on the GPU.
     pub fn bytes(&self) -> u64 {
-        let own = [
+        let buffers = [
             &self.chosen.positions,
             &self.chosen.normals,
             &self.chosen.intensities,
@@ -223,8 +223,8 @@ impl VplBuffer {
             &self.kept.shapes,
             &self.counts,
         ];
-        let own: u64 = own.map(wgpu::Buffer::size).iter().sum();
-        own + self.choose.bytes() + self.keep.bytes()
+        let bytes: u64 = buffers.map(wgpu::Buffer::size).iter().sum();
+        bytes + self.choose.bytes() + self.keep.bytes()
     }
 }
 

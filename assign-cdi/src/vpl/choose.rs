@@ -1,4 +1,4 @@
-//! The passes `rsm-mips` and `vpl-choose`.
+//! The passes `rsm-mips` and `vpl-choose`: from the map to VPLs.
 
 use assign::{AssignError, Gpu, Passes, Shader, ViewUniform, entry, storage_entry, uniform_entry};
 use bytemuck::bytes_of;
@@ -9,7 +9,7 @@ use crate::{
     kernel::{self, workgroups},
 };
 
-/// The modules of both passes: roots are `package::vpl_mips` and `package::vpl_choose`.
+/// The modules of both passes. The roots are `package::vpl_mips` and `package::vpl_choose`.
 pub fn choose_shader() -> Shader<'static> {
     Shader::new(3)
         .module("package::vpl_rsm", include_str!("../shaders/vpl_rsm.wesl"))
@@ -17,10 +17,10 @@ pub fn choose_shader() -> Shader<'static> {
         .module("package::vpl_choose", include_str!("../shaders/vpl_choose.wesl"))
 }
 
-/// Bytes between the level numbers of the uniform buffer.
+/// Bytes from one level number to the next in the uniform buffer.
 const LEVEL_STRIDE: u32 = 256;
 
-/// Where chosen VPLs go.
+/// Buffers of the chosen VPLs.
 #[derive(Debug)]
 pub(super) struct Chosen {
     pub(super) positions: wgpu::Buffer,
@@ -28,7 +28,7 @@ pub(super) struct Chosen {
     pub(super) intensities: wgpu::Buffer,
 }
 
-/// Makes blocks of a map, and VPLs of the blocks.
+/// Makes blocks from a map, and VPLs from the blocks.
 #[derive(Debug)]
 pub(super) struct Choose {
     reflect: wgpu::ComputePipeline,
@@ -53,7 +53,7 @@ struct Layouts {
     choose: wgpu::BindGroupLayout,
 }
 
-/// Sized by the map.
+/// Buffers whose size depends on the map.
 #[derive(Debug)]
 struct Scratch {
     blocks: wgpu::Buffer,
@@ -77,18 +77,18 @@ impl Choose {
         let choose = kernel::uncounted(gpu, &shader, "package::vpl_choose")?;
         let layouts = Layouts::new(gpu);
         let view = &layouts.view;
-        let of_mips = [view, &layouts.mips, &layouts.level];
-        let of_choose = [view, &layouts.choose];
+        let mips_layouts = [view, &layouts.mips, &layouts.level];
+        let choose_layouts = [view, &layouts.choose];
         let level_numbers = gpu.uniform("RSM levels", u64::from(LEVEL_STRIDE) * 16);
         for level in 0..16_u32 {
             let at = u64::from(level * LEVEL_STRIDE);
             gpu.queue.write_buffer(&level_numbers, at, bytes_of(&[level, 0, 0, 0]));
         }
         Ok(Self {
-            reflect: kernel::compute(gpu, &mips, "reflect_texels", &of_mips),
-            join: kernel::compute(gpu, &mips, "join_blocks", &of_mips),
-            flag: kernel::compute(gpu, &choose, "flag_blocks", &of_choose),
-            write: kernel::compute(gpu, &choose, "write_vpls", &of_choose),
+            reflect: kernel::compute(gpu, &mips, "reflect_texels", &mips_layouts),
+            join: kernel::compute(gpu, &mips, "join_blocks", &mips_layouts),
+            flag: kernel::compute(gpu, &choose, "flag_blocks", &choose_layouts),
+            write: kernel::compute(gpu, &choose, "write_vpls", &choose_layouts),
             view: gpu.uniform("view of the RSM", size_of::<ViewUniform>() as u64),
             rsm: gpu.uniform("RSM", size_of::<RsmUniform>() as u64),
             level_numbers,
@@ -100,7 +100,7 @@ impl Choose {
         })
     }
 
-    /// Sizes buffers for the map, uploads what is known of it, and binds all.
+    /// Sizes buffers for the map, uploads its uniforms, and binds everything.
     pub(super) fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -152,20 +152,20 @@ impl Choose {
             entry(8, &chosen.normals),
             entry(9, &chosen.intensities),
         ];
-        let both = |own: &[wgpu::BindGroupEntry<'_>], layout| {
-            let entries: Vec<_> = map.iter().chain(own).cloned().collect();
+        let with_map = |others: &[wgpu::BindGroupEntry<'_>], layout| {
+            let entries: Vec<_> = map.iter().chain(others).cloned().collect();
             kernel::group_of(gpu, layout, &entries)
         };
         Groups {
             view: kernel::group(gpu, &self.layouts.view, &[&self.view]),
-            mips: both(&mips, &self.layouts.mips),
+            mips: with_map(&mips, &self.layouts.mips),
             level: kernel::group_of(gpu, &self.layouts.level, &[level]),
-            choose: both(&choose, &self.layouts.choose),
+            choose: with_map(&choose, &self.layouts.choose),
         }
     }
 
-    /// Records both passes; copies the number of VPLs chosen to the start of `counts`. Nothing,
-    /// before [`prepare`](Self::prepare).
+    /// Records both passes, and copies the number of chosen VPLs to the start of `counts`. Before
+    /// [`prepare`](Self::prepare) it records nothing.
     pub(super) fn record(&self, passes: &mut dyn Passes, counts: &wgpu::Buffer) {
         let (Some(groups), Some(scratch)) = (&self.groups, &self.scratch) else { return };
         passes.compute("rsm-mips", &mut |pass| self.dispatch_mips(pass, groups));
@@ -244,12 +244,9 @@ impl Layouts {
         let choose =
             [(3, true), (4, true), (5, false), (6, true), (7, false), (8, false), (9, false)]
                 .map(|(binding, read_only)| storage_entry(binding, stages, read_only));
-        let layout = |label, own: &[wgpu::BindGroupLayoutEntry]| {
-            let entries: Vec<_> = map.iter().chain(own).copied().collect();
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries: &entries,
-            })
+        let layout = |label, others: &[wgpu::BindGroupLayoutEntry]| {
+            let entries: Vec<_> = map.iter().chain(others).copied().collect();
+            gpu.bind_group_layout(label, &entries)
         };
         Self {
             view: kernel::layout(gpu, "view of the RSM", stages, &[kernel::Slot::Uniform]),

@@ -1,4 +1,4 @@
-//! The pass `vpl-keep`.
+//! The pass `vpl-keep`: from VPLs with ranges to lights.
 
 use assign::{AssignError, Gpu, LightEmission, LightSphere, Passes, Shader};
 use bytemuck::{Pod, Zeroable, bytes_of};
@@ -12,30 +12,30 @@ use crate::{
     kernel::{self, Slot, workgroups},
 };
 
-/// The pass's module: the root is `package::vpl_keep`.
+/// The modules of the pass. The root is `package::vpl_keep`.
 pub fn keep_shader() -> Shader<'static> {
     Shader::new(3).module("package::vpl_keep", include_str!("../shaders/vpl_keep.wesl"))
 }
 
-/// What the kernels are told: `vpl_keep.wesl`, `struct Keep`. 24 bytes.
+/// What the kernels read: `struct Keep` of `vpl_keep.wesl`. 24 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct KeepUniform {
-    /// A light's range over the distance found.
+    /// The light's range = this factor times the distance found.
     pub range_scale: f32,
-    /// Smaller lights drop out, metres.
+    /// Lights of smaller range are dropped, metres.
     pub min_range_m: f32,
-    /// Larger lights drop out or shrink to it, metres.
+    /// Lights of larger range are dropped or clamped to it, metres.
     pub max_range_m: f32,
-    /// Square of the lights' minimum distance, square metres.
+    /// Square of the minimum distance of the lights, square metres.
     pub min_distance_2: f32,
-    /// VPLs that there is room for.
+    /// The most VPLs that fit.
     pub capacity: u32,
-    /// 1: larger lights shrink; 0: they drop out.
+    /// 1: larger ranges are clamped. 0: their lights are dropped.
     pub clamps: u32,
 }
 
-/// Where lights go.
+/// Buffers of the kept lights.
 #[derive(Debug)]
 pub(super) struct Kept {
     pub(super) spheres: wgpu::Buffer,
@@ -54,13 +54,13 @@ impl Kept {
     }
 }
 
-/// Makes lights of VPLs with ranges.
+/// Makes lights from VPLs with ranges.
 #[derive(Debug)]
 pub(super) struct Keep {
     flag: wgpu::ComputePipeline,
     write: wgpu::ComputePipeline,
     layouts: [wgpu::BindGroupLayout; 3],
-    /// Group 1 of `write`.
+    /// An empty bind group: group 1 of `write`.
     none: wgpu::BindGroup,
     uniform: wgpu::Buffer,
     prefix: PrefixSum,
@@ -82,7 +82,7 @@ impl Keep {
             layout(&[read, read, read, read, write, write, write]),
         ];
         let [ranges, flags, lights] = &layouts;
-        // Both together would take more storage buffers than WebGPU's eight.
+        // Flags and lights together would exceed WebGPU's eight storage buffers.
         let none = kernel::layout(gpu, "none", stages, &[]);
         Ok(Self {
             flag: kernel::compute(gpu, &module, "flag_kept", &[ranges, flags]),
@@ -123,7 +123,7 @@ impl Keep {
             clamps: u32::from(settings.large == Large::Clamp),
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
-        let [of_ranges, of_flags, of_lights] = &self.layouts;
+        let [ranges_layout, flags_layout, lights_layout] = &self.layouts;
         let lights = [
             &self.offsets,
             &chosen.positions,
@@ -134,15 +134,15 @@ impl Keep {
             &kept.shapes,
         ];
         self.groups = Some([
-            kernel::group(gpu, of_ranges, &[&self.uniform, ranges_m]),
-            kernel::group(gpu, of_flags, &[&self.flags, counts]),
-            kernel::group(gpu, of_lights, &lights),
+            kernel::group(gpu, ranges_layout, &[&self.uniform, ranges_m]),
+            kernel::group(gpu, flags_layout, &[&self.flags, counts]),
+            kernel::group(gpu, lights_layout, &lights),
         ]);
         Ok(())
     }
 
-    /// Records the pass and fills the last three of `counts`. Nothing, before
-    /// [`prepare`](Self::prepare).
+    /// Records the pass, which fills the last three numbers of `counts`. Before [`prepare`](Self::prepare) it records
+    /// nothing.
     pub(super) fn record(&self, passes: &mut dyn Passes, counts: &wgpu::Buffer) {
         let Some([ranges, flags, lights]) = &self.groups else { return };
         passes.encoder().clear_buffer(counts, 4, Some(12));

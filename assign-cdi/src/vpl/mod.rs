@@ -1,22 +1,23 @@
-//! Virtual point lights from a reflective shadow map (Archer et al. 2019, section 3.2).
+//! Virtual point lights (VPLs) from a reflective shadow map (RSM; Archer et al. 2019, section 3.2).
 //!
-//! 1. `rsm-mips`: each texel's reflected light, then that of blocks of 2, 4, 8 … texels a side.
-//! 2. `vpl-choose`: the largest blocks no wider on the surface than a spacing become VPLs, single
-//!    texels where even those are wider; they are written in Morton order, so that neighbours are
-//!    near each other.
-//! 3. The caller's pass fills [`VplBuffer::ranges_m`] from [`VplBuffer::positions`] and
-//!    [`VplBuffer::normals`].
-//! 4. `vpl-keep`: VPLs with too small or too large a range drop out, the others become lights.
+//! 1. `rsm-mips` computes the light that each texel reflects, then sums it over blocks of 2, 4, 8 … texels a side.
+//! 2. `vpl-choose` turns blocks into VPLs: the largest blocks whose footprint on the surface is no wider than the
+//!    spacing, or a single texel if even that is wider. It writes them in Morton order, so neighbours in the buffer
+//!    are near each other.
+//! 3. The caller's pass fills [`VplBuffer::ranges_m`] from [`VplBuffer::positions`] and [`VplBuffer::normals`].
+//! 4. `vpl-keep` drops VPLs whose range is too small or too large. The others become lights.
 //!
 //! Nothing depends on the order in which threads run: the same map gives the same lights.
 //!
 //! # Light
 //!
-//! A texel of solid angle `w` seen from a spot of intensity `I` reflects the flux `I w a`, with `a` the
-//! diffuse albedo after Fresnel's term ([`lambertian_albedo`]); Lambert's law gives the intensity `I w a / pi` along the normal, whose integral over
-//! the half space is that flux. A texel whose shading normal faces away from the light reflects nothing,
-//! though its facet faces it. A block has its texels' sum and the place and normal of one of them, so
-//! the spacing changes where light comes from and not how much there is.
+//! Let a texel of solid angle `w` be lit by a spot of intensity `I`, and let `a` be the diffuse albedo after
+//! Fresnel's term ([`lambertian_albedo`]). The texel reflects the flux `I w a`. By Lambert's law its intensity along
+//! the normal is `I w a / pi`, because that integrates to the flux over the half-space.
+//!
+//! A texel whose shading normal faces away from the light reflects nothing, although its facet faces the light. A
+//! block has the summed light of its texels, and the position and normal of one of them. So the spacing changes where
+//! light comes from, but not how much there is.
 
 mod buffer;
 mod choose;

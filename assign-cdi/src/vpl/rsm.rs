@@ -3,53 +3,53 @@
 use assign::{AssignError, Light, LightShape, Projection, SpotRamp, View};
 use bytemuck::{Pod, Zeroable};
 
-/// The most texels of a map's side: one index a thread of 65,535 workgroups.
+/// The most texels along a side of a map. 65,535 workgroups then have a thread for every index.
 pub const MAX_RSM_SIDE: u32 = 2048;
 
-/// Levels of the largest map.
+/// Number of levels of the largest map.
 const LEVELS: usize = 12;
 
-/// A scene as a spot light sees it: a G-buffer drawn from the light's view.
+/// A scene as a spot sees it: a G-buffer drawn from the light's view.
 #[derive(Clone, Copy, Debug)]
 pub struct Rsm<'a> {
-    /// Depth, as the view maps it.
+    /// Depth, mapped as the view says.
     pub depth: &'a wgpu::TextureView,
-    /// World-space shading normals of any length; 0 where there is no surface. A texel whose normal
-    /// faces away from the light reflects nothing.
+    /// World-space shading normals of any length; 0 if there is no surface. A texel whose normal faces away from the
+    /// light reflects nothing.
     pub normals: &'a wgpu::TextureView,
-    /// Base colour, linear when loaded; metallic in alpha.
+    /// Base colour, linear when loaded, and metallic in alpha.
     pub base_color: &'a wgpu::TextureView,
-    /// The light's view, perspective; its viewport lies in all three textures.
+    /// The light's view. It is perspective, and its viewport lies in all three textures.
     pub view: &'a View,
     /// The light, a spot at the view's eye.
     pub light: &'a Light,
 }
 
-/// What kernels are told of the map: `vpl_rsm.wesl`, `struct Rsm`. 272 bytes.
+/// The map as kernels read it: `struct Rsm` of `vpl_rsm.wesl`. 272 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct RsmUniform {
     /// Radiant intensity on the cone's axis.
     pub intensity: [f32; 3],
-    /// Where the light's window ends, metres.
+    /// The light's range, metres: its window ends there.
     pub range_m: f32,
     /// Unit vector along the cone's axis.
     pub direction: [f32; 3],
     /// Squared chord of the cone's half angle: [`SpotRamp`].
     pub outer_chord_2: f32,
-    /// The light, world space, metres.
+    /// Position of the light, world space, metres.
     pub light_world: [f32; 3],
     /// 1 over the ramp's width in squared chords.
     pub ramp_scale: f32,
     /// Texels of a row, and rows.
     pub size: [u32; 2],
-    /// Levels, the texels' included.
+    /// Number of levels, including that of the texels.
     pub level_count: u32,
-    /// VPLs that there is room for.
+    /// The most VPLs that fit.
     pub capacity: u32,
-    /// Largest footprint of a block of several texels, metres.
+    /// The largest footprint of a block of several texels, metres.
     pub spacing_m: f32,
-    /// Texels of the smallest square around the map whose side is a power of two.
+    /// Number of texels of the smallest square that holds the map and whose side is a power of two.
     pub index_count: u32,
     /// Pads to 16 bytes.
     pub padding: [u32; 2],
@@ -58,7 +58,7 @@ pub struct RsmUniform {
 }
 
 impl Rsm<'_> {
-    /// Checks view and light, and tells what the kernels must know of them.
+    /// Checks the view and the light, and makes the uniform of the kernels.
     pub(super) fn uniform(&self) -> Result<RsmUniform, AssignError> {
         let refuse = |field: &str, value: String, accepted: &str| {
             let (field, accepted) = (field.into(), accepted.into());
@@ -76,7 +76,7 @@ impl Rsm<'_> {
         }
         self.check_textures()?;
         if let Err(fault) = self.light.check() {
-            return refuse("light of the RSM", fault.to_string(), "a light without faults");
+            return refuse("light of the RSM", fault.to_string(), "a valid light");
         }
         let LightShape::Spot { direction, inner_angle, outer_angle } = self.light.shape else {
             return refuse("light of the RSM", format!("{:?}", self.light.kind()), "a spot");
@@ -99,7 +99,7 @@ impl Rsm<'_> {
         })
     }
 
-    /// Whether the viewport lies in every texture.
+    /// Checks that the viewport lies in every texture.
     fn check_textures(&self) -> Result<(), AssignError> {
         let viewport = self.view.viewport;
         let (right, bottom) =
@@ -112,7 +112,9 @@ impl Rsm<'_> {
                 return Err(AssignError::Parameter {
                     field: format!("{what} of the RSM"),
                     value: format!("{}x{} texels", texture.width(), texture.height()),
-                    accepted: format!("at least {right}x{bottom}, to hold the view's viewport"),
+                    accepted: format!(
+                        "at least {right}x{bottom}, so that it holds the view's viewport"
+                    ),
                 });
             }
         }
@@ -121,19 +123,19 @@ impl Rsm<'_> {
 }
 
 impl RsmUniform {
-    /// Blocks of all levels.
+    /// Number of blocks of all levels.
     pub(super) fn block_count(&self) -> u32 {
         self.levels.iter().map(|[_, columns, rows, _]| columns * rows).sum()
     }
 
-    /// Columns and rows of blocks of a level.
+    /// Columns and rows of a level's blocks.
     pub(super) fn blocks_of(&self, level: u32) -> [u32; 2] {
         self.levels.get(level as usize).map_or([0, 0], |[_, columns, rows, _]| [*columns, *rows])
     }
 }
 
-/// First block, columns and rows of each level, and how many levels there are. A level has half the
-/// columns and rows of the one below, rounded up, and the last has one block.
+/// First block, columns and rows of each level, and the number of levels. A level has half the columns and rows of the
+/// level below, rounded up. The last level has one block.
 fn levels(size: [u32; 2]) -> ([[u32; 4]; LEVELS], u32) {
     let mut levels = [[0; 4]; LEVELS];
     let (mut first, [mut columns, mut rows], mut count) = (0, size, 0);
@@ -154,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn levels_end_in_one_block() {
+    fn the_last_level_is_one_block() {
         let (blocks, count) = levels([5, 3]);
         assert_eq!(count, 4);
         assert_eq!(blocks[..4], [[0, 5, 3, 0], [15, 3, 2, 0], [21, 2, 1, 0], [23, 1, 1, 0]]);

@@ -1,11 +1,11 @@
-//! What becomes a VPL, and what a VPL becomes.
+//! Settings: which blocks become VPLs, and which VPLs become lights.
 
 use assign::{AssignError, MAX_RANGE_M, MIN_RANGE_M};
 
-/// What happens to VPLs whose range is above the largest, or unknown.
+/// What happens to VPLs whose range is unknown or exceeds the largest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Large {
-    /// They drop out: light in the open reaches nothing.
+    /// They are dropped: light that leaves the scene reaches no surface.
     Discard,
     /// They get the largest range.
     #[default]
@@ -15,28 +15,27 @@ pub enum Large {
 /// How VPLs are chosen and kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VplSettings {
-    /// Largest side on the surface of a block of several texels that becomes one VPL, metres, 0 to
-    /// [`MAX_RANGE_M`]. 0 makes one of each texel.
+    /// The largest width on the surface of a block of several texels that becomes one VPL, metres, 0 to
+    /// [`MAX_RANGE_M`]. 0 makes one VPL per texel.
     pub spacing_m: f32,
-    /// Room for VPLs, at least 1; `None` is room for all texels. Where more are chosen, the counts
-    /// say how many, and [`VplBuffer::read`](crate::VplBuffer::read) fails.
+    /// The most VPLs that fit, at least 1. `None` makes room for all texels. If more are chosen, the counts say how
+    /// many, and [`VplBuffer::read`](crate::VplBuffer::read) fails.
     pub limit: Option<u32>,
-    /// A light's range over the distance found, above 0, at most 1e6. At 1 the light's window,
-    /// `(1 - (d / range)^4)^2`, is 0 at the very surface found; at 2 it is 0.88.
+    /// The light's range = this factor times the distance found. It is above 0 and at most 1e6. With 1, the light's
+    /// window `(1 - (d / range)^4)^2` is 0 at the surface found; with 2 it is 0.88 there.
     pub range_scale: f32,
-    /// Lights of smaller range drop out, metres, [`MIN_RANGE_M`] to `max_range_m`.
+    /// Lights of smaller range are dropped, metres, [`MIN_RANGE_M`] to `max_range_m`.
     pub min_range_m: f32,
     /// The largest range of a light, metres, up to [`MAX_RANGE_M`].
     pub max_range_m: f32,
-    /// What becomes of larger ones.
+    /// What happens to larger or unknown ranges.
     pub large: Large,
-    /// The distance within which a light's inverse-square fall-off grows no further, metres, 0 to
-    /// [`MAX_RANGE_M`].
+    /// Closer than this distance, the inverse-square fall-off stays constant, metres, 0 to [`MAX_RANGE_M`].
     pub min_distance_m: f32,
 }
 
 impl Default for VplSettings {
-    /// A VPL a texel, and every light kept.
+    /// One VPL per texel; every VPL becomes a light.
     fn default() -> Self {
         Self {
             spacing_m: 0.0,
@@ -55,7 +54,7 @@ impl VplSettings {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] that names the first field out of its range.
+    /// [`AssignError::Parameter`], which names the first field out of its range.
     pub fn check(&self) -> Result<(), AssignError> {
         let length = format!("between 0 and {MAX_RANGE_M} metres");
         in_range("spacing_m", self.spacing_m, 0.0, MAX_RANGE_M, &length)?;
@@ -98,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_bad_field_is_named() {
+    fn errors_name_the_first_field_out_of_range() {
         let good = VplSettings::default();
         assert!(good.check().is_ok());
         for (bad, field) in [

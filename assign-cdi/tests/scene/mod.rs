@@ -1,4 +1,4 @@
-//! A scene to cast rays in, its truth by brute force, and frames of deep images.
+//! A scene to cast rays in, true hits by brute force, and frames of deep images.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 #![allow(dead_code, reason = "each test uses a part")]
@@ -13,7 +13,7 @@ use rand_pcg::Pcg64Mcg;
 
 pub(crate) type Corners = [Vec3; 3];
 
-/// A room of 10 x 6 x 8 m, with boxes in it and small triangles in the air.
+/// A room of 10 x 6 x 8 m with boxes in it and small loose triangles in the air.
 pub(crate) fn room(seed: u64, boxes: u32, loose: u32) -> Vec<Corners> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let half = Vec3::new(5.0, 3.0, 4.0);
@@ -61,7 +61,7 @@ pub(crate) fn bounds(triangles: &[Corners]) -> (Vec3, Vec3) {
     )
 }
 
-/// Distance from a ray's origin to a triangle, beyond 0.
+/// Distance from a ray's origin to a triangle, if the ray hits it at more than 0.
 pub(crate) fn distance(corners: &Corners, origin: DVec3, direction: DVec3) -> Option<f64> {
     let [a, b, c] = corners.map(|at| at.as_dvec3() - origin);
     let normal = (b - a).cross(c - a);
@@ -80,7 +80,7 @@ pub(crate) fn unit(rng: &mut Pcg64Mcg) -> Vec3 {
     }
 }
 
-/// A point of the triangles' surface, and the normal on the side of `towards`.
+/// A random point on the triangles, and the normal on the side of `towards`.
 pub(crate) fn surface(rng: &mut Pcg64Mcg, triangles: &[Corners], towards: Vec3) -> (Vec3, Vec3) {
     let [a, b, c] = triangles[rng.random_range(0..triangles.len())];
     let (mut u, mut v) = (rng.random_range(0.0..1.0), rng.random_range(0.0..1.0));
@@ -121,7 +121,7 @@ pub(crate) fn frame(gpu: &Gpu, images: &mut DeepImages, scene: &Scene) {
     gpu.wait().unwrap();
 }
 
-/// Deep images after two frames, by when they have settled.
+/// Deep images after two frames, when buffers have grown to their size.
 pub(crate) fn settled(gpu: &Gpu, settings: DeepImageSettings, scene: &Scene) -> DeepImages {
     let mut images = DeepImages::new(gpu, settings).unwrap();
     frame(gpu, &mut images, scene);

@@ -1,11 +1,11 @@
-//! Reflective shadow maps filled by hand.
+//! Reflective shadow maps that tests fill on the CPU.
 
 use assign::{EncoderPasses, Gpu, Light, LightShape, Projection, View};
 use assign_cdi::{Rsm, VplBuffer, VplSettings};
 use bytemuck::cast_slice;
 use glam::{Vec2, Vec3, Vec4};
 
-/// A map on the CPU: what a ray from the light through each texel meets.
+/// A map whose texels come from a function on the CPU.
 pub(crate) struct Map {
     pub(crate) gpu: Gpu,
     pub(crate) view: View,
@@ -26,8 +26,8 @@ pub(crate) fn spot(outer_angle: f32) -> Light {
 }
 
 impl Map {
-    /// Of a light that looks down; `meet` gets each texel's direction in the world, whose step along
-    /// the view's axis is 1.
+    /// Makes the map of a light that looks down. `meet` gets each texel's direction in world space, of length 1 along the
+    /// view's axis.
     pub(crate) fn new(size: [u32; 2], light: Light, meet: impl Fn(Vec3) -> Option<Hit>) -> Self {
         let LightShape::Spot { outer_angle, .. } = light.shape else { panic!("not a spot") };
         let gpu = Gpu::open(None).unwrap();
@@ -35,7 +35,7 @@ impl Map {
         let mut view = View::look_at(light.position, target, 1.0, 0.01, size);
         let reach = Vec2::splat(outer_angle.tan() * 1.001);
         view.projection = Projection::Perspective { min: -reach, max: reach };
-        // An offset in larger textures.
+        // The viewport has an offset in larger textures.
         (view.viewport.x, view.viewport.y) = (3, 1);
         let full = [size[0] + 5, size[1] + 2];
         let mut depths = vec![0.0_f32; (full[0] * full[1]) as usize];
@@ -77,7 +77,7 @@ impl Map {
         }
     }
 
-    /// Chooses, gives every VPL the range that `range_m` makes of its index, and keeps.
+    /// Runs both passes. `range_m` gives every VPL a range by its index.
     pub(crate) fn run(&self, buffer: &mut VplBuffer, range_m: impl Fn(u32) -> f32) {
         let gpu = &self.gpu;
         buffer.prepare(gpu, &self.rsm()).unwrap();
@@ -90,7 +90,7 @@ impl Map {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Lights of all VPLs, with a range of a metre each.
+    /// Lights of all VPLs, each with a range of one metre.
     pub(crate) fn lights(&self, settings: VplSettings) -> Vec<Light> {
         let mut buffer = VplBuffer::new(&self.gpu, settings).unwrap();
         self.run(&mut buffer, |_| 0.5);
@@ -98,7 +98,7 @@ impl Map {
     }
 }
 
-/// Writes texels by a copy from a buffer whose rows are padded.
+/// Writes the texels of a texture.
 pub(crate) fn upload(gpu: &Gpu, texture: &wgpu::Texture, [width, height]: [u32; 2], texels: &[u8]) {
     gpu.queue.write_texture(
         texture.as_image_copy(),
@@ -140,7 +140,7 @@ pub(crate) fn float_texture(gpu: &Gpu, size: [u32; 2], texels: &[[f32; 4]]) -> w
     texture.create_view(&Default::default())
 }
 
-/// Depths can only be drawn: a triangle over the image that reads them from another texture.
+/// A depth texture with these depths. A draw must write it: a triangle over the image reads them from another texture.
 pub(crate) fn depth_texture(gpu: &Gpu, size: [u32; 2], depths: &[f32]) -> wgpu::TextureView {
     const DRAW: &str = "
 @group(0) @binding(0) var depths: texture_2d<f32>;
@@ -217,7 +217,7 @@ pub(crate) const WHITE: Vec4 = Vec4::new(1.0, 1.0, 1.0, 0.0);
 
 pub(crate) const HALF_WALL_M: f32 = 2.0;
 
-/// A room of walls at +-2 m around the light, its floor at y = 0, coloured by the wall; no ceiling.
+/// A room without a ceiling: coloured walls at +-2 m around the light, and a floor at y = 0.
 pub(crate) fn room(light: &Light) -> impl Fn(Vec3) -> Option<Hit> + use<> {
     let eye = light.position;
     move |ray: Vec3| {

@@ -1,4 +1,5 @@
-//! The cases by name: what fails in practice, each a view, surfaces and lights from a seed.
+//! The named cases, each a situation in which light assignment fails in practice: a view, surfaces
+//! and lights from a seed.
 
 use glam::Vec3;
 
@@ -9,12 +10,12 @@ use super::{
 };
 use crate::{DepthMapping, Light, View};
 
-/// A stage and the lights on it.
+/// A stage with its lights.
 #[derive(Clone, Debug)]
 pub(super) struct Lit {
     pub(super) stage: Stage,
     pub(super) lights: Vec<Light>,
-    /// Whether to ask for look-ups on opaque surfaces alone.
+    /// Whether look-ups are only on opaque surfaces.
     pub(super) opaque_only: bool,
 }
 
@@ -22,22 +23,22 @@ pub(super) struct Lit {
 pub(super) enum Plan {
     /// One stage.
     Still(Lit),
-    /// Stages one after the other with the same instance.
+    /// Several stages in sequence with one instance.
     Sequence(Vec<Lit>),
-    /// A pool far too small, then a sufficient one.
+    /// A pool that is far too small, then a sufficient one.
     Overflow(Lit),
-    /// A stage without and with faulty lights; their indices.
+    /// A stage without and with faulty lights, and the faulty lights' indices.
     Quarantine { clean: Lit, dirty: Box<Lit>, bad: Vec<usize> },
 }
 
 /// A named case of the suite.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Its name, for [`run_case`](super::run_case).
+    /// The case's name, for [`run_case`](super::run_case).
     pub name: &'static str,
-    /// What is difficult about it, in one line.
+    /// The difficulty of the case, in one line.
     pub about: &'static str,
-    /// Whether some light reaches some sample: the case fails if then nothing was checked.
+    /// Whether some light reaches some sample. If so, the case fails if it checked no pair.
     pub has_pairs: bool,
     pub(super) build: fn(&mut Rng) -> Plan,
 }
@@ -46,7 +47,7 @@ const fn case(name: &'static str, about: &'static str, build: fn(&mut Rng) -> Pl
     Case { name, about, has_pairs: true, build }
 }
 
-/// All cases, in the order in which they run.
+/// All cases in the order in which they run.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { has_pairs: false, ..case("no-lights", "no light at all", |r| count(r, 0)) },
@@ -144,7 +145,7 @@ pub const CASES: &[Case] = &[
     case("quarantine", "faulty lights among sound ones", quarantine),
 ];
 
-/// Lights of a stage.
+/// Makes lights for a stage.
 type Lights = fn(&mut Rng, &Stage, usize) -> Vec<Light>;
 
 fn default_view() -> View {
@@ -188,7 +189,7 @@ fn many_lights(rng: &mut Rng) -> Plan {
     let mut lit = lit(rng, &views::sized([32, 24]), 65_537, |r, s, n| {
         mix(r, s, n, (0.05, 0.5), Kinds::Points)
     });
-    // The last index must be in some list.
+    // The last light's index must be in some list.
     if let (Some(last), Some(sample)) = (lit.lights.last_mut(), lit.stage.samples.first()) {
         *last = Light::point(sample.point.as_vec3(), 1.0, Vec3::ONE);
     }
@@ -217,7 +218,7 @@ fn one_and_many(rng: &mut Rng) -> Plan {
     })
 }
 
-/// Lights around the eye whose range is 1 and whose distance is `low` to `high` shares of it.
+/// Lights around the eye, at `low` to `high` times their range from it.
 fn around(rng: &mut Rng, stage: &Stage, count: usize, low: f64, high: f64) -> Vec<Light> {
     let eye = stage.view.eye().as_dvec3();
     let one = |_| {
@@ -287,7 +288,7 @@ fn beyond_far(rng: &mut Rng) -> Plan {
     })
 }
 
-/// With near at 1 mm and far at 1 km, clip depth 1 is rebuilt as 1,049 m.
+/// With the near plane at 1 mm and the far plane at 1 km, clip depth 1 is rebuilt as 1,049 m.
 fn far_plane(rng: &mut Rng) -> Plan {
     let mut stage = in_room(rng, &views::standard(0.001, Some(1_000.0)));
     stage.samples.retain(|s| s.model_ix != IN_THE_OPEN || s.depth_clip == 1.0);
@@ -337,7 +338,8 @@ fn lights_move(rng: &mut Rng) -> Plan {
 fn camera_teleports(rng: &mut Rng) -> Plan {
     let first = lit(rng, &default_view(), 300, default_mix);
     let mut second = lit(rng, &views::elsewhere(), 300, default_mix);
-    // The lights that stay put are the first stage's; half of the second's reach its samples.
+    // Half of the second stage's lights are the first stage's; the others are aimed at the new
+    // samples.
     second.lights[..150].copy_from_slice(&first.lights[..150]);
     Plan::Sequence(vec![first.clone(), second, first])
 }
@@ -364,7 +366,7 @@ fn quarantine(rng: &mut Rng) -> Plan {
     let mut dirty = clean.clone();
     let mut bad = Vec::new();
     for (ix, light) in bad_lights(&clean.lights).into_iter().enumerate() {
-        // In ascending order, so that earlier insertions do not move the later ones.
+        // Insertions ascend, so that earlier ones do not move later ones.
         bad.push(ix * 13);
         dirty.lights.insert(ix * 13, light);
     }

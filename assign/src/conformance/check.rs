@@ -1,4 +1,4 @@
-//! The promises, checked on the CPU: pairs in f64, lists and counters bit by bit.
+//! Checks the promises on the CPU: pairs in f64, lists and counters exactly.
 
 use std::collections::HashSet;
 
@@ -13,16 +13,16 @@ use crate::{
     ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, ListsSnapshot,
 };
 
-/// What no pass writes: records are filled with it before the first frame.
+/// A record that no pass writes. Records are filled with it before the first frame.
 pub(super) const UNWRITTEN: LightList = LightList { first: u32::MAX, count: u32::MAX };
 
-/// One drawn frame, read back.
+/// One frame that was drawn and read back.
 pub(super) struct Seen {
     pub(super) snapshot: ListsSnapshot,
     pub(super) probes: Vec<Probe>,
     pub(super) group_count: u32,
     pub(super) light_count: u32,
-    /// Whether lights below a sample's horizon may be missing from its list.
+    /// Whether lists may omit lights below a sample's horizon.
     pub(super) knows_normals: bool,
 }
 
@@ -36,12 +36,12 @@ impl Seen {
         self.snapshot.list(group).filter(|_| exists)
     }
 
-    /// A group's entries; none where the group or its list is not there.
+    /// A group's entries; empty if the group or its list does not exist.
     fn entries(&self, group: u32) -> &[u32] {
         self.list(group).and_then(|_| self.snapshot.entries_of(group)).unwrap_or_default()
     }
 
-    /// Whether a group fell back to all lights: the pool begins behind entry 0.
+    /// Whether a group fell back to all lights. Lists in the pool never start at entry 0.
     fn fell_back(list: LightList) -> bool {
         list.first == 0 && list.count > 0
     }
@@ -50,14 +50,14 @@ impl Seen {
 /// Counts of (light, sample) pairs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pairs {
-    /// Had to be listed.
+    /// Pairs that had to be listed.
     pub(super) reaching: u64,
-    /// Were listed.
+    /// Pairs that were listed.
     pub(super) listed: u64,
 }
 
-/// Checks the lists that samples look up; `complete` checks every record and the counters, which
-/// only holds where no earlier frame left records behind.
+/// Checks the lists that samples look up. With `complete` it checks every record and the exact
+/// counters; set it only if no earlier frame left records behind.
 pub(super) fn lists(seen: &Seen, complete: bool, findings: &mut Findings) {
     record_0(seen, findings);
     let mut looked_up: Vec<u32> = seen.probes.iter().map(|p| p.group).collect();
@@ -67,7 +67,7 @@ pub(super) fn lists(seen: &Seen, complete: bool, findings: &mut Findings) {
         look_up(seen, probe, findings);
     }
     if complete {
-        // Groups that no sample looks up may be absent from a sparse strategy.
+        // A sparse strategy may skip groups that no sample looks up.
         let written = |g: &u32| seen.list(*g) != Some(UNWRITTEN);
         let all: Vec<u32> = (0..seen.group_count).filter(written).collect();
         all.iter().for_each(|&g| list(seen, g, findings));
@@ -84,7 +84,7 @@ fn record_0(seen: &Seen, findings: &mut Findings) {
     let wanted = LightList { first: 0, count: seen.light_count };
     let found = seen.list(ALL_LIGHTS);
     if found != Some(wanted) {
-        let detail = format!("it is {found:?}, not {wanted:?}");
+        let detail = format!("it is {found:?}: it must be {wanted:?}");
         findings.add(Breach::Record0, Place::default(), detail);
         return;
     }
@@ -100,7 +100,7 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
     let place = Place { group: Some(probe.group), light: None, sample: Some(sample_place(probe)) };
     match seen.list(probe.group) {
         None => {
-            let detail = format!("there are {}", seen.group_count);
+            let detail = format!("there are {} groups", seen.group_count);
             findings.add(Breach::NoSuchGroup, place, detail);
         }
         Some(UNWRITTEN) => {
@@ -109,7 +109,7 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
         }
         Some(list) if (list.first, list.count) != (probe.first, probe.count) => {
             let detail = format!(
-                "list_of gave ({}, {}), the record is ({}, {})",
+                "list_of returned ({}, {}), but the record is ({}, {})",
                 probe.first, probe.count, list.first, list.count
             );
             findings.add(Breach::Lookup, place, detail);
@@ -117,7 +117,10 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
         Some(_) => {
             let held = seen.entries(probe.group).last();
             if held.is_some_and(|&last| last != probe.last) {
-                let detail = format!("its list ends with {:#010x}, not {held:#010x?}", probe.last);
+                let detail = format!(
+                    "the look-up's last entry is {:#010x}, but the list ends with {held:#010x?}",
+                    probe.last
+                );
                 findings.add(Breach::Lookup, place, detail);
             }
         }
@@ -132,12 +135,13 @@ fn list(seen: &Seen, group: u32, findings: &mut Findings) {
     let mut place = Place { group: Some(group), ..Place::default() };
     let Some(entries) = seen.snapshot.entries_of(group) else {
         let held = seen.snapshot.entries.len();
-        let detail = format!("({}, {}) of {held} entries", list.first, list.count);
+        let detail =
+            format!("the list is ({}, {}), but there are {held} entries", list.first, list.count);
         findings.add(Breach::OutsideBuffer, place, detail);
         return;
     };
     if Seen::fell_back(list) && group != ALL_LIGHTS && list.count == seen.light_count {
-        // It shares the entries of record 0, which are checked once.
+        // The list shares the entries of record 0, which are checked once.
         return;
     }
     let mut before: Option<u32> = None;
@@ -145,18 +149,18 @@ fn list(seen: &Seen, group: u32, findings: &mut Findings) {
         let light = entry & ENTRY_LIGHT;
         place.light = Some(light);
         if light >= seen.light_count {
-            let detail = format!("entry {ix}, with {} lights", seen.light_count);
+            let detail = format!("at entry {ix}: there are {} lights", seen.light_count);
             findings.add(Breach::ForeignLight, place, detail);
         }
         if entry & (ENTRY_DIFFUSE | ENTRY_SPECULAR) == 0 {
-            findings.add(Breach::NoTerm, place, format!("entry {ix}"));
+            findings.add(Breach::NoTerm, place, format!("at entry {ix}"));
         }
         match before {
             Some(before) if before == light => {
-                findings.add(Breach::Repeated, place, format!("entry {ix}"));
+                findings.add(Breach::Repeated, place, format!("at entry {ix}"));
             }
             Some(before) if before > light => {
-                let detail = format!("entry {ix}, after light {before}");
+                let detail = format!("at entry {ix}, after light {before}");
                 findings.add(Breach::NotAscending, place, detail);
             }
             _ => {}
@@ -165,7 +169,7 @@ fn list(seen: &Seen, group: u32, findings: &mut Findings) {
     }
 }
 
-/// Checks the counters against the lists of `groups`: all groups, or some.
+/// Checks the counters against the lists of `groups`, which are all groups if `complete`.
 fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings) {
     let counters = seen.snapshot.counters;
     let lists = || groups.iter().filter_map(|&g| seen.list(g));
@@ -174,11 +178,11 @@ fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings
     let listed: u64 = fitting().map(|l| u64::from(l.count)).sum();
     let longest = fitting().map(|l| l.count).max().unwrap_or(0);
     let occupied = overflowed + fitting().filter(|l| l.count > 0).count() as u64;
-    // Where a group fell back, its own count is known to the counters alone.
+    // If a group fell back, only the counters know how long its list would be.
     let whole = complete && overflowed == 0;
     let mut expect = |name, counted: u64, found: u64, exact| {
         if counted < found || (exact && counted != found) {
-            let detail = format!("{name} is {counted}, the lists hold {found}");
+            let detail = format!("{name} is {counted}, but the lists hold {found}");
             findings.add(Breach::Counters, Place::default(), detail);
         }
     };
@@ -188,12 +192,12 @@ fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings
     expect("overflowed_groups", counters.overflowed_groups.into(), overflowed, complete);
 }
 
-/// Checks that every light which reaches a sample is in the list of the sample's group.
+/// Checks that each sample's list holds every light that reaches the sample.
 pub(super) fn pairs(seen: &Seen, lights: &[Light], findings: &mut Findings) -> Pairs {
-    let reaching = Reaching::of(findings.case, &seen.probes, lights, seen.knows_normals);
+    let reaching = Reaching::find(findings.case, &seen.probes, lights, seen.knows_normals);
     let mut order: Vec<(&Probe, &LightBits)> =
         seen.probes.iter().zip(&reaching.by_sample).collect();
-    // Neighbours share a list.
+    // Sorted by group, so that neighbours share a list.
     order.sort_by_key(|(probe, _)| probe.group);
     let mut pairs = Pairs::default();
     let mut listed = LightBits::none(lights.len());
@@ -213,7 +217,7 @@ pub(super) fn pairs(seen: &Seen, lights: &[Light], findings: &mut Findings) -> P
     pairs
 }
 
-/// Reports the lights that reach a sample and that its list, or a term's flag there, lacks.
+/// Reports lights that reach a sample but are missing from its list, or lack a term's flag there.
 fn missed(
     probe: &Probe,
     reaching: &LightBits,
@@ -253,11 +257,11 @@ fn describe(light: &Light, probe: &Probe, terms: &str, listed: usize) -> String 
     let kind = light.kind();
     let reach = light.reach(DVec3::from_array(probe.position_world.map(f64::from)));
     format!(
-        "{kind:?} light at {position} of range {range_m} m reaches the sample by {reach:.2e} of its support: the list of {listed} lacks the {terms}"
+        "{kind:?} light at {position} of range {range_m} m reaches the sample by {reach:.2e} of its support: the list of {listed} entries lacks the {terms}"
     )
 }
 
-/// Checks that two frames gave every sample the same entries. `breach` is what a difference is.
+/// Checks that two frames gave every sample the same entries. A difference is reported as `breach`.
 pub(super) fn same(a: &Seen, b: &Seen, breach: Breach, findings: &mut Findings) {
     let mut compared = HashSet::new();
     for (old, new) in a.probes.iter().zip(&b.probes) {
@@ -272,7 +276,7 @@ pub(super) fn same(a: &Seen, b: &Seen, breach: Breach, findings: &mut Findings) 
         let first = before.iter().zip(now).position(differs);
         let place = Place { group: Some(new.group), light: None, sample: Some(sample_place(new)) };
         let detail = format!(
-            "{} entries before, {} now, first difference at {}",
+            "{} entries in the first frame, {} in the second, first difference at {}",
             before.len(),
             now.len(),
             first.unwrap_or(before.len().min(now.len()))
@@ -280,7 +284,11 @@ pub(super) fn same(a: &Seen, b: &Seen, breach: Breach, findings: &mut Findings) 
         findings.add(breach, place, detail);
     }
     if a.probes.len() != b.probes.len() {
-        let detail = format!("{} samples, then {}", a.probes.len(), b.probes.len());
+        let detail = format!(
+            "{} samples in the first frame, {} in the second",
+            a.probes.len(),
+            b.probes.len()
+        );
         findings.add(breach, Place::default(), detail);
     }
 }
@@ -297,7 +305,7 @@ mod tests {
     use super::*;
     use crate::{Counters, Emitter, LightShape};
 
-    /// One sample at `point` whose list is empty.
+    /// One sample at `point`, with an empty list.
     fn empty_list_at(point: Vec3) -> Seen {
         let mut probe = Probe::zeroed();
         probe.position_world = point.to_array();
@@ -326,8 +334,8 @@ mod tests {
         let point = Light::point(Vec3::ZERO, 0.5, Vec3::ONE);
         let spot = LightShape::Spot { direction: Vec3::Z, inner_angle: 0.1, outer_angle: 0.5 };
         let vpl = Light::vpl(Vec3::ZERO, Vec3::Z, 0.5, Vec3::ONE);
-        // Emitters of 4 m and a range of half a metre: most of their light is out of the middle's
-        // range.
+        // The emitters are 4 m large and their range is half a metre, so most lit points are
+        // farther than the range from the centre.
         let rectangle = Emitter::rectangle(2.0 * Vec3::X, 2.0 * Vec3::Y);
         let rectangle = Light::area(rectangle, Vec3::ZERO, 0.5, Vec3::ONE);
         let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (0.0, 2.5), (-2.0, 2.0)];

@@ -1,4 +1,4 @@
-//! Negative controls: strategies with a planted fault, which the suite must reject.
+//! Negative controls: strategies with a planted fault. The suite must reject them.
 
 use bytemuck::bytes_of;
 
@@ -8,12 +8,12 @@ use crate::{
     Passes, Shader, StrategyModule, entry, storage_entry, uniform_entry,
 };
 
-/// A fault planted in a strategy that otherwise works.
+/// A fault that is planted in a working strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The last entry of every list is missing.
     DroppedLight,
-    /// The first two entries of every list are exchanged.
+    /// The first two entries of every list are swapped.
     ShuffledList,
     /// The first entry of every list is a copy of the second.
     Repeated,
@@ -21,27 +21,27 @@ pub enum Fault {
     ForeignLight,
     /// The first entry of every list has lost its flags.
     LostTerms,
-    /// The last entry of every list says that the light's diffuse term reaches no sample.
+    /// The last entry of every list lacks the flag of the diffuse term.
     LostDiffuse,
-    /// Lists are made with horizons that stand a little too high.
+    /// Lists are made with horizons that are a little too high.
     HighHorizon,
     /// Every list ends beyond the buffer.
     RunawayList,
-    /// Lists are made from lights of 0.9 times their range.
+    /// Lists are made from lights with 0.9 times their range.
     ShrunkenBound,
-    /// Lists are made from area lights that shine from their middle alone.
+    /// Lists are made from points at the centres of area lights.
     CentredEmitter,
-    /// Lists are made from emitters of 0.95 times their size. Coarse groups may hide it.
+    /// Lists are made from emitters with 0.95 times their size. Coarse groups may hide it.
     TightEmitter,
-    /// Lists are made from spots of half their half angle.
+    /// Lists are made from spots with half their half angle.
     NarrowCone,
-    /// Lists are made from virtual point lights that shine into a cone of 45 degrees.
+    /// Lists are made from virtual point lights that shine only into a cone of 45 degrees.
     NarrowHalfSpace,
-    /// Lists are made no more once the lights have moved.
+    /// Lists are no longer made once the lights have moved.
     StaleLists,
     /// Every other frame lacks entries.
     Flicker,
-    /// Entries are missing wherever faulty lights were left out.
+    /// Entries are missing in frames with faulty lights.
     LeakyQuarantine,
     /// Record 0 lacks a light.
     Record0,
@@ -51,14 +51,14 @@ pub enum Fault {
     StarvedPool,
     /// No frame is recorded at all.
     Unrecorded,
-    /// `group_of` names a group that does not exist.
+    /// `group_of` returns a group that does not exist.
     LostGroup,
-    /// Shading is handed the bind group of the first frame for ever.
+    /// Shading gets the bind group of the first frame in every frame.
     StaleBinding,
 }
 
 impl Fault {
-    /// All faults that groups of any size must show: all but [`TightEmitter`](Self::TightEmitter).
+    /// All faults that show with groups of any size: all but [`TightEmitter`](Self::TightEmitter).
     pub const ALL: [Self; 21] = [
         Self::DroppedLight,
         Self::ShuffledList,
@@ -83,7 +83,7 @@ impl Fault {
         Self::StaleBinding,
     ];
 
-    /// The case that must reject it, and the promise it breaks there.
+    /// The case that must reject the fault, and the promise that it breaks there.
     pub fn shows_in(self) -> (&'static str, Breach) {
         match self {
             Self::DroppedLight => ("33-lights", Breach::MissedPair),
@@ -112,7 +112,8 @@ impl Fault {
         }
     }
 
-    /// The first stage of its case in which it may show: lists are right until the lights move.
+    /// The first stage of its case in which the fault may show. Stale lists are right until the
+    /// lights move.
     pub fn shows_from_stage(self) -> u32 {
         match self {
             Self::StaleLists => 1,
@@ -120,7 +121,7 @@ impl Fault {
         }
     }
 
-    /// Whether it is a fault only of strategies that cut samples into groups.
+    /// Whether the fault needs a strategy with groups.
     pub fn needs_groups(self) -> bool {
         matches!(
             self,
@@ -138,17 +139,17 @@ impl Fault {
         )
     }
 
-    /// All that a strategy with groups may have: one that reads normals, or one that does not.
+    /// All faults of a strategy with groups; `normals` says whether it reads normals.
     pub fn all(normals: bool) -> Vec<Self> {
         Self::ALL.into_iter().filter(|fault| normals || !fault.needs_normals()).collect()
     }
 
-    /// Whether it is a fault only of strategies that read normals.
+    /// Whether the fault needs a strategy that reads normals.
     pub fn needs_normals(self) -> bool {
         self == Self::HighHorizon
     }
 
-    /// Whether the strategy is shown other lights than there are.
+    /// Whether the strategy gets altered lights.
     fn alters_lights(self) -> bool {
         matches!(
             self,
@@ -161,7 +162,7 @@ impl Fault {
         )
     }
 
-    /// What `fault.wesl` is to do in a frame; 0 is nothing.
+    /// What `fault.wesl` does in a frame; 0 does nothing.
     fn kernel_kind(self, frame: u32, rejected: bool) -> u32 {
         match self {
             Self::DroppedLight => 1,
@@ -180,7 +181,7 @@ impl Fault {
     }
 }
 
-/// A look-up that leads nowhere.
+/// A look-up that returns a group that does not exist.
 const LOST_GROUP_WESL: &str = "
 import package::sample::ViewSample;
 
@@ -194,7 +195,7 @@ pub struct Faulty {
     inner: Box<dyn Assignment>,
     fault: Fault,
     frame: u32,
-    /// The lights that the strategy is shown instead.
+    /// The altered lights that the strategy gets.
     altered: LightBuffer,
     uniform: wgpu::Buffer,
     plant: wgpu::ComputePipeline,
@@ -203,7 +204,7 @@ pub struct Faulty {
     record_count: u32,
     /// The lights of the first frame.
     first_lights: Option<Vec<Light>>,
-    /// What the look-up was bound to in the first frame.
+    /// The look-up's bind group of the first frame.
     first_binding: Option<wgpu::BindGroup>,
 }
 
@@ -226,7 +227,7 @@ impl Faulty {
         })
     }
 
-    /// What the strategy is shown of a light: a part of its support, or a place that stands lower
+    /// A light as the strategy gets it: with a part of its support, or at a place that is lower
     /// above every surface that faces the eye.
     fn alter(&self, light: &Light, frame: &Frame<'_>) -> Light {
         let shape = match (self.fault, &light.shape) {

@@ -1,8 +1,8 @@
-//! A depth buffer of one value, for tests of frames that show one plane or nothing.
+//! A depth buffer with one value, for tests of frames that show one plane or nothing.
 
 use crate::Gpu;
 
-/// A depth buffer of `size` pixels, all of clip depth `depth`.
+/// A depth buffer of `size` pixels, all with clip depth `depth`.
 pub fn flat_depth(gpu: &Gpu, size: [u32; 2], depth: f32) -> wgpu::TextureView {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("flat depth"),

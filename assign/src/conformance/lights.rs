@@ -1,4 +1,5 @@
-//! Lights aimed at samples: inside, outside, and where a test that is too tight fails, at the edge.
+//! Lights aimed at samples: some contain the sample, some miss it, and some barely reach it, where
+//! a test that is too tight fails.
 
 use glam::{DVec3, Vec3};
 
@@ -10,16 +11,16 @@ use crate::{Emitter, Light, LightShape};
 pub(super) enum Kinds {
     /// Points.
     Points,
-    /// Spots of half angles between two, radians, cut off at pi.
+    /// Spots with half angles between two values, radians, clamped to pi.
     Spots(f64, f64),
     /// Rectangles and polygons of every size, one- and two-sided.
     Areas,
-    /// All, all half angles.
+    /// All kinds, with all half angles.
     Mixed,
 }
 
-/// Lights of `range_m` low to high around random samples: a third barely reach theirs, a third
-/// hold it, a third lie anywhere near.
+/// Lights around random samples, with ranges from `range_m.0` to `range_m.1`. A third barely reach
+/// their sample, a third contain it, and a third are anywhere near.
 pub(super) fn mix(
     rng: &mut Rng,
     stage: &Stage,
@@ -38,7 +39,7 @@ pub(super) fn mix(
     (0..count).map(one).collect()
 }
 
-/// Lights whose distance to a sample is `share` of their range; at 1 they barely reach it.
+/// Lights at `share` times their range from a sample. At 1 they barely reach it.
 pub(super) fn lights_at(
     rng: &mut Rng,
     stage: &Stage,
@@ -54,8 +55,8 @@ pub(super) fn lights_at(
     (0..count).map(one).collect()
 }
 
-/// Lights that barely rise above the horizon of a sample, or barely do not: points, and emitters
-/// whose highest vertex is there.
+/// Lights that barely rise above a sample's horizon, or barely do not: points, and emitters whose
+/// highest vertex is there.
 pub(super) fn at_horizon(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Light> {
     let one = |ix: usize| {
         let sample = &stage.samples[rng.below(stage.on_surfaces)];
@@ -68,7 +69,7 @@ pub(super) fn at_horizon(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Ligh
         if ix.is_multiple_of(2) {
             return light;
         }
-        // A rectangle that hangs down from there, along the horizon and away from the sample.
+        // A rectangle that hangs down from that point, along the horizon and away from the sample.
         let half_x = normal.cross(along) * range * rng.log_range(0.02, 0.5);
         let half_y = (along * rng.range(0.0, 1.0) - normal) * range * rng.log_range(0.02, 0.5);
         let emitter = Emitter::rectangle(half_x.as_vec3(), half_y.as_vec3()).two_sided();
@@ -77,14 +78,14 @@ pub(super) fn at_horizon(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Ligh
     (0..count).map(one).collect()
 }
 
-/// A point light anywhere that reaches `point`, of a range up to `range_m`.
+/// A point light that reaches `point`, with a range up to `range_m`.
 pub(super) fn reaching(rng: &mut Rng, point: DVec3, range_m: f64) -> Light {
     let range = rng.range(0.3, 1.0) * range_m;
     let center = point + rng.direction() * range * rng.range(0.0, 0.99);
     Light::point(center.as_vec3(), range as f32, Vec3::ONE)
 }
 
-/// How far inside its edge a grazing light ends, as a share.
+/// How far beyond the sample a grazing light reaches, as a share of its range.
 fn edge(rng: &mut Rng) -> f64 {
     rng.log_range(1e-5, 1e-1)
 }
@@ -107,14 +108,14 @@ fn at_sample(rng: &mut Rng, stage: &Stage, range_m: (f64, f64), kinds: Kinds, sh
     }
 }
 
-/// Spreads a light out over an emitter whose point closest to `point` is where the light was: of a
-/// face that looks at the point, or of a corner that turns almost edge-on.
+/// Spreads a light over an emitter. The emitter's closest point to `point` is the light's position.
+/// It lies on a face that looks at `point`, or at a corner of an emitter seen almost edge-on.
 fn spread(rng: &mut Rng, light: Light, point: DVec3) -> Light {
     let corner = light.position.as_dvec3();
     let away = (corner - point).normalize_or(DVec3::Y);
     let about = away.cross(rng.direction()).normalize_or(DVec3::X);
     let faces = rng.below(2) == 0;
-    // The normal's angle to the way back to the point: up to a right one.
+    // Angle between the normal and the direction back to the point, up to a right angle.
     let turn = match rng.below(2) {
         _ if faces => 0.0,
         0 => std::f64::consts::FRAC_PI_2 * (1.0 - edge(rng)),
@@ -151,11 +152,11 @@ fn spread(rng: &mut Rng, light: Light, point: DVec3) -> Light {
         _ => emitter,
     };
     let spread = Light::area(emitter, position, light.range_m, light.intensity);
-    // Far from the origin the smallest are bent by rounding.
+    // Far from the origin, rounding bends the smallest emitters.
     if spread.check().is_ok() { spread } else { light }
 }
 
-/// Turns a light into a spot whose cone holds `point`: half of them by little.
+/// Turns a light into a spot whose cone contains `point`. Half of the cones barely do.
 fn aimed(rng: &mut Rng, light: Light, point: DVec3, low: f64, high: f64) -> Light {
     let outer = rng.range(low, high).min(std::f64::consts::PI);
     let to_point = (point - light.position.as_dvec3()).normalize_or(DVec3::NEG_Y);
@@ -166,7 +167,7 @@ fn aimed(rng: &mut Rng, light: Light, point: DVec3, low: f64, high: f64) -> Ligh
             _ => rng.range(0.0, 1.0),
         };
     let direction = to_point * off.cos() + across * off.sin();
-    // Rounded down, so that pi stays within the accepted angles.
+    // Clamped, so that pi stays within the accepted angles.
     let outer_angle = (outer as f32).min(std::f32::consts::PI);
     Light {
         shape: LightShape::Spot {
@@ -178,7 +179,8 @@ fn aimed(rng: &mut Rng, light: Light, point: DVec3, low: f64, high: f64) -> Ligh
     }
 }
 
-/// Turns a light into a virtual point light whose half ball holds `point`: half of them by little.
+/// Turns a light into a virtual point light whose half ball contains `point`. Half of them barely
+/// do.
 fn half(rng: &mut Rng, light: Light, point: DVec3) -> Light {
     let quarter = std::f64::consts::FRAC_PI_2;
     let aimed = aimed(rng, light, point, quarter, quarter);
@@ -187,7 +189,7 @@ fn half(rng: &mut Rng, light: Light, point: DVec3) -> Light {
     Light { shape: LightShape::Vpl { normal: direction, min_distance_m }, ..light }
 }
 
-/// One light of each fault, otherwise like the first of `lights`.
+/// One light with each fault, otherwise like the first of `lights`.
 pub(super) fn bad_lights(lights: &[Light]) -> Vec<Light> {
     let Some(&sound) = lights.first() else {
         return Vec::new();

@@ -10,6 +10,8 @@
 //! assert_eq!(module.layout_of("LightSphere"), rust, "WESL, then Rust");
 //! ```
 
+use std::collections::BTreeSet;
+
 use naga::{
     Handle, Module, Type, TypeInner,
     valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
@@ -76,9 +78,29 @@ impl LinkedModule {
         &self.module
     }
 
-    /// What validation found out about the module: the variables that each entry point uses, and more.
-    pub fn info(&self) -> &ModuleInfo {
-        &self.info
+    /// Group and binding of every variable that an entry point uses.
+    pub fn used_bindings(&self) -> BTreeSet<(u32, u32)> {
+        let is_used = |handle: Handle<naga::GlobalVariable>| {
+            let entry_points = 0..self.module.entry_points.len();
+            entry_points.into_iter().any(|ix| !self.info.get_entry_point(ix)[handle].is_empty())
+        };
+        let variables = self.module.global_variables.iter();
+        variables
+            .filter(|&(handle, _)| is_used(handle))
+            .filter_map(|(_, variable)| variable.binding.map(|at| (at.group, at.binding)))
+            .collect()
+    }
+
+    /// Size of all workgroup memory together, bytes.
+    pub fn workgroup_bytes(&self) -> u32 {
+        let mut layouter = naga::proc::Layouter::default();
+        // Validation has laid out every type already.
+        let _ = layouter.update(self.module.to_ctx());
+        let variables = self.module.global_variables.iter();
+        variables
+            .filter(|(_, variable)| variable.space == naga::AddressSpace::WorkGroup)
+            .map(|(_, variable)| layouter[variable.ty].size)
+            .sum()
     }
 
     /// The layout of a struct.
@@ -162,4 +184,60 @@ impl LinkedModule {
 /// The linker may put the name of the module in front of a name.
 fn is_named(linked: Option<&str>, name: &str) -> bool {
     linked.is_some_and(|linked| linked == name || linked.ends_with(&format!("_{name}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SOURCE: &str = "
+        struct package_test_Item { position: vec3f, radius: f32 }
+        const package_test_LIMIT: u32 = 7u;
+        @group(2) @binding(4) var<uniform> item: package_test_Item;
+        @group(0) @binding(1) var<storage, read_write> items: array<package_test_Item>;
+        @group(0) @binding(3) var<storage, read> unused: array<u32>;
+        var<workgroup> sh_items: array<vec4f, 3>;
+        @compute @workgroup_size(1) fn main() {
+            sh_items[0] = vec4f(item.position, 0.0);
+            items[package_test_LIMIT] = item;
+        }";
+
+    #[repr(C)]
+    #[allow(dead_code, reason = "only its layout is read")]
+    struct Item {
+        position: [f32; 3],
+        radius: f32,
+    }
+
+    #[repr(C)]
+    #[allow(dead_code, reason = "only its layout is read")]
+    struct Swapped {
+        radius: f32,
+        position: [f32; 3],
+    }
+
+    #[test]
+    fn equal_layouts_are_equal_and_others_differ() {
+        let module = LinkedModule::new("test", SOURCE);
+        let wesl = module.layout_of("Item");
+        assert_eq!(wesl, crate::struct_layout!(Item: position, radius));
+        assert_eq!(wesl, module.uniform_at(4));
+        assert_ne!(wesl, crate::struct_layout!(Swapped: radius, position));
+    }
+
+    #[test]
+    fn bindings_strides_constants_and_workgroup_memory_are_found() {
+        let module = LinkedModule::new("test", SOURCE);
+        assert_eq!(module.used_bindings(), [(0, 1), (2, 4)].into());
+        assert_eq!(module.strides_of("Item"), [16]);
+        assert_eq!(module.constant("LIMIT"), 7);
+        assert_eq!(module.workgroup_bytes(), 48);
+    }
+
+    #[test]
+    fn invalid_sources_are_rejected() {
+        for source in ["fn f( {}", "fn f() -> u32 {}", "enable f16;"] {
+            assert!(LinkedModule::validate("test", source).is_err(), "{source}");
+        }
+    }
 }

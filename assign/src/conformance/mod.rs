@@ -1,4 +1,4 @@
-//! The conformance suite: does a strategy keep the promises of the contract?
+//! The conformance suite: it checks whether a strategy keeps the promises of the contract.
 //!
 //! ```no_run
 //! # use assign::{AssignError, Everything, conformance};
@@ -8,41 +8,42 @@
 //!
 //! # How
 //!
-//! 1. A case of [`CASES`] traces procedural surfaces on the CPU, a depth and a normal a pixel,
-//!    and places lights: a third of them barely reach a sample, where a test that is a little
-//!    too tight shows.
-//! 2. The surfaces are drawn into a real depth buffer and normals. Samples are every pixel with
-//!    a surface and, where the strategy serves them, points at random depths, the near and the
-//!    far plane among them.
+//! 1. A case of [`CASES`] traces procedural surfaces on the CPU, one depth and one normal per
+//!    pixel, and places lights. A third of the lights barely reach a sample, so that a test which
+//!    is a little too tight fails.
+//! 2. The suite draws the surfaces into a real depth buffer and a texture of normals. Samples are
+//!    all pixels with a surface and, if the strategy serves them, points at random depths, some of
+//!    them on the near and the far plane.
 //! 3. The strategy prepares and records a frame. A probe shader then rebuilds every sample as
-//!    shading does, asks the strategy's own `group_of` and `list_of`, and writes down where the
-//!    sample lies and what list it got.
-//! 4. Everything is read back and checked on the CPU. Whether a light reaches the sample is
-//!    [`Light::reach`](crate::Light::reach) in f64 at the position that shading would use; a pair
-//!    closer to the edge than one part in a million does not count. Nor does one whose light stays
-//!    below the sample's horizon, [`Light::above_horizon`](crate::Light::above_horizon), where the
-//!    strategy [needs](crate::Needs) normals. Every other sample is looked up with the normal as the
-//!    G-buffer rounds it, as deferred shading does, and with the exact one, as forward shading does.
+//!    shading does, calls the strategy's `group_of` and `list_of`, and records the sample's
+//!    position and list.
+//! 4. The CPU reads everything back and checks it. [`Light::reach`](crate::Light::reach) decides in
+//!    f64 whether a light reaches a sample, at the position that shading would use. A pair closer
+//!    to the edge than one part in a million does not count. If the strategy [needs](crate::Needs)
+//!    normals, a pair whose light stays below the sample's horizon
+//!    ([`Light::above_horizon`](crate::Light::above_horizon)) does not count either. Half of the
+//!    samples are looked up with the normal that the G-buffer rounded, as in deferred shading, and
+//!    half with the exact normal, as in forward shading.
 //!
-//! Records are filled with a mark before a case's first frame, so that a list which no pass wrote
-//! shows. Frames repeat until no list overflows (at most six), then once more: the same frame
-//! must give the same lists. Every frame is checked, also those that overflow.
+//! Before a case's first frame the suite fills all records with a mark, which reveals lists that no
+//! pass wrote. Frames repeat until no list overflows (at most six), and then once more: the same
+//! frame must give the same lists. The suite checks every frame, including those that overflow.
 //!
 //! # What is checked
 //!
-//! See [`Breach`]: one value a promise. A case that should have had (light, sample) pairs and had
-//! none fails too, so nothing passes for want of a question.
+//! See [`Breach`], which has one value per promise. A case also fails if it should have (light,
+//! sample) pairs and has none, so no case passes without having checked anything.
 //!
 //! # What a strategy may refuse
 //!
-//! Look-ups at any depth, by [`AssignError::Unsupported`] from `prepare`: the case then runs with
-//! those on opaque surfaces. A whole case, likewise: it is [`Outcome::Unserved`], which
-//! [`run_allowing`] accepts of the cases it is given.
+//! A strategy refuses by returning [`AssignError::Unsupported`] from `prepare`. If it refuses
+//! look-ups at any depth, the case runs with samples on opaque surfaces only. If it refuses these
+//! too, the case's outcome is [`Outcome::Unserved`], which [`run_allowing`] accepts for the cases
+//! that it is given.
 //!
 //! # Negative controls
 //!
-//! [`rejects_faults`] plants each [`Fault`] in the strategy and demands that the
-//! suite names it.
+//! [`rejects_faults`] plants each [`Fault`] in the strategy and requires the suite to name it.
 
 mod cases;
 mod check;
@@ -72,17 +73,18 @@ pub use violation::{
 
 use crate::{AssignError, Assignment, Gpu};
 
-/// Makes a fresh instance of the strategy under test.
+/// Makes a new instance of the strategy under test.
 pub type Make<'a> = dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> + 'a;
 
-/// Runs all cases; an error holds every violation, a line each.
+/// Runs all cases. An error holds every violation, one per line.
 ///
-/// It needs an adapter, a software one will do; without one it is an error, never a pass.
+/// It needs an adapter, which may be a software one. Without an adapter it returns an error; it
+/// never passes.
 pub fn run(make: &Make<'_>) -> Result<Report, ConformanceError> {
     run_allowing(make, &[])
 }
 
-/// Runs all cases; those named in `unserved` may be refused.
+/// Runs all cases. The strategy may refuse those named in `unserved`.
 pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, ConformanceError> {
     if let Some(name) = unserved.iter().find(|name| find(name).is_err()) {
         return Err(ConformanceError::NoCase((*name).to_owned()));
@@ -114,8 +116,8 @@ pub fn run_case(name: &str, make: &Make<'_>) -> Result<CaseReport, ConformanceEr
     Ok(done)
 }
 
-/// Plants every fault that applies to the strategy and demands that the suite rejects it as what
-/// it is. Returns the faults that were planted.
+/// Plants every fault that applies to the strategy, and requires the suite to reject each one with
+/// the right breach. Returns the planted faults.
 pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
     let rig = rig()?;
     let plain = find("33-lights")?;
@@ -133,7 +135,7 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
     Ok(planted)
 }
 
-/// Plants one fault and demands that the suite rejects it as what it is.
+/// Plants one fault and requires the suite to reject it with the right breach.
 pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceError> {
     let (name, breach) = fault.shows_in();
     let case = find(name)?;
@@ -158,7 +160,7 @@ pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceErr
     })
 }
 
-/// One device for all tests of a process.
+/// All tests of a process share one device.
 fn rig() -> Result<&'static Rig, ConformanceError> {
     static RIG: OnceLock<Result<Rig, AssignError>> = OnceLock::new();
     let opened = RIG.get_or_init(|| Gpu::open(None).map(Rig::new));
@@ -189,7 +191,7 @@ mod tests {
     use crate::Everything;
 
     #[test]
-    fn a_case_that_asks_nothing_fails() {
+    fn a_case_without_pairs_fails() {
         let case = Case { has_pairs: true, ..*find("no-lights").unwrap() };
         let outcome =
             session::run(rig().unwrap(), &case, &|gpu| Ok(Box::new(Everything::new(gpu)?)));
@@ -212,11 +214,11 @@ mod tests {
                 light: Some(7),
                 sample: Some(SamplePlace { pixel: [1.5, 2.5], depth_m: 4.25 }),
             },
-            detail: "the list holds 2".into(),
+            detail: "the list has 2 entries".into(),
             count: 9,
         };
         let line = "case jitter, frame 1: missed pair, group 3, light 7, sample at pixel (1.5, 2.5) \
-                    depth 4.25 m: the list holds 2 (9 such)";
+                    depth 4.25 m: the list has 2 entries (9 of this kind)";
         assert_eq!(violation.to_string(), line);
     }
 }

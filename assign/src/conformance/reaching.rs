@@ -1,7 +1,7 @@
-//! Which lights reach which samples, in f64: what lists are held against.
+//! Computes in f64 which lights reach which samples. Lists are checked against it.
 //!
-//! It depends on the lights and on where the samples lie, not on the strategy. A process that runs the
-//! suite on several strategies, and each frame twice, computes it once for each stage and keeps it.
+//! The result depends only on the lights and the samples' positions. A process runs the suite on
+//! several strategies and each frame twice, so it computes the result once per stage and keeps it.
 
 use std::{
     collections::HashMap,
@@ -14,20 +14,20 @@ use glam::DVec3;
 use super::rig::Probe;
 use crate::{Light, LightShape};
 
-/// A pair closer to the edge of the light's support than this share of it does not count.
+/// A pair does not count if it is closer to the support's edge than this share of the support.
 const EDGE: f64 = 1e-6;
 
-/// Stages kept for each case: a case has three at most, seen with and without normals, and at any
-/// depth or on surfaces.
+/// Stages kept per case. A case has at most three, with or without normals, and at any depth or
+/// only on surfaces.
 const KEPT: usize = 12;
 
 /// Stages by the name of their case.
 type Known = HashMap<&'static str, Vec<Arc<Reaching>>>;
 
-/// Lights as bits, 32 a word.
+/// One bit per light, 32 per word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct LightBits {
-    /// Lights whose specular term counts: all that reach.
+    /// Lights whose specular term counts: all lights that reach.
     pub(super) specular: Vec<u32>,
     /// Lights whose diffuse term counts.
     pub(super) diffuse: Vec<u32>,
@@ -44,7 +44,7 @@ impl LightBits {
         self.diffuse.fill(0);
     }
 
-    /// Sets or clears the bits of a light; one that does not exist is left out.
+    /// Sets or clears the bits of a light. Ignores a light that does not exist.
     pub(super) fn set(&mut self, light_ix: u32, specular: bool, diffuse: bool) {
         let (word, bit) = ((light_ix / 32) as usize, 1 << (light_ix % 32));
         for (words, value) in [(&mut self.specular, specular), (&mut self.diffuse, diffuse)] {
@@ -71,9 +71,9 @@ pub(super) struct Reaching {
 }
 
 impl Reaching {
-    /// What reaches the samples of a stage of `case`: computed, or known from an equal stage.
-    /// `knows_normals`: a light below the sample's horizon does not reach it.
-    pub(super) fn of(
+    /// The lights that reach the samples of a stage of `case`: computed, or kept from an equal
+    /// stage. With `knows_normals`, a light below a sample's horizon does not reach it.
+    pub(super) fn find(
         case: &'static str,
         probes: &[Probe],
         lights: &[Light],
@@ -84,7 +84,7 @@ impl Reaching {
         let same = |known: &&Arc<Self>| {
             known.knows_normals == knows_normals && known.lights == lights && known.places == places
         };
-        // The store is whole even where another test has panicked.
+        // The store is whole even after another test has panicked.
         let lock = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) =
             lock().get_or_insert_default().get(case).and_then(|k| k.iter().find(same))
@@ -108,7 +108,7 @@ fn place(probe: &Probe) -> [u32; 6] {
     [x, y, z, i, j, k].map(f32::to_bits)
 }
 
-/// Shares the samples out among the processors.
+/// Splits the samples among the processors.
 fn compute(probes: &[Probe], lights: &[Light], knows_normals: bool) -> Vec<LightBits> {
     let radii: Vec<f64> = lights.iter().map(outer_radius).collect();
     let mut by_sample = vec![LightBits::none(lights.len()); probes.len()];
@@ -138,7 +138,7 @@ fn reach_sample(
     let normal = DVec3::from_array(probe.normal_world.map(f64::from)).normalize_or_zero();
     for (light_ix, (light, radius)) in (0..).zip(lights.iter().zip(radii)) {
         let far = point.distance_squared(light.position.as_dvec3()) > radius * radius;
-        // A position that is no number must not pass for one out of reach.
+        // A NaN position must not count as out of reach.
         if far && point.is_finite() {
             continue;
         }
@@ -152,8 +152,9 @@ fn reach_sample(
     }
 }
 
-/// The distance from a light's position beyond which it reaches nothing, in f64. The range counts
-/// from the closest point of the emitter, so an emitter adds its farthest vertex.
+/// The distance from a light's position beyond which it reaches nothing, in f64. The range is
+/// measured from the emitter's closest point, so an emitter adds the distance of its farthest
+/// vertex.
 fn outer_radius(light: &Light) -> f64 {
     let extent = match &light.shape {
         LightShape::Area(emitter) => {
@@ -172,32 +173,32 @@ mod tests {
 
     use super::*;
 
-    /// What was computed for other lights, places or normals is never handed out.
+    /// A result for other lights, positions or normals is never returned.
     #[test]
-    fn an_equal_stage_is_known_and_any_other_is_computed() {
+    fn an_equal_stage_is_reused_and_any_other_is_computed() {
         let probe = |point: Vec3, normal: Vec3| {
             let mut probe = Probe::zeroed();
             (probe.position_world, probe.normal_world) = (point.to_array(), normal.to_array());
             probe
         };
         let light = Light::point(Vec3::ZERO, 1.0, Vec3::ONE);
-        let of = |probes: &[Probe], light: Light, knows_normals| {
-            Reaching::of("an equal stage", probes, &[light], knows_normals)
+        let find = |probes: &[Probe], light: Light, knows_normals| {
+            Reaching::find("an equal stage", probes, &[light], knows_normals)
         };
         let near = [probe(0.5 * Vec3::Z, Vec3::Z)];
-        let first = of(&near, light, false);
+        let first = find(&near, light, false);
         assert_eq!(first.by_sample[0].count(), 1);
-        assert!(Arc::ptr_eq(&first, &of(&near, light, false)));
+        assert!(Arc::ptr_eq(&first, &find(&near, light, false)));
         // The light lies below the horizon of a sample that faces away.
-        assert_eq!(of(&near, light, true).by_sample[0].count(), 0);
-        assert_eq!(of(&[probe(0.5 * Vec3::Z, -Vec3::Z)], light, true).by_sample[0].count(), 1);
-        assert_eq!(of(&[probe(2.0 * Vec3::Z, Vec3::Z)], light, false).by_sample[0].count(), 0);
-        assert_eq!(of(&near, Light { range_m: 0.1, ..light }, false).by_sample[0].count(), 0);
-        // A position that is no number is reached by every light: its list lacks them all.
+        assert_eq!(find(&near, light, true).by_sample[0].count(), 0);
+        assert_eq!(find(&[probe(0.5 * Vec3::Z, -Vec3::Z)], light, true).by_sample[0].count(), 1);
+        assert_eq!(find(&[probe(2.0 * Vec3::Z, Vec3::Z)], light, false).by_sample[0].count(), 0);
+        assert_eq!(find(&near, Light { range_m: 0.1, ..light }, false).by_sample[0].count(), 0);
+        // Every light reaches a NaN position, so its list misses all of them.
         let nowhere = [probe(Vec3::NAN, Vec3::Z)];
-        assert_eq!(of(&nowhere, light, false).by_sample[0].count(), 1);
+        assert_eq!(find(&nowhere, light, false).by_sample[0].count(), 1);
         for _ in 0..2 * KEPT {
-            assert_eq!(of(&nowhere, light, false).by_sample[0].count(), 1);
+            assert_eq!(find(&nowhere, light, false).by_sample[0].count(), 1);
         }
     }
 }

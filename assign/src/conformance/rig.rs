@@ -1,4 +1,4 @@
-//! The GPU's side of the suite: surfaces into a depth buffer, and the probe that looks lists up.
+//! The suite's GPU side: it draws surfaces into a depth buffer and looks up lists with a probe.
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
 
@@ -7,13 +7,13 @@ use crate::{
     AssignError, Assignment, FrameBindings, Gpu, Shader, entry, storage_entry, uniform_entry,
 };
 
-/// Bind group of the lists in the probe.
+/// Bind group of the lists in the probe shader.
 pub(super) const LISTS_GROUP: u32 = 1;
 const PROBE_GROUP: u32 = 2;
 const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A looked-up sample: `probe.wesl`, `struct Probe`. 64 bytes.
+/// A sample and what its look-up found: `struct Probe` of `probe.wesl`. 64 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct Probe {
@@ -26,12 +26,12 @@ pub(super) struct Probe {
     pub(super) first: u32,
     pub(super) count: u32,
     depth_used: f32,
-    /// What was drawn; once looked up, what the look-up was asked with.
+    /// The normal that was drawn; after the look-up, the normal that the look-up used.
     pub(super) normal_world: [f32; 3],
     pub(super) last: u32,
 }
 
-/// A stage on the GPU.
+/// A stage's surfaces and samples on the GPU.
 pub(super) struct Surfaces {
     pub(super) depth: wgpu::TextureView,
     pub(super) normals: wgpu::TextureView,
@@ -40,7 +40,7 @@ pub(super) struct Surfaces {
     count: u32,
 }
 
-/// The device, and what draws the surfaces: one for all strategies of a process.
+/// The device and the pipeline that draws surfaces. All strategies of a process share them.
 pub(super) struct Rig {
     pub(super) gpu: Gpu,
     draw: wgpu::RenderPipeline,
@@ -68,7 +68,7 @@ impl Rig {
         Self { draw: draw_pipeline(&gpu), gpu, probe_layout }
     }
 
-    /// Uploads the samples, opaque surfaces only or all, and draws the surfaces.
+    /// Uploads the samples, all or only those on surfaces, and draws the surfaces.
     pub(super) fn set_up(&self, stage: &Stage, any_depth: bool) -> Result<Surfaces, AssignError> {
         let device = &self.gpu.device;
         let samples = match any_depth {
@@ -192,14 +192,14 @@ impl Rig {
         Ok(())
     }
 
-    /// Reads the looked-up samples back, after submission.
+    /// Reads the samples back after submission.
     pub(super) fn read_probes(&self, surfaces: &Surfaces) -> Result<Vec<Probe>, AssignError> {
         let bytes = u64::from(surfaces.count) * size_of::<Probe>() as u64;
         let probes: Vec<Probe> = pod_collect_to_vec(&self.gpu.read(&surfaces.probes, bytes)?);
         let wrong = |p: &&Probe| p.depth_used.to_bits() != p.depth_clip.to_bits();
         if let Some(probe) = probes.iter().find(wrong) {
             return Err(AssignError::Device(format!(
-                "depth buffer at {:?} holds {} instead of {}",
+                "the depth buffer at pixel {:?} holds {} instead of {}",
                 probe.pixel, probe.depth_used, probe.depth_clip
             )));
         }

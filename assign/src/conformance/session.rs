@@ -1,4 +1,4 @@
-//! Draws the frames of a case with one instance of a strategy, and has each checked.
+//! Draws the frames of a case with one instance of a strategy, and checks each frame.
 
 use bytemuck::cast_slice;
 
@@ -14,12 +14,12 @@ use crate::{
     AssignError, Assignment, EncoderPasses, Frame, FrameBindings, LightBuffer, SampleDomain,
 };
 
-/// Frames in which the pool must have grown to what the lists ask for.
+/// The number of frames after which the pool must fit all lists.
 const FRAMES_TO_GROW: u32 = 6;
-/// The pool of the overflow case, entries.
+/// Size of the pool in the overflow case, entries.
 const TINY_POOL: u32 = 64;
 
-/// Runs one case. Violations are an outcome; an error is a failure outside the promises.
+/// Runs one case. Violations are an outcome; an error is any other failure.
 pub(super) fn run(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<Outcome, AssignError> {
     let seed =
         case.name.bytes().fold(7, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
@@ -52,7 +52,7 @@ pub(super) fn run(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<Outcome, As
     })
 }
 
-/// Whether the strategy cuts the samples of a plain view into groups at all.
+/// Whether the strategy has groups in a plain view.
 pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool, AssignError> {
     let Plan::Still(lit) = (case.build)(&mut Rng::new(1)) else {
         return Ok(true);
@@ -62,7 +62,7 @@ pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool
     Ok(session.draw(rig, &lit, false)?.group_count > 0)
 }
 
-/// A case under way.
+/// The state of a running case.
 struct Run<'r> {
     rig: &'r Rig,
     make: &'r Make<'r>,
@@ -71,7 +71,7 @@ struct Run<'r> {
 }
 
 impl Run<'_> {
-    /// Draws stage after stage with one instance. The last frame is drawn twice.
+    /// Draws the stages in sequence with one instance. Draws each stage's last frame twice.
     fn sequence(&mut self, stages: &[Lit]) -> Result<(), AssignError> {
         let mut session = Session::new(self.rig, self.make)?;
         let mut fresh = true;
@@ -86,7 +86,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Draws until no list overflows. `fresh` is whether no earlier stage left records behind.
+    /// Draws frames until no list overflows. `fresh` says that no earlier stage left records
+    /// behind.
     fn settle(
         &mut self,
         session: &mut Session,
@@ -102,7 +103,7 @@ impl Run<'_> {
         }
         if seen.overflowed() {
             let detail = format!(
-                "{} groups after {FRAMES_TO_GROW} frames",
+                "{} groups overflow after {FRAMES_TO_GROW} frames",
                 seen.snapshot.counters.overflowed_groups
             );
             self.findings.add(Breach::OverflowStays, Place::default(), detail);
@@ -110,7 +111,7 @@ impl Run<'_> {
         Ok(seen)
     }
 
-    /// Draws one frame and checks all that holds of every frame.
+    /// Draws one frame and checks what must hold for every frame.
     fn frame(
         &mut self,
         session: &mut Session,
@@ -130,7 +131,8 @@ impl Run<'_> {
         Ok(seen)
     }
 
-    /// A pool far too small: nothing missed, overflow counted; without the limit it ends.
+    /// With a pool that is far too small, no pair is missed and the overflow is counted. Without
+    /// the limit, the overflow ends.
     fn overflow(&mut self, lit: &Lit) -> Result<(), AssignError> {
         let mut session = Session::new(self.rig, self.make)?;
         session.strategy.lists_mut().limit_pool(TINY_POOL);
@@ -138,7 +140,8 @@ impl Run<'_> {
         for wipe in [true, false] {
             let seen = self.frame(&mut session, lit, wipe, true)?;
             if seen.group_count > 0 && !seen.overflowed() {
-                let detail = format!("{} lights, a pool of {TINY_POOL} entries", seen.light_count);
+                let detail =
+                    format!("with {} lights and a pool of {TINY_POOL} entries", seen.light_count);
                 self.findings.add(Breach::NoOverflow, Place::default(), detail);
             }
         }
@@ -149,7 +152,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Faulty lights among sound ones: left out, counted, and the sound ones' lists unchanged.
+    /// Faulty lights are omitted and counted, and the lists of the sound lights do not change.
     fn quarantine(&mut self, clean: &Lit, dirty: &Lit, bad: &[usize]) -> Result<(), AssignError> {
         let mut settled = Vec::new();
         for lit in [clean, dirty] {
@@ -160,7 +163,7 @@ impl Run<'_> {
             let expected = if std::ptr::eq(lit, dirty) { bad } else { &[] };
             if !rejected.eq(expected.iter().copied()) {
                 let detail = format!(
-                    "faulty lights are {expected:?}, left out were {:?}",
+                    "faulty lights are {expected:?}, but these were omitted: {:?}",
                     session.lights.rejected()
                 );
                 self.findings.add(Breach::Quarantine, Place::default(), detail);
@@ -171,7 +174,7 @@ impl Run<'_> {
     }
 }
 
-/// One instance of a strategy, and what a renderer keeps beside it.
+/// One instance of a strategy, and what a renderer keeps with it.
 struct Session {
     strategy: Box<dyn Assignment>,
     frame: FrameBindings,
@@ -202,8 +205,8 @@ impl Session {
         Ok(())
     }
 
-    /// Prepares a frame: with look-ups at any depth where the strategy serves them, else with
-    /// those on opaque surfaces.
+    /// Prepares a frame with look-ups at any depth. If the strategy refuses them, prepares it with
+    /// look-ups on opaque surfaces.
     fn prepare(&mut self, rig: &Rig, lit: &Lit) -> Result<(), AssignError> {
         let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
         self.frame.update(&rig.gpu, &frame)?;
@@ -218,7 +221,7 @@ impl Session {
         }
     }
 
-    /// Draws one frame; `wipe` first fills all records with what no pass writes.
+    /// Draws one frame. `wipe` first fills all records with [`UNWRITTEN`].
     fn draw(&mut self, rig: &Rig, lit: &Lit, wipe: bool) -> Result<Seen, AssignError> {
         let gpu = &rig.gpu;
         self.prepare(rig, lit)?;

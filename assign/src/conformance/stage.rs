@@ -1,10 +1,10 @@
-//! What a case looks at: a view, surfaces traced on the CPU, and view samples.
+//! A case's stage: a view, surfaces traced on the CPU, and view samples.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat3, Vec3};
 
 use crate::{ModelBox, Projection, View};
 
-/// A stream of numbers from a seed (SplitMix64), the same on every platform.
+/// A seeded stream of random numbers (SplitMix64), the same on every platform.
 #[derive(Debug)]
 pub(super) struct Rng(u64);
 
@@ -21,12 +21,12 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// Even between `low` and `high`.
+    /// A number uniform between `low` and `high`.
     pub(super) fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Even in the logarithm.
+    /// A number whose logarithm is uniform.
     pub(super) fn log_range(&mut self, low: f64, high: f64) -> f64 {
         self.range(low.ln(), high.ln()).exp()
     }
@@ -36,7 +36,7 @@ impl Rng {
         (self.next() % count.max(1) as u64) as usize
     }
 
-    /// A direction, even on the sphere.
+    /// A direction uniform on the sphere.
     pub(super) fn direction(&mut self) -> DVec3 {
         let z = self.range(-1.0, 1.0);
         let angle = self.range(0.0, std::f64::consts::TAU);
@@ -50,7 +50,7 @@ impl Rng {
 pub(super) enum Solid {
     /// `dot(normal, p) = offset`.
     Plane { normal: DVec3, offset: f64 },
-    /// Facing the camera at a depth, up to a height; above it is background.
+    /// A wall that faces the camera at a depth, up to a height; background is above it.
     Wall { depth: f64, top: f64 },
     /// Upright bars at a depth, a third of a period wide.
     Bars { depth: f64, period: f64 },
@@ -58,7 +58,7 @@ pub(super) enum Solid {
     Ball { center: DVec3, radius: f64 },
 }
 
-/// View-space ray, parametrised by view depth.
+/// A view-space ray with view depth as its parameter.
 #[derive(Clone, Copy, Debug)]
 struct Ray {
     origin: DVec3,
@@ -72,7 +72,7 @@ impl Ray {
 }
 
 impl Solid {
-    /// View depth and normal of the first hit in front.
+    /// View depth and normal of the first hit in front of the camera.
     fn hit(&self, ray: &Ray) -> Option<(f64, DVec3)> {
         let (depth, normal) = match *self {
             Self::Plane { normal, offset } => {
@@ -98,7 +98,7 @@ impl Solid {
     }
 }
 
-/// Floor, far wall under an open sky, and balls, `scale_m` to the metre.
+/// A floor, a far wall under an open sky, and balls, all scaled by `scale_m`.
 pub(super) fn room(rng: &mut Rng, scale_m: f64) -> Vec<Solid> {
     let mut solids = vec![
         Solid::Plane { normal: DVec3::new(0.0, 1.0, 0.05).normalize(), offset: -1.5 * scale_m },
@@ -115,42 +115,42 @@ pub(super) fn room(rng: &mut Rng, scale_m: f64) -> Vec<Solid> {
     solids
 }
 
-/// The model of a sample that lies on no surface.
+/// The model index of a sample that lies on no surface.
 pub(super) const IN_THE_OPEN: u32 = u32::MAX;
 
 /// A view sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub(super) pixel: [u32; 2],
-    /// Clip depth: on a surface what the depth buffer holds.
+    /// Clip depth; on a surface, the depth buffer's value.
     pub(super) depth_clip: f32,
-    /// The model it lies on; [`IN_THE_OPEN`] of none.
+    /// The sample's model; [`IN_THE_OPEN`] if it lies on none.
     pub(super) model_ix: u32,
-    /// Where it lies: lights are aimed at it.
+    /// World-space position. Lights are aimed at it.
     pub(super) point: DVec3,
-    /// Its shading normal; of one in the open that of the surface behind it, or zero.
+    /// Shading normal. In the open it is the normal of the surface at that pixel, or zero.
     pub(super) normal_world: Vec3,
 }
 
-/// A view, what it sees, and the samples to look up.
+/// A view, the surfaces that it sees, and the samples to look up.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) view: View,
     /// Size of the render target, pixels.
     pub(super) target: [u32; 2],
-    /// World-space normal and clip depth of each texel; the depth of background is -1.
+    /// World-space normal and clip depth of each texel. Background has depth -1.
     pub(super) texels: Vec<[f32; 4]>,
     /// Samples on surfaces, then samples in the open.
     pub(super) samples: Vec<Sample>,
     pub(super) on_surfaces: usize,
-    /// A box around the samples of each solid, turned a little further each.
+    /// A box around the samples of each solid. Each box is turned a little further.
     pub(super) models: Vec<ModelBox>,
     view_to_world: DMat4,
     view_to_clip: DMat4,
 }
 
 impl Stage {
-    /// Traces `solids` and samples every pixel with a surface, and `open` points in the open.
+    /// Traces `solids`. Samples every pixel with a surface, and `open` points in the open.
     pub(super) fn new(view: View, target: [u32; 2], solids: &[Solid], open: usize) -> Self {
         let mut stage = Self {
             view,
@@ -174,7 +174,7 @@ impl Stage {
         stage
     }
 
-    /// The box of a model, from where shading rebuilds its samples.
+    /// The box of a model, around the positions at which shading rebuilds its samples.
     fn model(&self, model_ix: u32) -> ModelBox {
         let turn = Mat3::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.2 * model_ix as f32);
         let axes = [turn.x_axis, turn.y_axis, turn.z_axis];
@@ -204,7 +204,7 @@ impl Stage {
         ))
     }
 
-    /// Keeps no more than `count` samples of each kind.
+    /// Keeps at most `count` samples of each kind.
     pub(super) fn thinned(mut self, count: usize) -> Self {
         let open = self.samples.split_off(self.on_surfaces);
         let thin = |samples: Vec<Sample>| {
@@ -217,7 +217,7 @@ impl Stage {
         self
     }
 
-    /// World-space point of a view-space one.
+    /// The world-space point of a view-space point.
     pub(super) fn to_world(&self, point_view: DVec3) -> DVec3 {
         self.view_to_world.transform_point3(point_view)
     }
@@ -257,7 +257,7 @@ impl Stage {
             return;
         };
         let depth_clip = self.depth_clip(depth);
-        // A renderer takes the cleared depth for background.
+        // A renderer treats the cleared depth as background.
         if depth_clip == self.view.depth_clear() {
             return;
         }
@@ -273,8 +273,8 @@ impl Stage {
         });
     }
 
-    /// World-space point that shading rebuilds from a clip depth, in the f32 that it uses: with a
-    /// near plane of millimetres and depth not reversed, that is far from what was drawn.
+    /// The world-space point that shading rebuilds from a clip depth, in shading's f32. With a near
+    /// plane of millimetres and depth not reversed, it is far from the point that was drawn.
     fn rebuilt(&self, ray: &Ray, depth_clip: f32) -> DVec3 {
         let [.., [_, _, m22, m23], [_, _, m32, m33]] = self.view.view_to_clip().to_cols_array_2d();
         let depth_view = (m32 - depth_clip * m33) / (m22 - depth_clip * m23);
@@ -286,7 +286,7 @@ impl Stage {
         (f64::from(self.view.near_m), far)
     }
 
-    /// Points at random depths, every eighth on the near or the far plane.
+    /// Samples points at random depths, every eighth on the near or the far plane.
     fn sample_in_the_open(&mut self, count: usize) {
         let mut rng = Rng::new(u64::from(self.target[0]));
         let (near, far) = self.depth_range();
@@ -303,7 +303,7 @@ impl Stage {
                 _ => self.depth_clip(rng.log_range(near.max(1e-3 * far), far)),
             };
             let point = self.rebuilt(&self.ray([x, y]), depth_clip);
-            // No depth buffer tells a point so far away from infinity.
+            // No depth buffer can distinguish a point so far away from infinity.
             if !point.is_finite() {
                 continue;
             }

@@ -4,7 +4,8 @@ use glam::{Vec2, Vec3};
 
 use crate::{DepthMapping, Projection, View, Viewport};
 
-/// Size of most targets, pixels: a few tiles, and few enough samples for software adapters.
+/// Size of most targets, pixels. It spans a few tiles and has few enough samples for software
+/// adapters.
 pub(super) const SIZE: [u32; 2] = [72, 48];
 
 const EYE: Vec3 = Vec3::new(1.3, 1.7, 2.1);
@@ -57,7 +58,7 @@ pub(super) fn offset() -> View {
     View { viewport: Viewport { x: 21, y: 13, width: 83, height: 57 }, ..sized([83, 57]) }
 }
 
-/// 1,000 km from the origin, where a position is good to 6 cm.
+/// 1,000 km from the origin, where f32 positions are accurate to 6 cm.
 pub(super) fn far_from_origin() -> View {
     let away = Vec3::new(800_000.0, 1_000.0, -600_000.0);
     View::look_at(EYE + away, TARGET + away, 1.0, 0.1, SIZE)

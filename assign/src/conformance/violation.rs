@@ -1,14 +1,14 @@
-//! What the suite says: violations, figures and errors, each in one line.
+//! The suite's results: violations, figures and errors, each in one line.
 
 use std::fmt;
 
 use crate::AssignError;
 
-/// The promise that was broken.
+/// A broken promise of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Breach {
-    /// A light reaches a sample and is not in the list of the sample's group, or lacks the flag of a
-    /// term that does.
+    /// A light reaches a sample, but the list of the sample's group lacks the light or the flag of
+    /// a term that reaches.
     MissedPair,
     /// A list's light indices do not ascend.
     NotAscending,
@@ -30,15 +30,15 @@ pub enum Breach {
     Counters,
     /// The look-up's record differs from the one read back.
     Lookup,
-    /// The same frame twice gave two lists.
+    /// The same frame, drawn twice, gave different lists.
     Unstable,
-    /// The pool did not grow to what the lists ask for.
+    /// The pool did not grow to what the lists need.
     OverflowStays,
-    /// An entry pool that is far too small caused no counted overflow.
+    /// A pool that is far too small caused no counted overflow.
     NoOverflow,
-    /// Faulty lights were let in, not counted, or changed their neighbours' lists.
+    /// Faulty lights were accepted, not counted, or changed the lists of other lights.
     Quarantine,
-    /// A case that should have (light, sample) pairs had none: the suite itself is at fault.
+    /// A case that should have (light, sample) pairs had none, so it checked nothing.
     Vacuous,
 }
 
@@ -48,16 +48,16 @@ impl Breach {
             Self::MissedPair => "missed pair",
             Self::NotAscending => "list not ascending",
             Self::Repeated => "light repeated",
-            Self::ForeignLight => "no such light",
+            Self::ForeignLight => "light does not exist",
             Self::NoTerm => "entry without a term",
             Self::OutsideBuffer => "list outside the buffer",
-            Self::NoSuchGroup => "no such group",
+            Self::NoSuchGroup => "group does not exist",
             Self::Unwritten => "record never written",
             Self::Record0 => "record 0 is not all lights",
             Self::Counters => "counters wrong",
             Self::Lookup => "look-up wrong",
-            Self::Unstable => "same frame, other list",
-            Self::OverflowStays => "overflow stays",
+            Self::Unstable => "same frame, different list",
+            Self::OverflowStays => "overflow does not end",
             Self::NoOverflow => "no overflow counted",
             Self::Quarantine => "quarantine broken",
             Self::Vacuous => "nothing was checked",
@@ -65,7 +65,7 @@ impl Breach {
     }
 }
 
-/// Where a violation was seen; what does not apply is `None`.
+/// Where a violation occurred. Fields that do not apply are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Place {
     /// The group.
@@ -76,7 +76,7 @@ pub struct Place {
     pub sample: Option<SamplePlace>,
 }
 
-/// A view sample, as a reader finds it in an image.
+/// A view sample, located in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplePlace {
     /// Pixel centre in the target.
@@ -85,22 +85,22 @@ pub struct SamplePlace {
     pub depth_m: f32,
 }
 
-/// A broken promise. Its `Display` is one line.
+/// A broken promise, with its place. Its `Display` is one line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
     /// The case's name.
     pub case: &'static str,
-    /// The stage of the case, from 0: lights and camera stand still within one.
+    /// The stage of the case, from 0. Lights and camera do not move within a stage.
     pub stage: u32,
     /// The frame of the case, from 0.
     pub frame: u32,
     /// The promise.
     pub breach: Breach,
-    /// Where the first was seen.
+    /// Where the first such violation occurred.
     pub place: Place,
-    /// What was seen there.
+    /// What was found there.
     pub detail: String,
-    /// How many like it the frame held.
+    /// How many such violations the frame had.
     pub count: u64,
 }
 
@@ -121,13 +121,13 @@ impl fmt::Display for Violation {
         }
         write!(f, ": {}", self.detail)?;
         if self.count > 1 {
-            write!(f, " ({} such)", self.count)?;
+            write!(f, " ({} of this kind)", self.count)?;
         }
         Ok(())
     }
 }
 
-/// What a case checked.
+/// Counts of what a case checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
     /// Frames drawn.
@@ -138,18 +138,18 @@ pub struct Figures {
     pub pairs: u64,
     /// (light, sample) pairs that the lists held.
     pub listed: u64,
-    /// Whether look-ups at any depth were served and checked too.
+    /// Whether look-ups at any depth were also served and checked.
     pub any_depth: bool,
 }
 
 /// How a case ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// All promises kept.
+    /// The strategy kept all promises.
     Passed(Figures),
-    /// The strategy said before the first frame that it cannot serve the case.
+    /// The strategy refused the case before its first frame.
     Unserved(String),
-    /// Promises broken.
+    /// The strategy broke promises.
     Failed(Vec<Violation>),
 }
 
@@ -162,17 +162,17 @@ pub struct CaseReport {
     pub outcome: Outcome,
 }
 
-/// The outcome of every case. Its `Display` is one line a case.
+/// The outcome of every case. Its `Display` is one line per case or violation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// The strategy's id.
     pub strategy: String,
-    /// Case by case, in the order of [`CASES`](super::CASES).
+    /// The cases' reports, in the order of [`CASES`](super::CASES).
     pub cases: Vec<CaseReport>,
 }
 
 impl CaseReport {
-    /// Mean entries of the list that a sample reads; `None` where the case did not pass.
+    /// Mean number of entries that a sample reads; `None` if the case did not pass.
     pub fn listed_per_sample(&self) -> Option<f64> {
         match &self.outcome {
             Outcome::Passed(figures) => Some(figures.listed as f64 / figures.samples.max(1) as f64),
@@ -203,32 +203,32 @@ impl fmt::Display for Report {
     }
 }
 
-/// Why a strategy does not conform. `Debug` prints what `Display` does, so that a failing
-/// `expect` reads well.
+/// Why a strategy does not conform. `Debug` prints the same as `Display`, so that a failing
+/// `expect` is readable.
 #[derive(Clone, thiserror::Error)]
 pub enum ConformanceError {
     /// No case has that name.
     #[error("no conformance case is named {0}")]
     NoCase(String),
-    /// The strategy or the device failed outside a promise.
+    /// The strategy or the device failed without breaking a promise.
     #[error("case {case}: {error}")]
     Assign {
-        /// The case's name; `setup` before the first.
+        /// The case's name; `setup` before the first case.
         case: &'static str,
         /// The error.
         error: AssignError,
     },
-    /// Promises broken, or cases unserved that were not allowed to be.
+    /// The strategy broke promises, or refused cases that it may not refuse.
     #[error("does not conform:\n{}", failures(.0))]
     Rejected(Report),
-    /// A planted fault was not noticed as what it is.
-    #[error("planted fault {fault} passed the case {case}: {outcome}")]
+    /// The suite did not reject a planted fault with the right breach.
+    #[error("case {case} did not reject the planted fault {fault}: {outcome}")]
     FaultPassed {
         /// The fault's name.
         fault: String,
         /// The case that should have rejected it.
         case: &'static str,
-        /// What the case said instead.
+        /// The case's outcome.
         outcome: String,
     },
 }
@@ -244,8 +244,8 @@ fn failures(report: &Report) -> String {
     Report { strategy: report.strategy.clone(), cases: failed.cloned().collect() }.to_string()
 }
 
-/// Violations of one case as they are found: the first of each kind in each frame is kept, its
-/// like are counted.
+/// Collects the violations of one case. It keeps the first of each kind in each frame and counts
+/// the others.
 #[derive(Debug)]
 pub(super) struct Findings {
     pub(super) case: &'static str,
@@ -263,7 +263,7 @@ impl Findings {
         self.add_with(breach, place, || detail);
     }
 
-    /// As [`add`](Self::add); only the first of a frame is described.
+    /// As [`add`](Self::add), but makes the detail only for the first of its kind in a frame.
     pub(super) fn add_with(
         &mut self,
         breach: Breach,

@@ -1,4 +1,4 @@
-//! A group that is a box along the world's axes: `bounds_box.wesl`.
+//! Groups that are boxes along the world's axes: `bounds_box.wesl`.
 
 use glam::Vec3;
 
@@ -7,24 +7,24 @@ use crate::View;
 
 /// A box along the world's axes.
 ///
-/// Test (Enhuber 2019, section 3.5.1): NP, the nearest point of the box; exact for a ball. For a
-/// spot the same axis is tried against the cone's own extent, and the cone against the sphere
-/// around the box. For an area light the axis is that between the nearest points of box and
-/// outline, and the farthest corner is tried against the outline's plane.
+/// The test is NP, the nearest point of the box (Enhuber 2019, section 3.5.1), which is exact for a
+/// ball. For a spot it also tries the same axis against the cone's extent, and the cone against the
+/// sphere around the box. For an area light it tries the axis between the nearest points of box and
+/// outline, and the farthest corner against the outline's plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Lowest corner, world space, metres.
     pub min_world: Vec3,
     /// Highest corner, world space, metres.
     pub max_world: Vec3,
-    /// Rounding of a sample's position, metres.
+    /// Bound of the rounding of a sample's position, metres.
     pub slack_m: f32,
-    /// Further slack per metre of the light's range.
+    /// Additional slack per metre of the light's range.
     pub slack_per_m: f32,
 }
 
 impl Aabb {
-    /// The box from `min_world` to `max_world` as `view` sees it.
+    /// The box from `min_world` to `max_world`, with the slack of `view`.
     pub fn new(view: &View, min_world: Vec3, max_world: Vec3) -> Self {
         let uniform = view.uniform();
         let extreme = min_world.abs().max(max_world.abs());

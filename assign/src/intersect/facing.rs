@@ -1,4 +1,5 @@
-//! How a group's surfaces face, and the lights below all their horizons: `facing.wesl`.
+//! The directions in which a group's surfaces face, and the lights below all their horizons:
+//! `facing.wesl`.
 
 use glam::Vec3;
 
@@ -15,21 +16,22 @@ pub struct NormalCone {
     pub sin_half: f32,
 }
 
-/// Half floats may make a unit vector longer or shorter by this share.
+/// Half floats may change the length of a unit vector by this share.
 const LENGTH_SLACK: f32 = 1.2e-3;
-/// How far rounding may leave a vertex off its emitter's plane, as a share of the emitter's size: far
-/// less than this, twice what is let in.
+/// Bound of a vertex's distance from its emitter's plane, as a share of the emitter's size. It is
+/// twice what emitters accept; rounding leaves vertices far closer.
 pub(super) const OFF_PLANE: f32 = 2e-4;
-/// What half axes 1e-3 off a right angle add to an emitter's radius.
+/// Factor for an emitter's radius, because half axes may be 1e-3 off a right angle.
 pub(super) const OFF_SQUARE: f32 = 1.001;
 
 impl NormalCone {
     /// All directions.
     pub const ALL: Self = Self { axis: Vec3::Z, cos_half: -1.0, sin_half: 0.0 };
 
-    /// A cone around the unit normals in a box. Of a box with middle c and corners r away, they lie
-    /// in the tangent cone of the ball around it, sin = r / |c|, and beyond the plane at the box's
-    /// nearer end.
+    /// A cone around the unit normals in a box. If the box's centre is c and its corners are at
+    /// distance r from it, the normals lie in the tangent cone of the ball around the box, sin = r
+    /// / |c|. They also lie beyond the plane through the box's nearest corner along c. The narrower
+    /// cone counts.
     pub fn of_box(low: Vec3, high: Vec3) -> Self {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let distance = middle.length();
@@ -58,7 +60,8 @@ impl NormalCone {
         Self { cos_half, sin_half, ..self }
     }
 
-    /// Whether a light rises above the horizon of no surface in a box whose normal lies in the cone.
+    /// Whether a light lies below the horizon of every surface in a box whose normal lies in the
+    /// cone.
     pub fn faces_away(&self, bounds: &Aabb, volume: &LightVolume) -> bool {
         let half = 0.5 * (bounds.max_world - bounds.min_world);
         let across = volume.center - 0.5 * (bounds.min_world + bounds.max_world);

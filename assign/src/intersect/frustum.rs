@@ -1,4 +1,4 @@
-//! A group cut from the view frustum by a pixel rectangle and a depth range:
+//! Groups that a pixel rectangle and a depth range cut from the view frustum:
 //! `bounds_frustum.wesl`.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -14,8 +14,8 @@ pub struct Frustum {
     /// World-space corners: bit 0 of the index is x, bit 1 y, bit 2 depth. Without a far plane
     /// the last four repeat the first.
     pub corners: [Vec3; 8],
-    /// World-space planes, outward: `dot(xyz, p) + w <= 0` inside. Left, right, bottom, top,
-    /// near, far.
+    /// World-space planes that face outwards: `dot(xyz, p) + w <= 0` inside. Order: left, right,
+    /// bottom, top, near, far.
     pub planes: [Vec4; 6],
     /// Unit vectors along the edges, zero where an edge has no length: x, y, four along depth.
     pub edges: [Vec3; 6],
@@ -23,17 +23,17 @@ pub struct Frustum {
     pub center: Vec3,
     /// Radius of that sphere, metres.
     pub radius_m: f32,
-    /// Rounding of a sample's position, metres.
+    /// Bound of the rounding of a sample's position, metres.
     pub slack_m: f32,
-    /// Further slack per metre of the light's distance from the origin and of its range.
+    /// Additional slack per metre of the light's distance from the origin and of its range.
     pub slack_per_m: f32,
-    /// Whether the far plane exists, and with it far corners.
+    /// Whether the frustum has a far plane, and so far corners.
     pub bounded: bool,
 }
 
 impl Frustum {
-    /// The piece of the view between two corners in normalised device coordinates and two view
-    /// depths, metres; a `depth_max` of [`UNBOUNDED`] or more has no far plane.
+    /// The part of the view between two corners in normalised device coordinates and two view
+    /// depths, metres. With a `depth_max` of [`UNBOUNDED`] or more it has no far plane.
     pub fn new(view: &View, ndc_min: Vec2, ndc_max: Vec2, depth_min: f32, depth_max: f32) -> Self {
         let lens = Lens::new(&view.uniform());
         let bounded = depth_max < UNBOUNDED;
@@ -74,7 +74,7 @@ impl Frustum {
         }
     }
 
-    /// Whether the light's volume may reach the frustum: whether none of the tests separates it.
+    /// Whether the light's volume may reach the frustum: no test separates them.
     pub fn reaches(&self, volume: &LightVolume, tests: FrustumTests) -> bool {
         let magnitude = volume.center.abs();
         let slack_m = self.slack_m
@@ -82,7 +82,7 @@ impl Frustum {
         if tests.hs && self.half_spaces_miss(volume, slack_m) {
             return false;
         }
-        // Without a far plane there are no far corners.
+        // Without a far plane there are no far corners for the other tests.
         if !self.bounded {
             return true;
         }
@@ -96,7 +96,7 @@ impl Frustum {
         if tests.sat_e && gap(&self.edges) > slack_m {
             return false;
         }
-        // The far plane's normal is the near plane's.
+        // The far plane has the near plane's normal, reversed.
         if tests.sat_p && gap(&self.planes.map(Vec4::truncate)[..5]) > slack_m {
             return false;
         }
@@ -114,7 +114,7 @@ impl Frustum {
         !volume.cone_misses_sphere(self.center, self.radius_m + slack_m)
     }
 
-    /// HS: whether one of the planes has the whole volume outside.
+    /// HS: whether the whole volume lies outside one of the planes.
     fn half_spaces_miss(&self, volume: &LightVolume, slack_m: f32) -> bool {
         let count = if self.bounded { 6 } else { 5 };
         self.planes[..count].iter().any(|plane| {
@@ -124,7 +124,7 @@ impl Frustum {
         })
     }
 
-    /// How far an axis separates volume and frustum, whichever lies first, metres.
+    /// How far an axis separates volume and frustum, metres, in whichever order they lie.
     fn gap_along(&self, axis: Vec3, volume: &LightVolume) -> f32 {
         let (low, high) = self.corner_range(axis, volume.center);
         (low - volume.extent_along(axis)).max(-high - volume.extent_along(-axis))
@@ -171,7 +171,7 @@ impl Frustum {
     }
 }
 
-/// The part of a [`ViewUniform`] that bounds are made from.
+/// The part of a [`ViewUniform`] that defines bounds.
 struct Lens {
     view_to_world: Mat4,
     ray_scale: Vec2,
@@ -200,7 +200,7 @@ impl Lens {
         (self.view_to_world * window.extend(-depth_view).extend(1.0)).truncate()
     }
 
-    /// Outward plane in world space of a plane in view space.
+    /// The world-space plane of a view-space plane, facing outwards.
     fn world_plane(&self, normal_view: Vec3, offset: f32) -> Vec4 {
         let normal = (self.view_to_world * normal_view.extend(0.0)).truncate();
         normal.extend(offset - normal.dot(self.eye))

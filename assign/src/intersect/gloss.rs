@@ -1,5 +1,5 @@
-//! How much specular radiance an area light may add to a group: `gloss.wesl`, where the bound is
-//! derived.
+//! An upper bound of the specular radiance that an area light adds to a group. `gloss.wesl` derives
+//! it.
 
 use std::f32::consts::PI;
 
@@ -12,12 +12,12 @@ use super::{
 };
 use crate::{Light, LightShape, View};
 
-/// As `brdf.wesl` has it.
+/// As in `brdf.wesl`.
 const MIN_ROUGHNESS: f32 = 0.045;
-/// acos may be off by 7e-5 (WGSL, accuracy of built-in functions), and so may each of four angles.
+/// WGSL's acos may be off by 7e-5 (accuracy of built-in functions); the bound sums four such angles.
 const ANGLE_SLACK: f32 = 5e-4;
 
-/// What is known of how a group's surfaces reflect.
+/// What is known about the reflection of a group's surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gloss {
     /// Least and greatest perceptual roughness.
@@ -26,13 +26,14 @@ pub struct Gloss {
     pub f0: f32,
 }
 
-/// A group of glossy surfaces as the eye sees it.
+/// A group of glossy surfaces, seen from the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenGroup {
     bounds: Aabb,
     center: Vec3,
     radius_m: f32,
-    /// From its middle, and the mirror direction of that about the cone's axis.
+    /// Direction from the group's centre to the eye, and its mirror direction about the cone's
+    /// axis.
     to_eye: Vec3,
     mirror: Vec3,
     /// Spreads, radians.
@@ -40,7 +41,7 @@ pub struct SeenGroup {
     mirror_spread: f32,
     alpha: [f32; 2],
     f0: f32,
-    /// Greatest V cos.
+    /// The greatest value of V cos.
     visibility: f32,
 }
 
@@ -77,8 +78,8 @@ impl SeenGroup {
         }
     }
 
-    /// The greatest specular radiance that an area light adds to a sample of the group; infinite of
-    /// a point or a spot.
+    /// An upper bound of the specular radiance that an area light adds to a sample of the group;
+    /// infinite for points and spots.
     pub fn specular_bound(&self, light: &Light) -> f32 {
         let LightShape::Area(emitter) = &light.shape else { return f32::INFINITY };
         let volume = LightVolume::from(light);
@@ -97,7 +98,8 @@ impl SeenGroup {
             return scale * whole;
         }
         let pieces = count as f32;
-        // A polygon may fill its rectangle unevenly, but no piece by more than the piece's own area.
+        // A polygon may fill its rectangle unevenly, but never fills a piece by more than the
+        // piece's area.
         let piece_m2 = area_m2.min(4.0 * OFF_SQUARE * long.length() * short.length() / pieces);
         let sum: f32 = (0..count)
             .map(|ix| {
@@ -109,15 +111,15 @@ impl SeenGroup {
         scale * whole.min(sum)
     }
 
-    /// Distance of the group's box from the ball around the outline, metres.
+    /// Distance between the group's box and the ball around the outline, metres.
     fn gap_to_ball(&self, volume: &LightVolume, slack_m: f32) -> f32 {
         let on_box = volume.center.clamp(self.bounds.min_world, self.bounds.max_world);
         let outline = OFF_SQUARE * volume.outline_radius();
         (volume.center.distance(on_box) - outline - slack_m).max(0.0)
     }
 
-    /// Distance of the group's box from the outline, metres: never more than the true one, and no
-    /// less than that from the ball. It is the gap along the axis between the nearest points.
+    /// Distance between the group's box and the outline, metres: the gap along the axis between the
+    /// nearest points. It is at most the true distance, and at least the distance to the ball.
     fn gap_to_outline(&self, volume: &LightVolume, slack_m: f32) -> f32 {
         let closest = |point: Vec3| point.clamp(self.bounds.min_world, self.bounds.max_world);
         let mut on_box = closest(volume.center);
@@ -133,8 +135,9 @@ impl SeenGroup {
         self.gap_to_ball(volume, slack_m).max(axis.dot(volume.center - on_box) - extent - slack_m)
     }
 
-    /// The greatest of solid angle times D times F from a piece of an emitter: its outline as a
-    /// volume, its area, and the least distance of the whole emitter.
+    /// An upper bound of solid angle times D times F for a piece of an emitter. The parameters are
+    /// the piece's outline as a volume, the piece's area, and the least distance of the whole
+    /// emitter.
     fn reflected_of(&self, volume: &LightVolume, area_m2: f32, least_m: f32, slack_m: f32) -> f32 {
         let nearest = least_m.max(self.gap_to_ball(volume, slack_m));
         let solid_angle = (2.0 * PI).min(area_m2 / (nearest * nearest).max(1e-20));
@@ -162,17 +165,18 @@ impl SeenGroup {
 /// The most pieces of a long emitter.
 const MOST_PIECES: u32 = 16;
 
-/// Pieces of an outline so that each is about as long as it is wide: a power of two.
+/// The number of pieces, a power of two, into which an outline is cut so that each is about as long
+/// as wide.
 fn pieces_of(long_2: f32, short_2: f32) -> u32 {
     let mut pieces = 1;
-    // From 1.5 widths a piece on it is halved.
+    // A piece longer than 1.5 widths is halved.
     while pieces < MOST_PIECES && (pieces * pieces) as f32 * 2.25 * short_2 < long_2 {
         pieces *= 2;
     }
     pieces
 }
 
-/// Half the angle that a ball fills, radians; pi from inside.
+/// Half the angle under which a ball is seen, radians; pi from inside.
 fn spread_of(radius_m: f32, distance_m: f32) -> f32 {
     if radius_m < distance_m { (radius_m / distance_m).asin() } else { PI }
 }

@@ -1,19 +1,19 @@
 //! Intersection tests on the CPU: may a light reach a group?
 //!
-//! The culling kernel runs these tests in WESL; here they are in Rust, f32 for f32, under the same
-//! names: [`Frustum`] is `bounds_frustum.wesl`, [`Aabb`] `bounds_box.wesl`, [`OrientedBox`]
-//! `bounds_oriented_box.wesl`, [`NormalCone`] `facing.wesl`, [`SeenGroup`] `gloss.wesl`,
-//! [`MirrorGroup`] `reflected.wesl`, and [`LightVolume`] what they share, `lights.wesl` and
-//! `volume.wesl`.
+//! The culling kernel runs these tests in WESL. This module has them in Rust with the same f32
+//! operations and the same names: [`Frustum`] is `bounds_frustum.wesl`, [`Aabb`] `bounds_box.wesl`,
+//! [`OrientedBox`] `bounds_oriented_box.wesl`, [`NormalCone`] `facing.wesl`, [`SeenGroup`]
+//! `gloss.wesl`, [`MirrorGroup`] `reflected.wesl`. [`LightVolume`] is what they share:
+//! `lights.wesl` and `volume.wesl`.
 //!
 //! # The tests
 //!
-//! Enhuber 2019, section 3.5, for balls; every test is a search for an axis on which light and
-//! group do not overlap, so a spot takes the same tests with its own extent along that axis
-//! ([`LightVolume::extent_along`]), and one more: its cone against a sphere around the group
-//! ([`LightVolume::cone_misses_sphere`]). A flat emitter extends by its outline as well, one-sided
-//! as a cone of 90°; axes start at its point nearest to the group, and the group's farthest corner
-//! is tried against its plane.
+//! For balls the tests are those of Enhuber 2019, section 3.5. Every test searches for an axis on
+//! which light and group do not overlap. So a spot takes the same tests with its own extent along
+//! the axis ([`LightVolume::extent_along`]). One test is added: its cone against a sphere around
+//! the group ([`LightVolume::cone_misses_sphere`]). A flat emitter extends by its outline too, and
+//! a one-sided one is a cone of 90°. For emitters, axes start at the point nearest to the group,
+//! and the group's farthest corner is tested against the emitter's plane.
 //!
 //! | group | test | axes |
 //! |---|---|---|
@@ -25,40 +25,40 @@
 //! | box | NP | from its nearest point to the light |
 //! | oriented box | NPT | the same in the box's frame |
 //!
-//! A frustum without far plane ([`UNBOUNDED`]) has no far corners: it takes HS alone, and without
-//! HS rejects nothing.
+//! A frustum without a far plane ([`UNBOUNDED`]) has no far corners. It takes only HS, and rejects
+//! nothing if HS is off.
 //!
-//! Nodes of the light hierarchy are boxes; `reaches_box` says of each shape whether a light whose
-//! support lies in such a box may reach it.
+//! Nodes of the light hierarchy are boxes. Each shape's `reaches_box` says whether a light whose
+//! support lies in such a box may reach the group.
 //!
 //! # Loose, never tight
 //!
-//! A test is *loose* where it says "reaches" of a light that does not: shading evaluates the light
-//! and adds 0. It is *tight* where it says "misses" of a light that reaches a sample: the image is
-//! wrong. Loose is allowed and measured; tight is a failure, in the last bit too, because a
-//! lossless strategy shows the image of no culling bit for bit. So every comparison gives way by
-//! a *slack* for each of these roundings:
+//! A test is *loose* if it says "reaches" for a light that does not reach: shading evaluates the
+//! light and adds 0. A test is *tight* if it says "misses" for a light that reaches a sample: the
+//! image is wrong. Loose is allowed and measured. Tight is a failure, even in the last bit, because
+//! a lossless strategy shows the image of no culling bit for bit. So every comparison adds a
+//! *slack* for each of these roundings:
 //!
-//! 1. A sample's position, rebuilt from depth, is off by up to
-//!    [`ViewUniform::position_error`](crate::ViewUniform::position_error) metres per metre of its
-//!    distance from the world's origin and from the eye, and so are a group's corners and planes:
-//!    `slack_m`, from the group and the camera. It is metres a thousand kilometres from the
-//!    origin, and micrometres in a room.
-//! 2. The test's own distances are off by as much per metre of the light's range, and, where the
-//!    group has no far end that would bound its samples, of the light's distance from the origin:
-//!    `slack_per_m`.
-//! 3. Shading compares squared chords to find a cone's edge, which for a narrow cone moves the edge
-//!    by more than any position is off: [`LightVolume`] widens the cone by that angle.
+//! 1. `slack_m`, from the group and the camera: a sample's position, rebuilt from depth, is off by
+//!    up to [`ViewUniform::position_error`](crate::ViewUniform::position_error) metres per metre of
+//!    its distance from the world's origin and from the eye. So are a group's corners and planes.
+//!    This slack is metres at 1,000 km from the origin, and micrometres in a room.
+//! 2. `slack_per_m`: the test's own distances are off by as much per metre of the light's range. If
+//!    the group has no far end that bounds its samples, the light's distance from the origin counts
+//!    too.
+//! 3. An angle by which [`LightVolume`] widens the cone: shading compares squared chords to find a
+//!    cone's edge. For a narrow cone their rounding moves the edge by more than any position is
+//!    off.
 //!
 //! # How loose
 //!
-//! Share of hits that are false, per cent: the light is certainly apart from the frustum or the
-//! box, in f64. Clusters of 64x64 pixels at 1920x1080 and 24 exponential slices from 0.1 to 100 m,
-//! their boxes along the world's axes and along the view's; lights uniform in a box of Sponza's
-//! size, ranges of the comparison's gamma distribution, random directions, emitters one-sided with
-//! half axes of 0.1 to 1 m; 600 clusters, 8,000 lights of each kind. Of a polygon the smallest
-//! rectangle around it is tested. A box is no better a bound than the frustum in it: these are the tests'
-//! errors, not the bounds'.
+//! The table shows the share of false hits, per cent: in f64 the light is certainly apart from the
+//! frustum or the box. The groups are 600 clusters of 64x64 pixels at 1920x1080 with 24 exponential
+//! slices from 0.1 to 100 m, and their boxes along the world's axes and along the view's. The
+//! lights, 8,000 of each kind, are uniform in a box of Sponza's size, with ranges from the
+//! comparison's gamma distribution and random directions. Emitters are one-sided with half axes of
+//! 0.1 to 1 m; a polygon is tested as the smallest rectangle around it. The table shows the error
+//! of the tests, not of the bounds: the frustum in a box is the tighter bound.
 //!
 //! | test | point | spot 15° | spot 45° | spot 75° | spot 90° | rectangle | triangle | hexagon |
 //! |---|---|---|---|---|---|---|---|---|
@@ -72,8 +72,8 @@
 //! | box, NP | 0.0 | 16.7 | 12.5 | 7.6 | 5.8 | 2.1 | 8.6 | 7.3 |
 //! | oriented box, NPT | 0.0 | 16.5 | 11.5 | 7.5 | 5.5 | 2.0 | 8.8 | 7.3 |
 //!
-//! Measured on 2026-11-25 by `cargo test -p assign --test intersect rates -- --nocapture`, which
-//! fails where this table is off by more than 0.3.
+//! Measured on 2026-11-25 by `cargo test -p assign --test intersect rates -- --nocapture`. That
+//! test fails if this table is off by more than 0.3.
 
 mod aabb;
 mod facing;
@@ -95,12 +95,12 @@ pub use volume::LightVolume;
 
 use crate::ViewUniform;
 
-/// View depth from which on a frustum has no far plane, metres: `UNBOUNDED` of
+/// A frustum that ends at this view depth or beyond has no far plane, metres: `UNBOUNDED` of
 /// `bounds_frustum.wesl`.
 pub const UNBOUNDED: f32 = 3.4e38;
 
-/// What rounding grows with in a test of a box around lights, metres: no less than the distance
-/// from the origin and the range of any light in it.
+/// The length with which rounding grows in a test of a box around lights, metres. It is at least
+/// the distance from the origin and the range of every light in the box.
 fn box_magnitude(min_world: Vec3, max_world: Vec3) -> f32 {
     min_world.abs().max(max_world.abs()).element_sum() + min_world.distance(max_world)
 }

@@ -1,14 +1,15 @@
-//! A group that is a box along axes of its own: `bounds_oriented_box.wesl`.
+//! Groups that are boxes along their own axes: `bounds_oriented_box.wesl`.
 
 use glam::Vec3;
 
 use super::{LightVolume, box_magnitude};
 use crate::View;
 
-/// A box along axes of its own.
+/// A box along its own axes.
 ///
-/// Test (Enhuber 2019, section 3.5.1): NPT, the nearest point after turning the light into the
-/// box's frame; exact for a ball. Spots as in [`Aabb`](super::Aabb).
+/// The test is NPT, the nearest point after the light was turned into the box's frame (Enhuber
+/// 2019, section 3.5.1), which is exact for a ball. Other lights are tested as in
+/// [`Aabb`](super::Aabb).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientedBox {
     /// Centre, world space, metres.
@@ -17,14 +18,14 @@ pub struct OrientedBox {
     pub axes: [Vec3; 3],
     /// Half the size along each axis, metres, `>= 0`.
     pub half_extents_m: Vec3,
-    /// Rounding of a sample's position, metres.
+    /// Bound of the rounding of a sample's position, metres.
     pub slack_m: f32,
-    /// Further slack per metre of the light's range.
+    /// Additional slack per metre of the light's range.
     pub slack_per_m: f32,
 }
 
 impl OrientedBox {
-    /// The box around `center_world` as `view` sees it.
+    /// The box around `center_world`, with the slack of `view`.
     pub fn new(view: &View, center_world: Vec3, axes: [Vec3; 3], half_extents_m: Vec3) -> Self {
         let uniform = view.uniform();
         let extreme = center_world.length() + half_extents_m.length();

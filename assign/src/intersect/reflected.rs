@@ -1,11 +1,11 @@
-//! The cone test of Swarbrick 2025 (section 3.4.1, listing H.3): `reflected.wesl`, where it is described.
+//! The cone test of Swarbrick 2025 (section 3.4.1, listing H.3). `reflected.wesl` describes it.
 
 use glam::Vec3;
 
 use super::{Aabb, LightVolume, eye_world};
 use crate::View;
 
-/// A group whose normals lie in a cone, as the eye sees it.
+/// A group whose normals lie in a cone, seen from the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorGroup {
     center: Vec3,
@@ -15,8 +15,8 @@ pub struct MirrorGroup {
 }
 
 impl MirrorGroup {
-    /// The surfaces in a box whose normals lie within `half_angle` of an axis of unit length, and whose
-    /// lobes are `lobe_angle` wide from their middle; both in radians.
+    /// The surfaces in a box whose normals lie within `half_angle` of a unit axis, and whose lobes
+    /// have the half angle `lobe_angle`; both in radians.
     pub fn new(view: &View, bounds: &Aabb, axis: Vec3, half_angle: f32, lobe_angle: f32) -> Self {
         let uniform = view.uniform();
         let center = 0.5 * (bounds.min_world + bounds.max_world);
@@ -30,7 +30,7 @@ impl MirrorGroup {
         Self { center, to_eye, axis, most_angle: lobe_angle + 2.0 * half_angle }
     }
 
-    /// Whether the group's normals may mirror the light's middle to the eye. **Lossy**.
+    /// Whether the group's normals may mirror the light's centre to the eye. **Lossy**.
     pub fn mirrors(&self, volume: &LightVolume) -> bool {
         let across = volume.center - self.center;
         let to_light = across / across.length().max(1e-20);
@@ -44,8 +44,9 @@ mod tests {
     use super::*;
     use crate::{Emitter, Light};
 
-    /// A floor tile of one normal and the eye at 45 degrees above it. By hand: light from 45 degrees on the
-    /// other side is mirrored into the eye; turned by less than the lobe and twice the cone it passes.
+    /// A floor tile with one normal, and the eye at 45 degrees above it. By hand: light from 45
+    /// degrees on the other side is mirrored into the eye. Light turned from there by less than the
+    /// lobe plus twice the cone passes.
     #[test]
     fn light_passes_within_the_lobe_and_twice_the_cone() {
         let view = View::look_at(Vec3::new(4.0, 4.0, 0.0), Vec3::ZERO, 1.0, 0.1, [64, 64]);

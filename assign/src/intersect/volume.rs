@@ -1,17 +1,17 @@
-//! Support of a light's volume along an axis, and its rejection by a bounding sphere:
-//! `volume.wesl`, and `LightVolume` of `lights.wesl`.
+//! The volume that stands for a light in tests: its extent along an axis, and its cone against a
+//! sphere. It is `volume.wesl`, and `LightVolume` of `lights.wesl`.
 
 use glam::Vec3;
 
 use crate::{Light, LightShape};
 
-/// The outline blown up by a ball of `range_m`, cut by a cone around `axis` where
-/// `cos_outer > -1`. The outline is a point, or, of an area light, the rectangle of the half axes.
+/// The outline extended by a ball of `range_m`, cut by a cone around `axis` if `cos_outer > -1`. An
+/// area light's outline is the rectangle of the half axes; any other light's is a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightVolume {
     /// Position of the light, world space, metres.
     pub center: Vec3,
-    /// Radius of a ball around all of it, metres.
+    /// Radius of a ball around the whole volume, metres.
     pub radius_m: f32,
     /// Range of the light, metres.
     pub range_m: f32,
@@ -21,7 +21,7 @@ pub struct LightVolume {
     pub cos_outer: f32,
     /// Sine of the cone's half angle; 0 without a cone.
     pub sin_outer: f32,
-    /// Half axes of the outline, metres; zero of a point.
+    /// Half axes of the outline, metres; zero for a point.
     pub half_axes: [Vec3; 2],
 }
 
@@ -57,28 +57,28 @@ impl From<&Light> for LightVolume {
     }
 }
 
-/// Shading finds a cone's edge by comparing squared chords in f32, `2 - 2 cos`, of normalised
-/// vectors. They are as good as cosines of 4 units in the last place, 5e-7: the edge moves outwards by
-/// at most an angle of 5e-7 over its sine, or twice that where the cone is almost a ball.
+/// Shading finds a cone's edge by comparing squared chords, `2 - 2 cos`, of unit vectors in f32.
+/// Their error is that of cosines off by 4 units in the last place, 5e-7. So the edge moves
+/// outwards by at most 5e-7 over its sine, radians, or twice that if the cone is almost a ball.
 const CONE_ERROR: f32 = 1e-6;
 
-/// Sine below which the angle stops growing: `sqrt(2 * 5e-7)`, the edge's angle for the narrowest
-/// cone and for the widest.
+/// Below this sine the edge's angle stops growing: `sqrt(2 * 5e-7)`, its value for the narrowest
+/// and the widest cone.
 const CONE_SINE_MIN: f32 = 1e-3;
 
 /// How often the nearest points of a box and an outline are projected onto each other. Any axis
-/// they give is a valid test; more rounds find a better one.
+/// between them is a valid test; more rounds find a better one.
 pub(super) const PROJECTIONS: usize = 3;
 
 impl LightVolume {
     /// How far the volume extends from its centre along the unit vector `axis`, metres, `>= 0`.
     ///
     /// For a cone of half angle `a` and an axis at angle `t > a` from the cone's, the farthest
-    /// point lies on the rim at angle `t - a`, and up to 1e-3 beyond for shading's rounding. Beyond
-    /// a half angle of π/2 it is the extent of the volume's convex hull.
+    /// point lies on the rim, at angle `t - a`; shading's rounding adds up to 1e-3. For half angles
+    /// above π/2 the result is the extent of the volume's convex hull.
     ///
-    /// The sine comes from the cross product: taken from the cosine it would be wrong by 3e-4
-    /// where the two axes are almost parallel, and the extent with it.
+    /// The sine comes from the cross product. Computed from the cosine, it and the extent would be
+    /// wrong by 3e-4 for almost parallel axes.
     pub fn extent_along(&self, axis: Vec3) -> f32 {
         let cos_t = self.axis.dot(axis);
         let sin_t = self.axis.cross(axis).length();
@@ -96,7 +96,7 @@ impl LightVolume {
         self.half_axes[0].dot(axis).abs() + self.half_axes[1].dot(axis).abs()
     }
 
-    /// Distance of the outline's corners from the volume's centre, metres.
+    /// Distance from the volume's centre to the outline's corners, metres.
     pub(super) fn outline_radius(&self) -> f32 {
         let [x, y] = self.half_axes;
         (x.length_squared() + y.length_squared()).sqrt()
@@ -111,20 +111,20 @@ impl LightVolume {
         self.center + along(self.half_axes[0]) + along(self.half_axes[1])
     }
 
-    /// Whether it is an area light.
+    /// Whether the light is an area light.
     pub(super) fn has_outline(&self) -> bool {
         self.half_axes != [Vec3::ZERO; 2]
     }
 
-    /// Whether only what lies in front of the outline's plane is lit.
+    /// Whether the light lights only what lies in front of the outline's plane.
     pub(super) fn is_half(&self) -> bool {
         self.cos_outer == 0.0
     }
 
-    /// Whether a box parts from the outline: along the axis between their nearest points, found by
-    /// projecting back and forth, or along the outline's normal. `closest` gives the box's point
-    /// closest to one, `highest` the greatest coordinate of the box along an axis, seen from the
-    /// volume's centre.
+    /// Whether an axis separates a box from the volume. The axes are the one between the nearest
+    /// points of box and outline, found by projecting back and forth, and the outline's normal.
+    /// `closest` returns the box's point closest to a given one; `highest` returns the box's
+    /// greatest coordinate along an axis, relative to the volume's centre.
     pub(super) fn parts_from(
         &self,
         closest: impl Fn(Vec3) -> Vec3,
@@ -143,7 +143,8 @@ impl LightVolume {
             || (self.is_half() && apart(self.axis))
     }
 
-    /// Whether the cone passes a sphere by: of an outline its plane. Loose behind the apex, where the ball's test decides.
+    /// Whether the cone misses a sphere; an outline's cone is its plane. It is loose behind the
+    /// apex, where the ball's test decides.
     pub fn cone_misses_sphere(&self, center: Vec3, radius_m: f32) -> bool {
         let to_center = center - self.center;
         let along = to_center.dot(self.axis);

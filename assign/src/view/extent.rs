@@ -1,13 +1,13 @@
-//! How near and how far a view's samples and boxes lie, and where its slices end.
+//! The view depths of samples and boxes, and where a view's slices end.
 
 use glam::Vec3;
 
 use super::View;
 
 impl View {
-    /// The greatest view depth that shading can rebuild from a clip depth, metres; `None` where
-    /// nothing bounds it. Where depth is not reversed and the near plane close, rounding puts the
-    /// far plane well beyond itself: 1,049 m instead of 1,000 m with a near plane at 1 mm.
+    /// The greatest view depth that shading can rebuild from a clip depth, metres; `None` if it is
+    /// unbounded. If depth is not reversed and the near plane is close, rounding moves the far
+    /// plane well outwards: from 1,000 m to 1,049 m with a near plane at 1 mm.
     pub fn farthest_rebuilt_m(&self) -> Option<f32> {
         let far_m = self.far_m?;
         // WGSL divides to 2.5 units in the last place.
@@ -15,8 +15,8 @@ impl View {
         (rebuilt.is_finite() && rebuilt > 0.0).then_some(far_m.max(rebuilt))
     }
 
-    /// The least view depth that shading can rebuild from a clip depth, metres: in front of the
-    /// near plane where a far plane far away leaves an orthographic depth few bits.
+    /// The least view depth that shading can rebuild from a clip depth, metres. It lies in front of
+    /// the near plane if a distant far plane leaves an orthographic depth few bits.
     pub fn nearest_rebuilt_m(&self) -> f32 {
         let rebuilt = self.rebuilt_m(1.0 - self.depth_clear());
         let slack = 4.0 * f32::EPSILON * rebuilt.abs();
@@ -25,23 +25,24 @@ impl View {
 
     /// The greatest view depth inside a world-space box, metres.
     pub fn deepest_m(&self, min_world: Vec3, max_world: Vec3) -> f32 {
-        // View depth is linear in position: each coordinate's better end, one by one.
+        // View depth is linear in position, so the deepest corner takes the deeper end of each
+        // coordinate.
         let depth = -self.world_to_view.row(2);
         let axis = depth.truncate();
         (axis * min_world).max(axis * max_world).element_sum() + depth.w
     }
 
-    /// The distance from the eye to the farthest point of a world-space box, metres: whichever way
-    /// the camera turns, no point of the box has a greater view depth.
+    /// The distance from the eye to the farthest point of a world-space box, metres. However the
+    /// camera turns, no point of the box has a greater view depth.
     pub fn farthest_m(&self, min_world: Vec3, max_world: Vec3) -> f32 {
         let eye = self.eye();
         (eye - min_world).abs().max((max_world - eye).abs()).length()
     }
 
     /// The view depth at which slices of a perspective view end, metres: the far plane, or the
-    /// farthest point that a light reaches (`light_bounds`) where that is nearer. No light reaches the
-    /// samples behind it, so the last slice takes them all. At least two near planes away where no far
-    /// plane is nearer.
+    /// farthest point that a light reaches (`light_bounds`) if that is nearer. No light reaches the
+    /// samples behind it, so the last slice takes them all. Unless the far plane is nearer, it is
+    /// at least twice the near plane's depth.
     pub fn slices_end_m(&self, light_bounds: Option<(Vec3, Vec3)>) -> f32 {
         let lit = |(min, max)| self.deepest_m(min, max).max(2.0 * self.near_m);
         match (self.far_m, light_bounds.map(lit)) {
@@ -51,7 +52,7 @@ impl View {
         }
     }
 
-    /// View depth of a clip depth as `view.wesl` computes it, metres.
+    /// View depth of a clip depth, computed as in `view.wesl`, metres.
     fn rebuilt_m(&self, depth_clip: f32) -> f32 {
         let clip = self.view_to_clip();
         (clip.w_axis.z - depth_clip * clip.w_axis.w) / (clip.z_axis.z - depth_clip * clip.z_axis.w)

@@ -14,8 +14,8 @@ pub struct ViewUniform {
     pub view_to_world: [[f32; 4]; 4],
     /// View to clip, jitter included.
     pub view_to_clip: [[f32; 4]; 4],
-    /// Position in view space on the plane of view depth 1 is `ray_scale * ndc + ray_offset`
-    /// (perspective), or at every depth (orthographic).
+    /// `ray_scale * ndc + ray_offset` is the view-space position at view depth 1 (perspective), or
+    /// at every depth (orthographic).
     pub ray_scale: [f32; 2],
     /// See `ray_scale`.
     pub ray_offset: [f32; 2],
@@ -27,14 +27,15 @@ pub struct ViewUniform {
     pub near_m: f32,
     /// View depth of the far plane, metres; `f32::MAX` when infinite.
     pub far_m: f32,
-    /// 1 for perspective, 0 for orthographic: the power of view depth in a ray's footprint.
+    /// 1 for perspective, 0 for orthographic. A pixel's footprint grows with view depth to this
+    /// power.
     pub perspective: f32,
-    /// How far rounding can move a world-space position seen from this camera, metres per metre
-    /// of distance from the world's origin or from the camera.
+    /// How far rounding can move a world-space position that is rebuilt from depth, metres per
+    /// metre of its distance from the world's origin or from the camera.
     pub position_error: f32,
-    /// The clip depth that the depth buffer is cleared to.
+    /// The clip depth to which the depth buffer is cleared.
     pub depth_clear: f32,
-    /// Pads to 272 bytes.
+    /// Pads to 256 bytes.
     pub padding: [f32; 3],
 }
 
@@ -60,6 +61,6 @@ impl View {
     }
 }
 
-/// A position reconstructed from depth passes through three roundings of a product of matrices:
-/// 16 units in the last place bound them with room (the conformance suite's far camera checks it).
+/// A position rebuilt from depth goes through three matrix products, each rounded. 16 units in the
+/// last place bound them with room; the conformance suite's far camera checks it.
 const POSITION_ERROR: f32 = 16.0 * f32::EPSILON;

@@ -1,4 +1,4 @@
-//! Area lights: one whose support holds a point of a group reaches it.
+//! Area lights: a light whose support contains a point of a group must reach the group.
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -11,7 +11,7 @@ proptest! {
     #![proptest_config(deterministic(2_500))]
 
     #[test]
-    fn a_support_that_holds_a_point_of_the_group_reaches(
+    fn a_support_that_contains_a_point_of_the_group_reaches_it(
         group in group(),
         aims in prop::collection::vec(aim(Kind::Area), 4),
     ) {
@@ -33,11 +33,11 @@ proptest! {
         }
     }
 
-    /// Both say of a point whether it is lit, by other means: support points, and distances. The
-    /// light's own size and range limit how much they may differ: the normal of a hair is good to its
-    /// vertices' rounding over its width.
+    /// Two independent methods say whether a light reaches a point: support points, and distances.
+    /// The light's size and range bound their difference: the normal of a thin strip is only as
+    /// accurate as its vertices' rounding over its width.
     #[test]
-    fn what_overlaps_is_within_reach(group in group(), aims in prop::collection::vec(aim(Kind::Area), 4)) {
+    fn overlapping_points_are_within_reach(group in group(), aims in prop::collection::vec(aim(Kind::Area), 4)) {
         for aim in aims {
             let light = aim.light(&group);
             if let Some(point) = witness(&group, &light) {

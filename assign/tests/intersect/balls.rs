@@ -1,4 +1,4 @@
-//! Point lights: a ball that touches a group reaches it.
+//! Point lights: a ball that touches a group must reach the group.
 
 use glam::DVec3;
 use proptest::prelude::*;

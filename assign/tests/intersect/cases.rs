@@ -1,4 +1,4 @@
-//! Random views, groups and lights, drawn to hurt: thin slices, far cameras, grazing rims.
+//! Random views, groups and lights, chosen to be difficult: thin slices, far cameras, grazing rims.
 
 use assign::intersect::UNBOUNDED;
 use assign::{DepthMapping, Emitter, Light, LightShape, Projection, View, Viewport};
@@ -23,7 +23,7 @@ fn unit() -> impl Strategy<Value = Vec3> {
     ]
 }
 
-/// A place in the world: the origin, a room, a town, a thousand kilometres off.
+/// A place in the world: the origin, in a room, in a town, or 1,000 km away.
 fn place() -> impl Strategy<Value = Vec3> {
     prop_oneof![
         2 => Just(Vec3::ZERO),
@@ -78,7 +78,7 @@ pub(crate) fn view() -> impl Strategy<Value = View> {
     )
 }
 
-/// A tile of pixels anywhere in the viewport, or all of it, between two depths.
+/// A tile of pixels anywhere in the viewport, or the whole viewport, between two depths.
 pub(crate) fn frustum() -> impl Strategy<Value = Group> {
     let tile = (0.0_f32..1.0, 0.0_f32..1.0, prop_oneof![4 => 1_u32..100, 1 => Just(4000)]);
     let first = prop_oneof![1 => Just(0.0_f32), 3 => power_of_ten(-3.0..3.3)];
@@ -110,7 +110,7 @@ pub(crate) fn frustum() -> impl Strategy<Value = Group> {
 
 fn extents() -> impl Strategy<Value = Vec3> {
     let extent = || prop_oneof![8 => power_of_ten(-3.0..2.7), 1 => Just(0.0_f32)];
-    // A single sample's box has no extent at all.
+    // The box of a single sample has no extent.
     prop_oneof![
         4 => (extent(), extent(), extent()).prop_map(|(x, y, z)| Vec3::new(x, y, z)),
         1 => Just(Vec3::ZERO),
@@ -144,10 +144,11 @@ pub(crate) fn group() -> impl Strategy<Value = Group> {
     prop_oneof![3 => frustum(), 1 => aabb(), 1 => oriented()]
 }
 
-/// Where a light sits and how far it reaches, told relative to a group.
+/// A light's position and range, relative to a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    /// Corner weights of the point that the light sits near, and of the one a spot points at.
+    /// Corner weights of the point near which the light lies, and of the point at which a spot is
+    /// aimed.
     near: [f64; 8],
     at: [f64; 8],
     away: Vec3,
@@ -159,19 +160,19 @@ pub(crate) struct Aim {
     outline: Outline,
 }
 
-/// What kind of light is aimed.
+/// The kind of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Point,
     Spot,
-    /// A flat emitter, turned so that its front's edge is where a spot's of 90 degrees would be.
+    /// A flat emitter, turned so that its plane lies where the edge of a 90-degree spot would be.
     Area,
 }
 
 /// The outline of an emitter.
 #[derive(Clone, Copy, Debug)]
 struct Outline {
-    /// 2 for a rectangle, else a polygon's vertices.
+    /// 2 for a rectangle, else the number of a polygon's vertices.
     vertices: u32,
     half_m: f32,
     aspect: f32,
@@ -180,7 +181,7 @@ struct Outline {
 }
 
 impl Outline {
-    /// The emitter that faces along `normal`, and how far its middle lies off.
+    /// The emitter that faces along `normal`, and the offset of its centre.
     fn emitter(self, normal: DVec3) -> (Emitter, Vec3) {
         let x = normal.any_orthonormal_vector();
         let x = DQuat::from_axis_angle(normal, self.turn.into()) * x * f64::from(self.half_m);
@@ -201,7 +202,7 @@ impl Outline {
 
 #[derive(Clone, Copy, Debug)]
 enum Range {
-    /// Just enough to touch, times this.
+    /// The range at which the light just touches the group, times this.
     Touch(f32),
     Metres(f32),
 }
@@ -209,12 +210,13 @@ enum Range {
 #[derive(Clone, Copy, Debug)]
 struct Cone {
     outer: f32,
-    /// Angle between the cone's axis and the point aimed at: this share of `outer`, plus this.
+    /// Angle between the cone's axis and the target point: the first value times `outer`, plus the
+    /// second.
     tilt: (f64, f64),
     about: f64,
 }
 
-/// Corner weights of a corner, a point on an edge or inside.
+/// Corner weights of a corner, of a point on an edge, or of a point inside.
 fn weights() -> impl Strategy<Value = [f64; 8]> {
     let corner = |i: usize| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
     prop_oneof![
@@ -240,7 +242,7 @@ fn cone() -> impl Strategy<Value = Cone> {
             .prop_map(|(more, out)| (1.0, f64::from(if out { more } else { -more }))),
         2 => (0.0_f64..1.2, Just(0.0)),
         1 => (Just(0.0), 0.0_f64..3.2),
-        // Pointing straight away, or nearly.
+        // The spot points straight away, or nearly.
         1 => power_of_ten(-6.0..-1.0).prop_map(|e| (0.0, std::f64::consts::PI - f64::from(e))),
     ];
     (outer, tilt, 0.0_f64..6.3).prop_map(|(outer, tilt, about)| Cone { outer, tilt, about })
@@ -326,8 +328,8 @@ impl Aim {
     }
 }
 
-/// The shortest range, within 1e-7 of it, at which the light is known to reach the group;
-/// 1 m where it holds the light's centre, or is never reached.
+/// The shortest range, to 1e-7 of it, at which the light certainly reaches the group; 1 m if the
+/// group contains the light's centre or is never reached.
 fn touching_range(group: &Group, mut light: Light) -> f32 {
     let center = light.position.as_dvec3();
     let distance = group.hull(center, 0.0).distance(DVec3::ZERO);
@@ -364,8 +366,8 @@ fn touching_range(group: &Group, mut light: Light) -> f32 {
     if touches(high) { high } else { 1.0 }
 }
 
-/// A point of the group, world space, that the light's support holds; `None` where none was
-/// found, which above a half angle of π/2 does not mean that there is none.
+/// A world-space point of the group that the light's support contains; `None` if none was found.
+/// Above a half angle of π/2, there may be one all the same.
 pub(crate) fn witness(group: &Group, light: &Light) -> Option<DVec3> {
     let center = light.position.as_dvec3();
     let radius = f64::from(light.radius_m());

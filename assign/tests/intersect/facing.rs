@@ -1,5 +1,5 @@
-//! Horizons and specular bounds of groups with normals: never tight against integrals in f64, the WESL
-//! agrees with the mirror, and how often they reject.
+//! Horizons and specular bounds of groups with normals. They are never tight against integrals in
+//! f64, the WESL agrees with the Rust mirror, and they reject as often as documented.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -17,18 +17,19 @@ use crate::pairs::{Pair, between, direction, long_pair, pair, view};
 
 /// Pairs of a group and a light.
 const PAIRS: u32 = 4_000;
-/// The radiance below which a light is counted as dull, of one of unit intensity.
+/// The radiance below which a light of unit intensity counts as dull.
 const DULL: f64 = 1e-3;
-/// Half angles of the cones, radians (the last is that of 6 bins), with the per cent of pairs whose
-/// light is below all horizons, and of those that are dull.
+/// Half angles of the cones, radians (the last is the one of 6 bins), each with two shares of
+/// pairs, per cent: those whose light is below all horizons, and those whose light is dull.
 const RATES: [(f32, [f64; 2]); 4] =
     [(0.05, [31.6, 17.4]), (0.3, [19.4, 8.5]), (0.7, [7.4, 2.2]), (0.955, [2.6, 1.5])];
-/// The same of emitters of 100 : 1.
+/// As [`RATES`], for emitters of 100 : 1.
 const LONG_RATES: [(f32, [f64; 2]); 2] = [(0.05, [13.4, 17.7]), (0.3, [3.9, 6.7])];
 
-/// Draws pairs by half angle; asserts that no sample is above the bound or seen from below all horizons.
-/// Returns per cents below all horizons and dull, how many samples a narrower cone would lose, and how
-/// close samples come to the bound.
+/// Draws pairs with a half angle. Asserts that no sample exceeds the bound, and that no light below
+/// all horizons lights a sample. Returns the shares below all horizons and dull, per cent; the
+/// number of samples that a narrower cone would lose; and the largest ratio of a sample to its
+/// bound.
 fn rates(
     draw: fn(&mut Pcg64Mcg, View, f32) -> Pair,
     half_angle: f32,
@@ -69,7 +70,8 @@ fn rates(
 #[test]
 fn horizon_and_specular_bound_are_never_tight_and_reject_as_documented() {
     let mut measured = Vec::new();
-    // Negative controls: what a narrower cone would lose, and how close samples come to the bound.
+    // Negative controls: the samples that a narrower cone would lose, and the largest ratio of a
+    // sample to its bound.
     let (mut lost_by_narrower, mut closest) = (0, 0.0_f64);
     for (half_angle, documented) in RATES {
         let (found, lost, near) = rates(pair, half_angle, PAIRS, 16);
@@ -86,7 +88,7 @@ fn horizon_and_specular_bound_are_never_tight_and_reject_as_documented() {
     }
 }
 
-/// From inside the ball around a tube nothing is known of where its light comes from.
+/// Inside the ball around a tube, light may come from any direction.
 #[test]
 fn long_emitters_are_cut_and_their_bound_is_never_tight() {
     let mut measured = Vec::new();
@@ -106,10 +108,10 @@ fn long_emitters_are_cut_and_their_bound_is_never_tight() {
 }
 
 #[test]
-fn a_cone_holds_the_unit_normals_of_its_box() {
+fn a_cone_contains_the_unit_normals_of_its_box() {
     let mut rng = Pcg64Mcg::seed_from_u64(6);
-    // Negative control: a cone of all directions holds normals too. Small boxes have narrow cones,
-    // which a little less would not hold.
+    // Negative control: a cone of all directions would contain the normals too. Small boxes have
+    // narrow cones, and slightly narrower ones would lose normals.
     let (mut narrow, mut lost_by_narrower) = (0, 0);
     for _ in 0..2_000 {
         let (axis, spread) = (direction(&mut rng), between(&mut rng, 0.0, 2.0));
@@ -120,7 +122,7 @@ fn a_cone_holds_the_unit_normals_of_its_box() {
         let cone = NormalCone::of_box(low, high).widened(1e-3);
         for normal in normals {
             let (cos, sin) = (cone.axis.dot(normal), cone.axis.cross(normal).length());
-            // The angle to the axis is no greater than the half angle.
+            // The angle to the axis is at most the half angle.
             let past = sin.atan2(cos) - cone.sin_half.atan2(cone.cos_half);
             assert!(past <= 0.0, "{past} beyond {cone:?}");
             lost_by_narrower += usize::from(spread < 0.5 && past > -0.1);
@@ -128,7 +130,7 @@ fn a_cone_holds_the_unit_normals_of_its_box() {
         narrow += usize::from(spread < 0.5 && cone.cos_half > 0.5);
     }
     assert!(narrow > 400 && lost_by_narrower > 500, "{narrow}, {lost_by_narrower}");
-    // A plane's one normal is a cone without width.
+    // The single normal of a plane gives a cone without width.
     let flat = NormalCone::of_box(Vec3::Y, Vec3::Y);
     assert_eq!((flat.cos_half, flat.sin_half), (1.0, 0.0));
 }
@@ -177,7 +179,8 @@ fn test_pair(@builtin(workgroup_id) workgroup: vec3u) {
 }
 ";
 
-/// What the WESL says of pairs that one eye sees: below all horizons, mirrored to the eye, the bound.
+/// The WESL's results for pairs seen from one eye: below all horizons, mirrored to the eye, the
+/// bound.
 fn wesl(view: &View, pairs: &[Pair]) -> Vec<(bool, bool, f32)> {
     let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
     let module = Shader::new(2)
@@ -219,8 +222,8 @@ fn wesl(view: &View, pairs: &[Pair]) -> Vec<(bool, bool, f32)> {
     found.into_iter().map(answer).collect()
 }
 
-/// The horizon's test differs where the mirror changes its mind between half the slack and one and a
-/// half; the bound by what the angles' errors make of a peak.
+/// The horizon test may differ only where the mirror gives different answers with 0.5 and with 1.5
+/// times the slack. The bound may differ by what the angles' errors change at a peak.
 #[test]
 fn wesl_agrees_with_rust() {
     let mut rng = Pcg64Mcg::seed_from_u64(24);
@@ -241,7 +244,7 @@ fn wesl_agrees_with_rust() {
             pair.cone.faces_away(&bounds, &volume)
         };
         let is_sure = with_slack(0.5) == with_slack(1.5);
-        assert!(!is_sure || with_slack(1.0) == is_below, "{:?}", pair.light);
+        assert!(!is_sure || with_slack(1.0) == is_below, "WESL and Rust differ: {:?}", pair.light);
         below += usize::from(is_below);
         let half_angle = pair.cone.sin_half.atan2(pair.cone.cos_half);
         let mirrors = |lobe: f32| {
@@ -249,14 +252,26 @@ fn wesl_agrees_with_rust() {
             MirrorGroup::new(&view, &pair.bounds, axis, half_angle, lobe).mirrors(&volume)
         };
         let is_sure = mirrors(FRAC_PI_4 - 1e-3) == mirrors(FRAC_PI_4 + 1e-3);
-        assert!(!is_sure || mirrors(FRAC_PI_4) == is_mirrored, "{:?}", pair.light);
+        assert!(
+            !is_sure || mirrors(FRAC_PI_4) == is_mirrored,
+            "WESL and Rust differ: {:?}",
+            pair.light
+        );
         mirrored += usize::from(is_mirrored);
         let seen = SeenGroup::new(&view, pair.bounds, &pair.cone, pair.gloss);
         let ratio = bound / seen.specular_bound(&pair.light);
         assert!((0.8..1.25).contains(&ratio), "{ratio}: {:?}", pair.light);
         unlike += usize::from(!(0.99..1.01).contains(&ratio));
     }
-    assert!((400..3_600).contains(&below), "{below} of {} below", pairs.len());
-    assert!((400..3_600).contains(&mirrored), "{mirrored} of {} mirrored", pairs.len());
-    assert!(unlike < pairs.len() / 50, "{unlike} of {} unlike", pairs.len());
+    assert!(
+        (400..3_600).contains(&below),
+        "{below} of {} lights are below all horizons",
+        pairs.len()
+    );
+    assert!((400..3_600).contains(&mirrored), "{mirrored} of {} lights are mirrored", pairs.len());
+    assert!(
+        unlike < pairs.len() / 50,
+        "{unlike} of {} bounds differ by more than 1 %",
+        pairs.len()
+    );
 }

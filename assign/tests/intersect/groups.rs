@@ -1,11 +1,11 @@
-//! Groups of every shape: as the code under test bounds them, and as exact hulls.
+//! Groups of every shape, with the bounds of the code under test and with exact hulls.
 
 use crate::oracle::Hull;
 use assign::intersect::{Aabb, Frustum, LightVolume, OrientedBox, UNBOUNDED};
 use assign::{FrustumTests, Light, View};
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3};
 
-/// A group as a strategy names it.
+/// A group as a strategy describes it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Shape {
     Frustum { ndc_min: Vec2, ndc_max: Vec2, depth_min: f32, depth_max: f32 },
@@ -19,7 +19,7 @@ pub(crate) struct Group {
     pub(crate) shape: Shape,
 }
 
-/// The mirror's bounds of a group.
+/// A group's bounds in the Rust mirror of the WESL.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "one value a test")]
 pub(crate) enum Bounds {
@@ -28,7 +28,7 @@ pub(crate) enum Bounds {
     Oriented(OrientedBox),
 }
 
-/// Unions of tests: each alone, and those that a user would choose.
+/// Unions of tests: each test on its own, and the unions that a user would choose.
 pub(crate) const UNIONS: [&str; 7] =
     ["hs", "sat-e", "sat-n", "sat-p", "sat-v", "hs+sat-n", "hs+sat-e+sat-p+sat-v"];
 
@@ -36,7 +36,7 @@ pub(crate) fn union(text: &str) -> FrustumTests {
     text.parse().unwrap()
 }
 
-/// The box around a light's support, as the hierarchy over lights has it.
+/// The box around a light's support, as in the light hierarchy.
 pub(crate) fn box_of(light: &Light) -> (Vec3, Vec3) {
     let volume = LightVolume::from(light);
     let along = |sign: f32| {
@@ -103,8 +103,8 @@ impl Group {
         }
     }
 
-    /// The exact hull, seen from `center`. A group without far plane ends where nothing within
-    /// `reach_m` of `center`, nor the hull's nearest point, is cut off.
+    /// The exact hull, relative to `center`. A group without a far plane ends so far away that it
+    /// keeps everything within `reach_m` of `center`, and the hull's nearest point.
     pub(crate) fn hull(&self, center: DVec3, reach_m: f64) -> Hull {
         let corner = |i: usize| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
         Hull(match self.shape {
@@ -132,7 +132,7 @@ impl Group {
         })
     }
 
-    /// World-space position at a share `at.xy` of the tile and a view depth, exactly.
+    /// The exact world-space position at shares `at.xy` of the tile and at a view depth.
     fn world_at(&self, at: DVec3, depth_view: f64) -> DVec3 {
         let Shape::Frustum { ndc_min, ndc_max, .. } = self.shape else {
             unreachable!("only frusta have depths");
@@ -147,7 +147,7 @@ impl Group {
         to_world.transform_point3(window.extend(-depth_view))
     }
 
-    /// A sample of the group as a shader reconstructs it, f32 throughout.
+    /// A sample of the group, rebuilt in f32 as a shader does.
     pub(crate) fn sample(&self, at: Vec3) -> Vec3 {
         match self.shape {
             Shape::Frustum { ndc_min, ndc_max, depth_min, depth_max } => {

@@ -1,6 +1,6 @@
-//! `assign::intersect` against exact geometry in f64, and the WESL tests against both.
+//! Compares `assign::intersect` with exact geometry in f64, and the WESL tests with both.
 //!
-//! Loose is allowed and measured, tight is a failure.
+//! A loose test is allowed and measured. A tight test is a failure.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -18,7 +18,7 @@ mod wesl;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// The same cases on every run.
+/// A configuration that draws the same cases on every run.
 fn deterministic(cases: u32) -> Config {
     Config { cases, rng_seed: RngSeed::Fixed(2019), failure_persistence: None, ..Config::default() }
 }

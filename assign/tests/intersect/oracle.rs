@@ -1,7 +1,7 @@
-//! The truth in f64: convex hulls, exact distances, and whether two convex sets overlap.
+//! The exact geometry in f64: convex hulls, distances, and whether two convex sets overlap.
 //!
-//! Nothing here shares a formula with the code under test: distances come from triangles,
-//! overlaps from support points alone (Gilbert, Johnson and Keerthi 1988).
+//! It shares no formula with the code under test. Distances come from triangles, overlaps only from
+//! support points (Gilbert, Johnson and Keerthi 1988).
 
 use assign::{Light, LightShape};
 use glam::DVec3;
@@ -42,11 +42,11 @@ impl Hull {
         let centroid = self.0.iter().sum::<DVec3>() / 8.0;
         FACES.iter().all(|f| {
             let [a, b, c, d] = f.map(|i| self.0[i]);
-            // The diagonals' normal: a face may have edges of length 0.
+            // The normal comes from the diagonals, because a face may have edges of length 0.
             let normal = (c - a).cross(d - b).normalize_or_zero();
             let size = (c - a).length() + (d - b).length();
             let thickness = normal.dot(centroid - a);
-            // A flat hull holds nothing; its faces are at distance 0.
+            // A flat hull contains nothing; its faces are at distance 0.
             thickness.abs() > 1e-12 * size && normal.dot(p - a) * thickness.signum() >= 0.0
         })
     }
@@ -82,7 +82,7 @@ pub(crate) struct Wedge {
     pub(crate) axis: DVec3,
     pub(crate) half_angle: f64,
     pub(crate) range: f64,
-    /// Vertices of the outline; none where it is the origin.
+    /// Vertices of the outline; empty if the outline is the origin.
     pub(crate) outline: Vec<DVec3>,
 }
 
@@ -105,7 +105,7 @@ impl Wedge {
         if angle <= self.half_angle {
             return u * self.range;
         }
-        // Straight behind the apex every direction across serves.
+        // Straight behind the apex, any direction across works.
         let out = if across.length() > 1e-9 {
             across.reject_from(self.axis).normalize()
         } else {
@@ -117,9 +117,9 @@ impl Wedge {
     }
 }
 
-/// Convex subsets of a light's support, around the origin. Up to a half angle of π/2 the one
-/// subset is the support; beyond, the support is the union of half balls tilted off the axis,
-/// of which these are some: towards `towards` and around.
+/// Convex subsets of a light's support, around the origin. Up to a half angle of π/2 there is one
+/// subset, the whole support. Above, the support is the union of all half balls tilted off the
+/// axis; these are eight of them, the first tilted towards `towards`.
 pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
     let range = f64::from(light.range_m);
@@ -156,14 +156,14 @@ pub(crate) fn wedges(light: &Light, towards: DVec3) -> Vec<Wedge> {
         .collect()
 }
 
-/// What is known of two convex sets.
+/// What the search found out about two convex sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Overlap {
     /// A separating plane was found.
     Apart,
-    /// They share, up to `1e-8` of the wedge's size, this point of the hull.
+    /// They share this point of the hull, up to `1e-8` of the wedge's size.
     At(DVec3),
-    /// Too close to call.
+    /// The sets are too close to decide.
     Unknown,
 }
 
@@ -181,7 +181,7 @@ pub(crate) fn overlap(hull: &Hull, wedge: &Wedge) -> Overlap {
             return Overlap::At(simplex.iter().zip(weights).map(|(s, w)| s.1 * w).sum());
         }
         let next = vertex(v);
-        // All of the difference lies beyond the plane through `next` normal to `v`.
+        // The whole difference of the sets lies beyond the plane through `next` normal to `v`.
         let gap = v.dot(next.0) / v.length();
         if gap > tolerance {
             return Overlap::Apart;
@@ -194,7 +194,7 @@ pub(crate) fn overlap(hull: &Hull, wedge: &Wedge) -> Overlap {
     Overlap::Unknown
 }
 
-/// Point of the simplex nearest to the origin; drops the vertices that do not carry it.
+/// The point of the simplex nearest to the origin. Drops the vertices that do not contribute to it.
 fn nearest_to_origin(simplex: &mut Vec<(DVec3, DVec3)>) -> (Vec<f64>, DVec3) {
     let count = simplex.len();
     let mut best: Option<(u32, Vec<f64>, DVec3)> = None;
@@ -235,7 +235,7 @@ fn affine_nearest(points: &[DVec3]) -> Option<Vec<f64>> {
             (!flat).then(|| (m.inverse() * DVec2::new(r(0), r(1))).to_array().to_vec())?
         }
         3 => {
-            // The edges span space: solve for the origin itself.
+            // The edges span space, so the solution is the origin itself.
             let m = DMat3::from_cols(edges[0], edges[1], edges[2]);
             let volume = edges.iter().map(|e| e.length()).product::<f64>();
             let flat = m.determinant().abs() <= 1e-12 * volume;

@@ -1,5 +1,4 @@
-//! Small groups that the eye sees, each with a light, drawn from a seed, and what the BRDF's integral
-//! makes of them in f64.
+//! Seeded pairs of a small group in view and a light, and the BRDF's integral for them in f64.
 
 use assign::intersect::{Aabb, Gloss, NormalCone};
 use assign::{Emitter, Light, LightShape, View};
@@ -7,7 +6,7 @@ use glam::{DVec3, Vec3};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// A small group that the eye sees, and a light.
+/// A small group in view, and a light.
 pub(crate) struct Pair {
     pub(crate) view: View,
     pub(crate) bounds: Aabb,
@@ -42,7 +41,7 @@ pub(crate) fn view(rng: &mut Pcg64Mcg) -> View {
     View::look_at(eye, Vec3::ZERO, 1.0, 0.1, [640, 480])
 }
 
-/// A box of up to half a metre, and a two-sided rectangle 0.5 to 8 m from its middle.
+/// A box of up to half a metre, and a two-sided rectangle 0.5 to 8 m from its centre.
 pub(crate) fn pair(rng: &mut Pcg64Mcg, view: View, half_angle: f32) -> Pair {
     let half = Vec3::from_array(rng.random::<[f32; 3]>()) * 0.5;
     let roughness = between(rng, 0.0, 1.0);
@@ -66,7 +65,7 @@ pub(crate) fn pair(rng: &mut Pcg64Mcg, view: View, half_angle: f32) -> Pair {
     }
 }
 
-/// The same with an emitter a hundred times as long as it is wide, 2 to 20 m.
+/// As [`pair`], with an emitter that is 2 to 20 m long and a hundred times as long as wide.
 pub(crate) fn long_pair(rng: &mut Pcg64Mcg, view: View, half_angle: f32) -> Pair {
     let mut pair = pair(rng, view, half_angle);
     let half_x = direction(rng) * between(rng, 1.0, 10.0);
@@ -86,7 +85,7 @@ impl Pair {
 
     pub(crate) fn sample(&self, rng: &mut Pcg64Mcg) -> Sample {
         let share = Vec3::from_array(rng.random::<[f32; 3]>()).as_dvec3();
-        // Corners and rims are where a bound is tight.
+        // Bounds are tightest at corners and rims.
         let share = if rng.random::<bool>() { share.round() } else { share };
         let (low, high) = (self.bounds.min_world.as_dvec3(), self.bounds.max_world.as_dvec3());
         let axis = self.cone.axis.as_dvec3();
@@ -101,9 +100,10 @@ impl Pair {
         Sample { position: low + (high - low) * share, normal, point }
     }
 
-    /// Specular radiance of a sample: the integral over the emitter by the midpoint rule, `cells` along
-    /// the longer side, a power of two, and 2 along the shorter. Every cell lies in one of the pieces
-    /// that a bound may cut the emitter into, so the sum cannot exceed the bound by its own error.
+    /// Specular radiance of a sample: the integral over the emitter by the midpoint rule, with
+    /// `cells` (a power of two) along the longer side and 2 along the shorter. Each cell lies in
+    /// one of the pieces into which a bound may cut the emitter, so the sum cannot exceed the bound
+    /// by its own error.
     pub(crate) fn specular(&self, sample: &Sample, roughness: f64, cells: u32) -> f64 {
         let emitter = self.emitter();
         let [x, y] = emitter.half_axes().map(Vec3::as_dvec3);
@@ -120,7 +120,7 @@ impl Pair {
             solid_angle += part;
             sum += part * self.reflected(sample, to_light, roughness);
         }
-        // No more than a hemisphere, however coarse the cells.
+        // However coarse the cells, the solid angle is at most a hemisphere.
         let most = (std::f64::consts::TAU / solid_angle).min(1.0);
         let offset = sample.position - self.light.position.as_dvec3();
         let distance = offset.distance(emitter.closest(offset));

@@ -1,5 +1,6 @@
-//! The properties say what must be reached *if* a light touches a group. This holds often, and often
-//! not, for every kind of light and every shape of group: else the properties would say nothing.
+//! The property tests say what must hold *if* a light touches a group. Here we check that lights of
+//! every kind often touch groups of every shape, and often miss them. Otherwise the property tests
+//! would check nothing.
 
 use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -8,7 +9,7 @@ use crate::cases::{Kind, aabb, aim, frustum, oriented, witness};
 use crate::deterministic;
 use crate::groups::Group;
 
-/// Lights of a kind aimed at groups of a shape.
+/// The number of lights of a kind that are aimed at groups of a shape.
 const PAIRS: usize = 1_500;
 
 /// The share of lights that touch their group.

@@ -1,6 +1,5 @@
-//! How often each test says "reaches" of a light that does not: the table in
-//! `assign::intersect`, printed by
-//! `cargo test -p assign --test intersect rates -- --nocapture`.
+//! How often each test says "reaches" for a light that does not reach: the table in
+//! `assign::intersect`. To print it: `cargo test -p assign --test intersect rates -- --nocapture`.
 
 use assign::{Emitter, FrustumTests, Light, LightShape, View};
 use glam::{DVec3, Mat3, Vec2, Vec3};
@@ -14,7 +13,8 @@ const CLUSTERS: usize = 600;
 const LIGHTS: usize = 8_000;
 /// The unions of tests on frusta, and two kinds of boxes.
 const ROWS: usize = UNIONS.len() + 2;
-/// Size of Sponza, metres (Enhuber 2019, table 4.2): lights lie in it, the camera at an end.
+/// Size of Sponza, metres (Enhuber 2019, table 4.2). Lights lie in this box; the camera is at one
+/// end.
 const SCENE_M: Vec3 = Vec3::new(37.2, 15.6, 22.9);
 
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,8 @@ enum Kind {
     Point,
     /// Half angle of the cone, degrees.
     Spot(f32),
-    /// One-sided, half axes of 0.1 to 1 m: a rectangle (2), or a polygon of so many vertices.
+    /// A one-sided emitter with half axes of 0.1 to 1 m: a rectangle (2), or a polygon with this
+    /// number of vertices.
     Area(usize),
 }
 
@@ -37,7 +38,7 @@ const KINDS: [Kind; COLUMNS] = [
     Kind::Area(3),
     Kind::Area(6),
 ];
-/// The documented share of hits that are false, per cent: a row per test, a column per kind.
+/// The documented share of false hits, per cent: one row per test, one column per kind.
 const DOCUMENTED: [(&str, [f64; COLUMNS]); 9] = [
     ("hs", [36.0, 21.7, 25.7, 32.0, 34.8, 31.9, 36.2, 37.0]),
     ("sat-e", [60.3, 71.5, 64.1, 61.8, 61.3, 55.3, 58.7, 58.9]),
@@ -50,8 +51,8 @@ const DOCUMENTED: [(&str, [f64; COLUMNS]); 9] = [
     ("oriented box", [0.0, 16.5, 11.5, 7.5, 5.5, 2.0, 8.8, 7.3]),
 ];
 
-/// Radii of the comparison: gamma with alpha 4/3 and beta 0.75 (Enhuber 2019, section 4.2), drawn
-/// as Marsaglia and Tsang 2000 do.
+/// The comparison paper's radii: a gamma distribution with alpha 4/3 and beta 0.75 (Enhuber 2019,
+/// section 4.2), drawn by the method of Marsaglia and Tsang 2000.
 fn radius(rng: &mut Pcg64Mcg) -> f32 {
     let d = 4.0_f64 / 3.0 - 1.0 / 3.0;
     let c = 1.0 / (9.0 * d).sqrt();
@@ -96,8 +97,8 @@ fn light(rng: &mut Pcg64Mcg, kind: Kind) -> Light {
     light
 }
 
-/// A cluster of 64x64 pixels at 1920x1080, of 24 exponential slices from 0.1 to 100 m, and the
-/// boxes around it, along the world's axes and along the view's.
+/// A cluster of 64x64 pixels at 1920x1080 with 24 exponential slices from 0.1 to 100 m, and the
+/// boxes around it along the world's axes and along the view's.
 fn groups(rng: &mut Pcg64Mcg) -> [Group; 3] {
     let eye = Vec3::new(-0.5 * SCENE_M.x, 0.0, 0.0);
     let view = View::look_at(eye, Vec3::new(5.0, -2.0, 3.0), 1.0, 0.1, [1920, 1080]);
@@ -131,7 +132,7 @@ fn groups(rng: &mut Pcg64Mcg) -> [Group; 3] {
     [shape, aabb, oriented].map(|shape| Group { view, shape })
 }
 
-/// Whether the light is known not to reach the group.
+/// Whether the light certainly does not reach the group.
 fn is_apart(group: &Group, light: &Light) -> bool {
     let radius = f64::from(light.radius_m());
     let hull = group.hull(light.position.as_dvec3(), radius);
@@ -165,7 +166,7 @@ fn rates_are_as_documented() {
             }
         }
         for row in 0..ROWS {
-            // Enough hits for a standard error of 1 point.
+            // This many hits give a standard error of 1 percentage point.
             assert!(hits[row] > 2_000, "{hits:?}");
             measured[row][column] = 100.0 * wrong[row] as f64 / hits[row] as f64;
         }

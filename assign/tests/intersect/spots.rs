@@ -1,5 +1,5 @@
-//! Spots: a ball cut by a cone, of any half angle up to π, that holds a point of a group reaches
-//! it, and so does one that shading in f32 would let light a sample of it.
+//! Spots: balls cut by a cone of any half angle up to π. A spot must reach a group if its support
+//! contains a point of the group, or if shading in f32 lights a sample of the group.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -11,8 +11,8 @@ use crate::cases::{Kind, aim, group, witness};
 use crate::deterministic;
 use crate::groups::{Group, Shape, UNIONS, box_of, union};
 
-/// Whether shading gives the sample any light: `fall_off` and `cone_fall_off` of
-/// `shading/src/shaders/lighting.wesl`, in f32.
+/// Whether shading gives the sample any light: `range_window` of `window.wesl` and `cone_fall_off`
+/// of `shading/src/shaders/lighting.wesl`, in f32.
 fn is_lit(light: &Light, sample: Vec3) -> bool {
     let offset = light.position - sample;
     let distance_2 = offset.dot(offset);
@@ -33,7 +33,7 @@ proptest! {
     #![proptest_config(deterministic(2_500))]
 
     #[test]
-    fn a_cone_that_holds_a_point_of_the_group_reaches(
+    fn a_cone_that_contains_a_point_of_the_group_reaches_it(
         group in group(),
         aims in prop::collection::vec(aim(Kind::Spot), 4),
         samples in prop::collection::vec(prop::array::uniform3(0.0_f32..1.0), 24),
@@ -73,7 +73,7 @@ fn spot(position: Vec3, range_m: f32, direction: Vec3, outer_angle: f32) -> Ligh
 proptest! {
     #![proptest_config(deterministic(60_000))]
 
-    /// Shading tells a cone's edge from a squared chord, whose rounding moves the edge outwards.
+    /// Shading finds a cone's edge by a squared chord, whose rounding moves the edge outwards.
     #[test]
     fn a_sample_on_the_edge_that_shading_lights_is_reached(
         sample in prop::array::uniform3(-1.0_f32..1.0),
@@ -97,8 +97,9 @@ proptest! {
     }
 }
 
-/// A half ball turned almost straight away from a wide plate dips its rim into it, `1 / dip` times
-/// as far out as it is high above: the sine of the angle between must not come from its cosine.
+/// A half ball that is turned almost straight away from a wide plate dips its rim into the plate,
+/// at `1 / dip` times its height above the plate. The test fails if the sine of the angle between
+/// them comes from its cosine.
 #[test]
 fn a_half_ball_turned_away_dips_its_rim_into_a_plate() {
     let view = View {
@@ -124,7 +125,7 @@ fn a_half_ball_turned_away_dips_its_rim_into_a_plate() {
         let group = Group { view, shape };
         for dip in [1e-2_f32, 1e-3, 1e-4, 1e-5] {
             let away = Vec3::new(dip.sin(), 0.0, dip.cos());
-            // The plate's slack, 16 units in the last place of its size, is 4 m.
+            // The plate's slack is 4 m: 16 units in the last place of its size.
             let light = spot(Vec3::new(0.0, 0.0, 10.0), 12.0 / dip.sin(), away, FRAC_PI_2);
             assert!(witness(&group, &light).is_some(), "{dip:e}");
             assert!(group.bounds().reaches(&light, FrustumTests::default()), "{dip:e}: {shape:?}");

@@ -1,4 +1,4 @@
-//! The WESL tests on the adapter against the Rust mirror and the exact oracle.
+//! Compares the WESL tests on the adapter with the Rust mirror and with the exact oracle.
 
 use assign::{
     Frame, FrameBindings, FrustumTests, Gpu, Light, LightBuffer, LightKinds, LightShape, Shader,
@@ -12,14 +12,14 @@ use crate::cases::{Kind, aabb, aim, frustum, oriented, witness};
 use crate::deterministic;
 use crate::groups::{Bounds, Group, Shape, UNIONS, box_of, union};
 
-/// Groups of a permutation, each with a view of its own.
+/// Groups per permutation, each with its own view.
 const GROUPS: usize = 80;
 /// Lights aimed at each group.
 const LIGHTS: usize = 32;
-/// Vectors that describe a group to the shader.
+/// Vectors that describe a group for the shader.
 const RECORD: usize = 5;
 
-/// Tests every light against one group in one workgroup.
+/// A kernel that tests every light against one group in one workgroup.
 const DRIVER: &str = "
 import package::lights::{volume_of_light, light_spheres};
 import package::bounds::{load_bounds, reaches, reaches_box};
@@ -84,7 +84,7 @@ fn record(shape: &Shape) -> [[f32; 4]; RECORD] {
     record
 }
 
-/// One compiled permutation.
+/// One linked permutation of the tests.
 struct Tester {
     gpu: Gpu,
     module: wgpu::ShaderModule,
@@ -113,7 +113,7 @@ impl Tester {
         Self { gpu: gpu.clone(), module }
     }
 
-    /// Whether each light reaches the group, and the box around it.
+    /// For each light, whether it reaches the group, and whether its box does.
     fn run(&self, frame: &mut FrameBindings, group: &Group, lights: &[Light]) -> Vec<(bool, bool)> {
         let gpu = &self.gpu;
         let light_buffer = LightBuffer::new(gpu, lights).unwrap();
@@ -141,23 +141,23 @@ impl Tester {
     }
 }
 
-/// The share of pairs in which shader and mirror may differ by more than rounding of the slack: axes
-/// along edges shorter than their corners' rounding, and between nearest points that a search has not
-/// yet found.
+/// The share of pairs in which shader and mirror may differ by more than the slack's rounding. The
+/// causes are axes along edges that are shorter than their corners' rounding, and axes between
+/// nearest points that the search has not found yet.
 const BEYOND_ROUNDING: f64 = 0.02;
 
-/// What came of comparing one permutation.
+/// The result of comparing one permutation.
 #[derive(Debug, Default)]
 struct Tally {
     pairs: usize,
     hits: usize,
     disagreements: usize,
-    /// Of those, the ones that rounding of the slack does not explain.
+    /// Disagreements that rounding of the slack does not explain.
     beyond_rounding: usize,
 }
 
-/// Both sides round, so they may differ where the gap lies within rounding of the slack: there
-/// the mirror itself changes its mind between half the slack and one and a half.
+/// Both sides round, so they may differ if the gap is within rounding of the slack. In these pairs
+/// the mirror itself gives different answers with 0.5 and with 1.5 times the slack.
 fn compare(
     tester: &Tester,
     groups: &BoxedStrategy<Group>,
@@ -170,7 +170,7 @@ fn compare(
     for _ in 0..GROUPS {
         let group = groups.new_tree(&mut runner).unwrap().current();
         let mut light = |i| {
-            // A scene with spots or area lights has point lights too.
+            // Scenes with spots or area lights have point lights too.
             let kind = match i % 4 {
                 1 if kinds.spots => Kind::Spot,
                 2 | 3 if kinds.areas => Kind::Area,
@@ -191,9 +191,9 @@ fn compare(
             if bounds.reaches(light, tests) != wesl.0 {
                 tally.disagreements += 1;
                 let with_slack = |factor| bounds.with_slack(factor).reaches(light, tests);
-                // An edge of a thin slice is shorter than its corners' rounding: its direction is
-                // any, which is no axis the less. So is that between nearest points which a search
-                // that is not done yet has found.
+                // An edge of a thin slice may be shorter than its corners' rounding, so its
+                // direction is arbitrary, but it is still a valid axis. The same holds for the axis
+                // between nearest points before the search has converged.
                 let is_area = matches!(light.shape, LightShape::Area(_));
                 let is_rounding = with_slack(0.5) != with_slack(1.5);
                 tally.beyond_rounding += usize::from(!is_rounding);
@@ -210,8 +210,8 @@ fn compare(
     tally
 }
 
-/// Lights at the range where the mirror changes its mind, to one unit in the last place, and just
-/// either side of it.
+/// Lights with the range at which the mirror's answer changes, to one unit in the last place, and
+/// with ranges just below and above.
 fn on_the_edge(bounds: &Bounds, light: &Light, tests: FrustumTests) -> Vec<Light> {
     let at = |range_m: f32| Light { range_m, ..*light };
     let reaches = |range_m: f32| bounds.reaches(&at(range_m), tests);
@@ -231,7 +231,8 @@ fn on_the_edge(bounds: &Bounds, light: &Light, tests: FrustumTests) -> Vec<Light
     [vec![at(low), at(high)], beside.to_vec()].concat()
 }
 
-/// Compares every permutation of one shape. `unions` are the tests that it knows.
+/// Compares every permutation of one shape. `unions` are the unions of tests that the shape
+/// supports.
 fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, unions: &[&str]) {
     let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
     for kinds in LightKinds::ALL {
@@ -239,8 +240,8 @@ fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, unions: &[
             let tester = Tester::new(&gpu, bounds, strategy, union(tests), kinds);
             let tally = compare(&tester, groups, union(tests), kinds);
             println!("{}, {tests}, {kinds:?}: {tally:?}", gpu.info.name);
-            // Both answers are common. Two lights in five lie on the edge, where rounding decides:
-            // up to 16 % of all pairs differ on llvmpipe.
+            // Both answers are common. Two lights in five lie on the edge, where rounding decides.
+            // On llvmpipe up to 16 % of all pairs differ.
             let share = |count: usize| count as f64 / tally.pairs as f64;
             assert!((0.3..0.95).contains(&share(tally.hits)), "{tally:?}");
             assert!(share(tally.disagreements) < 0.25, "{tally:?}");

@@ -8,7 +8,7 @@ use super::marks::shape;
 use super::model::{Axis, Scale};
 use super::number::significant;
 use super::occupancy::Area;
-use super::text::{bold_width, count_of, shorten_bold};
+use super::text::{bold_width, count_of, shorten_bold, width};
 
 /// A part of a bar.
 #[derive(Clone, Debug, Default)]
@@ -53,6 +53,8 @@ const ROW: f64 = 34.0;
 const BAR: f64 = 22.0;
 const NAMES: f64 = 185.0;
 const VALUES: f64 = 110.0;
+/// From the start of a segment to its label.
+const LABEL_MARGIN: f64 = 5.0;
 
 impl Segment {
     fn shown(&self) -> bool {
@@ -205,6 +207,10 @@ impl BarChart {
                 let (top, bottom) = (middle - BAR * 0.5, middle + BAR * 0.5);
                 self.open_segment(canvas, row, segment);
                 canvas.area("fill", &Area { left, top, right: end, bottom });
+                if width(&segment.name) + 2.0 * LABEL_MARGIN < end - left {
+                    let at = [left + LABEL_MARGIN, middle + 5.0];
+                    canvas.page_text("label", at, Anchor::Start, &segment.name);
+                }
                 if end - left > 3.0 {
                     canvas.line("edge", [end, top], [end, bottom]);
                 }

@@ -17,9 +17,9 @@ const FILE_MARGIN: f64 = 18.0;
 /// What a drawing is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A page: it brings colours, a heading and scripts for tips.
+    /// A page, which has the colours and a heading.
     Page,
-    /// A file: it brings its own style, and tips are titles.
+    /// A file of its own, which brings its style and its heading.
     File,
 }
 
@@ -41,23 +41,13 @@ impl Canvas {
         Self { target, body: String::new() }
     }
 
-    /// Begins a group that a tip explains and a key names; both may be empty.
+    /// Begins a group that a tip explains and, on a page, a key names; both may be empty.
     pub(super) fn open(&mut self, class: &str, tip: &str, key: &str) {
         self.body.push_str("<g");
         if !class.is_empty() {
             self.attribute("class", class);
         }
-        if self.target == Target::File {
-            self.body.push('>');
-            if !tip.is_empty() {
-                self.body.push_str(&format!("<title>{}</title>", escape(tip)));
-            }
-            return;
-        }
-        if !tip.is_empty() {
-            self.attribute("data-tip", tip);
-        }
-        if !key.is_empty() {
+        if !key.is_empty() && self.target == Target::Page {
             self.attribute("data-key", key);
             self.attribute("tabindex", "0");
             if !tip.is_empty() {
@@ -66,6 +56,9 @@ impl Canvas {
             }
         }
         self.body.push('>');
+        if !tip.is_empty() {
+            self.body.push_str(&format!("<title>{}</title>", escape(tip.trim())));
+        }
     }
 
     pub(super) fn close(&mut self) {
@@ -124,6 +117,13 @@ impl Canvas {
         self.body.push_str(&format!(">{}</text>", escape(text)));
     }
 
+    /// A text whose colour a page's style sheet gives; a file has none.
+    pub(super) fn page_text(&mut self, class: &str, at: [f64; 2], anchor: Anchor, text: &str) {
+        if self.target == Target::Page {
+            self.text(class, at, anchor, text);
+        }
+    }
+
     /// A text that may have been cut: the whole is its tip then.
     pub(super) fn cut_text(
         &mut self,
@@ -136,7 +136,7 @@ impl Canvas {
         if cut == whole {
             self.text(class, at, anchor, cut);
         } else {
-            self.open("", whole, "");
+            self.open("cut", whole, "");
             self.text(class, at, anchor, cut);
             self.close();
         }

@@ -112,11 +112,13 @@ fn names_are_text_and_whole_in_their_tips() {
         let svg = chart.to_svg();
         assert_well_formed(&svg);
         assert_well_formed(&chart.to_svg_file());
-        assert!(svg.contains(&format!("data-tip=\"{}\"", text::escape(name.trim()))));
+        assert!(svg.contains(&format!("<title>{}</title>", text::escape(name.trim()))));
         assert!(!svg.contains("<b>") && !svg.contains("onload=\""));
     }
     let svg = chart(Scale::Linear, Marks::Points, vec![at(1.0, 1.0)]).to_svg();
-    assert!(svg.contains("data-tip=\"a&#10;b\" data-key=\"k\" tabindex=\"0\""));
+    assert!(svg.contains(
+        "<g data-key=\"k\" tabindex=\"0\" role=\"button\" aria-label=\"a, b\"><title>a&#10;b</title>"
+    ));
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn planes_in_the_wrong_order_are_refused_by_the_option_at_fault() {
     let far = refusal(&scene_of(WIDE), "--far 0.25");
     assert_eq!(far, "--far is 0.25: it must be above the near plane, 0.5 m of the file's camera");
     let near = refusal(&scene_of(WIDE), "--near 20");
-    assert_eq!(near, "--near is 20: it must be below the far plane of the file, 20 m");
+    assert_eq!(near, "--near is 20: it must be below the file's far plane, 20 m");
     let both = refusal(&scene_of(WIDE), "--near 3 --far 2");
     assert_eq!(both, "--far is 2: it must be above the near plane, 3 m of --near");
     let open = refusal(&scene_of(FLAT), "--far infinite");

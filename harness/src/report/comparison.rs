@@ -49,6 +49,11 @@ impl<'a> Comparison<'a> {
         self.records[0].1
     }
 
+    /// The records, in the order of the run.
+    pub(super) fn all(&self) -> impl Iterator<Item = &'a Record> {
+        self.records.iter().map(|(_, record)| *record)
+    }
+
     /// A record's name, marked where its times are bound by rasterisation on a chip weak at it.
     pub(super) fn name(&self, record: &Record) -> String {
         format!("{}{}", record.strategy, raster::mark(self.machine, record))
@@ -95,12 +100,12 @@ impl<'a> Comparison<'a> {
 
     /// The records that cull without a loss, by rank.
     pub(super) fn ranks(&self) -> Vec<Ranked<'a>> {
-        ranks(self.records.iter().map(|(_, record)| *record))
+        ranks(self.all())
     }
 
     /// The record of a strategy.
     pub(super) fn record_of(&self, strategy: &str) -> Option<&'a Record> {
-        self.records.iter().map(|(_, record)| *record).find(|record| record.strategy == strategy)
+        self.all().find(|record| record.strategy == strategy)
     }
 
     /// The time in which no culling, at its own rate, would evaluate only the lights that reach
@@ -124,9 +129,7 @@ impl<'a> Comparison<'a> {
     /// The fastest strategy that culls: among those without a loss where there is one.
     pub(super) fn fastest(&self) -> Option<&'a Record> {
         let candidates = |lossless: bool| {
-            self.records
-                .iter()
-                .map(|(_, record)| *record)
+            self.all()
                 .filter(|record| record.culls() && !record.is_lossy)
                 .filter(move |record| record.is_lossless() || !lossless)
                 .filter(|record| record.assign_and_shade_ms().is_finite())

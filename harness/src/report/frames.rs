@@ -1,10 +1,11 @@
 //! The same methods in each kind of frame that a renderer may draw: forward shading without a depth
 //! pre-pass and with one, and deferred shading without and with models in the G-buffer.
 
+use super::column::Column;
 use super::format::{number, significant};
 use super::markup::{Html, html};
-use super::page::with_names_whole;
 use super::raster::{self, MARK};
+use super::table::{Look, Row, Table};
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
 use crate::study::Done;
 
@@ -85,31 +86,19 @@ fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
     if kinds.len() < 2 {
         return Html::default();
     }
-    let head = |kind: &FrameKind| {
-        let (head, about) = words(*kind);
-        html!("<th scope=\"col\" title=\"{}\">{} <span class=\"unit\">ms</span></th>", about, head)
+    let column = |kind: FrameKind| {
+        let (head, about) = words(kind);
+        Column::markup(head, "ms", move |own: &Vec<&Record>| cell(kind, own, machine)).about(about)
     };
-    let heads: Html = kinds.iter().map(head).collect();
-    let mut rows = Html::default();
-    for (name, own) in &methods {
-        let cell = |kind: &FrameKind| html!("<td>{}</td>", cell(*kind, own, machine));
-        let cells: Html = kinds.iter().map(cell).collect();
-        rows += html!("<tr><th scope=\"row\">{}</th>{}</tr>\n", with_names_whole(name), cells);
-    }
+    let columns: Vec<_> = kinds.iter().copied().map(column).collect();
+    let rows = methods.into_iter().map(|(name, own)| Row::new(name, own)).collect();
     let explain = |kind: &FrameKind| {
         let (head, about) = words(*kind);
         html!("<dt>{}</dt><dd>{}</dd>\n", head, about)
     };
     let explained: Html = kinds.iter().map(explain).collect();
-    html!(
-        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\">\n\
-         <table class=\"figures frames\"><caption>{0}</caption>\n<thead><tr><th scope=\"col\">strategy</th>\
-         {1}</tr></thead>\n<tbody>\n{2}</tbody></table></div>\n<dl class=\"columns\">{3}</dl>\n",
-        caption,
-        heads,
-        rows,
-        explained
-    )
+    let table = Table::new("strategy", columns, rows).html(caption, Look::Plain);
+    html!("{}<dl class=\"columns\">{}</dl>\n", table, explained)
 }
 
 /// What a cell holds.

@@ -1,30 +1,25 @@
 //! The page: one file with everything in it, opened from anywhere.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
-use super::comparison::comparisons;
 use super::format::{number, short_adapter};
-use super::markup::Html;
-use super::page;
-use super::{finding, frames, notices};
-use crate::chart::page_colours;
+use super::markup::{Html, with_names_whole};
+use super::section::sections;
+use super::terms::terms;
+use super::{finding, frames, notices, page};
+use crate::chart::{CHART_CSS, page_colours};
 use crate::results::{Results, ResultsError, write_atomically};
 
 pub(super) const PAGE: &str = include_str!("report.html");
 pub(super) const STYLE: &str = include_str!("report.css");
 
-/// The page's programs, in the order in which they are read.
-const SCRIPTS: [&str; 5] = [
-    include_str!("report.js"),
-    include_str!("bars.js"),
-    include_str!("samples.js"),
-    include_str!("lists.js"),
-    include_str!("pictures.js"),
-];
+/// The page's script.
+pub(super) const SCRIPT: &str = include_str!("report.js");
 
 /// Writes `out_dir/index.html` and returns its path. `images` holds the pictures that records
 /// name, as PNG files with their names; a record's picture that is not among them is said to be
@@ -46,27 +41,29 @@ pub fn write_html(
 /// The page as text: see [`write_html`].
 pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
     let findings = finding(results);
+    let kept: BTreeSet<&str> = images.iter().map(|(name, _)| name.as_str()).collect();
     let (headline, others) =
         findings.split_first().map_or_else(Default::default, |(first, others)| {
-            (page::with_names_whole(first), page::paragraphs("finding", others))
+            (with_names_whole(first), page::paragraphs("finding", others))
         });
     fill(
         PAGE,
         &[
             ("title", title(results).into()),
-            ("style", Html::trusted(STYLE.to_owned() + &page_colours())),
+            ("style", Html::trusted([STYLE, &page_colours(), CHART_CSS].join("\n"))),
             ("headline", headline),
             ("findings", others),
             ("notices", page::notices(&notices(results))),
-            ("comparisons", page::comparisons_html(results) + frames::sections(results)),
+            ("comparisons", sections(results, &kept) + frames::sections(results)),
             ("columns", page::columns()),
+            ("terms", terms()),
             ("reading", Html::default()),
             ("file", "results.json".into()),
             ("link", "#from".into()),
             ("provenance", page::provenance(results)),
             ("data", in_script(&results.to_json())),
-            ("view", in_script(&view(results, images).to_string())),
-            ("script", Html::trusted(SCRIPTS.join("\n"))),
+            ("view", in_script(&view(images).to_string())),
+            ("script", Html::trusted(SCRIPT)),
         ],
     )
 }
@@ -85,16 +82,8 @@ fn title(results: &Results) -> String {
     }
 }
 
-/// What the programs need beside the results: which records belong together, which colour each
-/// strategy and pass has, and the pictures, each stored once.
-fn view(results: &Results, images: &[(String, Vec<u8>)]) -> serde_json::Value {
-    let comparisons: Vec<_> = comparisons(results)
-        .iter()
-        .map(|comparison| {
-            let records: Vec<usize> = comparison.records.iter().map(|(ix, _)| *ix).collect();
-            json!({ "records": records, "baseline": comparison.baseline_index() })
-        })
-        .collect();
+/// What the script needs: the pictures, each stored once.
+fn view(images: &[(String, Vec<u8>)]) -> serde_json::Value {
     let mut kept: Vec<&[u8]> = Vec::new();
     let mut pictures = serde_json::Map::new();
     for (name, png) in images {
@@ -106,13 +95,7 @@ fn view(results: &Results, images: &[(String, Vec<u8>)]) -> serde_json::Value {
     }
     let uris: Vec<_> =
         kept.iter().map(|png| format!("data:image/png;base64,{}", STANDARD.encode(png))).collect();
-    json!({
-        "comparisons": comparisons,
-        "strategies": page::strategy_classes(results),
-        "passes": page::pass_classes(results),
-        "pictures": pictures,
-        "uris": uris,
-    })
+    json!({ "pictures": pictures, "uris": uris })
 }
 
 /// JSON that no HTML parser takes for the end of its script element. `<` stands only in strings.
@@ -156,7 +139,7 @@ mod tests {
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        for part in [PAGE, STYLE].iter().chain(&SCRIPTS) {
+        for part in [PAGE, STYLE, SCRIPT] {
             for loader in ["http://", "https://", "@import", "url(", "fetch("] {
                 let allowed = part.replace("http://www.w3.org/2000/svg", "");
                 assert!(!allowed.contains(loader), "{loader}");

@@ -1,50 +1,43 @@
 //! What a method lost: in words, in the columns that a comparison with lossy methods gains, and in
 //! the terminal's table of losses.
 
-use std::fmt::Write;
-
+use super::column::{Better, Column};
 use super::comparison::Comparison;
-use super::format::{ABSENT, difference, number, percent};
-use super::metrics::{Better, METRICS, Metric};
+use super::format::{difference, number, percent};
+use super::metrics::{Metric, figure, metrics, table};
 use crate::results::Record;
 
-/// The errors against no culling that tables and sentences state.
-pub(super) static ERROR_COLUMNS: [Metric; 3] = [
-    Metric {
-        id: "missing_energy",
-        head: "missing energy",
-        unit: "%",
-        terminal: "",
-        about: "Luminance that the image lacks where it is darker than that of no culling, over all \
-                luminance there should be.",
-        better: Better::Zero,
-        value: |_, r| error(r, "missing_energy"),
-        show: percent,
-        is_optional: true,
-    },
-    Metric {
-        id: "rel_mse",
-        head: "relMSE",
-        unit: "",
-        terminal: "",
-        about: "Mean over channels of the squared difference to no culling over the squared value.",
-        better: Better::Zero,
-        value: |_, r| error(r, "rel_mse"),
-        show: difference,
-        is_optional: true,
-    },
-    Metric {
-        id: "flip",
-        head: "FLIP",
-        unit: "",
-        terminal: "",
-        about: "Mean FLIP against no culling: what an eye sees when it flips between the two.",
-        better: Better::Zero,
-        value: |_, r| error(r, "flip"),
-        show: difference,
-        is_optional: true,
-    },
-];
+/// The columns of errors against no culling.
+pub(super) fn error_columns<'a>() -> Vec<Metric<'a>> {
+    [
+        figure(
+            "missing_energy",
+            "missing energy",
+            "%",
+            Better::Zero,
+            |m| error(m.record, "missing_energy"),
+            percent,
+        )
+        .terminal("missing energy")
+        .about(
+            "Luminance that is missing where the image is darker than that of no culling, as a share of the \
+             luminance of the image of no culling.",
+        ),
+        figure("rel_mse", "relMSE", "", Better::Zero, |m| error(m.record, "rel_mse"), difference)
+            .terminal("relMSE")
+            .about(
+                "Mean over channels of the squared difference from no culling, divided by the squared value.",
+            ),
+        figure("flip", "FLIP", "", Better::Zero, |m| error(m.record, "flip"), difference)
+            .terminal("FLIP")
+            .about(
+                "Mean FLIP against no culling: the difference that an eye sees when it flips between the two \
+                 images.",
+            ),
+    ]
+    .map(Column::optional)
+    .into()
+}
 
 /// An error against no culling: 0 where no bit differs.
 fn error(record: &Record, id: &str) -> Option<f64> {
@@ -58,20 +51,14 @@ fn is_lossy(record: &Record) -> bool {
     !record.is_control() && !record.shows_no_loss()
 }
 
-/// The columns of a comparison: those of all, and errors where a method may lose light.
-pub(super) fn columns(comparison: &Comparison<'_>) -> impl Iterator<Item = &'static Metric> {
-    METRICS
-        .iter()
-        .filter(|metric| metric.is_shown(comparison))
-        .chain(error_columns(comparison))
-        .collect::<Vec<_>>()
-        .into_iter()
+/// The columns of a comparison: those of all, and errors where a strategy may lose light.
+pub(super) fn columns<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
+    metrics().into_iter().chain(errors_of(comparison)).collect()
 }
 
-/// The columns of errors, where a method of the comparison may lose light.
-pub(super) fn error_columns(comparison: &Comparison<'_>) -> &'static [Metric] {
-    let any = comparison.records.iter().any(|(_, record)| is_lossy(record));
-    if any { &ERROR_COLUMNS } else { &[] }
+/// The columns of errors where a strategy of the comparison may lose light; else none.
+pub(super) fn errors_of<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
+    if comparison.all().any(is_lossy) { error_columns() } else { Vec::new() }
 }
 
 /// The errors of a record: `30.1 % missing energy, relMSE 0.210, FLIP 0.104`; empty where none is
@@ -135,28 +122,13 @@ fn checked(record: &Record) -> String {
         .map_or_else(|| "an unknown number of".to_owned(), |pairs| number(pairs as f64))
 }
 
-/// The terminal's table of what each lossy method lost; nothing where there is none.
-pub(super) fn push_losses(text: &mut String, comparison: &Comparison<'_>) {
-    let lossy: Vec<&Record> =
-        comparison.records.iter().map(|(_, record)| *record).filter(|r| is_lossy(r)).collect();
-    let Some(width) = lossy.iter().map(|record| record.strategy.chars().count()).max() else {
-        return;
-    };
-    let width = width.max("lossy".len());
-    let _ = write!(text, "\n{:width$}", "lossy");
-    for metric in &ERROR_COLUMNS {
-        let _ = write!(text, "  {:>16}", format!("{} {}", metric.head, metric.unit).trim_end());
+/// The terminal's table of what each lossy strategy lost; empty where there is none.
+pub(super) fn loss_table(comparison: &Comparison<'_>) -> String {
+    if !comparison.all().any(is_lossy) {
+        return String::new();
     }
-    text.push('\n');
-    for record in lossy {
-        let _ = write!(text, "{:width$}", record.strategy);
-        for metric in &ERROR_COLUMNS {
-            let value = error(record, metric.id);
-            let shown = value.map_or_else(|| ABSENT.to_owned(), metric.show);
-            let _ = write!(text, "  {shown:>16}");
-        }
-        text.push('\n');
-    }
+    let lossy = comparison.all().filter(|record| is_lossy(record));
+    format!("\n{}", table("lossy", comparison, lossy, error_columns()).text())
 }
 
 #[cfg(test)]

@@ -1,15 +1,14 @@
 //! The result table for a document.
 
-use std::fmt::Write;
-
+use super::column::Column;
 use super::comparison::{Comparison, comparisons};
 use super::format::significant;
-use super::loss::error_columns;
-use super::metrics::{METRICS, Metric};
-use crate::results::{PassKind, Record, Results};
+use super::loss::errors_of;
+use super::metrics::{Measured, Metric, metrics, table};
+use crate::results::{PassKind, PassTimes, Record, Results};
 
-/// The columns of a document's table, by id, in order, those without a value left out; errors follow where a
-/// method may lose light.
+/// The columns of a document's table, by id, in order. The columns of errors follow where a strategy may
+/// lose light.
 const COLUMNS: [&str; 11] = [
     "both_ms",
     "span_ms",
@@ -24,39 +23,36 @@ const COLUMNS: [&str; 11] = [
     "memory_bytes",
 ];
 
-/// The result tables of all comparisons as GitHub-flavoured Markdown, one after the other. The
-/// assignment's time is followed by that of its passes.
+/// The result tables of all comparisons as GitHub-flavoured Markdown, one after the other. The times of the
+/// single passes follow the time to assign.
 pub fn render_markdown(results: &Results) -> String {
-    comparisons(results).iter().map(table).collect::<Vec<_>>().join("\n")
+    comparisons(results).iter().map(markdown).collect::<Vec<_>>().join("\n")
 }
 
-fn table(comparison: &Comparison<'_>) -> String {
-    let has_value = |metric: &&'static Metric| {
-        comparison.records.iter().any(|(_, record)| (metric.value)(comparison, record).is_some())
-    };
-    let column = |id: &&str| METRICS.iter().find(|metric| metric.id == *id).filter(has_value);
-    let known = || COLUMNS.iter().filter_map(column);
-    let metrics = || known().chain(error_columns(comparison));
-    let heads: String = metrics().map(|m| format!(" {} {} |", m.head, m.unit)).collect();
-    let mut text = format!("| strategy |{heads}\n|---|{}\n", "---|".repeat(metrics().count()));
-    // The control assigns and shades nothing.
-    for (_, record) in comparison.records.iter().filter(|(_, record)| !record.is_control()) {
-        let mut cells = String::new();
-        for metric in metrics() {
-            let _ = write!(cells, " {}", metric.text(comparison, record));
-            if metric.id == "assign_ms" {
-                cells += &passes(record);
-            }
-            cells += " |";
+fn markdown(comparison: &Comparison<'_>) -> String {
+    let mut known = metrics();
+    let mut columns = Vec::new();
+    for id in COLUMNS {
+        if let Some(place) = known.iter().position(|column| column.id == id) {
+            let column = known.swap_remove(place).optional();
+            columns.push(if id == "assign_ms" { add_passes(column) } else { column });
         }
-        let _ = writeln!(text, "| {} |{cells}", comparison.name(record));
     }
-    text
+    columns.extend(errors_of(comparison));
+    // The control assigns and shades nothing.
+    let records = comparison.all().filter(|record| !record.is_control());
+    table("strategy", comparison, records, columns).markdown()
+}
+
+/// The column of the time to assign, with the times of the single passes.
+fn add_passes<'a>(assign: Metric<'a>) -> Metric<'a> {
+    let (head, unit) = (assign.head.clone(), assign.unit.clone());
+    Column::words(head, unit, move |row: &Measured<'a>| assign.text(row) + &passes(row.record))
 }
 
 /// The passes of the assignment, where there are several: ` (bounds 0.0294, cull 0.0239)`.
 fn passes(record: &Record) -> String {
-    let assign = |(name, times): (&str, &crate::results::PassTimes)| {
+    let assign = |(name, times): (&str, &PassTimes)| {
         let time_ms = || record.time_of(|other, _| other == name);
         (times.kind == PassKind::Assign).then(|| format!("{name} {}", significant(time_ms())))
     };

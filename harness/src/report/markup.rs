@@ -176,6 +176,22 @@ impl FromIterator<Html> for Html {
     }
 }
 
+/// Names up to this long, in characters, are not broken over lines.
+const UNBROKEN: usize = 24;
+
+/// Text as HTML in which no name such as `DC-I/64x64x24` is broken at its hyphen.
+pub(super) fn with_names_whole(text: &str) -> Html {
+    let word = |(ix, word): (usize, &str)| {
+        let space = if ix == 0 { "" } else { " " };
+        let is_name = word.contains('-') && word.chars().count() <= UNBROKEN;
+        match is_name {
+            true => html!("{}<span class=\"whole\">{}</span>", space, word),
+            false => html!("{}{}", space, word),
+        }
+    };
+    text.split(' ').enumerate().map(word).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,270 +1,253 @@
-//! The columns of both views. A metric is a row: what it is called, its unit, which way is
-//! better, how it is computed and how it is shown.
+//! The columns of a comparison's table, on the page, in the terminal and in documents.
 
+use super::column::Better::{self, Less, More, Neither, Zero};
+use super::column::Column;
 use super::comparison::Comparison;
-use super::format;
+use super::format::{difference, factor, mebibytes, number, percent, significant};
+use super::markup::{Html, html};
+use super::rank::competes;
+use super::table::{Row, Table};
 use crate::results::Record;
 
-/// Which way a metric is better.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Better {
-    Less,
-    More,
-    /// Anything but 0 is a fault.
-    Zero,
-    Neither,
+/// A record among those that it is compared with.
+#[derive(Clone, Copy)]
+pub(super) struct Measured<'a> {
+    pub(super) comparison: &'a Comparison<'a>,
+    pub(super) record: &'a Record,
 }
 
-/// One column.
-pub(super) struct Metric {
-    /// Names the column in the page's markup.
-    pub(super) id: &'static str,
-    /// Its heading, without the unit.
-    pub(super) head: &'static str,
-    /// Its unit; in the terminal the second line of the heading.
-    pub(super) unit: &'static str,
-    /// Its heading in the terminal; empty where it is left out there.
-    pub(super) terminal: &'static str,
-    /// What it means, one sentence.
-    pub(super) about: &'static str,
-    pub(super) better: Better,
-    /// `None` where it was not measured.
-    pub(super) value: fn(&Comparison<'_>, &Record) -> Option<f64>,
-    pub(super) show: fn(f64) -> String,
-    /// Whether it is left out where no record has a value.
-    pub(super) is_optional: bool,
+/// A column of a comparison's table.
+pub(super) type Metric<'a> = Column<'a, Measured<'a>>;
+
+impl Measured<'_> {
+    /// Whether it shares the first rank, and some strategy is slower.
+    fn leads(&self) -> bool {
+        let ranks = self.comparison.ranks();
+        ranks.iter().any(|ranked| ranked.rank == 1 && std::ptr::eq(ranked.record, self.record))
+            && ranks.iter().any(|ranked| ranked.rank > 1)
+    }
+
+    fn competes(&self) -> bool {
+        competes(self.record)
+    }
 }
 
-/// All columns, in order.
-pub(super) static METRICS: &[Metric] = &[
-    Metric {
-        id: "rank",
-        head: "rank",
-        unit: "",
-        terminal: "rank",
-        about: "Place by assign + shade among those that cull without a loss. Two methods tie and \
-                share a place where the interval of the ratio of their times, round by round, \
-                holds 1, or its median is within 0.5 % of 1.",
-        better: Better::Neither,
-        value: |c, r| c.rank(r),
-        show: format::number,
-        is_optional: false,
-    },
-    Metric {
-        id: "both_ms",
-        head: "assign + shade",
-        unit: "ms",
-        terminal: "both",
-        about: "Assigning and shading together, median over frames, along a path the mean: compare strategies by it. The small figures \
-                below it are the interval in which the median lies, from order statistics of the \
-                rounds: with a probability of at least 95 % from six rounds on, with fewer as their \
-                tip says.",
-        better: Better::Less,
-        value: |_, r| finite(r.assign_and_shade_ms()),
-        show: format::significant,
-        is_optional: false,
-    },
-    Metric {
-        id: "span_ms",
-        head: "span",
-        unit: "ms",
-        terminal: "span",
-        about: "The second total: from the first pass that assigns lights to the end of the last that \
-                lights pixels, gaps between passes included, median. Assign + shade is the sum of the \
-                passes alone. Not known where each pass is submitted alone.",
-        better: Better::Less,
-        value: |_, r| r.times.span_ms.and_then(finite),
-        show: format::significant,
-        is_optional: true,
-    },
-    Metric {
-        id: "speedup",
-        head: "against None",
-        unit: "\u{d7}",
-        terminal: "faster",
-        about: "How many times as fast as no culling, which evaluates every light at every sample; \
-                the others leave out early what adds nothing.",
-        better: Better::More,
-        value: |c, r| c.speedup(r),
-        show: format::factor,
-        is_optional: false,
-    },
-    Metric {
-        id: "speedup_sphere",
-        head: "against Sphere",
-        unit: "\u{d7}",
-        terminal: "",
-        about: "How many times as fast as no culling with the same early exit: what lists alone give.",
-        better: Better::More,
-        value: |c, r| c.speedup_over_exit(r),
-        show: format::factor,
-        is_optional: false,
-    },
-    Metric {
-        id: "assign_ms",
-        head: "assign",
-        unit: "ms",
-        terminal: "assign",
-        about: "Every pass that makes the lists, summed: median over frames, along a path the mean.",
-        better: Better::Less,
-        value: |_, r| finite(r.times.assign_ms),
-        show: format::significant,
-        is_optional: false,
-    },
-    Metric {
-        id: "shade_ms",
-        head: "shade",
-        unit: "ms",
-        terminal: "shade",
-        about: "Lighting every sample with the lights of its list: median over frames, along a path the mean.",
-        better: Better::Less,
-        value: |_, r| finite(r.times.shade_ms),
-        show: format::significant,
-        is_optional: false,
-    },
-    Metric {
-        id: "frame_ms",
-        head: "frame",
-        unit: "ms",
-        terminal: "",
-        about: "All passes, those that draw the surfaces included, summed: median over frames, along a path the mean.",
-        better: Better::Less,
-        value: |_, r| finite(r.times.frame_ms),
-        show: format::significant,
-        is_optional: false,
-    },
-    Metric {
-        id: "frame_span_ms",
-        head: "frame span",
-        unit: "ms",
-        terminal: "",
-        about: "From the first pass of the frame to the end of its last, gaps between passes included, \
-                median.",
-        better: Better::Less,
-        value: |_, r| r.times.frame_span_ms.and_then(finite),
-        show: format::significant,
-        is_optional: true,
-    },
-    Metric {
-        id: "efficiency",
-        head: "efficiency",
-        unit: "%",
-        terminal: "",
-        about: "Efficiency = ideal time / measured time. The ideal time is what no culling would \
-                need, at its own rate, if it evaluated only the lights that reach each sample.",
-        better: Better::More,
-        value: |c, r| c.efficiency(r),
-        show: format::percent,
-        is_optional: false,
-    },
-    Metric {
-        id: "listed",
-        head: "listed",
-        unit: "/sample",
-        terminal: "listed",
-        about: "Lights in the list that a sample reads, mean.",
-        better: Better::Less,
-        value: |_, r| r.lists.listed_per_sample,
-        show: format::number,
-        is_optional: false,
-    },
-    Metric {
-        id: "contributing",
-        head: "contributing",
-        unit: "/sample",
-        terminal: "contrib.",
-        about: "Lights whose range reaches a sample, mean: what a perfect list would hold.",
-        better: Better::Neither,
-        value: |_, r| r.lists.contributing_per_sample,
-        show: format::number,
-        is_optional: false,
-    },
-    Metric {
-        id: "missed",
-        head: "missed",
-        unit: "pairs",
-        terminal: "missed",
-        about: "(light, sample) pairs that the lists lack: 0, or the image is wrong.",
-        better: Better::Zero,
-        value: |_, r| r.lists.missed_pairs.map(|pairs| pairs as f64),
-        show: format::number,
-        is_optional: false,
-    },
-    Metric {
-        id: "max_diff",
-        head: "largest difference",
-        unit: "linear",
-        terminal: "max diff",
-        about: "Largest difference of a channel to the image of no culling, linear HDR.",
-        better: Better::Zero,
-        value: |_, r| match (r.image.max_abs_diff, r.image.differing_channels) {
+/// A table of records of a comparison, under their names.
+pub(super) fn table<'a>(
+    head: &'static str,
+    comparison: &'a Comparison<'a>,
+    records: impl Iterator<Item = &'a Record>,
+    columns: Vec<Metric<'a>>,
+) -> Table<'a, Measured<'a>> {
+    let row = |record| Row::new(comparison.name(record), Measured { comparison, record });
+    Table::new(head, columns, records.map(row).collect()).competing(Measured::competes)
+}
+
+/// A column of figures; see [`Column::figure`].
+pub(super) fn figure<'a>(
+    id: &'static str,
+    head: &str,
+    unit: &str,
+    better: Better,
+    value: impl Fn(&Measured<'a>) -> Option<f64> + 'a,
+    show: fn(f64) -> String,
+) -> Metric<'a> {
+    Column::figure(head, unit, better, value, show).id(id)
+}
+
+/// All columns, in order: times, lists, losses, memory.
+pub(super) fn metrics<'a>() -> Vec<Metric<'a>> {
+    [times(), ratios_and_parts(), lists(), losses(), memory()].into_iter().flatten().collect()
+}
+
+fn times<'a>() -> Vec<Metric<'a>> {
+    vec![
+        figure("rank", "rank", "", Neither, |m| m.comparison.rank(m.record), number)
+            .terminal("rank")
+            .about(
+                "Place by assign + shade among the strategies that cull without a loss. Two strategies tie \
+                 and share a place if the interval of the ratio of their times, paired by round, contains \
+                 1, or if the median of that ratio is within 0.5 % of 1.",
+            ),
+        figure("both_ms", "assign + shade", "ms", Less, |m| finite(m.record.assign_and_shade_ms()), significant)
+            .terminal("both")
+            .best(Measured::leads)
+            .note(|m| interval(m.record))
+            .about(
+                "Assign and shade together: compare strategies by this time. It is the median over frames, \
+                 or the mean along a path. The small figures below it are the interval that contains the \
+                 median, from order statistics of the rounds. A tooltip shows its coverage, which is at \
+                 least 95 % from six rounds on.",
+            ),
+        figure("span_ms", "span", "ms", Less, |m| m.record.times.span_ms.and_then(finite), significant)
+            .terminal("span")
+            .optional()
+            .about(
+                "Time from the start of the first pass that assigns lights to the end of the last pass that \
+                 lights pixels, gaps between passes included; median. Assign + shade sums the passes \
+                 without the gaps. The span is unknown where each pass is submitted separately.",
+            ),
+    ]
+}
+
+fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
+    vec![
+        figure("speedup", "against None", "\u{d7}", More, |m| m.comparison.speedup(m.record), factor)
+            .terminal("faster")
+            .best(Measured::leads)
+            .about(
+                "How many times as fast as None. None evaluates every light at every sample; the other \
+                 strategies exit early where a light adds nothing.",
+            ),
+        figure(
+            "speedup_sphere",
+            "against Sphere",
+            "\u{d7}",
+            More,
+            |m| m.comparison.speedup_over_exit(m.record),
+            factor,
+        )
+        .best(Measured::leads)
+        .about(
+            "How many times as fast as Sphere, which is no culling with the same early exit. This is the gain \
+             from the lists only.",
+        ),
+        figure("assign_ms", "assign", "ms", Less, |m| finite(m.record.times.assign_ms), significant)
+            .terminal("assign")
+            .about(
+                "Sum of the passes that make the lists: median over frames, or the mean along a path.",
+            ),
+        figure("shade_ms", "shade", "ms", Less, |m| finite(m.record.times.shade_ms), significant)
+            .terminal("shade")
+            .about(
+                "Time to light every sample with the lights of its list: median over frames, or the mean \
+                 along a path.",
+            ),
+        figure("frame_ms", "frame", "ms", Less, |m| finite(m.record.times.frame_ms), significant).about(
+            "Sum of all passes, those that draw the surfaces included: median over frames, or the mean along \
+             a path.",
+        ),
+        figure(
+            "frame_span_ms",
+            "frame span",
+            "ms",
+            Less,
+            |m| m.record.times.frame_span_ms.and_then(finite),
+            significant,
+        )
+        .optional()
+        .about(
+            "Time from the start of the first pass of the frame to the end of its last pass, gaps between \
+             passes included; median.",
+        ),
+        figure("efficiency", "efficiency", "%", More, |m| m.comparison.efficiency(m.record), percent)
+            .best(Measured::leads)
+            .about(
+                "Efficiency = ideal time / measured time. The ideal time is what no culling would need, at \
+                 its own rate, if it evaluated only the lights that reach each sample.",
+            ),
+    ]
+}
+
+fn lists<'a>() -> Vec<Metric<'a>> {
+    vec![
+        figure("listed", "listed", "/sample", Less, |m| m.record.lists.listed_per_sample, number)
+            .terminal("listed")
+            .about("Mean number of lights in the list that a sample reads."),
+        figure(
+            "contributing",
+            "contributing",
+            "/sample",
+            Neither,
+            |m| m.record.lists.contributing_per_sample,
+            number,
+        )
+        .terminal("contrib.")
+        .about(
+            "Mean number of lights whose range reaches a sample. A perfect list holds these lights only.",
+        ),
+    ]
+}
+
+fn losses<'a>() -> Vec<Metric<'a>> {
+    let largest =
+        |m: &Measured<'_>| match (m.record.image.max_abs_diff, m.record.image.differing_channels) {
             (None, Some(1..)) => Some(f64::INFINITY),
             (difference, _) => difference,
-        },
-        show: format::difference,
-        is_optional: false,
-    },
-    Metric {
-        id: "differing",
-        head: "differing",
-        unit: "channels",
-        terminal: "",
-        about: "Channels, three a pixel, of which any bit differs from the image of no culling.",
-        better: Better::Zero,
-        value: |_, r| r.image.differing_channels.map(|channels| channels as f64),
-        show: format::number,
-        is_optional: false,
-    },
-    Metric {
-        id: "memory_bytes",
-        head: "memory",
-        unit: "MiB",
-        terminal: "memory",
-        about: "GPU memory of everything that assignment needs: lists, marks, bounds, pools, the \
-                hierarchy over the lights, and images that the renderer draws only for this method.",
-        better: Better::Less,
-        value: |_, r| r.lists.memory_bytes.map(|bytes| bytes as f64),
-        show: format::mebibytes,
-        is_optional: true,
-    },
-    Metric {
-        id: "lists_bytes",
-        head: "lists",
-        unit: "MiB",
-        terminal: "lists",
-        about: "GPU memory of groups and lists only: these results were stored before all memory was \
-                counted, and a method\u{2019}s marks, bounds and second pools are missing.",
-        better: Better::Less,
-        value: |_, r| {
-            (r.lists.memory_bytes.is_none() && r.lists.bytes > 0).then_some(r.lists.bytes as f64)
-        },
-        show: format::mebibytes,
-        is_optional: true,
-    },
-    Metric {
-        id: "overflow",
-        head: "overflow",
-        unit: "groups",
-        terminal: "overflow",
-        about: "Groups whose list did not fit and that fell back to all lights: slow, still correct.",
-        better: Better::Neither,
-        value: |_, r| Some(r.lists.overflowed_groups as f64),
-        show: format::number,
-        is_optional: false,
-    },
-];
+        };
+    vec![
+        figure("missed", "missed", "pairs", Zero, |m| m.record.lists.missed_pairs.map(count), number)
+            .terminal("missed")
+            .about(
+                "(light, sample) pairs that are missing from the lists. If this is not 0, the image is wrong.",
+            ),
+        figure("max_diff", "largest difference", "linear", Zero, largest, difference)
+            .terminal("max diff")
+            .about("Largest difference of a channel from the image of no culling, in linear HDR."),
+        figure(
+            "differing",
+            "differing",
+            "channels",
+            Zero,
+            |m| m.record.image.differing_channels.map(count),
+            number,
+        )
+        .about(
+            "Channels, three per pixel, in which at least one bit differs from the image of no culling.",
+        ),
+    ]
+}
 
-impl Metric {
-    /// Whether a comparison has the column.
-    pub(super) fn is_shown(&self, comparison: &Comparison<'_>) -> bool {
-        let has_value = |(_, record): &(usize, &Record)| (self.value)(comparison, record).is_some();
-        !self.is_optional || comparison.records.iter().any(has_value)
-    }
+fn memory<'a>() -> Vec<Metric<'a>> {
+    let lists_only = |m: &Measured<'_>| {
+        let is_stored = m.record.lists.memory_bytes.is_none() && m.record.lists.bytes > 0;
+        is_stored.then(|| count(m.record.lists.bytes))
+    };
+    vec![
+        figure("memory_bytes", "memory", "MiB", Less, |m| m.record.lists.memory_bytes.map(count), mebibytes)
+            .terminal("memory")
+            .optional()
+            .about(
+                "GPU memory of everything that assignment needs: lists, marks, bounds, pools, the hierarchy \
+                 over the lights, and images that the renderer draws for this strategy only.",
+            ),
+        figure("lists_bytes", "lists", "MiB", Less, lists_only, mebibytes)
+            .terminal("lists")
+            .optional()
+            .about(
+                "GPU memory of groups and lists only. These results are older than the count of all memory: \
+                 a strategy\u{2019}s marks, bounds and second pools are missing.",
+            ),
+        figure(
+            "overflow",
+            "overflow",
+            "groups",
+            Neither,
+            |m| Some(count(m.record.lists.overflowed_groups)),
+            number,
+        )
+        .terminal("overflow")
+        .about(
+            "Groups whose list did not fit, so that they use the list of all lights: slow but correct.",
+        ),
+    ]
+}
 
-    /// The value as text; a dash where there is none.
-    pub(super) fn text(&self, comparison: &Comparison<'_>, record: &Record) -> String {
-        (self.value)(comparison, record).map_or_else(|| format::ABSENT.to_owned(), self.show)
-    }
+/// Where the median of assign + shade lies, in small; its tooltip says how surely.
+pub(super) fn interval(record: &Record) -> Html {
+    record.interval_ms().map_or_else(Html::default, |interval| {
+        html!(
+            "<small class=\"interval\" title=\"{} % of such intervals contain the median\">\
+             {}\u{2013}{}</small>",
+            significant(interval.coverage * 100.0),
+            significant(interval.low),
+            significant(interval.high)
+        )
+    })
+}
+
+fn count(count: u64) -> f64 {
+    count as f64
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -1,58 +1,10 @@
 //! The parts of the page that are text: tables, notices, provenance.
 
-use std::collections::BTreeMap;
-
-use super::comparison::{Comparison, comparisons};
-use super::format::{number, significant};
-use super::loss::{ERROR_COLUMNS, columns as columns_of};
-use super::markup::{Html, html};
-use super::metrics::{Better, METRICS, Metric};
-use super::rank::{ALIKE, Ranked, competes};
-use crate::results::{Clock, DeviceType, PassKind, Record, Results, TruthLevel};
-
-/// Colours that the style sheet has for the passes of one kind.
-const PASS_COLOURS: usize = 4;
-
-/// The style class of each strategy, by id: its family's, as in every table and chart.
-pub(super) fn strategy_classes(results: &Results) -> BTreeMap<&str, String> {
-    let ids = results.records.iter().map(|record| &record.strategy);
-    ids.map(|id| (id.as_str(), id.class())).collect()
-}
-
-/// The style class of each pass, by name: a hue per kind, a shade per pass.
-pub(super) fn pass_classes(results: &Results) -> BTreeMap<&str, String> {
-    let mut classes = BTreeMap::new();
-    let mut next: [usize; 4] = [0; 4];
-    for (name, times) in results.records.iter().flat_map(|record| record.times.passes.iter()) {
-        let (kind, label) = match times.kind {
-            PassKind::Scene => (0, "scene"),
-            PassKind::Assign => (1, "assign"),
-            PassKind::Shade => (2, "shade"),
-            PassKind::Other => (3, "other"),
-        };
-        classes.entry(name).or_insert_with(|| {
-            next[kind] += 1;
-            format!("pass-{label}-{}", (next[kind] - 1) % PASS_COLOURS)
-        });
-    }
-    classes
-}
-
-/// Names up to this long, in characters, are not broken over lines.
-const UNBROKEN: usize = 24;
-
-/// Text as HTML in which no name such as `DC-I/64x64x24` is broken at its hyphen.
-pub(super) fn with_names_whole(text: &str) -> Html {
-    let word = |(ix, word): (usize, &str)| {
-        let space = if ix == 0 { "" } else { " " };
-        let is_name = word.contains('-') && word.chars().count() <= UNBROKEN;
-        match is_name {
-            true => html!("{}<span class=\"whole\">{}</span>", space, word),
-            false => html!("{}{}", space, word),
-        }
-    };
-    text.split(' ').enumerate().map(word).collect()
-}
+use super::format::number;
+use super::loss::error_columns;
+use super::markup::{Html, html, with_names_whole};
+use super::metrics::{Metric, metrics};
+use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
 pub(super) fn paragraphs(class: &str, texts: &[String]) -> Html {
     let paragraph =
@@ -66,26 +18,6 @@ pub(super) fn notices(texts: &[String]) -> Html {
     }
     let items: Html = texts.iter().map(|text| html!("<li>{}</li>", text)).collect();
     html!("<ul class=\"notices\" aria-label=\"Before you trust a figure\">{}</ul>", items)
-}
-
-/// One section per comparison: the table, and places for the charts.
-pub(super) fn comparisons_html(results: &Results) -> Html {
-    let classes = strategy_classes(results);
-    let section = |(ix, comparison): (usize, &Comparison<'_>)| {
-        let first = comparison.first();
-        let heading = format!("{}, {}", first.setting.scene, first.setting.mode.name());
-        html!(
-            "<section class=\"comparison\" data-comparison=\"{0}\" aria-labelledby=\"c{0}\">\n\
-             <h2 id=\"c{0}\">{1}</h2>\n<p class=\"meta\">{2}</p>\n{3}\
-             <figure class=\"bars\"></figure>\n<div class=\"pictures\"></div>\n\
-             <figure class=\"samples\"></figure>\n</section>\n",
-            ix,
-            heading,
-            setting(first),
-            table(&heading, comparison, &classes),
-        )
-    };
-    comparisons(results).iter().enumerate().map(section).collect()
 }
 
 /// The kind of light that stands in no list.
@@ -124,106 +56,17 @@ pub(super) fn setting(record: &Record) -> String {
     parts.join(" \u{b7} ")
 }
 
-pub(super) fn table(
-    caption: &str,
-    comparison: &Comparison<'_>,
-    classes: &BTreeMap<&str, String>,
-) -> Html {
-    let head = |metric: &Metric| {
-        html!(
-            "<th scope=\"col\" title=\"{}\"><button type=\"button\">{} <span class=\"unit\">{}</span></button></th>",
-            metric.about,
-            metric.head,
-            metric.unit,
-        )
-    };
-    let heads: Html = columns_of(comparison).map(head).collect();
-    let mut rows = Html::default();
-    for (_, record) in &comparison.records {
-        let cells: Html =
-            columns_of(comparison).map(|metric| cell(metric, comparison, record)).collect();
-        rows += html!(
-            "<tr><th scope=\"row\"><i class=\"dot {}\"></i>{}</th>{}</tr>\n",
-            classes.get(record.strategy.as_str()).map_or("", String::as_str),
-            with_names_whole(&comparison.name(record)),
-            cells
-        );
-    }
-    html!(
-        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Results: {0}\">\n\
-         <table class=\"results\"><caption>Results: {0}. A heading sorts by its column.</caption>\n\
-         <thead><tr><th scope=\"col\"><button type=\"button\">strategy</button></th>{1}</tr></thead>\n\
-         <tbody>\n{2}</tbody></table></div>\n",
-        caption,
-        heads,
-        rows
-    )
-}
-
-fn cell(metric: &Metric, comparison: &Comparison<'_>, record: &Record) -> Html {
-    let value = (metric.value)(comparison, record);
-    let class = match (metric.better, value) {
-        (Better::Zero, Some(value)) if value != 0.0 => html!(" class=\"fault\""),
-        (Better::Zero, Some(_)) if record.lists.untested.is_none() => html!(" class=\"good\""),
-        (Better::Less | Better::More, Some(value))
-            if competes(record) && is_best(metric, comparison, record, value) =>
-        {
-            html!(" class=\"best\"")
-        }
-        _ => Html::default(),
-    };
-    let sort = value.map_or_else(String::new, |value| value.to_string());
-    let mut text = Html::from(metric.text(comparison, record));
-    if metric.id == "both_ms" {
-        text += interval(record);
-    }
-    html!("<td data-metric=\"{}\" data-value=\"{}\"{}>{}</td>", metric.id, sort, class, text)
-}
-
-/// Where the median of assigning and shading lies, in small; its tip says how surely.
-pub(super) fn interval(record: &Record) -> Html {
-    record.interval_ms().map_or_else(Html::default, |interval| {
-        html!(
-            "<small class=\"interval\" title=\"{} % of such intervals hold the median\">\
-             {}\u{2013}{}</small>",
-            significant(interval.coverage * 100.0),
-            significant(interval.low),
-            significant(interval.high)
-        )
-    })
-}
-
-/// Columns that follow from the time by which methods are ranked.
-const RANKED: [&str; 4] = ["both_ms", "speedup", "speedup_sphere", "efficiency"];
-
-/// Whether no competitor is better and at least one is worse. By what methods are ranked by, all
-/// that share the first rank are best; by other figures all that are as good as alike.
-fn is_best(metric: &Metric, comparison: &Comparison<'_>, record: &Record, value: f64) -> bool {
-    if RANKED.contains(&metric.id) {
-        let ranked = comparison.ranks();
-        let is_first = |r: &Ranked<'_>| r.rank == 1 && std::ptr::eq(r.record, record);
-        return ranked.iter().any(is_first) && ranked.iter().any(|ranked| ranked.rank > 1);
-    }
-    let better = |a: f64, b: f64| match metric.better {
-        Better::More => a > b * (1.0 + ALIKE),
-        _ => a < b / (1.0 + ALIKE),
-    };
-    let competitors = || comparison.records.iter().filter(|(_, record)| competes(record));
-    let others = || competitors().filter_map(|(_, record)| (metric.value)(comparison, record));
-    others().all(|other| !better(other, value)) && others().any(|other| better(value, other))
-}
-
 /// What each column means.
 pub(super) fn columns() -> Html {
-    let column = |metric: &Metric| {
+    let about = |column: &Metric<'_>| {
         html!(
             "<dt>{} <span class=\"unit\">{}</span></dt><dd>{}</dd>\n",
-            metric.head,
-            metric.unit,
-            metric.about
+            column.head,
+            column.unit,
+            column.about
         )
     };
-    METRICS.iter().chain(&ERROR_COLUMNS).map(column).collect()
+    metrics().iter().chain(&error_columns()).map(about).collect()
 }
 
 /// Where, when and from what the figures came.

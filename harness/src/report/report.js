@@ -1,89 +1,22 @@
-const results = JSON.parse(document.getElementById("data").textContent);
 const view = JSON.parse(document.getElementById("view").textContent);
 
-/** An element with properties (class, data-*, aria-*, on*) and children (nodes or text). */
-function h(tag, properties = {}, ...children) {
-  const element = document.createElement(tag);
-  setProperties(element, properties);
-  element.append(...children.filter((child) => child !== null && child !== undefined));
-  return element;
-}
-
-/** As `h`, for SVG. */
-function s(tag, properties = {}, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  setProperties(element, properties);
-  element.append(...children);
-  return element;
-}
-
-function setProperties(element, properties) {
-  for (const [name, value] of Object.entries(properties)) {
-    if (value === null || value === undefined) continue;
-    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else element.setAttribute(name, value);
+/** Gives pictures their sources: each is stored once, however often it is shown. */
+function showPictures(root) {
+  for (const image of root.querySelectorAll("img[data-picture]")) {
+    image.src = view.uris[view.pictures[image.dataset.picture]] || "";
   }
 }
 
-const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
-
-/** Three significant digits, thousands separated, as in the tables. */
-function significant(value) {
-  if (!isNumber(value)) return "\u2013";
-  if (value === 0) return "0";
-  const size = Math.abs(value);
-  if (size < 1e-5) return value.toExponential(1);
-  const rounded = Number(value.toPrecision(3));
-  const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(rounded))));
-  const options = { minimumFractionDigits: decimals, maximumFractionDigits: decimals };
-  return rounded.toLocaleString("en-US", options);
-}
-
-const count = (value) => (isNumber(value) ? value.toLocaleString("en-US") : "\u2013");
-const ms = (value) => (isNumber(value) ? `${significant(value)} ms` : "not measured");
-const percent = (share, digits = 0) => `${(share * 100).toFixed(digits)} %`;
-
-const strategyClass = (record) => view.strategies[record.strategy] || "strategy-none";
-const passClass = (name) => view.passes[name] || "pass-other-0";
-const dot = (className) => h("i", { class: `dot ${className}`, "aria-hidden": "true" });
-const uri = (name) => (name && name in view.pictures ? view.uris[view.pictures[name]] : null);
-
-/** A group of buttons of which one is pressed; `choose` hears its value. */
-function choice(label, options, chosen, choose) {
-  const buttons = options.map(({ value, text, mark }) =>
-    h("button", {
-      type: "button",
-      "aria-pressed": String(value === chosen),
-      onclick: (event) => {
-        for (const button of buttons) button.setAttribute("aria-pressed", String(button === event.currentTarget));
-        choose(value);
-      },
-    }, mark ? dot(mark) : null, text));
-  return h("div", { class: "choice", role: "group", "aria-label": label }, ...buttons);
-}
-
-const tip = document.getElementById("tip");
-
-/** Shows what `content` returns beside the pointer, or below the element that has the focus. */
-function explain(element, content) {
-  const show = (x, y) => {
-    tip.replaceChildren(...content());
-    tip.hidden = false;
-    const box = tip.getBoundingClientRect();
-    const left = Math.max(8, Math.min(x + 14, innerWidth - box.width - 8));
-    const top = y + 18 + box.height > innerHeight ? y - box.height - 12 : y + 18;
-    tip.style.transform = `translate(${left}px, ${Math.max(8, top)}px)`;
-  };
-  const hide = () => { tip.hidden = true; };
-  element.addEventListener("pointermove", (event) => show(event.clientX, event.clientY));
-  element.addEventListener("pointerleave", hide);
-  element.addEventListener("focus", () => {
-    if (!element.matches(":focus-visible")) return;
-    const box = element.getBoundingClientRect();
-    show(box.left, box.bottom - 12);
-  });
-  element.addEventListener("blur", hide);
-  element.addEventListener("keydown", (event) => { if (event.key === "Escape") hide(); });
+/** Buttons that choose between the panels around them. */
+function makeChoosable(panels) {
+  const buttons = [...panels.querySelectorAll("[data-choose]")].filter((button) => button.closest(".panels") === panels);
+  const bodies = panels.querySelectorAll(":scope > [data-panel]");
+  for (const button of buttons) {
+    button.addEventListener("click", () => {
+      for (const other of buttons) other.setAttribute("aria-pressed", String(other === button));
+      for (const body of bodies) body.hidden = body.dataset.panel !== button.dataset.choose;
+    });
+  }
 }
 
 function makeSortable(table) {
@@ -92,7 +25,7 @@ function makeSortable(table) {
   const heads = [...table.tHead.rows[0].cells];
   const key = (row, column) => {
     const cell = row.cells[column];
-    if (column === 0) return cell.textContent;
+    if (cell.dataset.value === undefined) return cell.textContent;
     return cell.dataset.value === "" ? null : Number(cell.dataset.value);
   };
   const compare = (a, b) => {
@@ -110,13 +43,40 @@ function makeSortable(table) {
         const sign = order === "ascending" ? 1 : -1;
         rows = [...original].sort((a, b) => {
           const [x, y] = [key(a, column), key(b, column)];
-          // What was not measured stays last, whichever the order.
+          // What was not measured stays last in both orders.
           return compare(x, y) * (x === null || y === null ? 1 : sign);
         });
       }
       body.append(...rows);
     });
   });
+}
+
+/** Opens the viewer of a chart's point: a shot beside what it should look like. */
+function makeOpenable(plot) {
+  const viewer = plot.querySelector(".viewer");
+  if (!viewer) return;
+  const open = (mark) => {
+    const shot = document.querySelector(`template[data-shot="${CSS.escape(mark.dataset.key)}"]`);
+    if (!shot) return;
+    viewer.replaceChildren(shot.content.cloneNode(true));
+    showPictures(viewer);
+    viewer.querySelector("button").addEventListener("click", () => { viewer.hidden = true; });
+    viewer.dataset.key = mark.dataset.key;
+    viewer.hidden = false;
+    for (const other of plot.querySelectorAll(".chart [data-key]")) {
+      other.classList.toggle("current", other.dataset.key === mark.dataset.key);
+    }
+    viewer.scrollIntoView({ block: "nearest" });
+  };
+  for (const mark of plot.querySelectorAll(".chart [data-key]")) {
+    mark.addEventListener("click", () => open(mark));
+    mark.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      open(mark);
+    });
+  }
 }
 
 function themeSwitch() {
@@ -141,9 +101,10 @@ function themeSwitch() {
 }
 
 function actions() {
-  // Data too large for the page lies beside it, where the link leads already.
-  if (results) {
-    const file = new Blob([JSON.stringify(results, null, 2), "\n"], { type: "application/json" });
+  const data = document.getElementById("data").textContent;
+  // Data too large for the page lie beside it, where the link leads already.
+  if (data !== "null") {
+    const file = new Blob([data, "\n"], { type: "application/json" });
     document.getElementById("download").href = URL.createObjectURL(file);
   }
   const copy = document.getElementById("copy");
@@ -161,4 +122,7 @@ function actions() {
 
 themeSwitch();
 actions();
+showPictures(document);
 document.querySelectorAll("table.results").forEach(makeSortable);
+document.querySelectorAll(".panels").forEach(makeChoosable);
+document.querySelectorAll(".plot-of-errors").forEach(makeOpenable);

@@ -1,99 +1,258 @@
-//! The result table for the terminal.
+//! A table, drawn from its columns and rows for a page, for the terminal or for Markdown.
 
 use std::fmt::Write;
 
-use super::comparison::{Comparison, comparisons};
-use super::finding::notices;
-use super::format::{number, short_adapter};
-use super::loss::push_losses;
-use super::metrics::{METRICS, Metric};
-use crate::results::Results;
+use super::column::Column;
+use super::markup::{Html, html, with_names_whole};
 
-/// No line of a table is wider, in characters; only a name that is wider by itself.
+use super::rank::ALIKE;
+
+/// No line of a table for the terminal is wider, in characters, but for a name that is wider by itself.
 pub const TABLE_WIDTH: usize = 100;
 
-/// The result tables of all comparisons as plain text, with what a reader has to know below.
-pub fn render_table(results: &Results) -> String {
-    let mut text = String::new();
-    for comparison in comparisons(results) {
-        let first = comparison.first();
-        let _ = writeln!(
-            text,
-            "{}, {}, {} lights, {}x{}, on {} ({})",
-            first.setting.scene,
-            first.setting.mode.name(),
-            number(first.setting.lights as f64),
-            first.setting.width,
-            first.setting.height,
-            short_adapter(&results.machine.adapter),
-            first.times.clock.name(),
-        );
-        push_table(&mut text, &comparison);
-        push_losses(&mut text, &comparison);
-        text.push('\n');
-    }
-    for notice in notices(results) {
-        push_wrapped(&mut text, &notice);
-    }
-    text
+/// A row: its name, and what its cells are computed from.
+pub(super) struct Row<T> {
+    name: String,
+    /// The class that gives `--colour` to the dot before the name; empty draws no dot.
+    class: String,
+    data: T,
 }
 
-/// One column: its two lines of heading, then a cell per record.
-fn column(metric: &Metric, comparison: &Comparison<'_>) -> Vec<String> {
-    let cells = comparison.records.iter().map(|(_, record)| metric.text(comparison, record));
-    [metric.terminal.to_owned(), metric.unit.to_owned()].into_iter().chain(cells).collect()
+impl<T> Row<T> {
+    pub(super) fn new(name: impl Into<String>, data: T) -> Self {
+        Self { name: name.into(), class: String::new(), data }
+    }
 }
 
-fn push_table(text: &mut String, comparison: &Comparison<'_>) {
-    let columns: Vec<Vec<String>> = METRICS
-        .iter()
-        .filter(|metric| !metric.terminal.is_empty() && metric.is_shown(comparison))
-        .map(|metric| column(metric, comparison))
-        .collect();
-    let widths: Vec<usize> = columns.iter().map(|cells| widest(cells)).collect();
-    let names = comparison.records.iter().map(|(_, record)| comparison.name(record));
-    let names: Vec<String> =
-        ["strategy".to_owned(), String::new()].into_iter().chain(names).collect();
+/// How a page shows a table.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    /// Over the whole width; a heading sorts by its column.
+    Sortable,
+    /// As wide as its figures.
+    Plain,
+}
 
-    let numbers: usize = widths.iter().sum();
-    let gap = if widest(&names) + numbers + 2 * widths.len() <= TABLE_WIDTH { 2 } else { 1 };
-    let room = TABLE_WIDTH.saturating_sub(numbers + gap * widths.len());
-    let name_width = widest(&names).min(room);
-    for (row, name) in names.iter().enumerate() {
-        let mut line = format!("{name:name_width$}");
-        // A name that is too long stands on a line of its own.
-        if chars(name) > name_width {
-            let _ = writeln!(text, "{name}");
-            line = " ".repeat(name_width);
+/// A table of rows under columns.
+pub(super) struct Table<'a, T> {
+    /// What the rows are: `strategy`.
+    head: &'static str,
+    columns: Vec<Column<'a, T>>,
+    rows: Vec<Row<T>>,
+    /// Whether a row's figures may be marked as the best.
+    competes: fn(&T) -> bool,
+}
+
+impl<'a, T> Table<'a, T> {
+    /// A table without the optional columns in which no row has a figure. All rows compete.
+    pub(super) fn new(
+        head: &'static str,
+        columns: impl IntoIterator<Item = Column<'a, T>>,
+        rows: Vec<Row<T>>,
+    ) -> Self {
+        let has_figure =
+            |column: &Column<'a, T>| rows.iter().any(|row| column.value(&row.data).is_some());
+        let columns = columns
+            .into_iter()
+            .filter(|column| !column.is_optional || has_figure(column))
+            .collect();
+        Self { head, columns, rows, competes: |_| true }
+    }
+
+    /// Marks the best figures among these rows only.
+    pub(super) fn competing(self, competes: fn(&T) -> bool) -> Self {
+        Self { competes, ..self }
+    }
+
+    /// Draws a dot before each name, in the colour that the class of its row gives.
+    pub(super) fn dotted(mut self, class: impl Fn(&T) -> String) -> Self {
+        for row in &mut self.rows {
+            row.class = class(&row.data);
         }
-        for (cells, width) in columns.iter().zip(&widths) {
-            let _ = write!(line, "{:gap$}{:>width$}", "", cells[row]);
+        self
+    }
+
+    /// The table for a page.
+    pub(super) fn html(&self, label: &str, look: Look) -> Html {
+        let is_sortable = look == Look::Sortable;
+        let head = |text: Html| match is_sortable {
+            true => html!("<button type=\"button\">{}</button>", text),
+            false => text,
+        };
+        let heads: Html = self.columns.iter().map(|column| self.head_html(column, head)).collect();
+        let competitors: Vec<&T> =
+            self.rows.iter().map(|row| &row.data).filter(|data| (self.competes)(data)).collect();
+        let row = |row: &Row<T>| {
+            let cell = |column: &Column<'a, T>| cell_html(column, &row.data, &competitors);
+            let cells: Html = self.columns.iter().map(cell).collect();
+            let dot = match row.class.is_empty() {
+                true => Html::default(),
+                false => html!("<i class=\"dot {}\"></i>", row.class),
+            };
+            let name = with_names_whole(&row.name);
+            html!("<tr><th scope=\"row\">{}{}</th>{}</tr>\n", dot, name, cells)
+        };
+        let rows: Html = self.rows.iter().map(row).collect();
+        let (class, caption) = match look {
+            Look::Sortable => {
+                ("results", html!("<caption>{}. A heading sorts by its column.</caption>", label))
+            }
+            Look::Plain => ("figures", Html::default()),
+        };
+        html!(
+            "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\">\n\
+             <table class=\"{1}\">{2}\n<thead><tr><th scope=\"col\">{3}</th>{4}</tr></thead>\n\
+             <tbody>\n{5}</tbody></table></div>\n",
+            label,
+            class,
+            caption,
+            head(self.head.into()),
+            heads,
+            rows
+        )
+    }
+
+    fn head_html(&self, column: &Column<'a, T>, head: impl Fn(Html) -> Html) -> Html {
+        let unit = match column.unit.is_empty() {
+            true => Html::default(),
+            false => html!(" <span class=\"unit\">{}</span>", column.unit),
+        };
+        let title = match column.about.is_empty() {
+            true => Html::default(),
+            false => html!(" title=\"{}\"", column.about),
+        };
+        let text = head(Html::from(&column.head) + unit);
+        html!("<th scope=\"col\"{}>{}</th>", title, text)
+    }
+
+    /// The table for the terminal: the columns with a heading there, two lines of headings.
+    pub(super) fn text(&self) -> String {
+        let columns: Vec<Vec<String>> =
+            self.columns.iter().filter_map(|column| self.cells_for_terminal(column)).collect();
+        let widths: Vec<usize> = columns.iter().map(|cells| widest(cells)).collect();
+        let names: Vec<&str> = [self.head, ""]
+            .into_iter()
+            .chain(self.rows.iter().map(|row| row.name.as_str()))
+            .collect();
+        let figures: usize = widths.iter().sum();
+        let gap = if widest(&names) + figures + 2 * widths.len() <= TABLE_WIDTH { 2 } else { 1 };
+        let room = TABLE_WIDTH.saturating_sub(figures + gap * widths.len());
+        let name_width = widest(&names).min(room);
+        let mut text = String::new();
+        for (ix, name) in names.iter().enumerate() {
+            let mut line = format!("{name:name_width$}");
+            // A name that is too long stands on a line of its own.
+            if name.chars().count() > name_width {
+                let _ = writeln!(text, "{name}");
+                line = " ".repeat(name_width);
+            }
+            for (cells, width) in columns.iter().zip(&widths) {
+                let _ = write!(line, "{:gap$}{:>width$}", "", cells[ix]);
+            }
+            let _ = writeln!(text, "{}", line.trim_end());
         }
-        let _ = writeln!(text, "{}", line.trim_end());
+        text
+    }
+
+    /// A column's two lines of heading and its cells; `None` where the terminal leaves it out.
+    fn cells_for_terminal(&self, column: &Column<'a, T>) -> Option<Vec<String>> {
+        let heads = [column.terminal?.to_owned(), column.unit.clone()];
+        Some(heads.into_iter().chain(self.rows.iter().map(|row| column.text(&row.data))).collect())
+    }
+
+    /// The table as GitHub-flavoured Markdown.
+    pub(super) fn markdown(&self) -> String {
+        let head = |column: &Column<'a, T>| format!(" {} {} |", column.head, column.unit);
+        let heads: String = self.columns.iter().map(head).collect();
+        let mut text =
+            format!("| {} |{heads}\n|---|{}\n", self.head, "---|".repeat(self.columns.len()));
+        for row in &self.rows {
+            let cell = |column: &Column<'a, T>| format!(" {} |", column.text(&row.data));
+            let cells: String = self.columns.iter().map(cell).collect();
+            let _ = writeln!(text, "| {} |{cells}", row.name);
+        }
+        text
     }
 }
 
-pub(super) fn push_wrapped(text: &mut String, paragraph: &str) {
-    let mut width = 0;
-    for word in paragraph.split_whitespace() {
-        let space = if width == 0 { 0 } else { 1 };
-        if width > 0 && width + space + chars(word) > TABLE_WIDTH {
-            text.push('\n');
-            width = 0;
-        } else if space == 1 {
-            text.push(' ');
-            width += 1;
+fn cell_html<T>(column: &Column<'_, T>, data: &T, competitors: &[&T]) -> Html {
+    let class = match () {
+        () if column.is_fault(data) => html!(" class=\"fault\""),
+        () if column.is_best(data, competitors, ALIKE) => html!(" class=\"best\""),
+        () => Html::default(),
+    };
+    let figure = match column.id {
+        "" => Html::default(),
+        id => {
+            let value = column.value(data).map_or_else(String::new, |value| value.to_string());
+            html!(" data-metric=\"{}\" data-value=\"{}\"", id, value)
         }
-        text.push_str(word);
-        width += chars(word);
+    };
+    html!("<td{}{}>{}</td>", figure, class, column.html(data))
+}
+
+fn widest<S: AsRef<str>>(cells: &[S]) -> usize {
+    cells.iter().map(|cell| cell.as_ref().chars().count()).max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::column::Better;
+    use super::super::format::number;
+    use super::*;
+
+    /// A family with its time and its missed pairs.
+    type Family = (&'static str, Option<f64>, f64);
+
+    fn table(rows: &[Family]) -> Table<'static, Family> {
+        let columns = [
+            Column::figure("time", "ms", Better::Less, |row: &Family| row.1, number)
+                .id("time")
+                .terminal("time")
+                .note(|row| html!("<small>{}</small>", row.0)),
+            Column::figure("missed", "pairs", Better::Zero, |row: &Family| Some(row.2), number)
+                .terminal("missed"),
+            Column::figure("memory", "MiB", Better::Less, |_: &Family| None, number).optional(),
+            Column::words("first letter", "", |row: &Family| row.0[..1].to_owned()),
+        ];
+        Table::new("family", columns, rows.iter().map(|row| Row::new(row.0, *row)).collect())
     }
-    text.push('\n');
-}
 
-fn widest(cells: &[String]) -> usize {
-    cells.iter().map(|cell| chars(cell)).max().unwrap_or(0)
-}
+    const ROWS: [Family; 3] =
+        [("<tiled>", Some(3.0), 0.0), ("grid", Some(2.0), 7.0), ("none", None, 0.0)];
 
-fn chars(text: &str) -> usize {
-    text.chars().count()
+    #[test]
+    fn one_list_of_columns_makes_all_three_tables() {
+        let table = table(&ROWS);
+        let markdown = "| family | time ms | missed pairs | first letter  |\n|---|---|---|---|\n\
+                        | <tiled> | 3 | 0 | < |\n| grid | 2 | 7 | g |\n| none | \u{2013} | 0 | n |\n";
+        assert_eq!(table.markdown(), markdown);
+        let text = "family   time  missed\n           ms   pairs\n<tiled>     3       0\n\
+                    grid        2       7\nnone        \u{2013}       0\n";
+        assert_eq!(table.text(), text);
+        let html = table.html("Families", Look::Sortable);
+        for part in [
+            "&lt;tiled&gt;</th><td data-metric=\"time\" data-value=\"3\">3<small>&lt;tiled&gt;</small></td>",
+            "<td data-metric=\"time\" data-value=\"2\" class=\"best\">2<",
+            "<td data-metric=\"time\" data-value=\"\">\u{2013}<",
+            "<td class=\"fault\">7</td><td>g</td>",
+        ] {
+            assert!(html.as_str().contains(part), "{part} is missing from {}", html.as_str());
+        }
+        assert!(!html.as_str().contains("memory"), "a column without a figure is left out");
+    }
+
+    #[test]
+    fn only_competitors_are_best_and_only_where_one_is_worse() {
+        let best = |rows: &[Family], competes| {
+            let html = table(rows).competing(competes).html("", Look::Plain);
+            html.as_str().matches("class=\"best\"").count()
+        };
+        let lossless = |row: &Family| row.2 == 0.0;
+        assert_eq!(best(&ROWS, |_| true), 1);
+        assert_eq!(best(&ROWS, lossless), 0, "one competitor alone is not the best");
+        let alike = [("a", Some(1.0), 0.0), ("b", Some(1.001), 0.0), ("c", Some(2.0), 0.0)];
+        assert_eq!(best(&alike, lossless), 2, "times within half a per cent are alike");
+        assert_eq!(best(&alike[..2], lossless), 0);
+    }
 }

@@ -21,7 +21,7 @@ pub enum ResultsError {
     Write {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A file cannot be read.
@@ -29,7 +29,7 @@ pub enum ResultsError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A file is not `results.json` as documented here.
@@ -37,7 +37,7 @@ pub enum ResultsError {
     Parse {
         /// The file.
         path: PathBuf,
-        /// What is wrong and where.
+        /// The fault and its place in the file.
         reason: String,
     },
     /// A `study.json` cannot be used.
@@ -45,7 +45,7 @@ pub enum ResultsError {
     Study {
         /// The file.
         path: PathBuf,
-        /// What is wrong and where.
+        /// The fault and its place in the file.
         reason: String,
     },
     /// A file of a version that this program does not know.

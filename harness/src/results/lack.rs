@@ -16,7 +16,7 @@ pub(super) fn lack(results: &Results) -> Option<String> {
             known.strategy == record.strategy && known.setting.mode == record.setting.mode
         };
         if results.records.iter().take(ix).any(|known| same(&known)) {
-            return Some(format!("{} is there twice", name(record)));
+            return Some(format!("it holds {} twice", name(record)));
         }
     }
     // Commands of earlier versions may have options that are refused today.
@@ -61,7 +61,7 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
         }
     }
     let extra = is_asked.iter().position(|is_asked| !is_asked)?;
-    Some(format!("{} is not what its command asks for", name(&records[extra])))
+    Some(format!("it holds {}, which its command does not ask for", name(&records[extra])))
 }
 
 fn name(record: &Record) -> String {
@@ -90,11 +90,11 @@ mod tests {
         assert!(said(&[]).contains("no records"));
         assert!(said(&whole[..4]).contains("M in deferred is missing"));
         assert!(said(&whole[1..]).contains("None in deferred is missing"));
-        assert!(said(&[whole[0]; 5]).contains("None in deferred is there twice"));
+        assert!(said(&[whole[0]; 5]).contains("holds None in deferred twice"));
         let other = ["None", "SC-E/48x48x40", "T-E/28x28/hs", "T-E/28x28", "M"];
         assert!(said(&other).contains("SC-E/48x48x40/bvh in deferred is missing"));
         let more = [&whole[..], &["G/20x20x20"]].concat();
-        assert!(said(&more).contains("G/20x20x20 in deferred is not what"));
+        assert!(said(&more).contains("G/20x20x20 in deferred, which its command"));
         // Each mode has its records.
         let both = line.replace("deferred", "both");
         assert!(lack(&results(&both, &whole)).is_some());

@@ -40,7 +40,7 @@ pub(crate) fn unsealed(bytes: &[u8]) -> Result<(Value, String), String> {
     let body = bytes.trim_ascii_end().strip_suffix(seal(&stated).as_bytes());
     if body.is_none_or(|body| checksum(body) != stated) {
         return Err(format!(
-            "it was changed after it was written: its {FIELD} is of other contents"
+            "it was changed after it was written: its {FIELD} does not match its contents"
         ));
     }
     Ok((value, stated))

@@ -4,7 +4,7 @@
 use super::{Done, MODELS};
 use crate::{
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     results::{Results, Vpls},
     stored::Store,
 };

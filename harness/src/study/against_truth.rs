@@ -3,7 +3,7 @@
 use super::{Done, Job, MODELS, TRUTH};
 use crate::{
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     results::{Results, TruthImage},
     stored::Store,
 };

@@ -6,8 +6,8 @@
 
 use super::{BOUNDS, Job, MODELS, StudyScene, TRUTH};
 use crate::{
+    bench::Bench,
     cli::{Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
     strategy::BASELINE,
 };

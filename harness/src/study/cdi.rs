@@ -3,8 +3,8 @@
 
 use super::{Job, MODELS, StudyScene, TRUTH};
 use crate::{
+    bench::Bench,
     cli::{Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
     results::{DeepImages, Vpls},
 };

@@ -9,8 +9,8 @@ mod extent;
 
 use super::{Job, StudyScene, views::Views};
 use crate::{
+    bench::Bench,
     cli::{Invocation, Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
 };
 use extent::Extent;

@@ -6,8 +6,8 @@ use scenes::Aabb;
 
 use super::{Job, StudyScene};
 use crate::{
+    bench::Bench,
     cli::{Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
 };
 

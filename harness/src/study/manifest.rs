@@ -70,7 +70,8 @@ impl Manifest {
             manifest.check().map(|()| manifest)
         };
         let manifest = manifest().map_err(|reason| {
-            let help = "remove it, and the study lists its jobs again; those that are done stay";
+            let help =
+                "remove this file; the study then lists its jobs again and keeps the finished ones";
             ResultsError::Study { path: path.clone(), reason: format!("{reason}: {help}") }
         })?;
         Ok(Some(manifest))
@@ -79,11 +80,11 @@ impl Manifest {
     /// Names of jobs are names of folders: the file may come from anywhere.
     fn check(&self) -> Result<(), String> {
         if self.jobs.is_empty() {
-            return Err("jobs is empty: it must list at least one".to_owned());
+            return Err("jobs is empty: it must list at least one job".to_owned());
         }
         if let Some(job) = self.jobs.iter().find(|job| visible(&job.scene) != job.scene) {
             return Err(format!(
-                "jobs.scene is {:?}: it must hold no control characters",
+                "jobs.scene is {:?}: it must not contain control characters",
                 job.scene
             ));
         }
@@ -242,7 +243,7 @@ fn read_job(job: &Job, path: &Path) -> Result<Option<Results>, ResultsError> {
     let not_done = |why: String| {
         let folder = path.parent().unwrap_or(path).display();
         say(format!(
-            "warning  job {} counts as not done: {why}: run the study again, or remove {folder}",
+            "warning  job {} is not done: {why}: run the study again, or remove {folder}",
             job.name
         ));
         Ok(None)

@@ -6,8 +6,8 @@ use glam::DVec3;
 use scenes::Aabb;
 
 use crate::{
+    bench::Bench,
     cli::{self, CliError, Invocation, Size, StudyArgs},
-    compare::Bench,
     error::HarnessError,
 };
 

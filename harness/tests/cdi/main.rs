@@ -300,7 +300,10 @@ fn contradicting_options_are_refused() {
         ),
         ("truth --primary --indirect", "--indirect has no effect here: it needs --bounces 1"),
         ("cdi --casts 12", "--casts is 12: it must be none, or sizes from 16 to 2,048"),
-        ("cdi --directions 64x64", "stacks x slices is 64 x 64: it must be 1 to 1024 together"),
+        (
+            "cdi --directions 64x64",
+            "directions (stacks x slices) is 64 x 64: it must be 1 to 1024 in all",
+        ),
     ] {
         let output = lightbench(&line.split_whitespace().collect::<Vec<_>>());
         let stderr = String::from_utf8_lossy(&output.stderr);

@@ -7,7 +7,7 @@ use super::data::{Entry, entries};
 use super::errors_plot::{FIRST, Plot, frontier};
 use super::figure::{Charts, dotted, part, table, unit, words};
 use super::shots::{Shots, Wanted};
-use crate::errors::ERROR_METRICS;
+use crate::image_errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage};
 use crate::study::{Done, MODELS, truth_of};
 

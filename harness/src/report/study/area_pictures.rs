@@ -12,7 +12,7 @@ use super::area::model;
 use super::data::{Entry, entries};
 use super::figure::{panels, part};
 use super::shots::Shots;
-use crate::errors::{ImagePair, TILE_PX, worst_tile_at};
+use crate::image_errors::{ImagePair, TILE_PX, worst_tile_at};
 use crate::stored::Store;
 use crate::study::{Done, MODELS, truth_of};
 

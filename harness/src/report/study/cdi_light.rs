@@ -10,7 +10,7 @@ use super::data::{Entry, entries};
 use super::errors_plot::Plot;
 use super::figure::{Charts, dotted, panels, part, table, unit};
 use super::shots::{Shots, Wanted};
-use crate::errors::ERROR_METRICS;
+use crate::image_errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage, Vpls};
 use crate::study::{Done, MODELS, cdi, truth_of};
 

@@ -7,7 +7,7 @@ use super::super::markup::{Html, html};
 use super::cdi_light::{METRIC, RULES, error, rule, setting, total_ms};
 use super::data::{Entry, entries};
 use super::figure::table;
-use crate::errors::ERROR_METRICS;
+use crate::image_errors::ERROR_METRICS;
 use crate::results::{Record, TruthImage, Vpls};
 use crate::study::{Done, MODELS, cdi, truth_of};
 

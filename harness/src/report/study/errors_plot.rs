@@ -6,7 +6,7 @@ use super::data::Entry;
 use super::figure::{Charts, panels};
 use super::shots::{Shots, Wanted};
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
-use crate::errors::{ERROR_METRICS, ErrorMetric};
+use crate::image_errors::{ERROR_METRICS, ErrorMetric};
 use crate::results::{Errors, Record};
 
 /// The metric that a reader sees first, where a plot has no reason for another.

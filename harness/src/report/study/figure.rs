@@ -1,6 +1,7 @@
 //! Charts with their files, choices between panels, and tables.
 
-use super::super::markup::{Html, html};
+use super::super::markup::{Html, html, with_names_whole};
+use super::super::panels::{self, Panel};
 use crate::chart::{BarChart, Histogram, XyChart, histograms_svg, histograms_svg_file};
 use crate::strategy::StrategyId;
 
@@ -50,30 +51,18 @@ impl Charts {
 
 /// Panels of which one is shown, and the buttons that choose. A single panel needs no button.
 pub(super) fn panels(label: &str, panels: &[(String, Html)]) -> Html {
-    if let [(_, only)] = panels {
-        return only.clone();
+    match panels {
+        [] => return Html::default(),
+        [(_, only)] => return only.clone(),
+        _ => {}
     }
-    let (mut buttons, mut bodies) = (Html::default(), Html::default());
-    for (ix, (name, body)) in panels.iter().enumerate() {
-        let first = ix == 0;
-        buttons += html!(
-            "<button type=\"button\" data-choose=\"{}\" aria-pressed=\"{}\">{}</button>",
-            ix,
-            first,
-            name
-        );
-        let hidden = if first { "" } else { " hidden" };
-        bodies += html!("<div data-panel=\"{}\"{}>\n{}</div>\n", ix, hidden, body);
-    }
-    if panels.is_empty() {
-        return Html::default();
-    }
-    html!(
-        "<div class=\"panels\"><div class=\"choice\" role=\"group\" aria-label=\"{}\">{}</div>\n{}</div>\n",
-        label,
-        buttons,
-        bodies
-    )
+    let panel = |(name, body): &(String, Html)| Panel {
+        name: name.clone(),
+        class: String::new(),
+        body: body.clone(),
+    };
+    let panels: Vec<Panel> = panels.iter().map(panel).collect();
+    panels::panels(label, &Html::default(), &panels)
 }
 
 /// The head of a column with its unit in small.
@@ -133,5 +122,5 @@ pub(super) fn dotted(class: &str, name: impl Into<Html>) -> Html {
 
 /// A strategy's name with the dot of its colour.
 pub(super) fn name(id: &str) -> Html {
-    dotted(&StrategyId::read(id).class(), super::super::page::with_names_whole(id))
+    dotted(&StrategyId::read(id).class(), with_names_whole(id))
 }

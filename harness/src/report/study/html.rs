@@ -4,10 +4,11 @@ use serde_json::json;
 
 use super::super::finding::clock_notice;
 use super::super::format::short_adapter;
-use super::super::html::{PAGE, STYLE, fill, in_script};
-use super::super::markup::{Html, html};
+use super::super::html::{PAGE, SCRIPT, STYLE, fill, in_script};
+use super::super::markup::{Html, html, with_names_whole};
 use super::super::page;
 use super::super::rank::listed;
+use super::super::terms::terms;
 use super::super::{frames, raster};
 use super::figure::Charts;
 use super::shots::Shots;
@@ -21,15 +22,6 @@ use crate::study::Done;
 
 /// The page's own rules, beside those of a comparison's page.
 pub(super) const STUDY_STYLE: &str = include_str!("study.css");
-
-/// The page's programs: those of a comparison's page that it shares, and its own.
-pub(super) const SCRIPTS: [&str; 5] = [
-    include_str!("../report.js"),
-    include_str!("../bars.js"),
-    include_str!("../lists.js"),
-    include_str!("../pictures.js"),
-    include_str!("study.js"),
-];
 
 /// More data than this lie beside the page and not in it, bytes.
 const MOST_DATA: usize = 8_000_000;
@@ -105,6 +97,7 @@ pub(super) fn page(done: &Done) -> Page {
     if study == "comparison" {
         body += sizes::best_overall(done);
     }
+    body += shots.templates();
     let notices = notices(done, shots.left_out);
     words.extend(notices.iter().cloned());
     let data = serde_json::to_string(&json!({
@@ -120,7 +113,7 @@ pub(super) fn page(done: &Done) -> Page {
         &[
             ("title", title(done).into()),
             ("style", Html::trusted(style)),
-            ("headline", page::with_names_whole(&headline)),
+            ("headline", with_names_whole(&headline)),
             ("findings", page::paragraphs("finding", &others)),
             ("notices", page::notices(&notices)),
             ("comparisons", body),
@@ -128,10 +121,11 @@ pub(super) fn page(done: &Done) -> Page {
             ("file", DATA.into()),
             ("link", DATA.into()),
             ("columns", page::columns()),
+            ("terms", terms()),
             ("provenance", provenance(done)),
             ("data", in_script(embedded)),
             ("view", in_script(&view)),
-            ("script", Html::trusted(SCRIPTS.join("\n"))),
+            ("script", Html::trusted(SCRIPT)),
         ],
     );
     Page { html, charts, data, words }

@@ -39,7 +39,7 @@ mod views;
 
 use std::path::Path;
 
-use super::table::push_wrapped;
+use super::terminal::push_wrapped;
 use crate::error::HarnessError;
 use crate::results::write_atomically;
 use crate::study::Done;

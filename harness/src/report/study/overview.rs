@@ -1,17 +1,18 @@
 //! The main comparison: what is best at each count of lights, and why.
 
-use std::collections::BTreeMap;
-
+use super::super::colours::Colours;
 use super::super::comparison::{Comparison, comparisons};
 use super::super::format::{number, short_adapter, significant};
 use super::super::lead::{Lead, span};
 use super::super::markup::{Html, html};
 use super::super::page;
+use super::super::pass_bars::{Counted, pass_bars, spread};
 use super::super::rank::{Ratio, first, listed, ranks, tie};
+use super::super::section::result_table;
 use super::data::{Entry, counts, entries, poses, stand};
 use super::figure::{Charts, panels, part};
-use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
-use crate::results::{PassKind, Record, Results, mean};
+use crate::chart::{BarChart, Scale};
+use crate::results::{Record, Results};
 use crate::study::Done;
 
 /// From this ratio of the longest to the shortest bar on, the axis is logarithmic.
@@ -95,8 +96,6 @@ fn panel(
     let count = first.setting.lights;
     let lights = format!("{} lights", number(count as f64));
     let title = format!("{lights}, {}", stand(most));
-    let classes: BTreeMap<&str, String> =
-        comparison.records.iter().map(|(_, r)| (r.strategy.as_str(), r.strategy.class())).collect();
     let mut fewer: Vec<String> = Vec::new();
     for (_, record) in &comparison.records {
         if poses(record) != poses(most) {
@@ -109,7 +108,7 @@ fn panel(
     };
     let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
     let mut body = html!("<p class=\"meta\">{}</p>\n", meta);
-    body += page::table(&format!("{scene}, {title}"), &comparison, &classes);
+    body += result_table(&format!("{scene}, {title}"), &comparison);
     body += charts.bars(
         &format!("{scene}-passes-{slug}{count}"),
         &passes(format!("Passes that assign and shade, {title}"), results, &comparison),
@@ -118,46 +117,17 @@ fn panel(
 }
 
 fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarChart {
-    let classes = page::pass_classes(results);
     let mut records: Vec<&Record> = comparison
-        .records
-        .iter()
-        .map(|(_, record)| *record)
+        .all()
         .filter(|record| !record.is_control() && record.assign_and_shade_ms() > 0.0)
         .collect();
     records.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-    let rows: Vec<BarRow> = records.iter().map(|record| bar(record, &classes)).collect();
-    let times = || records.iter().map(|record| record.assign_and_shade_ms());
-    let ratio = times().fold(0.0, f64::max) / times().fold(f64::INFINITY, f64::min);
-    let scale = if ratio > LOG_ABOVE { Scale::Log } else { Scale::LinearFromZero };
-    let axis = Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale };
-    BarChart { title, axis, rows, note: String::new() }
-}
-
-fn bar(record: &Record, classes: &BTreeMap<&str, String>) -> BarRow {
-    let billed = record
-        .times
-        .passes
-        .iter()
-        .filter(|(_, times)| [PassKind::Assign, PassKind::Shade].contains(&times.kind));
-    let segments: Vec<Segment> = billed
-        .map(|(name, times)| Segment {
-            name: name.to_owned(),
-            class: classes.get(name).cloned().unwrap_or_default(),
-            value: if record.setting.along_path { mean(&times.samples) } else { times.median_ms },
-        })
-        .collect();
-    let parts: String = segments
-        .iter()
-        .map(|segment| format!("\n{} {} ms", segment.name, significant(segment.value)))
-        .collect();
-    BarRow {
-        name: record.strategy.to_string(),
-        class: record.strategy.class(),
-        segments,
-        value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
-        tip: format!("{}{parts}", record.strategy),
-    }
+    let counted = Counted::AssignAndShade;
+    let scale = match spread(counted, &records) > LOG_ABOVE {
+        true => Scale::Log,
+        false => Scale::LinearFromZero,
+    };
+    pass_bars(title, scale, counted, &records, &Colours::new(results))
 }
 
 /// What a scene's comparison found, one sentence per count of lights, the most lights first.

@@ -1,6 +1,6 @@
 //! The pictures that the page shows: each stored once, as far as there is room.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -10,7 +10,11 @@ use image::{ImageFormat, ImageReader, imageops::FilterType};
 use serde_json::{Map, Value, json};
 use shading::HdrImage;
 
+use super::super::format::{difference, significant};
+use super::super::markup::{Html, html};
+use super::super::picture_pair::{PicturePair, verdict};
 use super::data::Entry;
+use crate::results::{Errors, Record};
 use crate::study::{Done, truth_of};
 
 /// Pictures are at most this wide, pixels: as wide as the page shows them.
@@ -28,7 +32,8 @@ pub(super) struct Shots<'a> {
     uris: Vec<String>,
     bytes: usize,
     pictures: Map<String, Value>,
-    records: Map<String, Value>,
+    /// What opens at each key.
+    viewers: BTreeMap<String, Html>,
     /// Pictures for which there was no room.
     pub(super) left_out: usize,
 }
@@ -54,7 +59,7 @@ impl<'a> Shots<'a> {
             uris: Vec::new(),
             bytes: 0,
             pictures: Map::new(),
-            records: Map::new(),
+            viewers: BTreeMap::new(),
             left_out: 0,
         }
     }
@@ -99,25 +104,19 @@ impl<'a> Shots<'a> {
             Wanted::Truth => record.setting.area_model.as_deref().unwrap_or(&record.strategy),
             _ => record.strategy.as_str(),
         };
-        let shot = json!({
-            "scene": record.setting.scene,
-            "strategy": name,
-            "width": record.setting.width,
-            "height": record.setting.height,
-            "differing_channels": record.image.differing_channels,
-            "max_abs_diff": record.image.max_abs_diff,
-            "both_ms": record.assign_and_shade_ms(),
-            "errors": errors,
-            "threshold": record.setting.threshold,
-            "reference": text,
-            "images": {
-                "image": image,
-                "baseline": reference,
-                "difference": difference,
-                "difference_amplification": images.difference_amplification,
-            },
-        });
-        self.records.insert(key.clone(), shot);
+        let pair = PicturePair {
+            scene: &record.setting.scene,
+            name,
+            size: [record.setting.width, record.setting.height],
+            image: Some(&image),
+            reference: reference.as_deref(),
+            reference_name: text,
+            difference: difference.as_deref(),
+            gain: images.difference_amplification,
+            verdict: verdict(record),
+        };
+        let shot = viewer(record, &pair, errors);
+        self.viewers.insert(key.clone(), shot);
         Some(key)
     }
 
@@ -198,15 +197,43 @@ impl<'a> Shots<'a> {
         Some(self.uris.len() - 1)
     }
 
-    /// What the page's programs need: the pictures, and the records that have some.
-    pub(super) fn view(self) -> Value {
-        json!({
-            "comparisons": [],
-            "strategies": {},
-            "passes": {},
-            "pictures": self.pictures,
-            "uris": self.uris,
-            "shots": self.records,
-        })
+    /// The viewers of all shots, which the page's script opens.
+    pub(super) fn templates(&self) -> Html {
+        let template = |(key, body): (&String, &Html)| {
+            html!("<template data-shot=\"{}\">{}</template>\n", key, body)
+        };
+        self.viewers.iter().map(template).collect()
     }
+
+    /// What the page's script needs: the pictures, each stored once.
+    pub(super) fn view(self) -> Value {
+        json!({ "pictures": self.pictures, "uris": self.uris })
+    }
+}
+
+/// A shot beside what it should look like, with its time and its errors.
+fn viewer(record: &Record, pair: &PicturePair<'_>, errors: &Errors) -> Html {
+    let threshold = record
+        .setting
+        .threshold
+        .map_or_else(String::new, |threshold| format!(", threshold {threshold}"));
+    let mut figures = html!("<li>{} ms</li>", significant(record.assign_and_shade_ms()));
+    for (id, error) in errors {
+        if let Some(error) = error.filter(|error| error.is_finite()) {
+            figures += html!("<li>{} {}</li>", id.replace('_', " "), difference(error));
+        }
+    }
+    let difference = match pair.difference.is_some() {
+        true => pair.difference(false),
+        false => Html::default(),
+    };
+    html!(
+        "<div class=\"figcaption\"><b>{}{}</b><button type=\"button\" class=\"quiet\">Close</button></div>\n\
+         <ul class=\"legend\">{}</ul>\n<div class=\"stage\">{}{}</div>\n",
+        pair.name,
+        threshold,
+        figures,
+        pair.main(),
+        difference
+    )
 }

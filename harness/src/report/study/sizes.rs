@@ -2,7 +2,7 @@
 
 use super::super::format::{ABSENT, number, significant};
 use super::super::markup::{Html, html};
-use super::super::page;
+use super::super::metrics::interval;
 use super::super::rank::{first, listed, ranks};
 use super::data::{Entry, entries, stand, tests};
 use super::figure::{Charts, name, panels, part, table, unit};
@@ -50,7 +50,7 @@ pub(super) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> Html {
         rows.push(vec![
             name(family),
             size(best).into(),
-            Html::from(significant(best.assign_and_shade_ms())) + page::interval(best),
+            Html::from(significant(best.assign_and_shade_ms())) + interval(best),
             if same.is_empty() { ABSENT.into() } else { listed(&same).into() },
             number(records.len() as f64).into(),
             stand(best).into(),

@@ -1,4 +1,4 @@
-//! `lightbench report`: metrics and charts again, from what earlier runs stored.
+//! `lightbench report`: computes metrics and draws charts from what earlier runs stored.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use shading::HdrImage;
 use crate::{
     cli::{CliError, ReportArgs},
     error::HarnessError,
-    errors::{ImagePair, errors, stored},
+    image_errors::{ImagePair, errors, stored},
     pictures::Pictures,
     report,
     results::{Record, Results},
@@ -19,7 +19,7 @@ use crate::{
 const FILE: &str = "results.json";
 
 /// Makes the report of a comparison or of a study; returns what to print.
-pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
+pub fn report_stored(args: &ReportArgs) -> Result<String, HarnessError> {
     let Some(first) = args.folders.first() else {
         return Ok(String::new());
     };
@@ -40,7 +40,7 @@ pub fn again(args: &ReportArgs) -> Result<String, HarnessError> {
     }
     if args.out.is_some() && args.folders.len() > 1 {
         let value = out.display().to_string();
-        let accepted = "left out where several comparisons are given: each keeps its own report";
+        let accepted = "left out for several comparisons, because each has its own report";
         return Err(CliError::out_of_range("--out", &value, accepted).into());
     }
     let mut text = String::new();
@@ -179,12 +179,12 @@ mod tests {
     #[test]
     fn a_folder_without_results_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let error = again(&of(folder.path())).unwrap_err().to_string();
+        let error = report_stored(&of(folder.path())).unwrap_err().to_string();
         assert!(error.contains("results.json"), "{error}");
         let is_read = |error: &HarnessError| {
             matches!(error, HarnessError::Results(ResultsError::Read { .. }))
         };
-        assert!(is_read(&again(&of(&folder.path().join("gone"))).unwrap_err()));
+        assert!(is_read(&report_stored(&of(&folder.path().join("gone"))).unwrap_err()));
     }
 
     #[test]
@@ -192,9 +192,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("atrium.json");
         std::fs::write(&file, include_str!("results/example.json")).unwrap();
-        let error = again(&of(folder.path())).unwrap_err().to_string();
+        let error = report_stored(&of(folder.path())).unwrap_err().to_string();
         assert!(error.contains("atrium.json") && error.contains("a file of results"), "{error}");
-        again(&of(&file)).unwrap();
+        report_stored(&of(&file)).unwrap();
         assert!(folder.path().join("atrium/index.html").is_file());
         assert!(!folder.path().join("index.html").exists());
     }

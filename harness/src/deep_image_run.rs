@@ -3,14 +3,14 @@
 use assign::{EncoderPasses, Gpu, Light};
 use assign_cdi::{DeepImages, RandomRanges, RangeCaster, RangeRule, Triangles};
 use scenes::{Scene, primary_light};
-use shading::{EDGE, Renderer, WorldTriangles, rsm_view, traced::TracedScene};
+use shading::{EDGE, Renderer, rsm_view, traced::TracedScene};
 
 use crate::{
+    bench::Bench,
     checks::remove_stale,
     cli::CdiArgs,
     clock::{PassClock, PassTime},
-    compare::{Bench, DEFAULT_FRAMES},
-    deep::{figures, settings_of, settle},
+    deep::{figures, settings_of, settle, triangles_of},
     drift::{WarmUp, unsteady},
     error::HarnessError,
     machine::machine,
@@ -18,6 +18,7 @@ use crate::{
     pass_samples::PassSamples,
     range_errors::{range_errors, seen_points},
     results::{CastTimes, DeepImageRun, Passes, Results, Truth, TruthLevel, median},
+    schedule::DEFAULT_FRAMES,
     vpls::{all_texels, points_of},
 };
 
@@ -81,15 +82,6 @@ pub fn measure(
     results.warnings.extend(refused_times(&run));
     results.deep_images = Some(run);
     Ok(results)
-}
-
-/// The buffer of a scene's triangles, as deep images take it.
-pub fn triangles_of(triangles: &WorldTriangles) -> Triangles<'_> {
-    Triangles {
-        positions: &triangles.positions,
-        count: triangles.count,
-        bounds_world: triangles.bounds_world,
-    }
 }
 
 /// Builds in a row, without a pause, that keep a GPU busy before each timed frame of a warm-up.

@@ -1,0 +1,55 @@
+//! What the terminal shows of results: a table per comparison, then what a reader has to know.
+
+use std::fmt::Write;
+
+use super::comparison::comparisons;
+use super::finding::notices;
+use super::format::{number, short_adapter};
+use super::loss::loss_table;
+use super::metrics::{metrics, table};
+use super::table::TABLE_WIDTH;
+use crate::results::Results;
+
+/// The result tables of all comparisons as plain text, then the notices.
+pub fn render_table(results: &Results) -> String {
+    let mut text = String::new();
+    for comparison in comparisons(results) {
+        let first = comparison.first();
+        let _ = writeln!(
+            text,
+            "{}, {}, {} lights, {}x{}, on {} ({})",
+            first.setting.scene,
+            first.setting.mode.name(),
+            number(first.setting.lights as f64),
+            first.setting.width,
+            first.setting.height,
+            short_adapter(&results.machine.adapter),
+            first.times.clock.name(),
+        );
+        text += &table("strategy", &comparison, comparison.all(), metrics()).text();
+        text += &loss_table(&comparison);
+        text.push('\n');
+    }
+    for notice in notices(results) {
+        push_wrapped(&mut text, &notice);
+    }
+    text
+}
+
+/// Appends a paragraph in lines that are no wider than a table.
+pub(super) fn push_wrapped(text: &mut String, paragraph: &str) {
+    let mut width = 0;
+    for word in paragraph.split_whitespace() {
+        let size = word.chars().count();
+        if width > 0 && width + 1 + size > TABLE_WIDTH {
+            text.push('\n');
+            width = 0;
+        } else if width > 0 {
+            text.push(' ');
+            width += 1;
+        }
+        text.push_str(word);
+        width += size;
+    }
+    text.push('\n');
+}

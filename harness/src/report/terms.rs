@@ -1,0 +1,111 @@
+//! The list of terms at the foot of every page, from `docs/terms.md`.
+//!
+//! Of that file this reads headings (`## Groups`) and terms (`**tile**: a rectangle of pixels.`), with
+//! `` `code` `` and `*emphasis*` in definitions.
+
+use super::markup::{Html, html};
+
+const TERMS: &str = include_str!("../../../docs/terms.md");
+
+/// All terms, folded.
+pub(super) fn terms() -> Html {
+    let (body, count) = list(TERMS);
+    html!(
+        "<details class=\"terms\" id=\"terms\"><summary>What the words mean: {} terms</summary>\n{}</details>\n",
+        count,
+        body
+    )
+}
+
+/// The headings and terms of a document, and how many terms there are.
+fn list(document: &str) -> (Html, usize) {
+    let (mut body, mut entries, mut count) = (Html::default(), Html::default(), 0);
+    let close = |body: &mut Html, entries: &mut Html| {
+        if !entries.is_empty() {
+            *body += html!("<dl class=\"columns\">\n{}</dl>\n", std::mem::take(entries));
+        }
+    };
+    for line in document.lines() {
+        if let Some(heading) = line.strip_prefix("## ") {
+            close(&mut body, &mut entries);
+            body += html!("<h3>{}</h3>\n", heading);
+        } else if let Some((term, definition)) =
+            line.strip_prefix("**").and_then(|line| line.split_once("**: "))
+        {
+            count += 1;
+            entries += html!("<dt>{}</dt><dd>{}</dd>\n", inline(term), inline(definition));
+        }
+    }
+    close(&mut body, &mut entries);
+    (body, count)
+}
+
+/// A line with its code and its emphasis. A mark without its end is text.
+fn inline(line: &str) -> Html {
+    let mut shown = Html::default();
+    let mut rest = line;
+    while let Some(start) = rest.find(['`', '*']) {
+        let (before, marked) = rest.split_at(start);
+        let mark = &marked[..1];
+        let Some((inside, after)) = marked[1..].split_once(mark) else { break };
+        shown += Html::from(before);
+        shown += match mark {
+            "`" => html!("<code>{}</code>", inside),
+            _ => html!("<em>{}</em>", inside),
+        };
+        rest = after;
+    }
+    shown + Html::from(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_terms_code_and_emphasis_are_read() {
+        let document = "# Terms\n\nWords.\n\n## Lists\n\n**list**: <lights> of a *group*, `a * b`.\n\n\
+                        **`/bvh`**: a half * mark\n";
+        let (body, count) = list(document);
+        let expected = "<h3>Lists</h3>\n<dl class=\"columns\">\n\
+             <dt>list</dt><dd>&lt;lights&gt; of a <em>group</em>, <code>a * b</code>.</dd>\n\
+             <dt><code>/bvh</code></dt><dd>a half * mark</dd>\n</dl>\n";
+        assert_eq!((body.as_str(), count), (expected, 2));
+    }
+
+    #[test]
+    fn the_words_that_reports_use_are_terms() {
+        let (body, count) = list(TERMS);
+        let known = [
+            "view sample",
+            "group",
+            "list",
+            "support",
+            "range",
+            "window",
+            "lossless",
+            "contributing",
+            "listed",
+            "efficiency",
+            "early exit",
+            "tie",
+            "path",
+            "pose",
+            "assign",
+            "shade",
+            "missed pair",
+        ];
+        for term in known {
+            assert!(
+                body.as_str().contains(&format!("<dt>{term}</dt>")),
+                "docs/terms.md lacks {term}"
+            );
+        }
+        assert_eq!(count, body.as_str().matches("<dt>").count());
+        let bold_lines = TERMS.lines().filter(|line| line.starts_with("**")).count();
+        assert_eq!(
+            count, bold_lines,
+            "a term of docs/terms.md is not written `**term**: definition`"
+        );
+    }
+}
