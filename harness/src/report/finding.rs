@@ -270,7 +270,7 @@ pub fn notices(results: &Results) -> Vec<String> {
     notices
 }
 
-pub(super) fn clock_notice(results: &Results) -> Option<String> {
+pub(crate) fn clock_notice(results: &Results) -> Option<String> {
     let wall_clock = results.records.iter().any(|record| record.times.clock == Clock::WallClock);
     let adapter = short_adapter(&results.machine.adapter);
     if results.machine.device_type == DeviceType::Cpu {

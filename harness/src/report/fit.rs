@@ -2,30 +2,30 @@
 
 /// A line through points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fit {
+pub(crate) struct Fit {
     /// By how much `y` grows where `x` grows by one.
-    pub(super) slope: f64,
+    pub(crate) slope: f64,
     /// `y` where `x` is zero.
-    pub(super) offset: f64,
+    pub(crate) offset: f64,
     /// The share of the variance of `y` that the line explains; 1 where all points lie on it.
-    pub(super) r2: f64,
+    pub(crate) r2: f64,
     /// Root of the mean squared distance of the points from the line, along `y`.
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
     /// Points that it was laid through.
-    pub(super) points: usize,
+    pub(crate) points: usize,
 }
 
 impl Fit {
     /// The line through points with the least sum of squared distances along `y`. Points that are
     /// not finite are left out. `None` where fewer than two differ in `x`.
-    pub(super) fn through(points: &[(f64, f64)]) -> Option<Self> {
+    pub(crate) fn through(points: &[(f64, f64)]) -> Option<Self> {
         Self::weighted(points, |_| 1.0)
     }
 
     /// The line with the least sum of squared *relative* distances: each point's distance counts over
     /// its own `y`, so that small values weigh as much as large ones. Points whose `y` is not above zero
     /// are left out.
-    pub(super) fn relative(points: &[(f64, f64)]) -> Option<Self> {
+    pub(crate) fn relative(points: &[(f64, f64)]) -> Option<Self> {
         let points: Vec<(f64, f64)> = points.iter().copied().filter(|(_, y)| *y > 0.0).collect();
         Self::weighted(&points, |y| y.powi(-2))
     }
@@ -54,13 +54,13 @@ impl Fit {
     }
 
     /// The largest relative distance of a point from the line, with the point's `x`. NaN without points.
-    pub(super) fn worst(&self, points: &[(f64, f64)]) -> (f64, f64) {
+    pub(crate) fn worst(&self, points: &[(f64, f64)]) -> (f64, f64) {
         let off = |(x, y): &(f64, f64)| ((self.at(*x) / y - 1.0).abs(), *x);
         points.iter().map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// The line's `y`.
-    pub(super) fn at(&self, x: f64) -> f64 {
+    pub(crate) fn at(&self, x: f64) -> f64 {
         self.offset + self.slope * x
     }
 }

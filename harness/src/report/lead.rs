@@ -26,9 +26,9 @@ enum Doubt {
 }
 
 /// The methods that share the first rank.
-pub(super) struct Lead<'a> {
+pub(crate) struct Lead<'a> {
     /// Those methods, fastest first.
-    pub(super) records: Vec<&'a Record>,
+    pub(crate) records: Vec<&'a Record>,
     /// Their names, with marks.
     names: Vec<String>,
     /// How many methods were ranked.
@@ -38,7 +38,7 @@ pub(super) struct Lead<'a> {
 
 impl<'a> Lead<'a> {
     /// Of ranked records; `None` where there is none.
-    pub(super) fn of(ranked: &[Ranked<'a>]) -> Option<Self> {
+    pub(crate) fn of(ranked: &[Ranked<'a>]) -> Option<Self> {
         let mut records = first(ranked);
         let leader = *records.first()?;
         let other = ranked.iter().map(|ranked| ranked.record).find(|r| !std::ptr::eq(*r, leader));
@@ -59,25 +59,25 @@ impl<'a> Lead<'a> {
     }
 
     /// Of a comparison, whose names carry marks.
-    pub(super) fn of_comparison(comparison: &Comparison<'a>) -> Option<Self> {
+    pub(crate) fn of_comparison(comparison: &Comparison<'a>) -> Option<Self> {
         let lead = Self::of(&comparison.ranks())?;
         let names = lead.records.iter().map(|record| comparison.name(record)).collect();
         Some(Self { names, ..lead })
     }
 
     /// The fastest of them.
-    pub(super) fn leader(&self) -> &'a Record {
+    pub(crate) fn leader(&self) -> &'a Record {
         // A lead is made around a record.
         self.records[0]
     }
 
     /// Whether several share the first rank.
-    pub(super) fn is_tie(&self) -> bool {
+    pub(crate) fn is_tie(&self) -> bool {
         self.records.len() > 1
     }
 
     /// `A`, `A and B`, `A, B, C and 5 others`.
-    pub(super) fn names(&self) -> String {
+    pub(crate) fn names(&self) -> String {
         let mut names = self.names.clone();
         if names.len() > ALL_NAMED {
             let others = names.len() - NAMED;
@@ -88,13 +88,13 @@ impl<'a> Lead<'a> {
     }
 
     /// `A is fastest`, or `A and B tie for fastest`.
-    pub(super) fn is_fastest(&self) -> String {
+    pub(crate) fn is_fastest(&self) -> String {
         let verb = if self.is_tie() { "tie for fastest" } else { "is fastest" };
         format!("{} {verb}", self.names())
     }
 
     /// As [`is_fastest`](Self::is_fastest), with all that limits it but figures: for a headline.
-    pub(super) fn headline(&self) -> String {
+    pub(crate) fn headline(&self) -> String {
         let built = self.records.iter().filter(|record| needs_built_hierarchy(record)).count();
         let still = match built {
             0 => "",
@@ -105,7 +105,7 @@ impl<'a> Lead<'a> {
     }
 
     /// Why the lead is not sure, to follow its sentence; empty where it is.
-    pub(super) fn doubt(&self) -> String {
+    pub(crate) fn doubt(&self) -> String {
         match self.doubt {
             Doubt::None => String::new(),
             Doubt::FewRounds(count, word) => {
@@ -116,7 +116,7 @@ impl<'a> Lead<'a> {
     }
 
     /// Which of them need lights that stand still, to follow the names; empty where none does.
-    pub(super) fn still_lights(&self) -> String {
+    pub(crate) fn still_lights(&self) -> String {
         let built: Vec<&Record> =
             self.records.iter().copied().filter(|r| needs_built_hierarchy(r)).collect();
         let Some(one) = built.first() else { return String::new() };
@@ -147,7 +147,7 @@ pub fn needs_built_hierarchy(record: &Record) -> bool {
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` where
 /// one lacks it.
-pub(super) fn span(records: &[&Record], figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
+pub(crate) fn span(records: &[&Record], figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
     let figures: Option<Vec<f64>> = records.iter().map(|record| figure(record)).collect();
     let figures = figures?;
     let least = significant(figures.iter().copied().fold(f64::INFINITY, f64::min));

@@ -234,7 +234,7 @@ fn memory<'a>() -> Vec<Metric<'a>> {
 }
 
 /// Where the median of assign + shade lies, in small; its tooltip says how surely.
-pub(super) fn interval(record: &Record) -> Html {
+pub(crate) fn interval(record: &Record) -> Html {
     record.interval_ms().map_or_else(Html::default, |interval| {
         html!(
             "<small class=\"interval\" title=\"{} % of such intervals contain the median\">\

@@ -9,28 +9,28 @@ use super::format::significant;
 use crate::results::{Record, median, median_interval};
 
 /// Nearer to 1, a ratio is of no interest, however sure it is.
-pub(super) const ALIKE: f64 = 0.005;
+pub(crate) const ALIKE: f64 = 0.005;
 
 /// The least coverage of an interval that shows a difference: that of six rounds.
-pub(super) const SURE: f64 = 0.95;
+pub(crate) const SURE: f64 = 0.95;
 
 /// The times of one record over those of another, paired by round.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ratio {
+pub(crate) struct Ratio {
     /// The median over rounds.
-    pub(super) median: f64,
+    pub(crate) median: f64,
     /// Where the median lies.
-    pub(super) low: f64,
+    pub(crate) low: f64,
     /// Where the median lies.
-    pub(super) high: f64,
+    pub(crate) high: f64,
     /// The probability that it lies there.
-    pub(super) coverage: f64,
+    pub(crate) coverage: f64,
 }
 
 impl Ratio {
     /// Of `record` over `other`. `None` where they have fewer than two rounds in common. Along a path
     /// a round is a lap, so both need two laps of as many poses.
-    pub(super) fn of(record: &Record, other: &Record) -> Option<Self> {
+    pub(crate) fn of(record: &Record, other: &Record) -> Option<Self> {
         let laps =
             |record: &Record| (record.setting.along_path, record.laps(), record.times.frames);
         let differ = if record.setting.along_path || other.setting.along_path {
@@ -50,12 +50,12 @@ impl Ratio {
     }
 
     /// Whether the record is faster than the other, beyond chance.
-    pub(super) fn is_faster(&self) -> bool {
+    pub(crate) fn is_faster(&self) -> bool {
         self.median < 1.0 && !self.is_tie()
     }
 
     /// Whether the two tie.
-    pub(super) fn is_tie(&self) -> bool {
+    pub(crate) fn is_tie(&self) -> bool {
         // Few rounds tell nothing: their range leaves out 1 by chance.
         let is_sure = self.coverage >= SURE;
         !is_sure || (self.low..=self.high).contains(&1.0) || (self.median - 1.0).abs() <= ALIKE
@@ -74,28 +74,28 @@ pub fn is_surely_faster(record: &Record, other: &Record) -> Option<bool> {
 }
 
 /// A record with its place among others.
-pub(super) struct Ranked<'a> {
+pub(crate) struct Ranked<'a> {
     /// The record.
-    pub(super) record: &'a Record,
+    pub(crate) record: &'a Record,
     /// 1 for the fastest and for all that tie with it.
-    pub(super) rank: u32,
+    pub(crate) rank: u32,
 }
 
 /// Whether a time was recorded: a record without a pass adds up to 0 ms, which no frame takes.
-pub(super) fn is_timed(record: &Record) -> bool {
+pub(crate) fn is_timed(record: &Record) -> bool {
     let ms = record.assign_and_shade_ms();
     ms.is_finite() && (ms > 0.0 || record.times.passes.iter().next().is_some())
 }
 
 /// Whether a record may be called the best: it culls, and nothing is known to be lost.
-pub(super) fn competes(record: &Record) -> bool {
+pub(crate) fn competes(record: &Record) -> bool {
     record.culls() && record.is_exact()
 }
 
 /// Ranks the records that cull without a loss, by assigning and shading together: the fastest leads
 /// the first rank, and all that tie with it share that; the fastest of the others leads the next.
 /// Where there are no rounds to pair, only the time decides.
-pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
+pub(crate) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
     let mut left: Vec<&Record> =
         records.into_iter().filter(|record| competes(record) && is_timed(record)).collect();
     left.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
@@ -114,13 +114,13 @@ pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ra
 }
 
 /// Those that share the first rank, fastest first.
-pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
+pub(crate) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
     ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
 }
 
 /// Says that several share the first rank, `A and B tie: ...`, or that there are too few laps to test
 /// ties. `None` where neither is so.
-pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
+pub(crate) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
     if leader.setting.along_path && leader.laps() < 2 && ranked.len() > 1 {

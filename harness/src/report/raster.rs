@@ -8,7 +8,7 @@ use super::rank::listed;
 use crate::results::{Machine, Record};
 
 /// What stands behind the name of a marked row.
-pub(super) const MARK: &str = "\u{2020}";
+pub(crate) const MARK: &str = "\u{2020}";
 
 /// More methods of one mode than this are counted instead of named.
 const NAMED: usize = 6;
@@ -18,17 +18,17 @@ const OLD_NOTE: &str = "this data-centre GPU runs fragment shaders on a few of i
                         forward figures with no other chip's";
 
 /// Whether a record's row is marked.
-pub(super) fn is_marked(machine: &Machine, record: &Record) -> bool {
+pub(crate) fn is_marked(machine: &Machine, record: &Record) -> bool {
     machine.weak_raster().is_some() && !record.raster_passes().is_empty()
 }
 
 /// ` \u{2020}` behind the name of a marked row, else nothing.
-pub(super) fn mark(machine: &Machine, record: &Record) -> String {
+pub(crate) fn mark(machine: &Machine, record: &Record) -> String {
     if is_marked(machine, record) { format!(" {MARK}") } else { String::new() }
 }
 
 /// What the mark means, with the rows that carry it; `None` where none does.
-pub(super) fn notice<'a>(
+pub(crate) fn notice<'a>(
     machine: &Machine,
     records: impl IntoIterator<Item = &'a Record>,
 ) -> Option<String> {
@@ -66,7 +66,7 @@ pub(super) fn notice<'a>(
 }
 
 /// A record's note without what the mark says.
-pub(super) fn unmarked_note(record: &Record) -> Option<String> {
+pub(crate) fn unmarked_note(record: &Record) -> Option<String> {
     let note = record.note.as_ref()?.replace(OLD_NOTE, "");
     let note = note.trim_matches(|c: char| c == ';' || c.is_whitespace());
     (!note.is_empty()).then(|| note.to_owned())

@@ -7,68 +7,68 @@ use crate::cli::Size;
 const HEAVY_TRIANGLES: u64 = 2_000_000;
 
 /// One of each kind, for the lossy knobs, through the hierarchy.
-pub(super) const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
+pub(crate) const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
 
 /// From this many poses on the images of several are compared.
-pub(super) const LONG: u32 = 60;
+pub(crate) const LONG: u32 = 60;
 
 /// A family with the sizes that its search tries.
 type Sizes = (&'static str, &'static [&'static str]);
 
 /// How much a study looks at.
 #[derive(Clone, Copy)]
-pub(super) struct Extent {
-    pub(super) size: Size,
+pub(crate) struct Extent {
+    pub(crate) size: Size,
     /// Frames of each method before the clock starts.
-    pub(super) warmup: &'static str,
+    pub(crate) warmup: &'static str,
     /// Strategies of the example from the still camera.
-    pub(super) main: &'static str,
+    pub(crate) main: &'static str,
     /// Strategies of the views of low and high depth discontinuity.
-    pub(super) views: &'static str,
+    pub(crate) views: &'static str,
     /// Timed frames of the still camera, and of its lossy settings.
-    pub(super) frames: u32,
-    pub(super) lossy_frames: u32,
+    pub(crate) frames: u32,
+    pub(crate) lossy_frames: u32,
     /// The counts of lights of the ranking, ascending.
-    pub(super) counts: &'static [u32],
+    pub(crate) counts: &'static [u32],
     /// The most of them: those of the views and the searches too.
-    pub(super) most: u32,
+    pub(crate) most: u32,
     /// The counts of lights at which the frames that a renderer may draw are timed.
-    pub(super) frames_at: &'static [u32],
+    pub(crate) frames_at: &'static [u32],
     /// How often each pose is drawn: six laps tell ties with a coverage of 95 %.
-    pub(super) laps: u32,
+    pub(crate) laps: u32,
     /// Poses of a lap of the ranking: at fewer lights, and at the most lights.
-    pub(super) rank_poses: [u32; 2],
+    pub(crate) rank_poses: [u32; 2],
     /// Strategies of the ranking, likewise.
-    pub(super) ranked: &'static str,
-    pub(super) ranked_at_most: &'static str,
+    pub(crate) ranked: &'static str,
+    pub(crate) ranked_at_most: &'static str,
     /// Methods that take tens of milliseconds a frame, and their poses.
-    pub(super) slow: &'static str,
-    pub(super) slow_poses: u32,
+    pub(crate) slow: &'static str,
+    pub(crate) slow_poses: u32,
     /// Poses of a lap of searches and of scaling.
-    pub(super) search_poses: u32,
+    pub(crate) search_poses: u32,
     /// Counts of lights of the scaling, its strategies, and those of them that stop at `most`.
-    pub(super) scaling: &'static [u32],
-    pub(super) scaled: &'static str,
-    pub(super) scaled_whole: &'static str,
+    pub(crate) scaling: &'static [u32],
+    pub(crate) scaled: &'static str,
+    pub(crate) scaled_whole: &'static str,
     /// Sizes searched from the list of all lights, and through the hierarchy.
-    pub(super) linear_sizes: &'static [Sizes],
-    pub(super) bvh_sizes: &'static [Sizes],
+    pub(crate) linear_sizes: &'static [Sizes],
+    pub(crate) bvh_sizes: &'static [Sizes],
     /// Families whose tests are searched, and the tests.
-    pub(super) tested: &'static [&'static str],
-    pub(super) tests: &'static [&'static str],
+    pub(crate) tested: &'static [&'static str],
+    pub(crate) tests: &'static [&'static str],
     /// Many more lights, other radii, and the strategies under both.
-    pub(super) many: &'static [u32],
-    pub(super) radii: &'static [&'static str],
-    pub(super) beyond: &'static str,
-    pub(super) caps: &'static [u32],
-    pub(super) thresholds: &'static [&'static str],
-    pub(super) reuse: &'static [u32],
-    pub(super) reuse_poses: u32,
+    pub(crate) many: &'static [u32],
+    pub(crate) radii: &'static [&'static str],
+    pub(crate) beyond: &'static str,
+    pub(crate) caps: &'static [u32],
+    pub(crate) thresholds: &'static [&'static str],
+    pub(crate) reuse: &'static [u32],
+    pub(crate) reuse_poses: u32,
 }
 
 impl Extent {
     /// That of a scene.
-    pub(super) fn of(quick: bool, triangles: u64) -> Self {
+    pub(crate) fn of(quick: bool, triangles: u64) -> Self {
         match (quick, triangles >= HEAVY_TRIANGLES) {
             (true, _) => QUICK,
             (false, true) => HEAVY,
