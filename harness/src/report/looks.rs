@@ -11,10 +11,7 @@ use crate::chart::{Histogram, histograms_svg};
 use crate::results::Record;
 
 /// The viewer of a comparison's pictures, of those that were kept.
-pub(super) fn pictures(
-    comparison: &Comparison<'_>,
-    kept: &BTreeSet<&str>,
-) -> Html {
+pub(super) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Html {
     let known =
         |name: &Option<String>| name.as_deref().filter(|name| kept.contains(name)).is_some();
     let has_one =
@@ -29,7 +26,7 @@ pub(super) fn pictures(
         shown = all().collect();
     }
     let viewer = |record: &&Record| Panel {
-        name: record.strategy.clone(),
+        name: record.strategy.to_string(),
         class: record.strategy.class(),
         body: html!("<div class=\"stage\">\n{}</div>\n", viewer(record, baseline, kept)),
     };
@@ -96,7 +93,7 @@ pub(super) fn list_lengths(comparison: &Comparison<'_>) -> Html {
     let all: Vec<Histogram> = records
         .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))
         .map(|record| Histogram {
-            title: record.strategy.clone(),
+            title: record.strategy.to_string(),
             x_label: "Lights in a list".to_owned(),
             bins: bins(&record.lists.histogram),
             class: record.strategy.class(),

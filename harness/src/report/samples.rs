@@ -32,7 +32,7 @@ pub(super) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
             "<tbody><tr><th scope=\"rowgroup\" class=\"strategy\" colspan=\"4\">\
              <i class=\"dot {}\"></i>{}</th></tr>\n{}</tbody>\n",
             class,
-            record.strategy,
+            record.strategy.as_str(),
             rows
         );
     }

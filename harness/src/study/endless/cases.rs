@@ -263,7 +263,10 @@ mod tests {
         let plain = id("SC-E/48x48x40/bvh");
         let expected = Setting { grid: "48x48x40", cones: None, cut: Cut::None, exits: true };
         assert_eq!(Setting::of(&plain), expected);
-        assert_eq!((setting(&plain).as_str(), setting(&id("None")).as_str()), ("position", "no culling"));
+        assert_eq!(
+            (setting(&plain).as_str(), setting(&id("None")).as_str()),
+            ("position", "no culling")
+        );
         assert_eq!(setting(&id("SC-E/48x48x40/n1")), "1 cone");
         let published = id("SC-E/80x80x24/n6/cone45/bvh/no-exit");
         assert_eq!(setting(&published), "6 cones, 45\u{b0} test, 80x80x24, no early exit");
@@ -280,7 +283,9 @@ mod tests {
             assert_eq!(PAPER.iter().position(|other| same(&other)), Some(ix));
         }
         // 54 cones leave out four fifths of what 23,043,487 outer operations are by position.
-        let listed = |id| paper("a", 126, &Setting::of(&StrategyId::read(id))).and_then(|row| row.listed).unwrap();
+        let listed = |id| {
+            paper("a", 126, &Setting::of(&StrategyId::read(id))).and_then(|row| row.listed).unwrap()
+        };
         let [position, cones, inner] =
             ["SC-E/48x48x40", "SC-E/48x48x40/n54/cone45", "SC-E/48x48x40/dif"].map(listed);
         let share = (cones - inner) as f64 / (position - inner) as f64;

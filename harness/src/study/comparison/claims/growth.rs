@@ -4,6 +4,7 @@ use crate::report::fit::Fit;
 use crate::report::format::{number, percent, significant};
 use crate::report::rank::listed;
 use crate::results::Record;
+use crate::strategy::StrategyId;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
@@ -11,7 +12,6 @@ use crate::study::comparison::page::scaling::{Straight, straight};
 use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, poses, stand};
 use crate::study::manifest::Done;
 use crate::study::page::lines::{Time, fit};
-use crate::strategy::StrategyId;
 
 /// The counts of lights between which the paper fits its lines.
 const RANGE: [u64; 2] = [100, 10_000];
@@ -60,7 +60,12 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
 
 /// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
 /// 30,000`. Both distances are of `records`, those of the paper's range.
-fn said(id: &StrategyId, within: &Straight, whole: Option<Straight>, records: &[&Record]) -> String {
+fn said(
+    id: &StrategyId,
+    within: &Straight,
+    whole: Option<Straight>,
+    records: &[&Record],
+) -> String {
     let mut text = format!(
         "{} off its line by {} % at most, at {}",
         id.short(),

@@ -1,9 +1,9 @@
 //! Pairs of strategies that the paper orders, and what they come to together.
 
 use crate::report::rank::listed;
+use crate::strategy::StrategyId;
 use crate::study::claims::Verdict;
 use crate::study::claims::order::Order;
-use crate::strategy::StrategyId;
 
 /// Figures up to this factor apart are called alike; the paper draws bars and gives no bound.
 pub(crate) const ALIKE: f64 = 1.5;

@@ -170,7 +170,8 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
 pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
     for (name, records) in tested(done, scene) {
-        let of = |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
+        let of =
+            |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
         let (Some(best), Some(full)) = (of(BEST), of(FULL)) else { continue };
         all += 2;
         let shade = full.times.shade_ms / best.times.shade_ms;

@@ -1,13 +1,13 @@
 //! Claims on how times vary along the path: table 4.4 and figure 4.8.
 
 use crate::report::format::{number, percent, significant};
+use crate::strategy::StrategyId;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
 use crate::study::comparison::page::path::Spread;
 use crate::study::data::{Entry, counts, entries, is_near, is_of_the_paper, nearest_count, stand};
 use crate::study::manifest::Done;
-use crate::strategy::StrategyId;
 
 /// The strategies of table 4.4; the paper leaves DC-E out of it.
 const COMPARED: [&str; 7] = ["SC-E", "SC-I", "T-E", "DC-I", "G", "T-I", "M"];
@@ -58,7 +58,8 @@ impl<'a> Spreads<'a> {
     /// `SD G 0.007, SC-E 0.01 ms`: the strategies that are there by a figure, least first.
     fn ascending(&self, names: &[&str], of: fn(&Spread) -> f64, show: fn(f64) -> String) -> String {
         let own = names.iter().filter_map(|name| self.of_family(name));
-        let mut all: Vec<(String, f64)> = own.map(|(id, spread)| (id.short(), of(spread))).collect();
+        let mut all: Vec<(String, f64)> =
+            own.map(|(id, spread)| (id.short(), of(spread))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let said = all.iter().map(|(name, figure)| format!("{name} {}", show(*figure)));
         said.collect::<Vec<_>>().join(", ")

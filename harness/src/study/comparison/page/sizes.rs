@@ -148,7 +148,8 @@ fn tests_table(done: &Done, scene: &str) -> Html {
         .iter()
         .map(|union| {
             let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
-                let found = records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
+                let found =
+                    records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
                 found.map_or_else(
                     || ABSENT.into(),
                     |record| {

@@ -4,12 +4,12 @@ use crate::chart::Histogram;
 use crate::report::format::{number, significant};
 use crate::report::markup::{Html, html};
 use crate::results::Record;
+use crate::strategy::StrategyId;
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
-use crate::strategy::StrategyId;
 
 /// Those that a reader sees first.
 const FIRST: [&str; 4] = ["T-E", "SC-E", "G", "M/2"];

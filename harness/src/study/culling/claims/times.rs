@@ -40,7 +40,9 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         let all = entries(done, scene, mode.name);
         let (mut straight, mut count, mut worst) = (0, 0, (0.0, ""));
-        for (id, records) in lines(&all).into_iter().filter(|(id, _)| id.role() != Some(Role::Control)) {
+        for (id, records) in
+            lines(&all).into_iter().filter(|(id, _)| id.role() != Some(Role::Control))
+        {
             let points: Vec<(f64, f64)> = records
                 .iter()
                 .map(|record| (record.setting.lights as f64, record.times.frame_ms))
