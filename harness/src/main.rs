@@ -15,7 +15,7 @@ use harness::{
     messages::{print, say_error},
     stored_report::report_stored,
     strategy,
-    study::study,
+    study::{studies, study},
     truth::truth,
 };
 
@@ -42,6 +42,9 @@ fn run() -> Result<(), HarnessError> {
         Invocation::List(Listing::Strategies) => strategy::list(),
         Invocation::List(Listing::Scenes) => scenes(),
         Invocation::List(Listing::Adapters) => adapters()?,
+        Invocation::List(Listing::Studies) => {
+            studies().map(|(name, answers)| format!("{name:<16} {answers}\n")).collect()
+        }
         Invocation::Compare(args) => compare(&args, command)?,
         Invocation::Study(args) => study(&args, &command)?,
         Invocation::Report(args) => report_stored(&args)?,

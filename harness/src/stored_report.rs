@@ -12,7 +12,7 @@ use crate::{
     report,
     results::{Record, Results},
     stored::{Store, is_plain},
-    study::{Done, Manifest, compare_builds, compare_with_truth},
+    study::{Done, Manifest, complete, write_study},
 };
 
 /// The file of results in a folder.
@@ -31,12 +31,11 @@ pub fn report_stored(args: &ReportArgs) -> Result<String, HarnessError> {
                 refresh(results, folder)?;
             }
         }
-        compare_with_truth(&mut done)?;
-        compare_builds(&mut done)?;
+        complete(&mut done)?;
         if args.out.is_none() {
             done.write_metrics()?;
         }
-        return report::write_study(&done, out);
+        return write_study(&done, out);
     }
     if args.out.is_some() && args.folders.len() > 1 {
         let value = out.display().to_string();

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use harness::{
     advise::{answer, error_of, verdict},
-    report::{claims_markdown, is_surely_faster, render_markdown, write_study},
+    report::{is_surely_faster, render_markdown},
     results::{Record, Results},
     strategy,
-    study::Done,
+    study::{Done, claims_markdown, write_study},
 };
 
 /// Stands before the table of strategies.

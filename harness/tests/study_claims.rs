@@ -1,5 +1,6 @@
 //! The claims of the comparison paper, judged on made-up records.
 
+mod made_study;
 mod made_up;
 mod report_data;
 

@@ -8,18 +8,18 @@ use crate::results::{PassKind, Results};
 const PASS_COLOURS: usize = 4;
 
 /// The classes of a page's passes. A strategy's class comes from its row: `StrategyId::class`.
-pub(super) struct Colours<'a> {
+pub(crate) struct Colours<'a> {
     passes: BTreeMap<&'a str, String>,
 }
 
 impl<'a> Colours<'a> {
     /// Gives each pass a hue by its kind and a shade by its place among passes of that kind.
-    pub(super) fn new(results: &'a Results) -> Self {
+    pub(crate) fn new(results: &'a Results) -> Self {
         Self { passes: passes(results) }
     }
 
     /// The class of a pass.
-    pub(super) fn pass(&self, name: &str) -> &str {
+    pub(crate) fn pass(&self, name: &str) -> &str {
         self.passes.get(name).map_or("pass-other-0", String::as_str)
     }
 }

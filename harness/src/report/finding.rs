@@ -12,11 +12,11 @@ use crate::results::{Clock, DeviceType, Record, Results, TruthLevel, Untested};
 const EQUAL: f64 = 0.03;
 
 /// What a comparison found.
-pub(super) struct Finding {
+pub(crate) struct Finding {
     /// The result and its limits, one sentence.
-    pub(super) headline: String,
+    pub(crate) headline: String,
     /// What explains it, a sentence each.
-    pub(super) details: Vec<String>,
+    pub(crate) details: Vec<String>,
 }
 
 /// What a run found, a paragraph per comparison: the result, then what explains it.
@@ -26,7 +26,7 @@ pub fn finding(results: &Results) -> Vec<String> {
 }
 
 /// What a run found, one per comparison. The first headline is that of the run.
-pub(super) fn findings(results: &Results) -> Vec<Finding> {
+pub(crate) fn findings(results: &Results) -> Vec<Finding> {
     let all = comparisons(results);
     let adapter = short_adapter(&results.machine.adapter);
     if all.is_empty() {
@@ -306,7 +306,7 @@ pub fn notices(results: &Results) -> Vec<String> {
     notices
 }
 
-pub(super) fn clock_notice(results: &Results) -> Option<String> {
+pub(crate) fn clock_notice(results: &Results) -> Option<String> {
     let wall_clock = results.records.iter().any(|record| record.times.clock == Clock::WallClock);
     let adapter = short_adapter(&results.machine.adapter);
     if results.machine.device_type == DeviceType::Cpu {

@@ -2,29 +2,29 @@
 
 /// A line through points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fit {
+pub(crate) struct Fit {
     /// Growth of `y` per unit of `x`.
-    pub(super) slope: f64,
+    pub(crate) slope: f64,
     /// `y` at `x = 0`.
-    pub(super) offset: f64,
+    pub(crate) offset: f64,
     /// The share of the variance of `y` that the line explains; 1 if all points lie on it.
-    pub(super) r2: f64,
+    pub(crate) r2: f64,
     /// Root mean square of the distances of the points from the line, along `y`.
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
     /// How many points it was fitted to.
-    pub(super) points: usize,
+    pub(crate) points: usize,
 }
 
 impl Fit {
     /// The line with the least sum of squared distances along `y`. Points that are not finite are left out.
     /// `None` if fewer than two points differ in `x`.
-    pub(super) fn through(points: &[(f64, f64)]) -> Option<Self> {
+    pub(crate) fn through(points: &[(f64, f64)]) -> Option<Self> {
         Self::weighted(points, |_| 1.0)
     }
 
     /// The line with the least sum of squared *relative* distances. The distance of a point is divided by its
     /// `y`, so small values weigh as much as large ones. Points with `y <= 0` are left out.
-    pub(super) fn relative(points: &[(f64, f64)]) -> Option<Self> {
+    pub(crate) fn relative(points: &[(f64, f64)]) -> Option<Self> {
         let points: Vec<(f64, f64)> = points.iter().copied().filter(|(_, y)| *y > 0.0).collect();
         Self::weighted(&points, |y| y.powi(-2))
     }
@@ -53,13 +53,13 @@ impl Fit {
     }
 
     /// The largest relative distance of a point from the line, and the `x` of that point. NaN without points.
-    pub(super) fn worst(&self, points: &[(f64, f64)]) -> (f64, f64) {
+    pub(crate) fn worst(&self, points: &[(f64, f64)]) -> (f64, f64) {
         let off = |(x, y): &(f64, f64)| ((self.at(*x) / y - 1.0).abs(), *x);
         points.iter().map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// The `y` of the line at an `x`.
-    pub(super) fn at(&self, x: f64) -> f64 {
+    pub(crate) fn at(&self, x: f64) -> f64 {
         self.offset + self.slope * x
     }
 }

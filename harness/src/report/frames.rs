@@ -7,7 +7,6 @@ use super::markup::{Html, html};
 use super::raster::{self, MARK};
 use super::table::{Look, Row, Table};
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
-use crate::study::Done;
 
 /// The heading of a kind of frame, and what strategies pay for in it.
 fn words(kind: FrameKind) -> (&'static str, &'static str) {
@@ -108,7 +107,7 @@ const READING: &str = "The large figure is assign + shade. The small figures are
     onto the bill of a strategy that reads depth, or the pass of M\u{2019}s model ids is left out.";
 
 /// A section per set of lights that was measured in several modes; empty where there is none.
-pub(super) fn sections(results: &Results) -> Html {
+pub(crate) fn sections(results: &Results) -> Html {
     let key = |record: &Record| {
         let size = (
             record.setting.width,
@@ -142,21 +141,4 @@ pub(super) fn sections(results: &Results) -> Html {
         })
     };
     groups.iter().enumerate().filter_map(section).collect()
-}
-
-/// The part of a study's page: from jobs in several modes (`frames`), else what the main
-/// comparison lets derive.
-pub(super) fn part_of_study(done: &Done, scene: &str) -> Html {
-    let of = |section| -> Vec<(&Machine, Vec<&Record>)> {
-        let jobs = done.of(scene, section);
-        jobs.map(|(_, results)| (&results.machine, results.records.iter().collect())).collect()
-    };
-    let jobs = Some(of("frames")).filter(|jobs| !jobs.is_empty()).unwrap_or_else(|| of("main"));
-    let mut tables = Html::default();
-    for (machine, records) in jobs.iter().rev() {
-        let Some(first) = records.first() else { continue };
-        let caption = format!("{scene}, {} lights", number(first.setting.lights as f64));
-        tables += table(&format!("Kinds of frame: {caption}"), records, machine);
-    }
-    super::study::part(scene, "frames", "Kinds of frame", READING, &tables)
 }

@@ -16,11 +16,11 @@ use super::{frames, notices, page};
 use crate::chart::{CHART_CSS, page_colours};
 use crate::results::{Results, ResultsError, write_atomically};
 
-pub(super) const PAGE: &str = include_str!("report.html");
-pub(super) const STYLE: &str = include_str!("report.css");
+pub(crate) const PAGE: &str = include_str!("report.html");
+pub(crate) const STYLE: &str = include_str!("report.css");
 
 /// The page's script.
-pub(super) const SCRIPT: &str = include_str!("report.js");
+pub(crate) const SCRIPT: &str = include_str!("report.js");
 
 /// Writes `out_dir/index.html` and returns its path. `images` holds the pictures that records name: the names
 /// and the contents of PNG files. The page says which pictures are missing.
@@ -100,12 +100,12 @@ fn view(images: &[(String, Vec<u8>)]) -> serde_json::Value {
 }
 
 /// JSON in which no HTML parser sees the end of the script element: `<` occurs only in strings.
-pub(super) fn in_script(json: &str) -> Html {
+pub(crate) fn in_script(json: &str) -> Html {
     Html::trusted(json.replace('<', "\\u003c"))
 }
 
 /// Replaces each `{{name}}` of a template. Values are not searched for further names.
-pub(super) fn fill(template: &str, values: &[(&str, Html)]) -> String {
+pub(crate) fn fill(template: &str, values: &[(&str, Html)]) -> String {
     let mut filled = String::new();
     let mut parts = template.split("{{");
     filled.push_str(parts.next().unwrap_or_default());

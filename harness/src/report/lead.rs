@@ -17,9 +17,9 @@ enum Doubt {
 }
 
 /// The strategies that share the first rank.
-pub(super) struct Lead<'a> {
+pub(crate) struct Lead<'a> {
     /// Their records, fastest first.
-    pub(super) records: Vec<&'a Record>,
+    pub(crate) records: Vec<&'a Record>,
     /// Their names, with marks.
     names: Vec<String>,
     /// How many strategies were ranked.
@@ -29,11 +29,11 @@ pub(super) struct Lead<'a> {
 
 impl<'a> Lead<'a> {
     /// Of ranked records; `None` where there is none.
-    pub(super) fn of(ranked: &[Ranked<'a>]) -> Option<Self> {
+    pub(crate) fn of(ranked: &[Ranked<'a>]) -> Option<Self> {
         let mut records = first(ranked);
         let leader = *records.first()?;
         let other = ranked.iter().map(|ranked| ranked.record).find(|r| !std::ptr::eq(*r, leader));
-        let doubt = match other.map(|other| Ratio::of(other, leader)) {
+        let doubt = match other.map(|other| Ratio::between(other, leader)) {
             None => Doubt::None,
             Some(None) => Doubt::NoRounds,
             Some(Some(ratio)) if ratio.coverage < SURE => {
@@ -50,41 +50,41 @@ impl<'a> Lead<'a> {
     }
 
     /// Of a comparison, whose names carry marks.
-    pub(super) fn of_comparison(comparison: &Comparison<'a>) -> Option<Self> {
+    pub(crate) fn of_comparison(comparison: &Comparison<'a>) -> Option<Self> {
         let lead = Self::of(&comparison.ranks())?;
         let names = lead.records.iter().map(|record| comparison.name(record)).collect();
         Some(Self { names, ..lead })
     }
 
     /// The fastest of them.
-    pub(super) fn leader(&self) -> &'a Record {
+    pub(crate) fn leader(&self) -> &'a Record {
         // A lead is made around a record.
         self.records[0]
     }
 
     /// Whether several share the first rank.
-    pub(super) fn is_tie(&self) -> bool {
+    pub(crate) fn is_tie(&self) -> bool {
         self.records.len() > 1
     }
 
     /// `A`, `A and B`, `A, B, C and 5 others`.
-    pub(super) fn names(&self) -> String {
+    pub(crate) fn names(&self) -> String {
         few_listed(self.names.clone())
     }
 
     /// `A is fastest`, or `A and B tie for fastest`.
-    pub(super) fn is_fastest(&self) -> String {
+    pub(crate) fn is_fastest(&self) -> String {
         let verb = if self.is_tie() { "tie for fastest" } else { "is fastest" };
         format!("{} {verb}", self.names())
     }
 
     /// As [`is_fastest`](Self::is_fastest), with all limits that are not figures: for a headline.
-    pub(super) fn headline(&self) -> String {
+    pub(crate) fn headline(&self) -> String {
         format!("{}{}{}", self.is_fastest(), self.still_lights(), self.doubt())
     }
 
     /// Why the lead is not sure, to follow its sentence; empty where it is sure.
-    pub(super) fn doubt(&self) -> String {
+    pub(crate) fn doubt(&self) -> String {
         match self.doubt {
             Doubt::None => String::new(),
             Doubt::FewRounds(count, word) => {
@@ -95,7 +95,7 @@ impl<'a> Lead<'a> {
     }
 
     /// Which of them need lights that stand still, to follow the names; empty where none does.
-    pub(super) fn still_lights(&self) -> &'static str {
+    pub(crate) fn still_lights(&self) -> &'static str {
         match self.built().count() {
             0 => "",
             count if count == self.records.len() => " (still lights only)",
@@ -104,7 +104,7 @@ impl<'a> Lead<'a> {
     }
 
     /// A sentence on the hierarchy that some of them read; `None` where none does.
-    pub(super) fn hierarchy(&self) -> Option<String> {
+    pub(crate) fn hierarchy(&self) -> Option<String> {
         let time = match self.built().next()?.times.light_build_ms {
             Some(build) => format!(" in {} ms", significant(build)),
             None => String::new(),
@@ -129,7 +129,7 @@ pub fn needs_built_hierarchy(record: &Record) -> bool {
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` if the figure is
 /// missing from a record.
-pub(super) fn span(records: &[&Record], figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
+pub(crate) fn span(records: &[&Record], figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
     let figures: Option<Vec<f64>> = records.iter().map(|record| figure(record)).collect();
     let figures = figures?;
     let least = significant(figures.iter().copied().fold(f64::INFINITY, f64::min));

@@ -8,7 +8,7 @@ use super::metrics::{Metric, figure, metrics, table};
 use crate::results::Record;
 
 /// The columns of errors against no culling.
-pub(super) fn error_columns<'a>() -> Vec<Metric<'a>> {
+pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
     [
         figure(
             "missing_energy",
@@ -52,12 +52,12 @@ fn is_lossy(record: &Record) -> bool {
 }
 
 /// The columns of a comparison: those of all, and errors where a strategy may lose light.
-pub(super) fn columns<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
+pub(crate) fn columns<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
     metrics().into_iter().chain(errors_of(comparison)).collect()
 }
 
 /// The columns of errors where a strategy of the comparison may lose light; else none.
-pub(super) fn errors_of<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
+pub(crate) fn errors_of<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
     if comparison.all().any(is_lossy) { error_columns() } else { Vec::new() }
 }
 
@@ -73,7 +73,7 @@ pub fn error_words(record: &Record) -> String {
 }
 
 /// What a record lost, in words; `None` where it shows no loss.
-pub(super) fn loss(record: &Record) -> Option<String> {
+pub(crate) fn loss(record: &Record) -> Option<String> {
     let missed = record.lists.missed_pairs.filter(|missed| *missed > 0).map(|missed| {
         format!("misses {} of {} (light, sample) pairs", number(missed as f64), checked(record))
     });
@@ -102,7 +102,7 @@ pub(super) fn loss(record: &Record) -> Option<String> {
 }
 
 /// What the range of the lights loses in a record, whatever its strategy; `None` where it was not measured.
-pub(super) fn range_loss(record: &Record) -> Option<String> {
+pub(crate) fn range_loss(record: &Record) -> Option<String> {
     let error = |id| record.image.unbounded_errors.get(id).copied().flatten();
     Some(format!(
         "{}, {}: against lights without a range, the image of {} has {} % missing energy and relMSE {}.",
@@ -122,7 +122,7 @@ fn checked(record: &Record) -> String {
 }
 
 /// The terminal's table of what each lossy strategy lost; empty where there is none.
-pub(super) fn loss_table(comparison: &Comparison<'_>) -> String {
+pub(crate) fn loss_table(comparison: &Comparison<'_>) -> String {
     if !comparison.all().any(is_lossy) {
         return String::new();
     }

@@ -7,7 +7,7 @@ use crate::results::{PassKind, PassTimes, Record};
 
 /// What a chart of passes counts.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Counted {
+pub(crate) enum Counted {
     /// All passes of a frame.
     Frame,
     /// The passes that assign lights and light pixels.
@@ -35,7 +35,7 @@ impl Counted {
 }
 
 /// The longest bar over the shortest; 1 where there is none.
-pub(super) fn spread(counted: Counted, records: &[&Record]) -> f64 {
+pub(crate) fn spread(counted: Counted, records: &[&Record]) -> f64 {
     let times = || {
         records
             .iter()
@@ -47,7 +47,7 @@ pub(super) fn spread(counted: Counted, records: &[&Record]) -> f64 {
 }
 
 /// A bar per record and a segment per pass.
-pub(super) fn pass_bars(
+pub(crate) fn pass_bars(
     title: String,
     scale: Scale,
     counted: Counted,
@@ -103,7 +103,7 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
 }
 
 /// The time of a pass: the median, or along a path the mean, in which a frame without the pass counts as 0.
-pub(super) fn time_ms(record: &Record, times: &PassTimes) -> f64 {
+pub(crate) fn time_ms(record: &Record, times: &PassTimes) -> f64 {
     if !record.setting.along_path || times.samples.is_empty() {
         return times.median_ms;
     }

@@ -9,28 +9,28 @@ use super::format::significant;
 use crate::results::{Record, median, median_interval};
 
 /// A ratio closer to 1 than this is a tie, however sure it is.
-pub(super) const ALIKE: f64 = 0.005;
+pub(crate) const ALIKE: f64 = 0.005;
 
 /// The least coverage of an interval that shows a difference: six rounds reach it.
-pub(super) const SURE: f64 = 0.95;
+pub(crate) const SURE: f64 = 0.95;
 
 /// The times of one record over those of another, paired by round.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ratio {
+pub(crate) struct Ratio {
     /// The median over rounds.
-    pub(super) median: f64,
+    pub(crate) median: f64,
     /// The lower end of the interval of the median.
-    pub(super) low: f64,
+    pub(crate) low: f64,
     /// The upper end of the interval of the median.
-    pub(super) high: f64,
+    pub(crate) high: f64,
     /// The probability that the interval contains the median.
-    pub(super) coverage: f64,
+    pub(crate) coverage: f64,
 }
 
 impl Ratio {
     /// The times of `record` over those of `other`. `None` where they have fewer than two rounds in common.
     /// Along a path a round is a lap, so both need at least two laps, with equally many poses.
-    pub(super) fn of(record: &Record, other: &Record) -> Option<Self> {
+    pub(crate) fn of(record: &Record, other: &Record) -> Option<Self> {
         let laps =
             |record: &Record| (record.setting.along_path, record.laps(), record.times.frames);
         let differ = if record.setting.along_path || other.setting.along_path {
@@ -50,12 +50,12 @@ impl Ratio {
     }
 
     /// Whether the record is faster than the other, beyond chance.
-    pub(super) fn is_faster(&self) -> bool {
+    pub(crate) fn is_faster(&self) -> bool {
         self.median < 1.0 && !self.is_tie()
     }
 
     /// Whether the two tie.
-    pub(super) fn is_tie(&self) -> bool {
+    pub(crate) fn is_tie(&self) -> bool {
         // The range of a few rounds excludes 1 by chance.
         let is_sure = self.coverage >= SURE;
         !is_sure || (self.low..=self.high).contains(&1.0) || (self.median - 1.0).abs() <= ALIKE
@@ -64,38 +64,38 @@ impl Ratio {
 
 /// Whether two records tie. `None` where they were not timed in the same rounds.
 pub fn indistinguishable(record: &Record, other: &Record) -> Option<bool> {
-    Ratio::of(record, other).map(|ratio| ratio.is_tie())
+    Ratio::between(record, other).map(|ratio| ratio.is_tie())
 }
 
 /// Whether a record is faster than another, beyond chance. `None` where they were not timed in the same
 /// rounds.
 pub fn is_surely_faster(record: &Record, other: &Record) -> Option<bool> {
-    Ratio::of(record, other).map(|ratio| ratio.is_faster())
+    Ratio::between(record, other).map(|ratio| ratio.is_faster())
 }
 
 /// A record with its rank.
-pub(super) struct Ranked<'a> {
+pub(crate) struct Ranked<'a> {
     /// The record.
-    pub(super) record: &'a Record,
+    pub(crate) record: &'a Record,
     /// 1 for the fastest and for all records that tie with it.
-    pub(super) rank: u32,
+    pub(crate) rank: u32,
 }
 
 /// Whether a time was recorded. A record without passes adds up to 0 ms, which no frame takes.
-pub(super) fn is_timed(record: &Record) -> bool {
+pub(crate) fn is_timed(record: &Record) -> bool {
     let ms = record.assign_and_shade_ms();
     ms.is_finite() && (ms > 0.0 || record.times.passes.iter().next().is_some())
 }
 
 /// Whether a record may be called the best: it culls, and it shows no loss.
-pub(super) fn competes(record: &Record) -> bool {
+pub(crate) fn competes(record: &Record) -> bool {
     record.culls() && record.is_exact()
 }
 
 /// Ranks the records that cull without a loss, by assign + shade. The fastest leads the first rank, and all
 /// that tie with it share that rank. The fastest of the others leads the next. Where there are no rounds to
 /// pair, only the time decides.
-pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
+pub(crate) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
     let mut left: Vec<&Record> =
         records.into_iter().filter(|record| competes(record) && is_timed(record)).collect();
     left.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
@@ -104,7 +104,7 @@ pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ra
         let Some(&leader) = left.first() else { break };
         let shares = |record: &Record| {
             std::ptr::eq(record, leader)
-                || Ratio::of(record, leader).is_some_and(|ratio| ratio.is_tie())
+                || Ratio::between(record, leader).is_some_and(|ratio| ratio.is_tie())
         };
         let (same, others) = left.into_iter().partition::<Vec<&Record>, _>(|r| shares(r));
         ranked.extend(same.into_iter().map(|record| Ranked { record, rank }));
@@ -114,13 +114,13 @@ pub(super) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ra
 }
 
 /// Those that share the first rank, fastest first.
-pub(super) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
+pub(crate) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
     ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
 }
 
 /// States a tie for the first rank, `A and B tie: ...`, or that there are too few laps to test ties. `None`
 /// where neither holds.
-pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
+pub(crate) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
     if leader.setting.along_path && leader.laps() < 2 && ranked.len() > 1 {
@@ -131,7 +131,7 @@ pub(super) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     }
     let widest = others
         .iter()
-        .filter_map(|record| Ratio::of(record, leader))
+        .filter_map(|record| Ratio::between(record, leader))
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
     let names = few_listed(first.iter().map(|record| record.strategy.to_string()).collect());
     if widest.coverage < SURE {
@@ -164,7 +164,7 @@ const ALL_NAMED: usize = 4;
 const NAMED: usize = 3;
 
 /// `A`, `A and B`, `A, B, C and 5 others`.
-pub(super) fn few_listed(mut items: Vec<String>) -> String {
+pub(crate) fn few_listed(mut items: Vec<String>) -> String {
     if items.len() > ALL_NAMED {
         let others = items.len() - NAMED;
         items.truncate(NAMED);
@@ -248,7 +248,7 @@ mod tests {
         let records = [a, b, c];
         let ranked = ranks(&records);
         let ranks: Vec<u32> = ranked.iter().map(|r| r.rank).collect();
-        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::of(&records[1], &records[0]));
+        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::between(&records[1], &records[0]));
         let text = tie(&ranked).expect("two share the first rank");
         assert!(text.contains(" and ") && text.contains(" tie: "), "{text}");
         assert!(!text.contains('C'), "{text}");
@@ -268,7 +268,7 @@ mod tests {
         let records = [record("A", &[10.0]), record("B", &[10.0001]), record("C", &[9.0])];
         assert_eq!(places(&records), [place("C", 1), place("A", 2), place("B", 3)]);
         assert_eq!(tie(&ranks(&records)), None);
-        assert_eq!(Ratio::of(&records[0], &records[1]), None);
+        assert_eq!(Ratio::between(&records[0], &records[1]), None);
     }
 
     #[test]
@@ -323,12 +323,12 @@ mod tests {
         old.times.rounds = 40;
         for record in [&one, &old] {
             assert_eq!((record.laps(), record.interval_ms()), (1, None));
-            assert_eq!(Ratio::of(record, record), None);
+            assert_eq!(Ratio::between(record, record), None);
         }
         let said = tie(&ranks(&[one.clone(), old])).expect("one lap");
         assert!(said.starts_with("one lap") && said.contains("--laps 6"), "{said}");
         let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
-        assert_eq!(Ratio::of(&a, &b), None);
+        assert_eq!(Ratio::between(&a, &b), None);
         let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];
         let said = tie(&ranks(&few)).expect("five laps");
         assert!(

@@ -8,7 +8,7 @@ use super::rank::listed;
 use crate::results::{Machine, Record};
 
 /// Follows the name of a marked row.
-pub(super) const MARK: &str = "\u{2020}";
+pub(crate) const MARK: &str = "\u{2020}";
 
 /// Strategies of one mode beyond this number are counted, not named.
 const NAMED: usize = 6;
@@ -18,17 +18,17 @@ const OLD_NOTE: &str = "this data-centre GPU runs fragment shaders on a few of i
                         forward figures with no other chip's";
 
 /// Whether a record's row is marked.
-pub(super) fn is_marked(machine: &Machine, record: &Record) -> bool {
+pub(crate) fn is_marked(machine: &Machine, record: &Record) -> bool {
     machine.weak_raster().is_some() && !record.raster_passes().is_empty()
 }
 
 /// ` \u{2020}` for a marked row, else nothing.
-pub(super) fn mark(machine: &Machine, record: &Record) -> String {
+pub(crate) fn mark(machine: &Machine, record: &Record) -> String {
     if is_marked(machine, record) { format!(" {MARK}") } else { String::new() }
 }
 
 /// What the mark means and which rows carry it; `None` where no row does.
-pub(super) fn notice<'a>(
+pub(crate) fn notice<'a>(
     machine: &Machine,
     records: impl IntoIterator<Item = &'a Record>,
 ) -> Option<String> {
@@ -66,7 +66,7 @@ pub(super) fn notice<'a>(
 }
 
 /// A record's note without the words that the mark replaces.
-pub(super) fn unmarked_note(record: &Record) -> Option<String> {
+pub(crate) fn unmarked_note(record: &Record) -> Option<String> {
     let note = record.note.as_ref()?.replace(OLD_NOTE, "");
     let note = note.trim_matches(|c: char| c == ';' || c.is_whitespace());
     (!note.is_empty()).then(|| note.to_owned())

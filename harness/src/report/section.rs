@@ -20,7 +20,7 @@ use crate::results::{Record, Results};
 const LOG_ABOVE: f64 = 60.0;
 
 /// One section per comparison. `kept` names the pictures that the page has.
-pub(super) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
+pub(crate) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
     let colours = Colours::new(results);
     let section = |(ix, comparison): (usize, &Comparison<'_>)| {
         let first = comparison.first();
@@ -44,7 +44,7 @@ pub(super) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
 }
 
 /// The table of a comparison, whose headings sort.
-pub(super) fn result_table(label: &str, comparison: &Comparison<'_>) -> Html {
+pub(crate) fn result_table(label: &str, comparison: &Comparison<'_>) -> Html {
     table("strategy", comparison, comparison.all(), columns(comparison))
         .dotted(|row| row.record.strategy.class())
         .html(label, Look::Sortable)
