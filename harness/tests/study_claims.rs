@@ -140,7 +140,7 @@ fn what_stands_in_for_a_strategy_is_named_and_does_not_decide() {
     let mut done = study("few", folder.path());
     for record in done.results.values_mut().flat_map(|results| &mut results.records) {
         if record.strategy == "G/20x20x20" {
-            record.strategy += "/supports";
+            record.strategy = format!("{}/supports", record.strategy).into();
         }
     }
     let page = write(&done).page;

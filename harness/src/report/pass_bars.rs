@@ -46,16 +46,15 @@ pub(crate) fn spread(counted: Counted, records: &[&Record]) -> f64 {
     if ratio > 1.0 { ratio } else { 1.0 }
 }
 
-/// A bar per record and a segment per pass. `class` gives the colour of a record's strategy.
+/// A bar per record and a segment per pass.
 pub(crate) fn pass_bars(
     title: String,
     scale: Scale,
     counted: Counted,
     records: &[&Record],
     colours: &Colours<'_>,
-    class: impl Fn(&Record) -> String,
 ) -> BarChart {
-    let bar = |record: &&Record| BarRow { class: class(record), ..bar(record, counted, colours) };
+    let bar = |record: &&Record| bar(record, counted, colours);
     let axis = Axis { label: counted.label().to_owned(), unit: "ms".to_owned(), scale };
     let note = match scale {
         Scale::Log => {
@@ -95,8 +94,8 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
         false => "not measured".to_owned(),
     };
     BarRow {
-        name: record.strategy.clone(),
-        class: String::new(),
+        name: record.strategy.to_string(),
+        class: record.strategy.class(),
         tip: format!("{}: {value_text}{lines}", record.strategy),
         segments,
         value_text,

@@ -13,7 +13,6 @@ use super::{
 use crate::{
     bench::Bench,
     checks::check_options,
-    choice::choices,
     cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, TruthArgs},
     compare::compare_on,
     deep_image_run::measure,
@@ -173,7 +172,7 @@ impl Job {
     /// Whether its command would be understood.
     fn check(&self) -> Result<(), CliError> {
         let checked = self.asked(Path::new("")).and_then(|asked| match asked {
-            Asked::Compare(args) => check_options(&args, &choices(&args)?),
+            Asked::Compare(args) => check_options(&args, &args.choices()?),
             Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
         });
         checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))

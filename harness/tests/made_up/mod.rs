@@ -186,9 +186,9 @@ impl Maker {
             for record in &mut records {
                 let id = &record.strategy;
                 record.strategy = if id.contains("-I") {
-                    id.replacen("-I", "-E", 1)
+                    id.replacen("-I", "-E", 1).into()
                 } else {
-                    id.replacen("-E", "-I", 1)
+                    id.replacen("-E", "-I", 1).into()
                 };
                 // Even the depth pre-pass does not raise their offset then.
                 record.times.passes.insert("depth", PassTimes::new(PassKind::Scene, vec![0.01; 8]));
@@ -208,9 +208,7 @@ impl Maker {
         };
         let make = |union: &&str| {
             let (assign, shade) = times(union);
-            let mut record = record(&format!("{family}/{union}"), Mode::Deferred, assign, shade);
-            record.strategy_parameters.insert("tests".into(), (*union).into());
-            record
+            record(&format!("{family}/{union}"), Mode::Deferred, assign, shade)
         };
         ["hs", "hs+sat-n", "hs+sat-v", "hs+sat-e+sat-p+sat-v"].iter().map(make).collect()
     }
@@ -322,7 +320,7 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     for (section, lights) in [("growing", 30_000), ("constant", 30_000)] {
         let mut records = maker.all(lights);
         for record in &mut records {
-            record.strategy += "/bvh";
+            record.strategy = format!("{}/bvh", record.strategy).into();
         }
         maker.add(section, "30000", records);
     }
@@ -336,7 +334,7 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     maker.add("caps", "all", maker.caps(folder));
     let mut reuse = maker.path(10_000, 40, 1);
     for (record, error) in reuse.iter_mut().zip([0.1, 0.2, 0.3]) {
-        record.strategy += "/reuse2";
+        record.strategy = format!("{}/reuse2", record.strategy).into();
         record.is_lossy = true;
         record.image.errors.insert("rel_mse".into(), Some(error));
     }

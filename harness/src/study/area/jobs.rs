@@ -11,7 +11,7 @@ use crate::{
     bench::Bench,
     cli::{Size, StudyArgs},
     error::HarnessError,
-    results::BASELINE,
+    strategy::BASELINE,
 };
 
 /// The section whose records list area lights by their outlines and by balls around them.

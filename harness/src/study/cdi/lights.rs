@@ -8,11 +8,11 @@ pub(crate) const METRIC: &str = "mean_error";
 
 /// Rules of ranges, in the order of their colours, and what each is.
 pub(crate) const RULES: [(&str, &str, &str); 6] = [
-    ("average", "strategy-0", "rays, average"),
-    ("maximum", "strategy-1", "rays, maximum"),
-    ("random", "strategy-3", "random"),
-    ("random-discard", "strategy-4", "random, without lights whose rays hit nothing"),
-    ("constant-discard", "strategy-6", "constant, without lights whose rays hit nothing"),
+    ("average", "series-0", "rays, average"),
+    ("maximum", "series-1", "rays, maximum"),
+    ("random", "series-3", "random"),
+    ("random-discard", "series-4", "random, without lights whose rays hit nothing"),
+    ("constant-discard", "series-6", "constant, without lights whose rays hit nothing"),
     ("infinite", "strategy-none", "infinite"),
 ];
 

@@ -129,7 +129,8 @@ impl Plan<'_> {
     /// Every strategy from the still camera, with pictures: an example, and the rate of no culling.
     fn example(&mut self) {
         let frames = self.extent.frames.to_string();
-        let options = ["--strategies", self.extent.main, "--frames", &frames, "--pictures", "all"];
+        let strategies = self.extent.main();
+        let options = ["--strategies", &strategies, "--frames", &frames, "--pictures", "all"];
         self.add("main", &[], self.extent.most, &options);
     }
 
@@ -137,14 +138,14 @@ impl Plan<'_> {
     /// lights that they are reported for.
     fn searches(&mut self) {
         let (most, poses) = (self.extent.most, self.extent.search_poses);
-        for (family, sizes) in self.extent.linear_sizes {
+        for (family, sizes) in self.extent.linear_sizes.sizes() {
             let ids: Vec<String> = sizes.iter().map(|size| format!("{family}/{size}")).collect();
-            self.add_along("sizes", &[("family", *family)], most, poses, &ids.join(","));
+            self.add_along("sizes", &[("family", family)], most, poses, &ids.join(","));
         }
-        for (family, sizes) in self.extent.bvh_sizes {
+        for (family, sizes) in self.extent.bvh_sizes.sizes() {
             let ids: Vec<String> =
                 sizes.iter().map(|size| format!("{family}/{size}/bvh")).collect();
-            let varied = [("family", *family), ("source", "bvh")];
+            let varied = [("family", family), ("source", "bvh")];
             self.add_along("sizes", &varied, most, poses, &ids.join(","));
         }
         for family in self.extent.tested {
@@ -158,7 +159,7 @@ impl Plan<'_> {
     fn views(&mut self, views: Option<Views>) {
         let Some(views) = views else { return };
         let frames = self.extent.frames.to_string();
-        let strategies = format!("None,{}", self.extent.views);
+        let strategies = format!("None,{}", self.extent.views());
         for (name, frame) in [("low", views.low), ("high", views.high)] {
             let camera = format!("path:{frame}/{}", views.count);
             let options = ["--strategies", &strategies, "--camera", &camera, "--frames", &frames];
@@ -172,10 +173,10 @@ impl Plan<'_> {
         for (ix, &count) in self.extent.counts.iter().enumerate() {
             let is_most = ix + 1 == self.extent.counts.len();
             let (poses, ids) = match is_most {
-                true => (self.extent.rank_poses[1], self.extent.ranked_at_most),
-                false => (self.extent.rank_poses[0], self.extent.ranked),
+                true => (self.extent.rank_poses[1], self.extent.ranked_at_most()),
+                false => (self.extent.rank_poses[0], self.extent.ranked.to_owned()),
             };
-            self.add_along("path", &[], count, poses, ids);
+            self.add_along("path", &[], count, poses, &ids);
             if !self.extent.slow.is_empty() {
                 let (poses, ids) = (self.extent.slow_poses, self.extent.slow);
                 let lights = count.to_string();

@@ -10,7 +10,7 @@ use crate::results::Record;
 use crate::study::data::{Entry, counts, entries, lines};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, name, table, unit};
-use crate::study::page::lines::{fit, points};
+use crate::study::page::lines::{fit, times_series};
 use crate::study::page::part::Part;
 
 /// The sections of the study: how pixels are lit.
@@ -53,7 +53,7 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
                 },
                 series: lines(&all)
                     .iter()
-                    .map(|(id, records)| points(id, records, frame, Marks::LineAndPoints))
+                    .map(|(id, records)| times_series(id, records, frame, Marks::LineAndPoints))
                     .collect(),
                 note: String::new(),
             };

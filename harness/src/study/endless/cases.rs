@@ -1,8 +1,11 @@
 //! What a study of polygon lights measured, by place, number of lights and setting, and what the paper
 //! measured.
 
+use assign_clustered::SpecularCut;
+
 use crate::results::{Operations, Record};
-use crate::study::data::{Entry, entries, parameters};
+use crate::strategy::{Role, StrategyId};
+use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 
 /// The places of the camera: their sections, and what the page calls them.
@@ -20,49 +23,44 @@ pub(crate) const RULED: (&str, &str) =
 pub(crate) const USUAL: &str = "48x48x40";
 
 /// What specular light a setting leaves out on purpose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cut<'a> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cut {
     /// None.
     None,
     /// What stays below a radiance.
-    Below(&'a str),
+    Below(f32),
     /// What the paper's cone test does not pass, with a lobe of so many degrees.
-    ConeTest(&'a str),
+    ConeTest(f32),
     /// All beyond the reach of diffuse light: the paper's `dif`.
     Diffuse,
 }
 
 /// A setting, read from its id.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Setting<'a> {
     /// The clusters: `48x48x40`; empty where there are none.
     pub(crate) grid: &'a str,
     /// Normal cones that a cluster is split by; `None` where lights are assigned by position alone.
     pub(crate) cones: Option<u32>,
-    pub(crate) cut: Cut<'a>,
+    pub(crate) cut: Cut,
     /// Whether shading leaves out, at each sample, what adds nothing there.
     pub(crate) exits: bool,
 }
 
 impl<'a> Setting<'a> {
-    pub(crate) fn of(id: &'a str) -> Self {
-        let mut setting = Self { grid: parameters(id), cones: None, cut: Cut::None, exits: true };
-        for segment in id.split('/').skip(1) {
-            let number =
-                |word| segment.strip_prefix(word).filter(|rest: &&str| rest.parse::<f64>().is_ok());
-            if let Some(cones) = number("n") {
-                setting.cones = cones.parse().ok();
-            } else if let Some(degrees) = number("cone") {
-                setting.cut = Cut::ConeTest(degrees);
-            } else if let Some(radiance) = number("s") {
-                setting.cut = Cut::Below(radiance);
-            } else if segment == "dif" {
-                setting.cut = Cut::Diffuse;
-            } else if segment == "no-exit" {
-                setting.exits = false;
-            }
+    pub(crate) fn of(id: &'a StrategyId) -> Self {
+        let options = id.options();
+        Self {
+            grid: id.size(),
+            cones: options.normals.is_some().then(|| options.normals.bins()),
+            cut: match options.specular {
+                SpecularCut::None => Cut::None,
+                SpecularCut::Below(radiance) => Cut::Below(radiance),
+                SpecularCut::ReflectedCone(degrees) => Cut::ConeTest(degrees),
+                SpecularCut::WhereDiffuse => Cut::Diffuse,
+            },
+            exits: !options.evaluates_all,
         }
-        setting
     }
 
     /// Whether its number of cones is one of the paper's: 6, 24 or 54, or none, by position.
@@ -77,8 +75,8 @@ impl<'a> Setting<'a> {
 }
 
 /// `position`, `54 cones`, `54 cones, cut 0.01`, `6 cones, 45° test, 80x80x24, no early exit`.
-pub(crate) fn setting(id: &str) -> String {
-    if id == crate::results::BASELINE {
+pub(crate) fn setting(id: &StrategyId) -> String {
+    if id.role() == Some(Role::Baseline) {
         return "no culling".to_owned();
     }
     let setting = Setting::of(id);
@@ -257,20 +255,25 @@ mod tests {
 
     #[test]
     fn settings_are_read_from_ids() {
-        let id = "SC-E/48x48x40/bvh/n54/s0.001";
-        let read = Setting::of(id);
-        assert_eq!((read.cones, read.cut), (Some(54), Cut::Below("0.001")));
-        assert_eq!(setting(id), "54 cones, cut 0.001");
-        let plain = "SC-E/48x48x40/bvh";
+        let id = StrategyId::read;
+        let cut = id("SC-E/48x48x40/bvh/n54/s0.001");
+        let read = Setting::of(&cut);
+        assert_eq!((read.cones, read.cut), (Some(54), Cut::Below(0.001)));
+        assert_eq!(setting(&cut), "54 cones, cut 0.001");
+        let plain = id("SC-E/48x48x40/bvh");
         let expected = Setting { grid: "48x48x40", cones: None, cut: Cut::None, exits: true };
-        assert_eq!(Setting::of(plain), expected);
-        assert_eq!((setting(plain).as_str(), setting("None").as_str()), ("position", "no culling"));
-        assert_eq!(setting("SC-E/48x48x40/n1"), "1 cone");
-        let published = "SC-E/80x80x24/n6/cone45/bvh/no-exit";
-        assert_eq!(setting(published), "6 cones, 45\u{b0} test, 80x80x24, no early exit");
-        assert_eq!(setting("SC-E/48x48x40/dif/bvh"), "diffuse reach");
-        assert!(Setting::of(published).is_of_the_paper() && Setting::of(plain).is_of_the_paper());
-        assert!(!Setting::of("SC-E/48x48x40/n1").is_of_the_paper(), "the paper has no one cone");
+        assert_eq!(Setting::of(&plain), expected);
+        assert_eq!(
+            (setting(&plain).as_str(), setting(&id("None")).as_str()),
+            ("position", "no culling")
+        );
+        assert_eq!(setting(&id("SC-E/48x48x40/n1")), "1 cone");
+        let published = id("SC-E/80x80x24/n6/cone45/bvh/no-exit");
+        assert_eq!(setting(&published), "6 cones, 45\u{b0} test, 80x80x24, no early exit");
+        assert_eq!(setting(&id("SC-E/48x48x40/dif/bvh")), "diffuse reach");
+        assert!(Setting::of(&published).is_of_the_paper() && Setting::of(&plain).is_of_the_paper());
+        let one = id("SC-E/48x48x40/n1");
+        assert!(!Setting::of(&one).is_of_the_paper(), "the paper has no one cone");
     }
 
     #[test]
@@ -280,7 +283,9 @@ mod tests {
             assert_eq!(PAPER.iter().position(|other| same(&other)), Some(ix));
         }
         // 54 cones leave out four fifths of what 23,043,487 outer operations are by position.
-        let listed = |id| paper("a", 126, &Setting::of(id)).and_then(|row| row.listed).unwrap();
+        let listed = |id| {
+            paper("a", 126, &Setting::of(&StrategyId::read(id))).and_then(|row| row.listed).unwrap()
+        };
         let [position, cones, inner] =
             ["SC-E/48x48x40", "SC-E/48x48x40/n54/cone45", "SC-E/48x48x40/dif"].map(listed);
         let share = (cones - inner) as f64 / (position - inner) as f64;

@@ -5,7 +5,6 @@ use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
 use crate::report::format::significant;
 use crate::report::markup::Html;
 use crate::results::{Operations, Record};
-use crate::study::data::class;
 use crate::study::endless::cases::{Case, seen, setting};
 use crate::study::page::figure::Charts;
 
@@ -81,7 +80,7 @@ fn counted(
             class: String::new(),
             segments: vec![Segment {
                 name: label.to_owned(),
-                class: class(&record.strategy),
+                class: record.strategy.class(),
                 value,
             }],
             value_text: format!("{} {unit}", significant(value)).trim_end().to_owned(),

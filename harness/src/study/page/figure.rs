@@ -3,7 +3,7 @@
 use crate::chart::{BarChart, Histogram, XyChart, histograms_svg, histograms_svg_file};
 use crate::report::markup::{Html, html, with_names_whole};
 use crate::report::panels::{self, Panel};
-use crate::study::data::class;
+use crate::strategy::StrategyId;
 
 /// The charts of a page: each is drawn twice, for the page and for a file of its own.
 #[derive(Default)]
@@ -107,5 +107,5 @@ pub(crate) fn dotted(class: &str, name: impl Into<Html>) -> Html {
 
 /// A strategy's name with the dot of its colour.
 pub(crate) fn name(id: &str) -> Html {
-    dotted(&class(id), with_names_whole(id))
+    dotted(&StrategyId::read(id).class(), with_names_whole(id))
 }

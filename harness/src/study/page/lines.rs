@@ -4,7 +4,7 @@ use crate::chart::{Marks, Point, Series};
 use crate::report::fit::Fit;
 use crate::report::format::{number, significant};
 use crate::results::Record;
-use crate::study::data::{class, short};
+use crate::strategy::StrategyId;
 
 /// A time of a record, ms.
 pub(crate) type Time = fn(&Record) -> f64;
@@ -17,7 +17,18 @@ pub(crate) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
 }
 
 /// A strategy's times against its lights.
-pub(crate) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) -> Series {
+pub(crate) fn times_series(
+    id: &StrategyId,
+    records: &[&Record],
+    time: Time,
+    marks: Marks,
+) -> Series {
+    let points = points(id, records, time);
+    Series { name: id.short(), class: id.class(), marks, points, ..Series::default() }
+}
+
+/// Times against lights, with the name of what took them.
+pub(crate) fn points(name: &str, records: &[&Record], time: Time) -> Vec<Point> {
     let point = |record: &&Record| {
         let y = time(record);
         let lights = number(record.setting.lights as f64);
@@ -25,10 +36,9 @@ pub(crate) fn points(id: &str, records: &[&Record], time: Time, marks: Marks) ->
             x: record.setting.lights as f64,
             y,
             y_range: record.interval_ms().map(|interval| [interval.low, interval.high]),
-            tip: format!("{id}\n{lights} lights\n{} ms", significant(y)),
+            tip: format!("{name}\n{lights} lights\n{} ms", significant(y)),
             ..Point::default()
         }
     };
-    let points = records.iter().map(point).collect();
-    Series { name: short(id), class: class(id), marks, points, ..Series::default() }
+    records.iter().map(point).collect()
 }

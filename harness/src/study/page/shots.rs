@@ -95,15 +95,15 @@ impl<'a> Shots<'a> {
                 (self.linear(&job.name, &truth.raw, truth.exposure), None, "truth")
             }
         };
-        let key = format!("{}:{}", job.name, record.strategy);
+        let key = format!("{}:{text}:{}", job.name, record.strategy);
         let errors = match wanted {
             Wanted::Pair => &record.image.errors,
             Wanted::Unbounded => &record.image.unbounded_errors,
             Wanted::Truth => &record.image.truth_errors,
         };
         let name = match wanted {
-            Wanted::Truth => record.setting.area_model.as_ref().unwrap_or(&record.strategy),
-            _ => &record.strategy,
+            Wanted::Truth => record.setting.area_model.as_deref().unwrap_or(&record.strategy),
+            _ => record.strategy.as_str(),
         };
         let pair = PicturePair {
             scene: &record.setting.scene,

@@ -1,13 +1,16 @@
 //! Claims of the engine paper on bounds and on errors: samples, and the most representative point.
 
+use assign::AreaBounds;
+
 use crate::report::format::{difference, percent, significant};
 use crate::report::rank::Ratio;
 use crate::results::Record;
+use crate::strategy::Options;
 use crate::study::against_truth::MODELS;
 use crate::study::area::jobs::BOUNDS;
 use crate::study::area::page::models::model;
 use crate::study::claims::{Answer, Check, Verdict};
-use crate::study::data::{entries, short};
+use crate::study::data::entries;
 use crate::study::manifest::Done;
 
 /// The record of a model in the view of the truth.
@@ -50,18 +53,22 @@ pub(crate) const BALLS: Check = Check {
         let all = entries(done, scene, BOUNDS);
         let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
         for ball in all.iter().map(|entry| entry.record) {
-            let Some(id) = ball.strategy.strip_suffix("/ball") else { continue };
+            let by_outline = |options: &mut Options| options.area_bounds = AreaBounds::Outline;
+            let Ok(id) = ball.strategy.with(by_outline) else { continue };
+            if id == ball.strategy {
+                continue;
+            }
             let outline = all.iter().map(|entry| entry.record).find(|r| r.strategy == id);
             let Some(outline) = outline.filter(|record| record.lists.entries > 0) else { continue };
             count += 1;
             good += usize::from(ball.lists.entries > outline.lists.entries);
-            let time = Ratio::of(ball, outline).map_or_else(String::new, |ratio| {
+            let time = Ratio::between(ball, outline).map_or_else(String::new, |ratio| {
                 let tie = if ratio.is_tie() { " (a tie)" } else { "" };
                 format!(", \u{d7} {} in assign + shade{tie}", significant(ratio.median))
             });
             figures.push(format!(
                 "{} by spheres: \u{d7} {} list entries{time}",
-                short(id),
+                outline.strategy.short(),
                 significant(ball.lists.entries as f64 / outline.lists.entries as f64)
             ));
         }

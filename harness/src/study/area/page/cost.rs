@@ -6,7 +6,7 @@ use crate::report::format::{ABSENT, significant};
 use crate::report::markup::{Html, html};
 use crate::results::Record;
 use crate::study::area::page::models::{SPOTS, class, model, name};
-use crate::study::data::{Line, counts, entries};
+use crate::study::data::{counts, entries};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, table, unit};
 use crate::study::page::lines::{fit, points};
@@ -16,9 +16,12 @@ fn shade(record: &Record) -> f64 {
     record.times.shade_ms
 }
 
-/// The records of each model, with its name, in the order of their lights.
-fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<Line<'a>> {
-    let mut lines: Vec<Line<'a>> = Vec::new();
+/// The records of one model, with its name.
+type ModelLine<'a> = (&'a str, Vec<&'a Record>);
+
+/// The records of each model, in the order of their lights.
+fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<ModelLine<'a>> {
+    let mut lines: Vec<ModelLine<'a>> = Vec::new();
     for entry in entries(done, scene, "cost") {
         let own = model(entry.record);
         match lines.iter_mut().find(|(known, _)| *known == own) {
@@ -38,10 +41,12 @@ pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part
     if lines.is_empty() {
         return None;
     }
-    let series = |(own, records): &Line<'_>| Series {
-        name: (*own).to_owned(),
-        class: class(own),
-        ..points(own, records, shade, Marks::LineAndPoints)
+    let series = |(model, records): &ModelLine<'_>| Series {
+        name: (*model).to_owned(),
+        class: class(model),
+        marks: Marks::LineAndPoints,
+        points: points(model, records, shade),
+        ..Series::default()
     };
     let chart = XyChart {
         title: "Shading time against lights, by model".to_owned(),
@@ -62,7 +67,7 @@ pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part
     ))
 }
 
-fn times(done: &Done, scene: &str, lines: &[Line<'_>]) -> Html {
+fn times(done: &Done, scene: &str, lines: &[ModelLine<'_>]) -> Html {
     let counts = counts(&entries(done, scene, "cost"));
     let spots = lines.iter().find(|(own, _)| *own == SPOTS).map(|(_, records)| records);
     let at = |records: &[&Record], count: u64| {

@@ -32,66 +32,66 @@ struct Family {
 const FAMILIES: [Family; 11] = [
     Family {
         id: "point",
-        class: "strategy-0",
+        class: "series-0",
         about: "All light comes from the emitter\u{2019}s middle. Highlights lose the outline, \
                 surfaces near a large emitter are too bright, and light ends abruptly where the \
                 middle sets.",
     },
     Family {
         id: "mrp",
-        class: "strategy-1",
+        class: "series-1",
         about: "One point stands for the emitter in each term, so highlights keep the outline. The \
                 cosine and the lobe are greater at that point than on average over the emitter, \
                 so the image is too bright.",
     },
     Family {
         id: "mrp-published",
-        class: "strategy-5",
+        class: "series-5",
         about: "The same points with the paper\u{2019}s weights. Specular light is missing where \
                 the cone around the mirror direction misses the emitter. Smooth surfaces get far \
                 too much of it.",
     },
     Family {
         id: "ltc",
-        class: "strategy-2",
+        class: "series-2",
         about: "A transformed cosine replaces the BRDF\u{2019}s lobe, and its integral is exact. \
                 There is no noise. The error is that of the fit, greatest at grazing views.",
     },
     Family {
         id: "ltc-hammon",
-        class: "strategy-6",
+        class: "series-6",
         about: "The same with a table fitted to an approximation of the BRDF that engines use.",
     },
     Family {
         id: "ltc-unsplit",
-        class: "strategy-8",
+        class: "series-8",
         about: "The same without splitting long edges. Noise shows where an edge spans nearly half \
                 the sphere.",
     },
     Family {
         id: "ltc-per-light",
-        class: "strategy-2",
+        class: "series-2",
         about: "The image equals that of ltc; each light looks up the lobe again.",
     },
     Family {
         id: "ltc-polynomial",
-        class: "strategy-3",
+        class: "series-3",
         about: "The same with polynomials instead of the table, which adds the error of their fit.",
     },
     Family {
         id: "ltc-polynomial-per-light",
-        class: "strategy-3",
+        class: "series-3",
         about: "The image equals that of ltc-polynomial; each light evaluates the polynomials \
                 again.",
     },
     Family {
         id: "monte-carlo",
-        class: "strategy-4",
+        class: "series-4",
         about: "Correct on average but noisy. Highlights on smooth surfaces need the most samples.",
     },
     Family {
         id: "monte-carlo-reflected",
-        class: "strategy-7",
+        class: "series-7",
         about: "Specular samples lie where the surface mirrors the emitter. Noise falls, but \
                 specular light from elsewhere is missing.",
     },

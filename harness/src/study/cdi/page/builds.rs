@@ -32,10 +32,10 @@ fn is_plain(run: &DeepImageRun, first: &DeepImageRun) -> bool {
 
 /// Builds that are charted against the number of directions: id, name, class.
 const BUILDS: [(&str, &str, &str); 4] = [
-    ("compute", "one pass, compute", "strategy-0"),
-    ("fragment", "one pass, rasterised", "strategy-1"),
-    ("per-direction", "a dispatch per direction", "strategy-2"),
-    ("per-direction-batched", "per direction, one dispatch", "strategy-5"),
+    ("compute", "one pass, compute", "series-0"),
+    ("fragment", "one pass, rasterised", "series-1"),
+    ("per-direction", "a dispatch per direction", "series-2"),
+    ("per-direction-batched", "per direction, one dispatch", "series-5"),
 ];
 
 /// Times, factors and memory.
@@ -160,9 +160,9 @@ pub(crate) fn cast_chart(arrays: &[&CastTimes], linked: &[&CastTimes]) -> XyChar
             ..Series::default()
         };
     let series = vec![
-        line(arrays, "rays through arrays", "strategy-0", |cast| &cast.cast_ms),
-        line(arrays, "random ranges", "strategy-3", |cast| &cast.random_ms),
-        line(linked, "rays through linked lists", "strategy-2", |cast| &cast.cast_ms),
+        line(arrays, "rays through arrays", "series-0", |cast| &cast.cast_ms),
+        line(arrays, "random ranges", "series-3", |cast| &cast.random_ms),
+        line(linked, "rays through linked lists", "series-2", |cast| &cast.cast_ms),
     ];
     let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
     XyChart {

@@ -40,7 +40,7 @@ fn series(record: &Record) -> String {
 fn class(record: &Record) -> String {
     let is_cast = |vpls: &Vpls| vpls.rays > 0 && !jobs::is_usual(vpls);
     if record.setting.vpls.as_ref().is_some_and(is_cast) {
-        return "strategy-5".to_owned();
+        return "series-5".to_owned();
     }
     RULES
         .iter()

@@ -78,9 +78,9 @@ fn chart(
         ..Series::default()
     };
     let series = vec![
-        line("median of rays", "strategy-0", RangeErrors::median),
-        line("90 % of rays", "strategy-1", |errors| quantile(errors, 0.9)),
-        line("median of lights\u{2019} ranges", "strategy-2", |errors| errors.median_range_error),
+        line("median of rays", "series-0", RangeErrors::median),
+        line("90 % of rays", "series-1", |errors| quantile(errors, 0.9)),
+        line("median of lights\u{2019} ranges", "series-2", |errors| errors.median_range_error),
     ];
     XyChart {
         title: title.to_owned(),
@@ -113,7 +113,7 @@ fn histogram((run, errors): &(&DeepImageRun, &RangeErrors)) -> Histogram {
         title: format!("{} directions", run.deep.directions()),
         x_label: "Error, footprints".to_owned(),
         bins,
-        class: "strategy-0".to_owned(),
+        class: "series-0".to_owned(),
         note: format!("median {}", significant(errors.median())),
     }
 }

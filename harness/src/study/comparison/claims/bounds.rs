@@ -7,7 +7,7 @@ use crate::report::raster::MARK;
 use crate::results::Record;
 use crate::study::claims::Answer;
 use crate::study::claims::order::Order;
-use crate::study::data::{Entry, entries, family, is_bvh, is_of_the_paper, lines, stand_in};
+use crate::study::data::{Entry, entries, is_of_the_paper, lines};
 use crate::study::manifest::Done;
 use crate::study::page::lines::fit;
 
@@ -22,7 +22,7 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
     let lines = lines(&scaling);
     let of = |wanted: String, bvh: bool| {
         let (_, records) =
-            lines.iter().find(|(id, _)| family(id) == wanted && is_bvh(id) == bvh)?;
+            lines.iter().find(|(id, _)| id.family() == wanted && id.is_bvh() == bvh)?;
         let fit = |time| fit(records, time).filter(|fit: &Fit| fit.points > 2);
         Some((fit(Record::with_depth_ms)?, fit(Record::assign_and_shade_ms)?))
     };
@@ -65,8 +65,8 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
     }
     let mut notes: Vec<String> = lines
         .iter()
-        .filter(|(id, _)| family(id) == "T-I")
-        .filter_map(|(id, _)| Some(format!("with {}", stand_in(id)?)))
+        .filter(|(id, _)| id.family() == "T-I")
+        .filter_map(|(id, _)| Some(format!("with {}", id.stand_in()?)))
         .collect();
     notes.dedup();
     let verdict = pairs.verdict().qualified(&notes);

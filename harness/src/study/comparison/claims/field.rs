@@ -5,9 +5,7 @@ use crate::results::Record;
 use crate::study::claims::Answer;
 use crate::study::claims::order::Order;
 use crate::study::comparison::claims::pairs::{Member, Pairs};
-use crate::study::data::{
-    Entry, counts, family, is_near, is_of_the_paper, nearest_count, ranking, short, stand, stand_in,
-};
+use crate::study::data::{Entry, counts, is_near, is_of_the_paper, nearest_count, ranking, stand};
 use crate::study::manifest::Done;
 
 /// Records of the paper's strategies under the same lights, exact ones only.
@@ -34,18 +32,18 @@ impl<'a> Field<'a> {
         let own = all.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
         let mut records: Vec<&Record> = own.collect();
         // The paper's own strategy comes before what stands in for it.
-        records.sort_by_key(|record| stand_in(&record.strategy).is_some());
+        records.sort_by_key(|record| record.strategy.stand_in().is_some());
         Ok(Self { lights, records })
     }
 
     /// The record of a family.
     pub(crate) fn of(&self, name: &str) -> Option<&'a Record> {
-        self.records.iter().copied().find(|record| family(&record.strategy) == name)
+        self.records.iter().copied().find(|record| record.strategy.family() == name)
     }
 
     /// What was measured of a family.
     pub(crate) fn member(&self, name: &str) -> Member {
-        Member::of(self.of(name).map(|record| record.strategy.as_str()))
+        Member::of(self.of(name).map(|record| &record.strategy))
     }
 
     /// `at 10,000 lights, means of 240 poses`; poses of single strategies stand beside them.
@@ -61,7 +59,7 @@ impl<'a> Field<'a> {
         let mut all: Vec<&Record> = families.iter().filter_map(|name| self.of(name)).collect();
         all.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
         let time = |record: &&Record| {
-            format!("{} {}", short(&record.strategy), significant(record.assign_and_shade_ms()))
+            format!("{} {}", record.strategy.short(), significant(record.assign_and_shade_ms()))
         };
         all.iter().map(time).collect::<Vec<_>>().join(", ") + " ms"
     }

@@ -4,13 +4,12 @@ use crate::report::fit::Fit;
 use crate::report::format::{number, percent, significant};
 use crate::report::rank::listed;
 use crate::results::Record;
+use crate::strategy::StrategyId;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
 use crate::study::comparison::page::scaling::{Straight, straight};
-use crate::study::data::{
-    Entry, entries, family, is_of_the_paper, lines, poses, short, stand, stand_in,
-};
+use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, poses, stand};
 use crate::study::manifest::Done;
 use crate::study::page::lines::{Time, fit};
 
@@ -18,7 +17,7 @@ use crate::study::page::lines::{Time, fit};
 const RANGE: [u64; 2] = [100, 10_000];
 
 /// The records of the paper's strategies over counts of lights, within the paper's range.
-fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<(&'a str, Vec<&'a Record>)> {
+fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<Line<'a>> {
     let scaling: Vec<Entry<'_>> = entries(done, scene, "scaling")
         .into_iter()
         .filter(|entry| is_of_the_paper(entry.record) && entry.record.setting.lights <= most)
@@ -26,11 +25,11 @@ fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<(&'a str, Vec<&'a
     let mut lines = lines(&scaling);
     lines.retain(|(_, records)| records.len() > 2);
     // The paper's own strategy comes before what stands in for it.
-    lines.sort_by_key(|(id, _)| stand_in(id).is_some());
+    lines.sort_by_key(|(id, _)| id.stand_in().is_some());
     lines
 }
 
-fn basis(lines: &[(&str, Vec<&Record>)]) -> String {
+fn basis(lines: &[Line<'_>]) -> String {
     let records = || lines.iter().flat_map(|(_, records)| records.iter());
     let low = records().map(|record| record.setting.lights).min().unwrap_or(0);
     let high = records().map(|record| record.setting.lights).max().unwrap_or(0);
@@ -62,14 +61,14 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
 /// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
 /// 30,000`. Both distances are of `records`, those of the paper's range.
 fn straightness(
-    id: &str,
+    id: &StrategyId,
     within: &Straight,
     whole: Option<Straight>,
     records: &[&Record],
 ) -> String {
     let mut text = format!(
         "{} off its line by {} % at most, at {}",
-        short(id),
+        id.short(),
         percent(within.worst),
         number(within.at as f64)
     );
@@ -91,13 +90,13 @@ fn straightness(
 /// The time of each strategy that a claim is about, as a line.
 struct Slopes<'a> {
     basis: String,
-    all: Vec<(&'a str, Fit)>,
+    all: Vec<(&'a StrategyId, Fit)>,
 }
 
 impl<'a> Slopes<'a> {
     fn of(done: &'a Done, scene: &'a str, time: Time) -> Result<Self, Answer> {
         let lines = grown(done, scene, RANGE[1]);
-        let all: Vec<(&str, Fit)> =
+        let all: Vec<(&StrategyId, Fit)> =
             lines.iter().filter_map(|(id, records)| Some((*id, fit(records, time)?))).collect();
         match all.is_empty() {
             true => Err(Answer::unknown("scaling over three counts of lights")),
@@ -105,8 +104,8 @@ impl<'a> Slopes<'a> {
         }
     }
 
-    fn of_family(&self, name: &str) -> Option<&(&'a str, Fit)> {
-        self.all.iter().find(|(id, _)| family(id) == name)
+    fn of_family(&self, name: &str) -> Option<&(&'a StrategyId, Fit)> {
+        self.all.iter().find(|(id, _)| id.family() == name)
     }
 
     fn fit(&self, name: &str) -> Option<&Fit> {
@@ -115,12 +114,12 @@ impl<'a> Slopes<'a> {
 
     /// What stands in for one of some strategies.
     fn stand_in(&self, names: &[&str]) -> Option<&'static str> {
-        names.iter().find_map(|name| stand_in(self.of_family(name)?.0))
+        names.iter().find_map(|name| self.of_family(name)?.0.stand_in())
     }
 
     fn ascending(&self, names: &[&str], of: fn(&Fit) -> f64) -> String {
         let own = names.iter().filter_map(|name| self.of_family(name));
-        let mut all: Vec<(String, f64)> = own.map(|(id, fit)| (short(id), of(fit))).collect();
+        let mut all: Vec<(String, f64)> = own.map(|(id, fit)| (id.short(), of(fit))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let said = all.iter().map(|(name, figure)| format!("{name} {}", significant(*figure)));
         said.collect::<Vec<_>>().join(", ")
@@ -188,7 +187,7 @@ pub(crate) fn shading_dominates(done: &Done, scene: &str) -> Answer {
     let (mut pairs, mut figures, mut faster) = (Pairs::default(), Vec::new(), Vec::new());
     for (id, of_assign) in &assign.all {
         let Some((_, of_shade)) = shade.all.iter().find(|(known, _)| known == id) else { continue };
-        let name = short(id);
+        let name = id.short();
         let order = Order::of_fits(of_assign.slope, of_shade.slope);
         pairs.add("assignment", "shading", order);
         if order == Order::More {

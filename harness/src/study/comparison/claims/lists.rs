@@ -5,10 +5,7 @@ use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::page::views::is_low;
-use crate::study::data::{
-    Entry, counts, entries, family, is_bvh, is_of_the_paper, nearest_count, ranking, short, stand,
-    stand_in,
-};
+use crate::study::data::{Entry, counts, entries, is_of_the_paper, nearest_count, ranking, stand};
 use crate::study::manifest::Done;
 
 /// Below this growth of T-E's lists the two views are too alike to tell anything.
@@ -34,7 +31,7 @@ fn in_both<'a>(done: &'a Done, scene: &'a str, name: &str) -> Option<[&'a Record
     let of = |low: bool| {
         let own = |entry: &&Entry<'_>| {
             let id = &entry.record.strategy;
-            is_low(entry) == low && family(id) == name && is_of_the_paper(entry.record)
+            is_low(entry) == low && id.family() == name && is_of_the_paper(entry.record)
         };
         views.iter().find(own).map(|entry| entry.record)
     };
@@ -101,7 +98,7 @@ pub(crate) fn view_free(done: &Done, scene: &str) -> Answer {
             good += usize::from(change <= SAME);
         }
         let entries = [low, high].map(|record| number(record.lists.entries as f64));
-        figures.push(format!("{} {} and {}", short(&low.strategy), entries[0], entries[1]));
+        figures.push(format!("{} {} and {}", low.strategy.short(), entries[0], entries[1]));
     }
     if all == 0 {
         return Answer::unknown("lists of G and M in two views");
@@ -124,14 +121,14 @@ impl<'a> Models<'a> {
         let lights = nearest_count(&counts(&ranked), 10_000)?;
         let linear = |all: Vec<Entry<'a>>| -> Vec<&'a Record> {
             let records = all.into_iter().map(|entry| entry.record);
-            let own = records.filter(|r| r.setting.lights == lights && !is_bvh(&r.strategy));
+            let own = records.filter(|r| r.setting.lights == lights && !r.strategy.is_bvh());
             own.filter(|record| !record.is_lossy).collect()
         };
         Some(Self { lights, lists: linear(main), times: linear(ranked) })
     }
 
     fn of(records: &[&'a Record], name: &str) -> Option<&'a Record> {
-        records.iter().copied().find(|record| short(&record.strategy) == name)
+        records.iter().copied().find(|record| record.strategy.short() == name)
     }
 
     /// The time of a strategy: along the path where it was measured there.
@@ -193,7 +190,7 @@ pub(crate) fn subdivision(done: &Done, scene: &str) -> Answer {
         number(models.lights as f64),
         stand(parts),
         significant(ms[0]),
-        short(&grid.strategy),
+        grid.strategy.short(),
         significant(ms[1])
     );
     if ids > 0.0 {
@@ -202,7 +199,7 @@ pub(crate) fn subdivision(done: &Done, scene: &str) -> Answer {
             significant(ms[0] - ids)
         );
     }
-    let verdict = match (Order::of_times(parts, grid), stand_in(&grid.strategy)) {
+    let verdict = match (Order::of_times(parts, grid), grid.strategy.stand_in()) {
         (Order::Unsure, _) => Verdict::Differs("too few laps for so small a difference".to_owned()),
         (_, Some(what)) => Verdict::Differs(format!("with {what}")),
         (Order::Less | Order::Tie, None) => Verdict::Holds,

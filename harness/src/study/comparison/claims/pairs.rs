@@ -1,9 +1,9 @@
 //! Pairs of strategies that the paper orders, and what they come to together.
 
 use crate::report::rank::listed;
+use crate::strategy::StrategyId;
 use crate::study::claims::Verdict;
 use crate::study::claims::order::Order;
-use crate::study::data::stand_in;
 
 /// Figures up to this factor apart are called alike; the paper draws bars and gives no bound.
 pub(crate) const ALIKE: f64 = 1.5;
@@ -24,10 +24,10 @@ pub(crate) enum Member {
 
 impl Member {
     /// By the id of the record, where there is one.
-    pub(crate) fn of(id: Option<&str>) -> Self {
+    pub(crate) fn of(id: Option<&StrategyId>) -> Self {
         match id {
             None => Self::Missing,
-            Some(id) => stand_in(id).map_or(Self::Measured, Self::StandIn),
+            Some(id) => id.stand_in().map_or(Self::Measured, Self::StandIn),
         }
     }
 }

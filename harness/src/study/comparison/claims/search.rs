@@ -6,9 +6,7 @@ use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::pairs::Pairs;
-use crate::study::data::{
-    Entry, entries, family, is_bvh, parameters, short, stand, stand_in, tests as tests_of,
-};
+use crate::study::data::{Entry, entries, stand, tests as tests_of};
 use crate::study::manifest::Done;
 
 /// The sizes that the paper selects (table 4.3).
@@ -34,7 +32,7 @@ const ABOUT: f64 = 0.03;
 fn searched<'a>(all: &[Entry<'a>], name: &str) -> Vec<&'a Record> {
     let of = |bvh: bool| -> Vec<&Record> {
         let own = all.iter().map(|entry| entry.record);
-        own.filter(|r| family(&r.strategy) == name && is_bvh(&r.strategy) == bvh).collect()
+        own.filter(|r| r.strategy.family() == name && r.strategy.is_bvh() == bvh).collect()
     };
     let linear = of(false);
     if linear.is_empty() { of(true) } else { linear }
@@ -42,7 +40,7 @@ fn searched<'a>(all: &[Entry<'a>], name: &str) -> Vec<&'a Record> {
 
 /// `; through the hierarchy` where the records are not the paper's.
 fn source(records: &[&Record]) -> &'static str {
-    match records.iter().any(|record| is_bvh(&record.strategy)) {
+    match records.iter().any(|record| record.strategy.is_bvh()) {
         true => " (through the hierarchy)",
         false => "",
     }
@@ -54,7 +52,7 @@ fn time(record: &Record) -> f64 {
 
 /// Whether a grid has as many cells along each side of its box.
 fn is_cubic(record: &Record) -> bool {
-    let mut counts = parameters(&record.strategy).split('x');
+    let mut counts = record.strategy.size().split('x');
     let first = counts.next();
     counts.all(|count| Some(count) == first)
 }
@@ -70,15 +68,15 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
         records.retain(|record| name != "G" || is_cubic(record));
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
-        let own = records.iter().find(|record| parameters(&record.strategy) == selected);
+        let own = records.iter().find(|record| record.strategy.size() == selected);
         let (Some(own), Some(leader)) = (own, best.first()) else {
             notes.push(format!("{name} not measured"));
             continue;
         };
         basis = format!("{}{}", stand(own), source(&records));
         decided += 1;
-        notes.extend(stand_in(&own.strategy).map(|what| format!("with {what}")));
-        let name = short(&own.strategy);
+        notes.extend(own.strategy.stand_in().map(|what| format!("with {what}")));
+        let name = own.strategy.short();
         if best.iter().any(|record| record.strategy == own.strategy) {
             good += 1;
             figures.push(format!("{name} {selected} {} ms", significant(time(own))));
@@ -87,7 +85,7 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
                 "{name} {selected} {} ms, {} % over {}",
                 significant(time(own)),
                 percent(time(own) / time(leader) - 1.0),
-                parameters(&leader.strategy)
+                leader.strategy.size()
             ));
         }
     }
@@ -110,7 +108,7 @@ pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("a grid shaped like its box, beside grids with equal counts");
     };
     let mut pairs = Pairs::default();
-    let names = [shaped, equal].map(|record| parameters(&record.strategy));
+    let names = [shaped, equal].map(|record| record.strategy.size());
     pairs.add(names[0], names[1], Order::of_times(shaped, equal));
     let figure = format!(
         "{}{}: {} {} ms, the best of equal counts {} {} ms",
@@ -128,7 +126,7 @@ pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
 fn tested<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a str, Vec<&'a Record>)> {
     let mut families: Vec<(&str, Vec<&Record>)> = Vec::new();
     for Entry { record, .. } in entries(done, scene, "tests") {
-        let name = family(&record.strategy);
+        let name = record.strategy.family();
         match families.iter_mut().find(|(known, _)| *known == name) {
             Some((_, records)) => records.push(record),
             None => families.push((name, vec![record])),
@@ -142,7 +140,7 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut good, mut decided) = (Vec::new(), 0, 0);
     let mut basis = String::new();
     for (name, records) in tested(done, scene) {
-        let meant = records.iter().find(|record| tests_of(record) == Some(BEST));
+        let meant = records.iter().find(|record| tests_of(record).as_deref() == Some(BEST));
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
         let Some(meant) = meant.filter(|_| !best.is_empty()) else { continue };
@@ -156,7 +154,7 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
         let fastest = ranked
             .iter()
             .map(|ranked| ranked.record)
-            .filter(|record| tests_of(record) != Some(BEST))
+            .filter(|record| tests_of(record).as_deref() != Some(BEST))
             .min_by(|a, b| time(a).total_cmp(&time(b)))
             .map_or_else(String::new, |other| format!(", the fastest other {}", said(other)));
         figures.push(format!("{name}: {}{fastest}", said(meant)));
@@ -172,7 +170,8 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
 pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
     for (name, records) in tested(done, scene) {
-        let of = |tests: &str| records.iter().find(|record| tests_of(record) == Some(tests));
+        let of =
+            |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
         let (Some(best), Some(full)) = (of(BEST), of(FULL)) else { continue };
         all += 2;
         let shade = full.times.shade_ms / best.times.shade_ms;

@@ -1,13 +1,12 @@
 //! Claims on how times vary along the path: table 4.4 and figure 4.8.
 
 use crate::report::format::{number, percent, significant};
+use crate::strategy::StrategyId;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
 use crate::study::comparison::page::path::Spread;
-use crate::study::data::{
-    Entry, counts, entries, family, is_near, is_of_the_paper, nearest_count, short, stand, stand_in,
-};
+use crate::study::data::{Entry, counts, entries, is_near, is_of_the_paper, nearest_count, stand};
 use crate::study::manifest::Done;
 
 /// The strategies of table 4.4; the paper leaves DC-E out of it.
@@ -16,7 +15,7 @@ const COMPARED: [&str; 7] = ["SC-E", "SC-I", "T-E", "DC-I", "G", "T-I", "M"];
 /// How each strategy's times vary along the path.
 struct Spreads<'a> {
     basis: String,
-    all: Vec<(&'a str, Spread)>,
+    all: Vec<(&'a StrategyId, Spread)>,
 }
 
 impl<'a> Spreads<'a> {
@@ -33,10 +32,10 @@ impl<'a> Spreads<'a> {
             return Err(Answer::undecided(&why));
         }
         let own = || path.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
-        let mut all: Vec<(&str, Spread)> =
-            own().filter_map(|r| Some((r.strategy.as_str(), Spread::of(r)?))).collect();
+        let mut all: Vec<(&StrategyId, Spread)> =
+            own().filter_map(|r| Some((&r.strategy, Spread::of(r)?))).collect();
         // The paper's own strategy comes before what stands in for it.
-        all.sort_by_key(|(id, _)| stand_in(id).is_some());
+        all.sort_by_key(|(id, _)| id.stand_in().is_some());
         let most = own().max_by_key(|record| record.times.frames);
         let basis = most.map_or_else(String::new, |record| {
             format!("at {} lights, {}", number(lights as f64), stand(record))
@@ -44,8 +43,8 @@ impl<'a> Spreads<'a> {
         Ok(Self { basis, all })
     }
 
-    fn of_family(&self, name: &str) -> Option<&(&'a str, Spread)> {
-        self.all.iter().find(|(id, _)| family(id) == name)
+    fn of_family(&self, name: &str) -> Option<&(&'a StrategyId, Spread)> {
+        self.all.iter().find(|(id, _)| id.family() == name)
     }
 
     fn of(&self, name: &str) -> Option<&Spread> {
@@ -59,7 +58,8 @@ impl<'a> Spreads<'a> {
     /// `SD G 0.007, SC-E 0.01 ms`: the strategies that are there by a figure, least first.
     fn ascending(&self, names: &[&str], of: fn(&Spread) -> f64, show: fn(f64) -> String) -> String {
         let own = names.iter().filter_map(|name| self.of_family(name));
-        let mut all: Vec<(String, f64)> = own.map(|(id, spread)| (short(id), of(spread))).collect();
+        let mut all: Vec<(String, f64)> =
+            own.map(|(id, spread)| (id.short(), of(spread))).collect();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
         let said = all.iter().map(|(name, figure)| format!("{name} {}", show(*figure)));
         said.collect::<Vec<_>>().join(", ")
@@ -136,7 +136,7 @@ pub(crate) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("G and DC-I along the path");
     };
     let ratio = (grid.deviation / dense.deviation).max(dense.deviation / grid.deviation);
-    let verdict = match stand_in(spreads.of_family("G").map_or("", |(id, _)| *id)) {
+    let verdict = match spreads.of_family("G").and_then(|(id, _)| id.stand_in()) {
         Some(what) => Verdict::Differs(format!("with {what}")),
         None if ratio <= ALIKE => Verdict::Holds,
         None => Verdict::Fails,

@@ -25,7 +25,7 @@ fn every_command_is_understood() {
             let Ok(Invocation::Compare(args)) = parsed else {
                 panic!("{}: {:?}", job.name, parsed.err());
             };
-            crate::choice::choices(&args).unwrap_or_else(|error| panic!("{}: {error}", job.name));
+            args.choices().unwrap_or_else(|error| panic!("{}: {error}", job.name));
         }
         let mut names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
         names.sort_unstable();
@@ -69,4 +69,23 @@ fn sizes_are_searched_from_the_source_that_they_are_reported_for() {
         assert!(ids.split(',').all(|id| id.ends_with("/bvh") == is_bvh), "{}: {ids}", job.name);
         assert!(job.option("--source").is_none(), "{}", job.name);
     }
+}
+
+/// A family of tests, which has a row and nothing else, takes part where its role and its sizes say so.
+#[test]
+fn a_family_joins_by_its_row() {
+    let jobs = plan(false, 1_000);
+    let strategies = |jobs: &[Job], name: &str| -> String {
+        let job = jobs.iter().find(|job| job.name == name).expect(name);
+        job.option("--strategies").expect(name).to_owned()
+    };
+    let searched = strategies(&jobs, "atrium-sizes-Made-Up");
+    assert_eq!(searched, "Made-Up/5,Made-Up/7,Made-Up/9");
+    for name in ["atrium-main", "atrium-views-low", "atrium-path-10000"] {
+        let ids = strategies(&jobs, name);
+        assert!(ids.split(',').any(|id| id == "Made-Up/7"), "{name}: {ids}");
+    }
+    // Heavy scenes see the comparison paper's strategies only.
+    let heavy = plan(false, 7_000_000);
+    assert!(heavy.iter().all(|job| !job.command.join(" ").contains("Made-Up")));
 }

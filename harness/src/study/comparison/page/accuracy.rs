@@ -4,7 +4,7 @@ use crate::report::format::{difference, significant};
 use crate::report::markup::Html;
 use crate::report::rank::Ratio;
 use crate::results::Record;
-use crate::study::data::{class, entries, family, knob, lines};
+use crate::study::data::{entries, lines};
 use crate::study::manifest::Done;
 use crate::study::page::errors_plot::{FIRST, Plot};
 use crate::study::page::figure::Charts;
@@ -19,17 +19,17 @@ pub(crate) fn accuracy(
     shots: &mut Shots<'_>,
 ) -> [Part; 2] {
     let mut html = Html::default();
-    let label = |record: &Record| knob(&record.strategy).unwrap_or("lossless").to_owned();
-    let series = |record: &Record| family(&record.strategy).to_owned();
+    let label = |record: &Record| record.strategy.knob().unwrap_or_else(|| "lossless".to_owned());
+    let series = |record: &Record| record.strategy.family().to_owned();
     let caps = Plot {
         slug: "caps",
         title: "Culling error of capped lists",
         entries: entries(done, scene, "caps"),
         errors: |record| &record.image.errors,
         series,
-        class: |record| class(&record.strategy),
+        class: |record| record.strategy.class(),
         shape: |_| None,
-        name: |record| record.strategy.clone(),
+        name: |record| record.strategy.to_string(),
         label,
         wanted: Wanted::Pair,
         time: "Assign + shade",
@@ -61,11 +61,11 @@ pub(crate) fn accuracy(
         errors: |record| &record.image.unbounded_errors,
         series: |record| {
             let cut = record.setting.cut.as_deref().unwrap_or("windowed");
-            format!("{}, {cut}", family(&record.strategy))
+            format!("{}, {cut}", record.strategy.family())
         },
-        class: |record| class(&record.strategy),
+        class: |record| record.strategy.class(),
         shape: |record| Some(usize::from(record.setting.cut.as_deref() == Some("hard"))),
-        name: |record| record.strategy.clone(),
+        name: |record| record.strategy.to_string(),
         label: |record| record.setting.threshold.map_or_else(String::new, |t| t.to_string()),
         wanted: Wanted::Unbounded,
         time: "Assign + shade",
@@ -105,7 +105,7 @@ pub(crate) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
     let (lossy, lossless) = (fastest(true)?, fastest(false)?);
     let [time, exact] = [lossy, lossless].map(Record::assign_and_shade_ms);
     let error = difference(lossy.image.errors.get("rel_mse").copied().flatten().unwrap_or(0.0));
-    let is_faster = Ratio::of(lossy, lossless).is_some_and(|ratio| ratio.is_faster());
+    let is_faster = Ratio::between(lossy, lossless).is_some_and(|ratio| ratio.is_faster());
     Some(if is_faster {
         format!(
             "A relMSE of {error} saves {} % of the time: {} takes {} ms, and {}, the fastest exact \

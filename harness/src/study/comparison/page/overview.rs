@@ -11,7 +11,7 @@ use crate::report::pass_bars::{Counted, pass_bars, spread};
 use crate::report::rank::{Ratio, first, listed, ranks, tie};
 use crate::report::section::result_table;
 use crate::results::{Record, Results};
-use crate::study::data::{Entry, class, counts, entries, poses, stand};
+use crate::study::data::{Entry, counts, entries, poses, stand};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
@@ -109,7 +109,7 @@ fn panel(
     };
     let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
     let mut body = html!("<p class=\"meta\">{}</p>\n", meta);
-    body += result_table(&format!("{scene}, {title}"), &comparison, |r| class(&r.strategy));
+    body += result_table(&format!("{scene}, {title}"), &comparison);
     body += charts.bars(
         &format!("{scene}-passes-{slug}{count}"),
         &passes(format!("Passes that assign and shade, {title}"), results, &comparison),
@@ -128,8 +128,7 @@ fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarC
         true => Scale::Log,
         false => Scale::LinearFromZero,
     };
-    let class = |record: &Record| class(&record.strategy);
-    pass_bars(title, scale, counted, &records, &Colours::new(results), class)
+    pass_bars(title, scale, counted, &records, &Colours::new(results))
 }
 
 /// What a scene's comparison found, one sentence per count of lights, the most lights first.
@@ -156,7 +155,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let mut text = format!("In {scene} at {lights}, {}{still} with {time}", lead.is_fastest());
     text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
-        let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
+        let slower = Ratio::between(next.record, leader).map_or_else(String::new, |ratio| {
             let ends = [ratio.low, ratio.high].map(significant);
             let range = if ends[0] == ends[1] { ends[0].clone() } else { ends.join(" to ") };
             format!(", {range} times as long")
@@ -170,7 +169,11 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     if let Some(faster) = comparison.speedup(leader) {
         text += &format!(". No culling takes {} times as long", significant(faster));
     }
-    Some(text + ".")
+    text += ".";
+    if let Some(hierarchy) = lead.hierarchy() {
+        text += &format!(" {hierarchy}");
+    }
+    Some(text)
 }
 
 fn ms(record: &Record) -> String {

@@ -7,7 +7,7 @@ use crate::report::markup::Html;
 use crate::report::table::{Look, Row, Table};
 use crate::results::{Record, mean, median, standard_deviation};
 use crate::study::claims::order::Order;
-use crate::study::data::{Entry, class, counts, entries, laps, lines, poses, short};
+use crate::study::data::{Entry, counts, entries, laps, lines, poses};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
@@ -93,8 +93,8 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
                 ..Point::default()
             };
             Series {
-                name: short(id),
-                class: class(id),
+                name: id.short(),
+                class: id.class(),
                 marks: Marks::Line,
                 points: times.iter().enumerate().map(point).collect(),
                 ..Series::default()
@@ -123,7 +123,7 @@ fn ms<'a>(head: &str, value: fn(&Spread) -> f64) -> Column<'a, Varied<'a>> {
 fn spreads<'a>(title: &str, entries: &[Entry<'a>]) -> Html {
     let row = |entry: &Entry<'a>| {
         let record = entry.record;
-        Some(Row::new(&record.strategy, (record, Spread::of(record)?)))
+        Some(Row::new(record.strategy.to_string(), (record, Spread::of(record)?)))
     };
     let count = |of: fn(&Record) -> usize| move |row: &Varied<'_>| Some(of(row.0) as f64);
     let columns = [
@@ -149,6 +149,6 @@ fn spreads<'a>(title: &str, entries: &[Entry<'a>]) -> Html {
     ];
     Table::new("strategy", columns, entries.iter().filter_map(row).collect())
         .competing(|_| false)
-        .dotted(|row| class(&row.0.strategy))
+        .dotted(|row| row.0.strategy.class())
         .html(title, Look::Plain)
 }

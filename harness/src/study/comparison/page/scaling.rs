@@ -7,12 +7,11 @@ use crate::report::format::{ABSENT, number, percent, significant};
 use crate::report::markup::{Html, html};
 use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::study::data::{
-    Entry, Line, class, counts, entries, is_bvh, lines, poses, ranking, short, stand,
-};
+use crate::strategy::StrategyId;
+use crate::study::data::{Entry, Line, counts, entries, lines, poses, ranking, stand};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, name, panels, table, unit};
-use crate::study::page::lines::{Time, fit, points};
+use crate::study::page::lines::{Time, fit, times_series};
 use crate::study::page::part::Part;
 
 /// Points along a fitted line; on logarithmic axes it is a curve.
@@ -125,7 +124,7 @@ fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html
         let has_source = |entry: &&Entry<'_>| entry.record.culls();
         let own: Vec<Entry<'_>> = all
             .iter()
-            .filter(|entry| !has_source(entry) || is_bvh(&entry.record.strategy) == bvh)
+            .filter(|entry| !has_source(entry) || entry.record.strategy.is_bvh() == bvh)
             .copied()
             .collect();
         if own.iter().any(|entry| entry.record.culls()) {
@@ -139,7 +138,7 @@ fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html
 pub(crate) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyChart {
     let mut series = Vec::new();
     for (id, records) in lines {
-        let class = class(id);
+        let class = id.class();
         let line = fit(records, time).filter(|fit| fit.points > 2);
         let ends = (records.first(), records.last());
         if let (Some(line), (Some(first), Some(last))) = (line, ends) {
@@ -153,14 +152,14 @@ pub(crate) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyC
                 .collect();
             let marks = Marks::Dashed;
             series.push(Series {
-                name: short(id),
+                name: id.short(),
                 class: class.clone(),
                 marks,
                 points,
                 ..Series::default()
             });
         }
-        series.push(points(id, records, time, Marks::Points));
+        series.push(times_series(id, records, time, Marks::Points));
     }
     XyChart {
         title,
@@ -181,7 +180,7 @@ fn time_axis(scale: Scale) -> Axis {
 
 /// The lines through a strategy's times, and how straight these are.
 struct Fits<'a> {
-    id: &'a str,
+    id: &'a StrategyId,
     both: Fit,
     straight: Option<Straight>,
     assign: Option<Fit>,
@@ -199,7 +198,7 @@ fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
         };
         let (assign, shade) =
             (of_pass(|record| record.times.assign_ms), of_pass(|record| record.times.shade_ms));
-        Some(Row::new(id.to_owned(), Fits { id, both, straight, assign, shade }))
+        Some(Row::new(id.to_string(), Fits { id, both, straight, assign, shade }))
     };
     let rows: Vec<Row<Fits<'a>>> = lines(entries).into_iter().filter_map(row).collect();
     if rows.is_empty() {
@@ -222,7 +221,7 @@ fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
     columns.extend(line_columns("shade: slope", |fits| fits.shade.as_ref()));
     Table::new("strategy", columns, rows)
         .competing(|_| false)
-        .dotted(|fits| class(fits.id))
+        .dotted(|fits| fits.id.class())
         .html("Straight lines through times against lights", Look::Plain)
 }
 
@@ -244,7 +243,7 @@ fn line_columns<'a>(
 
 fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let scaling = entries(done, scene, "scaling");
-    let bvh = |entry: &&Entry<'_>| is_bvh(&entry.record.strategy);
+    let bvh = |entry: &&Entry<'_>| entry.record.strategy.is_bvh();
     let most = counts(&ranking(done, scene)).last().copied();
     let mut html = Html::default();
     for (section, title, base) in [
@@ -266,7 +265,7 @@ fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
         let time: Time = Record::assign_and_shade_ms;
         let series = lines(&all)
             .iter()
-            .map(|(id, records)| points(id, records, time, Marks::LineAndPoints))
+            .map(|(id, records)| times_series(id, records, time, Marks::LineAndPoints))
             .collect();
         let chart = XyChart {
             title: title.to_owned(),

@@ -6,15 +6,15 @@ use crate::report::markup::{Html, html};
 use crate::report::metrics::interval;
 use crate::report::rank::{first, listed, ranks};
 use crate::results::Record;
-use crate::study::data::{Entry, class, entries, family, is_bvh, parameters, stand, tests};
+use crate::study::data::{Entry, entries, stand, tests};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, name, panels, table, unit};
 use crate::study::page::part::Part;
 
 /// A family with the source of its lights: `SC-E`, `SC-E/bvh`. Sizes of one compete.
 fn searched(record: &Record) -> String {
-    let family = family(&record.strategy);
-    if is_bvh(&record.strategy) { format!("{family}/bvh") } else { family.to_owned() }
+    let family = record.strategy.family();
+    if record.strategy.is_bvh() { format!("{family}/bvh") } else { family.to_owned() }
 }
 
 /// The records of each family and source, in the order of the jobs.
@@ -32,7 +32,7 @@ fn families<'a>(entries: &[Entry<'a>]) -> Vec<(String, Vec<&'a Record>)> {
 
 /// The parameters of a record, or what it has instead.
 fn size(record: &Record) -> &str {
-    match parameters(&record.strategy) {
+    match record.strategy.size() {
         "" => "whole",
         size => size,
     }
@@ -101,7 +101,7 @@ fn bars(family: &str, records: &[&Record]) -> BarChart {
         .iter()
         .map(|record| BarRow {
             name: size(record).to_owned(),
-            class: class(&record.strategy),
+            class: record.strategy.class(),
             segments: vec![
                 Segment {
                     name: "assign".to_owned(),
@@ -138,7 +138,7 @@ fn bars(family: &str, records: &[&Record]) -> BarChart {
 fn tests_table(done: &Done, scene: &str) -> Html {
     let all = entries(done, scene, "tests");
     let families = families(&all);
-    let mut unions: Vec<&str> = Vec::new();
+    let mut unions: Vec<String> = Vec::new();
     for union in all.iter().filter_map(|entry| tests(entry.record)) {
         if !unions.contains(&union) {
             unions.push(union);
@@ -150,7 +150,8 @@ fn tests_table(done: &Done, scene: &str) -> Html {
         .iter()
         .map(|union| {
             let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
-                let found = records.iter().find(|record| tests(record) == Some(*union));
+                let found =
+                    records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
                 found.map_or_else(
                     || ABSENT.into(),
                     |record| {

@@ -4,7 +4,8 @@ use crate::chart::Histogram;
 use crate::report::format::{number, significant};
 use crate::report::markup::{Html, html};
 use crate::results::Record;
-use crate::study::data::{Entry, class, entries, short};
+use crate::strategy::StrategyId;
+use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
@@ -16,22 +17,22 @@ const FIRST: [&str; 4] = ["T-E", "SC-E", "G", "M/2"];
 /// Both views of each strategy.
 pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Part {
     let all = entries(done, scene, "views");
-    let mut ids: Vec<&str> = Vec::new();
+    let mut ids: Vec<&StrategyId> = Vec::new();
     for entry in all.iter().filter(|entry| entry.record.culls()) {
-        if !ids.contains(&entry.record.strategy.as_str()) {
+        if !ids.contains(&&entry.record.strategy) {
             ids.push(&entry.record.strategy);
         }
     }
-    ids.sort_by_key(|id| FIRST.iter().position(|first| *first == short(id)).unwrap_or(usize::MAX));
-    let of = |ids: &[&str], view: Option<bool>| -> Vec<Entry<'_>> {
-        let own = |entry: &&Entry<'_>| ids.contains(&entry.record.strategy.as_str());
+    ids.sort_by_key(|id| FIRST.iter().position(|first| *first == id.short()).unwrap_or(usize::MAX));
+    let of = |ids: &[&StrategyId], view: Option<bool>| -> Vec<Entry<'_>> {
+        let own = |entry: &&Entry<'_>| ids.contains(&&entry.record.strategy);
         let seen = |entry: &&Entry<'_>| view.is_none_or(|low| is_low(entry) == low);
         let mut own: Vec<Entry<'_>> = all.iter().filter(own).filter(seen).copied().collect();
-        own.sort_by_key(|entry| ids.iter().position(|id| *id == entry.record.strategy));
+        own.sort_by_key(|entry| ids.iter().position(|id| **id == entry.record.strategy));
         own
     };
-    let first: Vec<&str> =
-        ids.iter().filter(|id| FIRST.contains(&short(id).as_str())).copied().collect();
+    let first: Vec<&StrategyId> =
+        ids.iter().filter(|id| FIRST.contains(&id.short().as_str())).copied().collect();
     let mut shown: Vec<(String, Html)> = Vec::new();
     if first.len() > 1 {
         let (mut maps, mut drawn) = (Html::default(), Html::default());
@@ -42,16 +43,16 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
             let title = format!("Lists by length, {view}: {}", counted(&entries));
             drawn += histograms(&format!("{scene}-views-{view}"), &title, &entries, charts);
         }
-        let names: Vec<String> = first.iter().map(|id| short(id)).collect();
+        let names: Vec<String> = first.iter().map(|id| id.short()).collect();
         shown.push((names.join(", "), html!("{}<div class=\"pair\">{}</div>\n", maps, drawn)));
     }
     for id in &ids {
         let entries = of(&[*id], None);
         let title = format!("Lists by length, {id}: {}", counted(&entries));
-        let slug = format!("{scene}-views-{}", short(id));
+        let slug = format!("{scene}-views-{}", id.short());
         let mut body = heat_maps(&entries, "views", shots);
         body += histograms(&slug, &title, &entries, charts);
-        shown.push((short(id), body));
+        shown.push((id.short(), body));
     }
     Part::new(
         "views",
@@ -82,7 +83,7 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html 
             "<figure><img data-picture=\"{0}\" alt=\"Lights per pixel, {1}, {2}\" width=\"{3}\" height=\"{4}\">\
              <figcaption><b>{1}, {2}</b>{5}; assign {6} ms, shade {7} ms.</figcaption></figure>\n",
             picture,
-            short(&record.strategy),
+            record.strategy.short(),
             view(entry),
             record.setting.width,
             record.setting.height,
@@ -149,10 +150,10 @@ fn histogram(record: &Record, view: &str) -> Histogram {
         None => String::new(),
     };
     Histogram {
-        title: format!("{}, {view}", short(&record.strategy)),
+        title: format!("{}, {view}", record.strategy.short()),
         x_label: "Lights in a list".to_owned(),
         bins: lengths.iter().enumerate().skip(without).map(|(ix, n)| (bin(ix), *n)).collect(),
-        class: class(&record.strategy),
+        class: record.strategy.class(),
         note,
     }
 }

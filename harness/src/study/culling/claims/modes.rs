@@ -1,10 +1,11 @@
 //! The records of the survey by renderer and method, and what several parts say together.
 
 use crate::report::format::significant;
-use crate::results::{BASELINE, EARLY_EXIT, Record};
+use crate::results::Record;
+use crate::strategy::{RASTER_SPHERE, Role};
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
-use crate::study::data::{counts, entries, family, knob};
+use crate::study::data::{counts, entries};
 use crate::study::manifest::Done;
 
 /// The sections of the study: how pixels are lit.
@@ -55,29 +56,29 @@ impl<'a> Mode<'a> {
 }
 
 pub(crate) fn none(record: &Record) -> bool {
-    record.strategy == BASELINE
+    record.is_baseline()
 }
 
 pub(crate) fn bounding_sphere(record: &Record) -> bool {
-    record.strategy == EARLY_EXIT
+    record.strategy.role() == Some(Role::EarlyExit)
 }
 
 pub(crate) fn raster_sphere(record: &Record) -> bool {
-    record.strategy == "RasterSphere"
+    record.strategy.family() == RASTER_SPHERE
 }
 
 pub(crate) fn is_cluster(record: &Record) -> bool {
-    family(&record.strategy) == "DC-I"
+    record.strategy.family() == "DC-I"
 }
 
 /// The paper's clusters, whose lists end at the cap.
 pub(crate) fn capped(record: &Record) -> bool {
-    is_cluster(record) && knob(&record.strategy).is_some()
+    is_cluster(record) && record.strategy.knob().is_some()
 }
 
 /// The same with whole lists.
 pub(crate) fn whole(record: &Record) -> bool {
-    is_cluster(record) && knob(&record.strategy).is_none()
+    is_cluster(record) && record.strategy.knob().is_none()
 }
 
 /// The methods of the survey that cull.

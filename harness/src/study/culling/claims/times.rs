@@ -2,7 +2,8 @@
 
 use crate::report::fit::Fit;
 use crate::report::format::{number, percent, significant};
-use crate::results::{CONTROL, Record};
+use crate::results::Record;
+use crate::strategy::Role;
 use crate::study::claims::on_another_gpu;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
@@ -39,7 +40,9 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
     for mode in Mode::all(done, scene) {
         let all = entries(done, scene, mode.name);
         let (mut straight, mut count, mut worst) = (0, 0, (0.0, ""));
-        for (id, records) in lines(&all).into_iter().filter(|(id, _)| *id != CONTROL) {
+        for (id, records) in
+            lines(&all).into_iter().filter(|(id, _)| id.role() != Some(Role::Control))
+        {
             let points: Vec<(f64, f64)> = records
                 .iter()
                 .map(|record| (record.setting.lights as f64, record.times.frame_ms))

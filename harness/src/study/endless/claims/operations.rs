@@ -129,14 +129,12 @@ pub(crate) fn inner(done: &Done, scene: &str) -> Answer {
     const PAPERS: f64 = 1.25;
     let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
     for case in cases(done, scene) {
-        let mut cut: Vec<(f64, &Record)> = case
+        let mut cut: Vec<(f32, &Record)> = case
             .culled()
             .filter_map(|record| {
                 let own = Setting::of(&record.strategy);
                 match own.cut {
-                    Cut::Below(radiance) if own.cones == Some(54) => {
-                        Some((radiance.parse().ok()?, record))
-                    }
+                    Cut::Below(radiance) if own.cones == Some(54) => Some((radiance, record)),
                     _ => None,
                 }
             })
