@@ -79,7 +79,7 @@ fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
 }
 
 /// A table of strategies and kinds of frame; empty where fewer than two kinds are known.
-fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
+pub(crate) fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
     let methods = methods(records);
     let kinds = kinds(&methods);
     if kinds.len() < 2 {
@@ -101,7 +101,7 @@ fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
 }
 
 /// What a cell holds.
-const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
+pub(crate) const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
     passes of the frame, and the span from the first pass to the last with the gaps between them, where it is \
     known. A figure is derived if another kind of frame was measured instead. Then the depth pre-pass is moved \
     onto the bill of a strategy that reads depth, or the pass of M\u{2019}s model ids is left out.";

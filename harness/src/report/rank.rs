@@ -30,7 +30,7 @@ pub(crate) struct Ratio {
 impl Ratio {
     /// The times of `record` over those of `other`. `None` where they have fewer than two rounds in common.
     /// Along a path a round is a lap, so both need at least two laps, with equally many poses.
-    pub(crate) fn of(record: &Record, other: &Record) -> Option<Self> {
+    pub(crate) fn between(record: &Record, other: &Record) -> Option<Self> {
         let laps =
             |record: &Record| (record.setting.along_path, record.laps(), record.times.frames);
         let differ = if record.setting.along_path || other.setting.along_path {
