@@ -85,9 +85,9 @@ impl Keep {
         // Flags and lights together would exceed WebGPU's eight storage buffers.
         let none = kernel::layout(gpu, "none", stages, &[]);
         Ok(Self {
-            flag: kernel::compute(gpu, &module, "flag_kept", &[ranges, flags]),
-            write: kernel::compute(gpu, &module, "write_lights", &[ranges, &none, lights]),
-            none: kernel::group(gpu, &none, &[]),
+            flag: kernel::pipeline(gpu, &module, "flag_kept", &[ranges, flags]),
+            write: kernel::pipeline(gpu, &module, "write_lights", &[ranges, &none, lights]),
+            none: kernel::bind_buffers(gpu, &none, &[]),
             uniform: gpu.uniform("VPLs kept", size_of::<KeepUniform>() as u64),
             prefix: PrefixSum::new(gpu)?,
             flags: gpu.storage("VPLs kept: flags", 4)?,
@@ -134,9 +134,9 @@ impl Keep {
             &kept.shapes,
         ];
         self.groups = Some([
-            kernel::group(gpu, ranges_layout, &[&self.uniform, ranges_m]),
-            kernel::group(gpu, flags_layout, &[&self.flags, counts]),
-            kernel::group(gpu, lights_layout, &lights),
+            kernel::bind_buffers(gpu, ranges_layout, &[&self.uniform, ranges_m]),
+            kernel::bind_buffers(gpu, flags_layout, &[&self.flags, counts]),
+            kernel::bind_buffers(gpu, lights_layout, &lights),
         ]);
         Ok(())
     }
