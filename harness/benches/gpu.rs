@@ -11,7 +11,7 @@ use std::{cell::OnceCell, time::Duration};
 use assign::Gpu;
 use criterion::{Criterion, criterion_group, criterion_main};
 use harness::{
-    choice::{Choice, choices},
+    choice::Choice,
     cli::{self, CompareArgs, Invocation},
     clock::PassClock,
     error::HarnessError,
@@ -85,8 +85,7 @@ fn methods(criterion: &mut Criterion) {
                 stage
             })
         };
-        for choice in choices(&args)? {
-            let choice = choice.checked(&gpu)?;
+        for choice in args.choices()? {
             let scene = args.stage.scene.rsplit('/').next().unwrap_or_default();
             let name = format!("{}/{scene}/{}", choice.id(), args.stage.lights);
             for (kind, family) in [(PassKind::Assign, "assign"), (PassKind::Shade, "shade")] {

@@ -29,12 +29,10 @@ use crate::{
     messages::say,
     out_folder::OutFolder,
     report::{self, needs_built_hierarchy},
-    results::{BASELINE, EARLY_EXIT, Record, Results},
+    results::{Record, Results},
     sight::untested,
+    strategy::{BASELINE, EARLY_EXIT, Role, Row, StrategyId, rows},
 };
-
-/// The strategies of the first round.
-const FAMILIES: &str = "None,Sphere,T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2";
 
 /// Families that go on to the second round.
 const FINALISTS: usize = 3;
@@ -86,7 +84,7 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
 
-    let families = search.round("families", FAMILIES, &["--source", "both"], 0)?;
+    let families = search.round("families", &first_ids(), &["--source", "both"], 0)?;
     let best = fastest_by_family(&families);
     let finalists: Vec<String> =
         best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
@@ -208,29 +206,26 @@ fn fastest_by_family(results: &Results) -> Vec<&Record> {
     let mut best: Vec<&Record> = Vec::new();
     let exact = results.records.iter().filter(|record| record.culls() && record.is_exact());
     for record in by_time(exact) {
-        if best.iter().all(|known| family(&known.strategy) != family(&record.strategy)) {
+        if best.iter().all(|known| known.strategy.family() != record.strategy.family()) {
             best.push(record);
         }
     }
     best
 }
 
-fn family(id: &str) -> &str {
-    id.split('/').next().unwrap_or(id)
+/// What the first round compares: no culling, without and with the early exit, and every family with
+/// groups at its default parameters.
+fn first_ids() -> String {
+    let is_compared =
+        |row: &&Row| row.has_groups || matches!(row.role, Role::Baseline | Role::EarlyExit);
+    rows().filter(is_compared).flat_map(Row::overview_ids).collect::<Vec<_>>().join(",")
 }
 
-/// The same strategy at other group sizes, from the same source.
-fn variants(id: &str) -> Vec<String> {
-    let source = if id.split('/').any(|segment| segment == "bvh") { "/bvh" } else { "" };
-    let sizes: &[&str] = match family(id) {
-        "T-I" | "T-E" => &["16x16", "20x20", "24x24", "32x32", "48x48"],
-        "DC-I" | "DC-E" | "SC-I" | "SC-E" | "HG" => {
-            &["32x32x40", "32x32x64", "40x40x64", "48x48x64", "64x64x64", "96x96x64", "128x128x32"]
-        }
-        "G" => &["12x12x12", "16x16x16", "28x28x28", "40x40x40"],
-        _ => &["1", "3", "4", "8"],
-    };
-    sizes.iter().map(|size| format!("{}/{size}{source}", family(id))).collect()
+/// The same strategy at the other group sizes of its row, from the same source.
+fn variants(id: &StrategyId) -> Vec<String> {
+    let source = if id.is_bvh() { "/bvh" } else { "" };
+    let sizes = id.row().map_or(&[][..], |row| row.sizes.few);
+    sizes.iter().map(|size| format!("{}/{size}{source}", id.family())).collect()
 }
 
 /// What the last round compares: the fastest exact methods, some of them without a hierarchy; no
@@ -260,7 +255,7 @@ fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<
         all().any(|record| record.strategy == id && record.assign_and_shade_ms() <= limit)
     };
     ids.extend([BASELINE, EARLY_EXIT].iter().filter(|id| near(id)).map(|id| (*id).to_owned()));
-    ids.extend(last.iter().map(|record| record.strategy.clone()));
+    ids.extend(last.iter().map(|record| record.strategy.to_string()));
     if error_budget > 0.0 {
         for record in last.iter().take(CAPPED) {
             // A longer list loses nothing and gains nothing.

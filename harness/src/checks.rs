@@ -3,20 +3,17 @@
 use std::path::Path;
 
 use assign::{AssignError, Gpu};
-use shading::{Cut, Mode};
+use shading::Cut;
 
 use crate::{
     choice::Choice,
     cli::{CliError, CompareArgs},
     error::HarnessError,
     painter::raster_spheres,
-    registry::Method,
-    results::{CONTROL, ResultsError},
+    results::ResultsError,
     stage::Stage,
+    strategy::Method,
 };
-
-/// The method that has no forward mode.
-pub(crate) const RASTER_SPHERE: &str = "RasterSphere";
 
 /// The most timed frames per method: laps times poses.
 const MAX_SAMPLES: u32 = 100_000;
@@ -47,9 +44,9 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
     }
     let modes = args.mode.modes();
-    let is_served = |choice: &Choice| modes.iter().any(|&mode| has_mode(choice, mode));
+    let is_served = |choice: &Choice| modes.iter().any(|&mode| choice.refuses_mode(mode).is_none());
     if let Some(choice) = choices.first().filter(|_| !choices.iter().any(is_served)) {
-        let family = choice.family();
+        let family = choice.row().family;
         let accepted = format!("deferred for {family}, which has no other mode");
         let names: Vec<&str> = modes.iter().map(|mode| mode.name()).collect();
         return Err(CliError::out_of_range("--mode", &names.join(" and "), &accepted));
@@ -84,28 +81,17 @@ fn check_effect(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> 
     }
 }
 
-/// Whether a method can light pixels in a mode. Light volumes read a G-buffer. The control draws its
-/// surfaces after a depth pre-pass.
-pub(crate) fn has_mode(choice: &Choice, mode: Mode) -> bool {
-    match choice.family() {
-        RASTER_SPHERE => !mode.is_forward(),
-        CONTROL => mode != Mode::ForwardNoPrepass,
-        _ => true,
-    }
-}
-
-/// Checks the parameters of all choices, writes them in their usual form, and removes repeated ones.
+/// Checks the parameters of all choices and removes repeated ones.
 pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, HarnessError> {
     let mut checked: Vec<Choice> = Vec::new();
     for choice in choices {
-        let asked = choice.id().to_owned();
-        let choice = choice.checked(gpu).map_err(|error| match error {
+        let id = choice.id();
+        choice.make(gpu).map_err(|error| match error {
             AssignError::Parameter { .. } => {
-                HarnessError::Cli(CliError::new(format!("--strategies {asked}: {error}")))
+                HarnessError::Cli(CliError::new(format!("--strategies {id}: {error}")))
             }
             other => other.into(),
         })?;
-        let id = choice.id();
         if checked.iter().any(|known| known.id() == id) {
             if !choice.is_named {
                 continue;
@@ -192,4 +178,31 @@ pub(crate) fn remove_stale(out: &Path) -> Result<(), ResultsError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Invocation, parse};
+
+    fn check(line: &str) -> Result<(), CliError> {
+        let words = std::iter::once("lightbench").chain(line.split(' '));
+        let Ok(Invocation::Compare(args)) = parse(words) else { panic!("{line} does not parse") };
+        check_options(&args, &args.choices().expect("strategies"))
+    }
+
+    #[test]
+    fn options_that_apply_to_no_strategy_are_refused() {
+        for (line, option) in [
+            ("--strategies None,T-E/hs --test hs+sat-p", "--test"),
+            ("--strategies None,HG,T-E/bvh --source linear", "--source"),
+            ("--strategies None,Sphere --operations", "--operations"),
+        ] {
+            let error = check(line).expect_err(line).to_string();
+            let expected =
+                format!("{option} has no effect here: it needs a strategy in --strategies that ");
+            assert!(error.starts_with(&expected), "{line}: {error}");
+        }
+        assert_eq!(check("--strategies None,T-E --test hs --source both --operations"), Ok(()));
+    }
 }

@@ -18,6 +18,7 @@ mod names;
 mod parse;
 mod report;
 mod stage;
+mod strategies;
 mod study;
 mod truth;
 mod values;
@@ -37,7 +38,8 @@ pub use names::{did_you_mean, nearest};
 pub use parse::{parse, parse_stored};
 pub use report::ReportArgs;
 pub use stage::{LightBox, StageArgs};
-pub use study::{Shard, StudyArgs, StudyName};
+pub use strategies::ALL;
+pub use study::{Shard, StudyArgs};
 pub use truth::TruthArgs;
 pub(crate) use values::MAX_CHECKS;
 pub use values::{DirectionCounts, FarPlane, MAX_LIGHTS, Size, Sizes, Span, Strategies};
@@ -151,7 +153,7 @@ enum Command {
     Cdi(CdiArgs),
     /// Fit linearly transformed cosines to the BRDF, and compare them with those in use
     FitLtc(FitLtcArgs),
-    /// List the names of strategies, scenes or adapters
+    /// List the names of strategies, scenes, adapters or studies
     List {
         /// What to list
         what: Listing,
@@ -167,6 +169,8 @@ pub enum Listing {
     Scenes,
     /// Every adapter that wgpu can drive; the first is the default
     Adapters,
+    /// Every study, and what it answers
+    Studies,
 }
 
 #[cfg(test)]

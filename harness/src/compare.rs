@@ -9,8 +9,8 @@ use shading::{EDGE, HdrImage, LightBvh, Mode};
 
 use crate::{
     bench::Bench,
-    checks::{check_area_options, check_options, checked, has_mode, remove_stale, served},
-    choice::{Choice, choices},
+    checks::{check_area_options, check_options, checked, remove_stale, served},
+    choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
     described::note_faults,
     drift::note_drift,
@@ -23,10 +23,11 @@ use crate::{
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{BASELINE, Results, Truth, TruthLevel, Untested},
+    results::{Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
+    strategy::BASELINE,
 };
 
 /// Frames on the clock along a path: on a GPU, and on a software adapter.
@@ -38,7 +39,7 @@ const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 /// line, for provenance.
 pub fn compare(args: &CompareArgs, command: Vec<String>) -> Result<String, HarnessError> {
     // Check the options before a device is opened.
-    check_options(args, &choices(args)?)?;
+    check_options(args, &args.choices()?)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let (results, pictures) = compare_on(&mut bench, args, command)?;
@@ -68,7 +69,7 @@ pub fn compare_on(
     args: &CompareArgs,
     command: Vec<String>,
 ) -> Result<(Results, Pictures), HarnessError> {
-    let choices = choices(args)?;
+    let choices = args.choices()?;
     check_options(args, &choices)?;
     let gpu = bench.gpu().clone();
     let choices = checked(choices, &gpu)?;
@@ -194,9 +195,11 @@ impl Run<'_> {
         let bar = progress_bar(modes.len() as u64 * choices.len() as u64 * per_method);
         for &mode in modes {
             let mut served = choices.to_vec();
-            served.retain(|choice| has_mode(choice, mode));
-            for choice in choices.iter().filter(|choice| !has_mode(choice, mode)) {
-                let words = format!("{} cannot run in mode {}", choice.family(), mode.name());
+            served.retain(|choice| choice.refuses_mode(mode).is_none());
+            for choice in choices {
+                let Some(why) = choice.refuses_mode(mode) else { continue };
+                let (family, mode) = (choice.row().family, mode.name());
+                let words = format!("{family} cannot run in mode {mode}, because {why}");
                 self.results.warnings.push(words);
                 bar.inc(per_method);
             }

@@ -13,9 +13,9 @@ use harness::{
     fit_ltc::fit_ltc,
     interrupted,
     messages::{print, say_error},
-    registry::{STRATEGIES, StrategyEntry},
     stored_report::report_stored,
-    study::study,
+    strategy,
+    study::{studies, study},
     truth::truth,
 };
 
@@ -39,9 +39,12 @@ fn run() -> Result<(), HarnessError> {
     set_interrupt_message(&invocation);
     let text = match invocation {
         Invocation::Show(text) => text,
-        Invocation::List(Listing::Strategies) => strategies(),
+        Invocation::List(Listing::Strategies) => strategy::list(),
         Invocation::List(Listing::Scenes) => scenes(),
         Invocation::List(Listing::Adapters) => adapters()?,
+        Invocation::List(Listing::Studies) => {
+            studies().map(|(name, answers)| format!("{name:<16} {answers}\n")).collect()
+        }
         Invocation::Compare(args) => compare(&args, command)?,
         Invocation::Study(args) => study(&args, &command)?,
         Invocation::Report(args) => report_stored(&args)?,
@@ -91,21 +94,6 @@ fn quiet_loader() {
 /// Other systems have no such loader.
 #[cfg(not(target_os = "linux"))]
 fn quiet_loader() {}
-
-fn strategies() -> String {
-    let row = |entry: &StrategyEntry| {
-        let id = entry.default_id();
-        let mut row = format!("{id:<16} {}\n", entry.summary);
-        if !entry.parameters.is_empty() {
-            row += &format!("{:<16} parameters: {}\n", "", entry.parameters.join(" x "));
-        }
-        for axis in entry.axes {
-            row += &format!("{:<16} /{}\n", "", axis.accepted());
-        }
-        row
-    };
-    STRATEGIES.iter().map(row).collect()
-}
 
 fn adapters() -> Result<String, HarnessError> {
     let row = |info: &wgpu::AdapterInfo| {

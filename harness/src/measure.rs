@@ -20,10 +20,10 @@ use crate::{
     list_lengths::ListLengths,
     painter::Painter,
     pass_samples::PassSamples,
-    registry::Method,
     results::{Passes, Spans},
     schedule::{Orders, frames_of_round, rounds},
     stage::Stage,
+    strategy::Method,
 };
 
 /// What was counted of the lists.

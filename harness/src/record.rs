@@ -87,8 +87,7 @@ pub fn record(
     let count = u64::from(stage.lights.count());
     let has_lists = lists.bytes > 0;
     let mut record = Record {
-        strategy: choice.id().to_owned(),
-        strategy_parameters: choice.parameters(),
+        strategy: choice.id().clone(),
         is_lossy: choice.is_lossy(count) || loses_edges(choice, plan.cut),
         setting: Setting {
             scene: visible(&stage.scene.name).into_owned(),

@@ -1,26 +1,16 @@
 //! The claims of the engine paper, judged from made-up results: each holds where the figures say so, and
 //! does not where they are turned round.
 
+mod made_study;
 mod report_data;
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-
-use harness::report::write_study;
 use harness::results::{Mode, Record, Results};
-use harness::study::{BOUNDS, Done, Job, MODELS, Manifest};
+use harness::study::{BOUNDS, Done, MODELS};
+use made_study::{verdict, write};
 use report_data::{empty, record};
 
 fn add(done: &mut Done, section: &str, variant: &str, records: Vec<Record>) {
-    let name = format!("atrium-{section}-{variant}");
-    done.manifest.jobs.push(Job {
-        name: name.clone(),
-        scene: "atrium".into(),
-        section: section.into(),
-        command: vec!["lightbench".into(), "compare".into()],
-    });
-    done.results.insert(name.clone(), Results { records, ..empty() });
-    done.folders.insert(name, PathBuf::new());
+    made_study::add(done, section, variant, Results { records, ..empty() });
 }
 
 /// A model's FLIP, relMSE and bias.
@@ -68,9 +58,7 @@ const COSTS: [Cost; 19] = [
 /// A study in which all claims hold that can, but for figures that are multiplied: those of one metric
 /// or time of one model, at all counts of lights or at one.
 fn study(turn: Option<(&str, &str, f64)>) -> Done {
-    let identity = ["lightbench", "study", "area"].map(str::to_owned).to_vec();
-    let manifest = Manifest { identity, study: "area".into(), jobs: Vec::new() };
-    let mut done = Done { manifest, results: BTreeMap::new(), folders: BTreeMap::new() };
+    let mut done = made_study::study("area");
     let factor = |model: &str, what: &str| match turn {
         Some((turned, kind, factor)) if turned == model && kind == what => factor,
         _ => 1.0,
@@ -103,15 +91,7 @@ fn study(turn: Option<(&str, &str, f64)>) -> Done {
 }
 
 fn page(done: &Done) -> String {
-    let out = tempfile::tempdir().expect("a temporary folder");
-    write_study(done, out.path()).expect("it is there");
-    std::fs::read_to_string(out.path().join("index.html")).expect("it is there")
-}
-
-fn verdict<'a>(page: &'a str, claim: &str) -> &'a str {
-    let start = format!("data-claim=\"{claim}\" data-verdict=\"");
-    let found = page.split_once(&start);
-    found.unwrap_or_else(|| panic!("{claim}")).1.split('"').next().expect("it is there")
+    write(done).page
 }
 
 /// A claim, what is turned round of which model, by which factor, and what the verdict becomes.

@@ -6,9 +6,9 @@ use assign::{EncoderPasses, Gpu, Passes};
 use harness::choice::Choice;
 use harness::cli::{Invocation, parse};
 use harness::painter::Painter;
-use harness::registry::{Method, STRATEGIES, StrategyEntry};
 use harness::results::{PassKind, is_raster_pass, pass_kind};
 use harness::stage::Stage;
+use harness::strategy::{Method, Row, StrategyId, rows};
 use shading::{Cut, Mode, record_before_lighting};
 
 /// A small stage on the adapter of this machine.
@@ -49,7 +49,7 @@ fn memory_is_what_the_device_allocated() {
     let (gpu, stage) = stage();
     let hierarchy = stage.lights.nodes().size();
     let more = ["SC-E/bvh", "G/bvh", "M/2", "SC-E/n24/s0.001", "T-E/bvh/cap4"].map(str::to_owned);
-    let ids = STRATEGIES.iter().map(StrategyEntry::default_id).chain(more);
+    let ids = rows().map(Row::default_id).chain(more);
     let mut checked = 0;
     for id in ids {
         let Some(before) = allocated(&gpu) else {
@@ -141,7 +141,7 @@ fn passes_are_told_by_their_names() {
             gpu.queue.submit([encoder.finish()]);
             for (name, is_render) in &drawn {
                 let what = format!("{name} of {id} in {}", mode.name());
-                assert_eq!(is_raster_pass(name, mode, id), *is_render, "{what}");
+                assert_eq!(is_raster_pass(name, mode, &StrategyId::read(id)), *is_render, "{what}");
             }
             let billed: Vec<&str> = drawn
                 .iter()

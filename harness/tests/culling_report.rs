@@ -1,12 +1,11 @@
 //! The verdicts of the culling survey, from made-up records.
 
+mod made_study;
 mod report_data;
 
-use std::collections::BTreeMap;
-
-use harness::report::write_study;
 use harness::results::{Mode, PassKind, PassTimes, Passes, Record, Results};
-use harness::study::{Done, Job, Manifest};
+use harness::study::Done;
+use made_study::{Written, add, write};
 use report_data::{empty, record};
 
 const CAPPED: &str = "DC-I/40x40x24/cap128";
@@ -61,18 +60,9 @@ fn made(turned: &str, mode: Mode, strategy: &str, lights: u64) -> Record {
 }
 
 fn study(turned: &str) -> Done {
-    let identity = ["lightbench", "study", "culling"].map(str::to_owned).to_vec();
-    let mut manifest = Manifest { identity, study: "culling".into(), jobs: Vec::new() };
-    let mut results = BTreeMap::new();
+    let mut done = made_study::study("culling");
     for mode in [Mode::Deferred, Mode::Forward] {
         for lights in [0, 750, 1_500] {
-            let name = format!("atrium-{}-{lights}", mode.name());
-            manifest.jobs.push(Job {
-                name: name.clone(),
-                scene: "atrium".into(),
-                section: mode.name().into(),
-                command: vec!["lightbench".into(), "compare".into()],
-            });
             let all = ["Clay", "None", "Sphere", "RasterSphere", CAPPED, WHOLE];
             let served =
                 all.into_iter().filter(|id| mode == Mode::Deferred || *id != "RasterSphere");
@@ -80,22 +70,20 @@ fn study(turned: &str) -> Done {
             let mut made = Results { records, ..empty() };
             // The survey's own: absolute times are judged on it only.
             made.machine.adapter = "NVIDIA GeForce RTX 3080".into();
-            results.insert(name, made);
+            add(&mut done, mode.name(), &lights.to_string(), made);
         }
     }
-    Done { manifest, results, folders: BTreeMap::new() }
+    done
 }
 
 fn page(done: &Done) -> (String, String) {
-    let out = tempfile::tempdir().expect("a folder");
-    let text = write_study(done, out.path()).expect("writes");
-    let page = std::fs::read_to_string(out.path().join("index.html")).expect("the page");
-    (text.split_whitespace().collect::<Vec<_>>().join(" "), page)
+    let Written { text, page, .. } = write(done);
+    (text, page)
 }
 
+/// The verdict on a claim of the survey.
 fn verdict<'a>(page: &'a str, claim: &str) -> &'a str {
-    let start = format!("data-claim=\"survey-{claim}\" data-verdict=\"");
-    page.split_once(&start).expect("the claim").1.split('"').next().expect("a verdict")
+    made_study::verdict(page, &format!("survey-{claim}"))
 }
 
 #[test]

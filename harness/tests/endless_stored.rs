@@ -1,23 +1,18 @@
 //! The stored study of polygon lights, judged as the program judges it today.
 
+mod made_study;
+
 use std::path::Path;
 
-use harness::{report::write_study, study::Done};
-
-fn verdict<'a>(page: &'a str, claim: &str) -> &'a str {
-    let start = format!("data-claim=\"{claim}\" data-verdict=\"");
-    page.split_once(&start).expect("the claim").1.split('"').next().expect("it is there")
-}
+use harness::study::Done;
+use made_study::{Written, verdict, write};
 
 /// The paper's own rows decide: its grid, its cone test and its `dif`, without the early exit.
 #[test]
 fn the_stored_study_is_judged_by_the_papers_settings() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/h200-endless");
     let done = Done::read(&[folder]).expect("it is there");
-    let out = tempfile::tempdir().expect("a folder");
-    let text = write_study(&done, out.path()).expect("writes");
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let page = std::fs::read_to_string(out.path().join("index.html")).expect("it is there");
+    let Written { text, page, .. } = write(&done);
     for (claim, expected) in [
         ("six", "differs"),
         ("most", "holds"),

@@ -1,5 +1,6 @@
 //! The claims of the comparison paper, judged on made-up records.
 
+mod made_study;
 mod made_up;
 mod report_data;
 
@@ -139,7 +140,7 @@ fn what_stands_in_for_a_strategy_is_named_and_does_not_decide() {
     let mut done = study("few", folder.path());
     for record in done.results.values_mut().flat_map(|results| &mut results.records) {
         if record.strategy == "G/20x20x20" {
-            record.strategy += "/supports";
+            record.strategy = format!("{}/supports", record.strategy).into();
         }
     }
     let page = write(&done).page;

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use super::verdict::{Verdict, error_of, verdict};
 use crate::{
-    registry::STRATEGIES,
     report::{self, significant as ms},
     results::{DeviceType, Record, Results},
 };
@@ -105,10 +104,7 @@ fn time(record: &Record) -> String {
 
 /// What a method is, in brackets.
 fn about(record: &Record) -> String {
-    let family = record.strategy.split('/').next().unwrap_or_default();
-    let entry = STRATEGIES.iter().find(|entry| entry.family == family);
-    let summary = entry.map(|entry| entry.summary.split(':').next().unwrap_or_default());
-    summary.map_or_else(String::new, |summary| format!(" ({summary})"))
+    record.strategy.row().map_or_else(String::new, |row| format!(" ({})", row.name))
 }
 
 /// What a record loses, with its error; `None` for an exact one.

@@ -6,7 +6,7 @@ fn record(strategy: &str, times_ms: &[f64], bytes: u64) -> Record {
     let example: Results =
         serde_json::from_str(include_str!("../results/example.json")).expect("the example");
     let mut record = example.records[0].clone();
-    record.strategy = strategy.to_owned();
+    record.strategy = strategy.into();
     record.times.passes = Default::default();
     record.times.passes.insert("shade", PassTimes::new(PassKind::Shade, times_ms.to_vec()));
     record.times.frames = times_ms.len() as u32;
@@ -58,10 +58,11 @@ fn named(results: &Results, budget: f64) -> &str {
 #[test]
 fn variants_keep_family_and_source() {
     for id in ["T-E/28x28/bvh", "SC-E/48x48x40", "G/20x20x20/bvh", "M/2", "HG/48x48x40"] {
-        let all = variants(id);
+        let id = StrategyId::read(id);
+        let all = variants(&id);
         assert!(all.len() >= 4);
         for variant in all {
-            assert_eq!(family(&variant), family(id));
+            assert_eq!(StrategyId::read(&variant).family(), id.family());
             assert_eq!(variant.ends_with("/bvh"), id.ends_with("/bvh"), "{variant}");
         }
     }

@@ -5,9 +5,9 @@
 //! simplest. A lossy setting is a candidate only where it is surely faster than every exact one.
 
 use crate::{
-    registry::STRATEGIES,
     report::{is_surely_faster, needs_built_hierarchy},
     results::{Record, Results},
+    strategy::rows,
 };
 
 /// The metric that the budget is a bound of.
@@ -122,9 +122,7 @@ fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> 
 /// How much there is to a method: first its knobs, then its place in the registry, which goes from
 /// the simple to the involved.
 fn complexity(record: &Record) -> f64 {
-    let mut segments = record.strategy.split('/');
-    let family = segments.next().unwrap_or_default();
-    let place = STRATEGIES.iter().position(|entry| entry.family == family);
-    let knobs = segments.skip(1).count();
-    (knobs * STRATEGIES.len() + place.unwrap_or(STRATEGIES.len())) as f64
+    let id = &record.strategy;
+    let (place, count) = (rows().position(|row| row.family == id.family()), rows().count());
+    (id.segment_count() * count + place.unwrap_or(count)) as f64
 }

@@ -25,5 +25,6 @@ mod tests;
 pub use bars::{BarChart, BarRow, Segment};
 pub use histogram::{Histogram, histograms_svg, histograms_svg_file};
 pub use model::{Axis, Marks, Point, Scale, Series, XyChart};
+pub use palette::page_colours;
 pub use strip::{Strip, half_width};
 pub use style::CHART_CSS;

@@ -3,41 +3,12 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::{
     headings::JOBS,
     values::{self, Size},
 };
-
-/// A study by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StudyName {
-    /// The comparison paper, with more lights, other radii, and speed against accuracy
-    Comparison,
-    /// The culling survey: 0 to 1,500 lights in seven cylinders, along a path, deferred and forward
-    Culling,
-    /// Models of area lights: their error against a truth image, and their time, also against spots
-    Area,
-    /// Many polygon lights in clusters with normal cones: light operations and times
-    Endless,
-    /// Compound deep images: time of each step, ranges against exact rays, and indirect light by virtual
-    /// point lights against a path-traced image
-    Cdi,
-}
-
-impl StudyName {
-    /// As on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Comparison => "comparison",
-            Self::Culling => "culling",
-            Self::Area => "area",
-            Self::Endless => "endless",
-            Self::Cdi => "cdi",
-        }
-    }
-}
 
 /// Which jobs of a study to run: part K of N runs every N-th job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,8 +42,9 @@ impl FromStr for Shard {
 /// The options of `lightbench study`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct StudyArgs {
-    /// Study to run
-    pub study: StudyName,
+    /// Study to run: `lightbench list studies` lists them
+    #[arg(value_parser = values::text)]
+    pub study: String,
 
     /// Scene: a name or a .gltf or .glb file; give --scene again for each further scene
     #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
@@ -124,7 +96,7 @@ impl StudyArgs {
     pub fn folder(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             let quick = if self.quick { "-quick" } else { "" };
-            PathBuf::from(format!("out/study-{}{quick}", self.study.name()))
+            PathBuf::from(format!("out/study-{}{quick}", self.study))
         })
     }
 
@@ -135,8 +107,7 @@ impl StudyArgs {
 
     /// The words that determine the jobs: the command without --out, --only, --shard and --adapter.
     pub fn identity(&self) -> Vec<String> {
-        let mut words =
-            vec!["lightbench".to_owned(), "study".to_owned(), self.study.name().to_owned()];
+        let mut words = ["lightbench", "study", &self.study].map(str::to_owned).to_vec();
         let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
         for scene in &self.scene {
             option("--scene", scene.clone());

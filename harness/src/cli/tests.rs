@@ -70,10 +70,11 @@ fn list_takes_strategies_scenes_or_adapters() {
     assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
     assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
-    assert_eq!(error_of("list"), "list needs <WHAT>: one of strategies, scenes, adapters");
+    assert_eq!(parse_line("list studies"), Ok(Invocation::List(Listing::Studies)));
+    assert_eq!(error_of("list"), "list needs <WHAT>: one of strategies, scenes, adapters, studies");
     let unknown = error_of("list lights");
     assert!(
-        unknown.ends_with("is lights: it must be one of strategies, scenes, adapters"),
+        unknown.ends_with("is lights: it must be one of strategies, scenes, adapters, studies"),
         "{unknown}"
     );
 }
@@ -173,7 +174,8 @@ fn unknown_names_get_a_suggestion() {
     assert_eq!(error_of("compar"), "there is no command called compar: did you mean compare?");
     let known = "the known names are compare, advise, study, report, truth, cdi, fit-ltc, list";
     assert_eq!(error_of("zzzz"), format!("there is no command called zzzz: {known}"));
-    assert!(error_of("study").starts_with("study needs <STUDY>: one of comparison, "));
+    let needed = "study needs <STUDY>: Study to run: `lightbench list studies` lists them";
+    assert_eq!(error_of("study"), needed);
     assert_eq!(
         error_of("report"),
         "report needs <DIR|FILE.json>...: A folder of a comparison or a study, or a file of results"

@@ -2,18 +2,19 @@
 
 use super::rank::{Ranked, ranks};
 use super::raster;
-use crate::results::{EARLY_EXIT, Machine, Record, Results};
+use crate::results::{Machine, Record, Results};
+use crate::strategy::EARLY_EXIT;
 
-/// The records of one scene, camera path, camera size, set of lights and mode: only strategies differ.
-pub(super) struct Comparison<'a> {
+/// The records of one scene, camera path, image size, set of lights and mode. Only strategies differ.
+pub(crate) struct Comparison<'a> {
     /// The records with their indices in [`Results::records`], in the order of the run.
-    pub(super) records: Vec<(usize, &'a Record)>,
+    pub(crate) records: Vec<(usize, &'a Record)>,
     /// Where they were measured.
-    pub(super) machine: &'a Machine,
+    pub(crate) machine: &'a Machine,
 }
 
 /// All comparisons of a run, in the order in which they first appear.
-pub(super) fn comparisons(results: &Results) -> Vec<Comparison<'_>> {
+pub(crate) fn comparisons(results: &Results) -> Vec<Comparison<'_>> {
     let mut all: Vec<Comparison<'_>> = Vec::new();
     for entry in results.records.iter().enumerate() {
         match all.iter_mut().find(|known| comparable(known.first(), entry.1)) {
@@ -43,38 +44,33 @@ fn comparable(a: &Record, b: &Record) -> bool {
 
 impl<'a> Comparison<'a> {
     /// The first record: it speaks for the scene, the lights and the mode.
-    pub(super) fn first(&self) -> &'a Record {
+    pub(crate) fn first(&self) -> &'a Record {
         // A comparison is made around a record and never loses one.
         self.records[0].1
     }
 
     /// The records, in the order of the run.
-    pub(super) fn all(&self) -> impl Iterator<Item = &'a Record> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = &'a Record> {
         self.records.iter().map(|(_, record)| *record)
     }
 
-    /// A record's name, marked where its times are bound by rasterisation on a chip weak at it.
-    pub(super) fn name(&self, record: &Record) -> String {
+    /// A record's name, with a mark if rasterisation limits its times on a chip that is weak at it.
+    pub(crate) fn name(&self, record: &Record) -> String {
         format!("{}{}", record.strategy, raster::mark(self.machine, record))
     }
 
-    /// The record of no culling.
-    pub(super) fn baseline(&self) -> Option<&'a Record> {
-        self.baseline_index().map(|ix| self.records[ix].1)
+    /// The record without culling.
+    pub(crate) fn baseline(&self) -> Option<&'a Record> {
+        self.all().find(|record| record.is_baseline())
     }
 
-    /// Where in [`records`](Self::records) the record of no culling is.
-    pub(super) fn baseline_index(&self) -> Option<usize> {
-        self.records.iter().position(|(_, record)| record.is_baseline())
-    }
-
-    /// How many times as fast as no culling, assigning and shading together.
-    pub(super) fn speedup(&self, record: &Record) -> Option<f64> {
+    /// How many times as fast as no culling, by assign + shade.
+    pub(crate) fn speedup(&self, record: &Record) -> Option<f64> {
         self.speedup_over(self.baseline()?, record)
     }
 
-    /// How many times as fast as another record, assigning and shading together.
-    pub(super) fn speedup_over(&self, other: &Record, record: &Record) -> Option<f64> {
+    /// How many times as fast as another record, by assign + shade.
+    pub(crate) fn speedup_over(&self, other: &Record, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
         }
@@ -82,51 +78,51 @@ impl<'a> Comparison<'a> {
         ratio.is_finite().then_some(ratio)
     }
 
-    /// How many times as fast as no culling with an early exit, for methods with lists.
-    pub(super) fn speedup_over_exit(&self, record: &Record) -> Option<f64> {
+    /// How many times as fast as no culling with an early exit; only of strategies with lists.
+    pub(crate) fn speedup_over_exit(&self, record: &Record) -> Option<f64> {
         if !record.culls() || record.lists.listed_per_sample.is_none() {
             return None;
         }
         self.speedup_over(self.record_of(EARLY_EXIT)?, record)
     }
 
-    /// The place of a record by assigning and shading together: see [`ranks`].
-    pub(super) fn rank(&self, record: &Record) -> Option<f64> {
+    /// The rank of a record by assign + shade: see [`ranks`].
+    pub(crate) fn rank(&self, record: &Record) -> Option<f64> {
         let ranked = self.ranks();
         let place = ranked.iter().find(|ranked| std::ptr::eq(ranked.record, record));
         place.map(|ranked| f64::from(ranked.rank))
     }
 
     /// The records that cull without a loss, by rank.
-    pub(super) fn ranks(&self) -> Vec<Ranked<'a>> {
+    pub(crate) fn ranks(&self) -> Vec<Ranked<'a>> {
         ranks(self.all())
     }
 
     /// The record of a strategy.
-    pub(super) fn record_of(&self, strategy: &str) -> Option<&'a Record> {
+    pub(crate) fn record_of(&self, strategy: &str) -> Option<&'a Record> {
         self.all().find(|record| record.strategy == strategy)
     }
 
-    /// The time in which no culling, at its own rate, would evaluate only the lights that reach
-    /// the samples, ms.
-    pub(super) fn floor_ms(&self, record: &Record) -> Option<f64> {
+    /// The ideal time, ms: what no culling would need, at its own rate, if it evaluated only the lights
+    /// that reach each sample.
+    pub(crate) fn ideal_ms(&self, record: &Record) -> Option<f64> {
         let baseline = self.baseline()?;
-        let floor = baseline.times.shade_ms * record.lists.contributing_per_sample?
+        let ideal = baseline.times.shade_ms * record.lists.contributing_per_sample?
             / baseline.setting.lights as f64;
-        floor.is_finite().then_some(floor)
+        ideal.is_finite().then_some(ideal)
     }
 
-    /// The floor over assigning and shading.
-    pub(super) fn efficiency(&self, record: &Record) -> Option<f64> {
+    /// Efficiency = ideal time / (assign + shade).
+    pub(crate) fn efficiency(&self, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
         }
-        let share = self.floor_ms(record)? / record.assign_and_shade_ms();
+        let share = self.ideal_ms(record)? / record.assign_and_shade_ms();
         share.is_finite().then_some(share)
     }
 
-    /// The fastest strategy that culls: among those without a loss where there is one.
-    pub(super) fn fastest(&self) -> Option<&'a Record> {
+    /// The fastest strategy that culls, lossless ones first.
+    pub(crate) fn fastest(&self) -> Option<&'a Record> {
         let candidates = |lossless: bool| {
             self.all()
                 .filter(|record| record.culls() && !record.is_lossy)

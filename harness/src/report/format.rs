@@ -2,8 +2,8 @@
 
 use crate::digits::grouped;
 
-/// What stands for a metric that was not measured.
-pub(super) const ABSENT: &str = "\u{2013}";
+/// Shown where a metric was not measured.
+pub(crate) const ABSENT: &str = "\u{2013}";
 
 const MIB: f64 = 1_048_576.0;
 
@@ -25,7 +25,7 @@ pub fn significant(value: f64) -> String {
 }
 
 /// Whole numbers with thousands separated; others as [`significant`].
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if value.is_finite() && (value.abs() >= 1e3 || value.fract() == 0.0) {
         grouped(&format!("{value:.0}"))
     } else {
@@ -34,27 +34,27 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// A difference of radiance: `0`, `1.2e-7`, `0.0312`.
-pub(super) fn difference(value: f64) -> String {
+pub(crate) fn difference(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-3 { format!("{value:.1e}") } else { significant(value) }
 }
 
 /// Bytes in MiB.
-pub(super) fn mebibytes(bytes: f64) -> String {
+pub(crate) fn mebibytes(bytes: f64) -> String {
     significant(bytes / MIB)
 }
 
 /// A factor, without its sign: `14.2`.
-pub(super) fn factor(value: f64) -> String {
+pub(crate) fn factor(value: f64) -> String {
     significant(value)
 }
 
 /// A share in per cent, without its sign: `27.9`.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     significant(share * 100.0)
 }
 
-/// An adapter's name without what stands in brackets behind it.
-pub(super) fn short_adapter(adapter: &str) -> &str {
+/// An adapter's name without the part in brackets after it.
+pub(crate) fn short_adapter(adapter: &str) -> &str {
     let short = adapter.split(" (").next().unwrap_or(adapter).trim();
     if short.is_empty() { "an unnamed adapter" } else { short }
 }

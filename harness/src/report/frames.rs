@@ -1,5 +1,5 @@
-//! The same methods in each kind of frame that a renderer may draw: forward shading without a depth
-//! pre-pass and with one, and deferred shading without and with models in the G-buffer.
+//! The same strategies in each kind of frame that a renderer may draw: forward shading without a depth
+//! pre-pass and with one, and deferred shading without and with model ids in the G-buffer.
 
 use super::column::Column;
 use super::format::{number, significant};
@@ -7,27 +7,26 @@ use super::markup::{Html, html};
 use super::raster::{self, MARK};
 use super::table::{Look, Row, Table};
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
-use crate::study::Done;
 
-/// Heading of a kind of frame, and what it bills.
+/// The heading of a kind of frame, and what strategies pay for in it.
 fn words(kind: FrameKind) -> (&'static str, &'static str) {
     match kind {
         FrameKind::NoPrepass => (
             "forward, no pre-pass",
-            "Methods that read depth pay for a depth pre-pass and then light visible surfaces only. The \
-             others draw once and also light surfaces that later ones hide; draws are not sorted by depth.",
+            "A strategy that reads depth pays for a depth pre-pass and then lights visible surfaces only. The \
+             others draw once and also light surfaces that later draws hide. Draws are not sorted by depth.",
         ),
         FrameKind::Prepass => (
             "forward, pre-pass",
-            "Every method finds the depth pre-pass drawn, and nobody pays for it.",
+            "The renderer draws a depth pre-pass anyway, so no strategy pays for it.",
         ),
         FrameKind::Deferred => (
             "deferred",
-            "Every method finds depth and G-buffer drawn; M pays for a pass that draws the models of pixels.",
+            "The renderer draws depth and a G-buffer anyway. M pays for a pass that draws the model id of each pixel.",
         ),
         FrameKind::DeferredIds => (
             "deferred, ids",
-            "The G-buffer also holds the model of each pixel, so M pays for no pass of its own.",
+            "The G-buffer also holds the model id of each pixel, so M pays for no extra pass.",
         ),
     }
 }
@@ -36,7 +35,7 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
 fn methods<'a>(records: &[&'a Record]) -> Vec<(&'a str, Vec<&'a Record>)> {
     let mut methods: Vec<(&str, Vec<&Record>)> = Vec::new();
     for &record in records.iter().filter(|record| !record.is_control()) {
-        match methods.iter_mut().find(|(known, _)| *known == record.strategy) {
+        match methods.iter_mut().find(|(known, _)| *known == record.strategy.as_str()) {
             Some((_, own)) => own.push(record),
             None => methods.push((&record.strategy, vec![record])),
         }
@@ -44,13 +43,13 @@ fn methods<'a>(records: &[&'a Record]) -> Vec<(&'a str, Vec<&'a Record>)> {
     methods
 }
 
-/// The kinds of frame of which anything is known.
+/// The kinds of frame that were measured or can be derived.
 fn kinds(methods: &[(&str, Vec<&Record>)]) -> Vec<FrameKind> {
     let is_known = |kind: &FrameKind| methods.iter().any(|(_, own)| Bill::of(*kind, own).is_some());
     FrameKind::ALL.into_iter().filter(is_known).collect()
 }
 
-/// Modes that were measured.
+/// How many modes were measured.
 fn modes(records: &[&Record]) -> usize {
     let modes: std::collections::BTreeSet<_> =
         records.iter().map(|record| record.setting.mode).collect();
@@ -79,7 +78,7 @@ fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
     )
 }
 
-/// A table of methods and kinds of frame; empty where nothing is known of two kinds.
+/// A table of strategies and kinds of frame; empty where fewer than two kinds are known.
 fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
     let methods = methods(records);
     let kinds = kinds(&methods);
@@ -102,13 +101,13 @@ fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
 }
 
 /// What a cell holds.
-const READING: &str = "In each kind of frame: assign + shade; below it the two, all passes of the frame, and \
-    the span with gaps between passes where it is known. A figure is derived where another kind of frame was \
-    measured instead: the depth pre-pass is moved onto the bill of a method that reads depth, or the pass of \
-    M\u{2019}s ids is left out.";
+const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
+    passes of the frame, and the span from the first pass to the last with the gaps between them, where it is \
+    known. A figure is derived if another kind of frame was measured instead. Then the depth pre-pass is moved \
+    onto the bill of a strategy that reads depth, or the pass of M\u{2019}s model ids is left out.";
 
-/// A section for each set of lights that was measured in several modes; empty where there is none.
-pub(super) fn sections(results: &Results) -> Html {
+/// A section per set of lights that was measured in several modes; empty where there is none.
+pub(crate) fn sections(results: &Results) -> Html {
     let key = |record: &Record| {
         let size = (
             record.setting.width,
@@ -142,21 +141,4 @@ pub(super) fn sections(results: &Results) -> Html {
         })
     };
     groups.iter().enumerate().filter_map(section).collect()
-}
-
-/// The part of a study's page: from jobs in several modes (`frames`), else what the main
-/// comparison lets derive.
-pub(super) fn part_of_study(done: &Done, scene: &str) -> Html {
-    let of = |section| -> Vec<(&Machine, Vec<&Record>)> {
-        let jobs = done.of(scene, section);
-        jobs.map(|(_, results)| (&results.machine, results.records.iter().collect())).collect()
-    };
-    let jobs = Some(of("frames")).filter(|jobs| !jobs.is_empty()).unwrap_or_else(|| of("main"));
-    let mut tables = Html::default();
-    for (machine, records) in jobs.iter().rev() {
-        let Some(first) = records.first() else { continue };
-        let caption = format!("{scene}, {} lights", number(first.setting.lights as f64));
-        tables += table(&format!("Kinds of frame: {caption}"), records, machine);
-    }
-    super::study::part(scene, "frames", "Kinds of frame", READING, &tables)
 }

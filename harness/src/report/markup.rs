@@ -1,47 +1,49 @@
 //! HTML as a type of its own.
 //!
-//! Results may come from anywhere, and so may every name in them. [`Html`] is made in three ways only: from
-//! text, which is escaped; by [`html!`], whose template is written in this program and whose values are
-//! escaped unless they are [`Html`]; and from what this program draws or embeds
-//! ([`trusted`](Html::trusted)). Tables and pages take nothing else, so that a forgotten escape does not
-//! compile.
+//! Results may come from anywhere, and so may every name in them. There are three ways to make [`Html`]:
+//!
+//! - from text, which is escaped;
+//! - by [`html!`], whose template is written in this program; values are escaped unless they are [`Html`];
+//! - from what this program draws or embeds ([`trusted`](Html::trusted)).
+//!
+//! Tables and pages take nothing else, so a forgotten escape does not compile.
 
 use std::fmt::{self, Display, Write};
 use std::ops::{Add, AddAssign};
 
 use crate::visible::visible_lines;
 
-/// Markup that a browser may take as it is.
+/// Markup that is safe to hand to a browser.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Html(String);
+pub(crate) struct Html(String);
 
 impl Html {
     /// Text, between tags or in a quoted attribute.
-    pub(super) fn text(text: &str) -> Self {
+    pub(crate) fn text(text: &str) -> Self {
         Self(Escaped(text).to_string())
     }
 
-    /// What this program itself draws, embeds or took out of its own HTML: never text of a file.
-    pub(super) fn trusted(markup: impl Into<String>) -> Self {
+    /// Markup that this program draws or embeds: never text of a file.
+    pub(crate) fn trusted(markup: impl Into<String>) -> Self {
         Self(markup.into())
     }
 
     /// A filled template; for [`html!`].
-    pub(super) fn filled(template: fmt::Arguments<'_>) -> Self {
+    pub(crate) fn filled(template: fmt::Arguments<'_>) -> Self {
         Self(template.to_string())
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    pub(super) fn as_str(&self) -> &str {
+    pub(crate) fn as_str(&self) -> &str {
         &self.0
     }
 }
 
-/// HTML from a template that is written here: `html!("<b>{}</b>", name)`. Values are escaped unless they
-/// are HTML. A template takes its values by position only, so that none slips in unescaped.
+/// HTML from a template: `html!("<b>{}</b>", name)`. Values are escaped unless they are HTML. A template takes
+/// values by position only, so no value gets in unescaped.
 macro_rules! html {
     ($template:literal $(, $value:expr)* $(,)?) => {{
         const _: () = $crate::report::markup::check_positions($template);
@@ -50,10 +52,10 @@ macro_rules! html {
         ))
     }};
 }
-pub(super) use html;
+pub(crate) use html;
 
-/// Fails to compile where a template takes a value by name: `{name}` would be put in as it is.
-pub(super) const fn check_positions(template: &str) {
+/// Fails to compile if a template takes a value by name, because `{name}` would not be escaped.
+pub(crate) const fn check_positions(template: &str) {
     let bytes = template.as_bytes();
     let mut ix = 0;
     while ix < bytes.len() {
@@ -72,7 +74,7 @@ pub(super) const fn check_positions(template: &str) {
 }
 
 /// Shows a value as HTML.
-pub(super) struct Escaped<'a, T: ?Sized>(pub(super) &'a T);
+pub(crate) struct Escaped<'a, T: ?Sized>(pub(crate) &'a T);
 
 impl<T: Markup + ?Sized> Display for Escaped<'_, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -81,7 +83,7 @@ impl<T: Markup + ?Sized> Display for Escaped<'_, T> {
 }
 
 /// What a template takes.
-pub(super) trait Markup {
+pub(crate) trait Markup {
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result;
 }
 
@@ -180,7 +182,7 @@ impl FromIterator<Html> for Html {
 const UNBROKEN: usize = 24;
 
 /// Text as HTML in which no name such as `DC-I/64x64x24` is broken at its hyphen.
-pub(super) fn with_names_whole(text: &str) -> Html {
+pub(crate) fn with_names_whole(text: &str) -> Html {
     let word = |(ix, word): (usize, &str)| {
         let space = if ix == 0 { "" } else { " " };
         let is_name = word.contains('-') && word.chars().count() <= UNBROKEN;

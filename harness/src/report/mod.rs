@@ -3,32 +3,31 @@
 //! Both show the same columns (`metrics`), computed from the same comparisons: the
 //! records that differ in nothing but the strategy.
 
-mod colours;
+pub(crate) mod colours;
 mod column;
-mod comparison;
-mod finding;
-mod fit;
-mod format;
-mod frames;
-mod html;
-mod lead;
+pub(crate) mod comparison;
+pub(crate) mod finding;
+pub(crate) mod fit;
+pub(crate) mod format;
+pub(crate) mod frames;
+pub(crate) mod html;
+pub(crate) mod lead;
 mod looks;
 mod loss;
 mod markdown;
-mod markup;
-mod metrics;
-mod page;
-mod panels;
-mod pass_bars;
-mod picture_pair;
-mod rank;
-mod raster;
+pub(crate) mod markup;
+pub(crate) mod metrics;
+pub(crate) mod page;
+pub(crate) mod panels;
+pub(crate) mod pass_bars;
+pub(crate) mod picture_pair;
+pub(crate) mod rank;
+pub(crate) mod raster;
 mod samples;
-mod section;
-mod study;
+pub(crate) mod section;
 mod table;
-mod terminal;
-mod terms;
+pub(crate) mod terminal;
+pub(crate) mod terms;
 
 pub use finding::{finding, lights, notices};
 pub use format::significant;
@@ -37,6 +36,5 @@ pub use lead::needs_built_hierarchy;
 pub use loss::error_words;
 pub use markdown::render_markdown;
 pub use rank::{indistinguishable, is_surely_faster, listed};
-pub use study::{claims_markdown, write_study};
 pub use table::TABLE_WIDTH;
 pub use terminal::render_table;

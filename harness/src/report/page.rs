@@ -1,4 +1,4 @@
-//! The parts of the page that are text: tables, notices, provenance.
+//! The parts of a page that are text: paragraphs, notices, settings, the meaning of columns, provenance.
 
 use super::format::number;
 use super::loss::error_columns;
@@ -6,13 +6,13 @@ use super::markup::{Html, html, with_names_whole};
 use super::metrics::{Metric, metrics};
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
-pub(super) fn paragraphs(class: &str, texts: &[String]) -> Html {
+pub(crate) fn paragraphs(class: &str, texts: &[String]) -> Html {
     let paragraph =
         |text: &String| html!("<p class=\"{}\">{}</p>\n", class, with_names_whole(text));
     texts.iter().map(paragraph).collect()
 }
 
-pub(super) fn notices(texts: &[String]) -> Html {
+pub(crate) fn notices(texts: &[String]) -> Html {
     if texts.is_empty() {
         return Html::default();
     }
@@ -20,10 +20,10 @@ pub(super) fn notices(texts: &[String]) -> Html {
     html!("<ul class=\"notices\" aria-label=\"Before you trust a figure\">{}</ul>", items)
 }
 
-/// The kind of light that stands in no list.
+/// The kind of light that is in no list.
 const SUN: &str = "sun";
 
-pub(super) fn setting(record: &Record) -> String {
+pub(crate) fn setting(record: &Record) -> String {
     let kinds: Vec<_> = record
         .setting
         .light_kinds
@@ -57,7 +57,7 @@ pub(super) fn setting(record: &Record) -> String {
 }
 
 /// What each column means.
-pub(super) fn columns() -> Html {
+pub(crate) fn columns() -> Html {
     let about = |column: &Metric<'_>| {
         html!(
             "<dt>{} <span class=\"unit\">{}</span></dt><dd>{}</dd>\n",
@@ -70,7 +70,7 @@ pub(super) fn columns() -> Html {
 }
 
 /// Where, when and from what the figures came.
-pub(super) fn provenance(results: &Results) -> Html {
+pub(crate) fn provenance(results: &Results) -> Html {
     let machine = &results.machine;
     let mut rows: Vec<(&str, String)> = vec![
         ("Adapter", machine.adapter.clone()),
@@ -121,29 +121,29 @@ fn device(kind: DeviceType) -> &'static str {
         DeviceType::IntegratedGpu => "integrated GPU",
         DeviceType::VirtualGpu => "virtual GPU",
         DeviceType::Cpu => "software adapter (CPU)",
-        DeviceType::Other => "another kind of device",
+        DeviceType::Other => "other device",
     }
 }
 
 fn clock(clock: Clock) -> &'static str {
     match clock {
         Clock::GpuTimestamps => "GPU timestamps around each pass",
-        Clock::WallClock => "wall clock, each pass submitted alone",
+        Clock::WallClock => "wall clock, each pass submitted separately",
     }
 }
 
 fn truth(results: &Results) -> String {
     match results.truth.level {
         TruthLevel::Full => format!(
-            "every (light, sample) pair on the CPU in f64, but those within {:e} of the range's edge",
+            "every (light, sample) pair, on the CPU in f64, except pairs closer to the edge of the range than {:e} of it",
             results.truth.edge_tolerance
         ),
-        TruthLevel::None => "images only; the lists were not checked".to_owned(),
+        TruthLevel::None => "images only: the lists were not checked".to_owned(),
     }
 }
 
 /// A command line that a POSIX shell splits into the same words.
-pub(super) fn shell_words(words: &[String]) -> String {
+pub(crate) fn shell_words(words: &[String]) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
     let quoted: Vec<_> = words
         .iter()

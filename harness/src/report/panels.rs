@@ -3,16 +3,16 @@
 use super::markup::{Html, html};
 
 /// A panel with its button.
-pub(super) struct Panel {
+pub(crate) struct Panel {
     /// What the button says.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// The class of the dot on the button; empty draws none.
-    pub(super) class: String,
-    pub(super) body: Html,
+    pub(crate) class: String,
+    pub(crate) body: Html,
 }
 
 /// Panels under a heading, the first of them shown. A single panel needs no button.
-pub(super) fn panels(label: &str, heading: &Html, panels: &[Panel]) -> Html {
+pub(crate) fn panels(label: &str, heading: &Html, panels: &[Panel]) -> Html {
     let (mut buttons, mut bodies) = (Html::default(), Html::default());
     for (ix, panel) in panels.iter().enumerate() {
         let is_first = ix == 0;

@@ -7,7 +7,7 @@ use crate::results::{PassKind, PassTimes, Record};
 
 /// What a chart of passes counts.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Counted {
+pub(crate) enum Counted {
     /// All passes of a frame.
     Frame,
     /// The passes that assign lights and light pixels.
@@ -35,7 +35,7 @@ impl Counted {
 }
 
 /// The longest bar over the shortest; 1 where there is none.
-pub(super) fn spread(counted: Counted, records: &[&Record]) -> f64 {
+pub(crate) fn spread(counted: Counted, records: &[&Record]) -> f64 {
     let times = || {
         records
             .iter()
@@ -46,16 +46,15 @@ pub(super) fn spread(counted: Counted, records: &[&Record]) -> f64 {
     if ratio > 1.0 { ratio } else { 1.0 }
 }
 
-/// A bar per record and a segment per pass. `class` gives the colour of a record's strategy.
-pub(super) fn pass_bars(
+/// A bar per record and a segment per pass.
+pub(crate) fn pass_bars(
     title: String,
     scale: Scale,
     counted: Counted,
     records: &[&Record],
     colours: &Colours<'_>,
-    class: impl Fn(&Record) -> String,
 ) -> BarChart {
-    let bar = |record: &&Record| BarRow { class: class(record), ..bar(record, counted, colours) };
+    let bar = |record: &&Record| bar(record, counted, colours);
     let axis = Axis { label: counted.label().to_owned(), unit: "ms".to_owned(), scale };
     let note = match scale {
         Scale::Log => {
@@ -95,8 +94,8 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
         false => "not measured".to_owned(),
     };
     BarRow {
-        name: record.strategy.clone(),
-        class: String::new(),
+        name: record.strategy.to_string(),
+        class: record.strategy.class(),
         tip: format!("{}: {value_text}{lines}", record.strategy),
         segments,
         value_text,
@@ -104,7 +103,7 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
 }
 
 /// The time of a pass: the median, or along a path the mean, in which a frame without the pass counts as 0.
-pub(super) fn time_ms(record: &Record, times: &PassTimes) -> f64 {
+pub(crate) fn time_ms(record: &Record, times: &PassTimes) -> f64 {
     if !record.setting.along_path || times.samples.is_empty() {
         return times.median_ms;
     }

@@ -8,27 +8,27 @@ use super::markup::{Html, html};
 use crate::results::Record;
 
 /// What a viewer shows. Pictures are names that the page knows; `None` where none was kept.
-pub(super) struct PicturePair<'a> {
-    pub(super) scene: &'a str,
+pub(crate) struct PicturePair<'a> {
+    pub(crate) scene: &'a str,
     /// The strategy, or the model, that drew the image.
-    pub(super) name: &'a str,
+    pub(crate) name: &'a str,
     /// Width and height, pixels.
-    pub(super) size: [u32; 2],
-    pub(super) image: Option<&'a str>,
-    pub(super) reference: Option<&'a str>,
+    pub(crate) size: [u32; 2],
+    pub(crate) image: Option<&'a str>,
+    pub(crate) reference: Option<&'a str>,
     /// What the reference is: `no culling`.
-    pub(super) reference_name: &'a str,
-    pub(super) difference: Option<&'a str>,
+    pub(crate) reference_name: &'a str,
+    pub(crate) difference: Option<&'a str>,
     /// By how much the picture of the difference is brightened.
-    pub(super) gain: Option<f64>,
+    pub(crate) gain: Option<f64>,
     /// What is known of the difference, in words.
-    pub(super) verdict: String,
+    pub(crate) verdict: String,
 }
 
 impl PicturePair<'_> {
     /// The image and its reference, with a line between them that the reader drags; the image alone where
     /// there is no reference.
-    pub(super) fn main(&self) -> Html {
+    pub(crate) fn main(&self) -> Html {
         let (Some(image), Some(reference)) = (self.image, self.reference) else {
             let caption = html!("Drawn with <b>{}</b>.", self.name);
             return self.still(&caption);
@@ -54,7 +54,7 @@ impl PicturePair<'_> {
     }
 
     /// The image alone.
-    pub(super) fn still(&self, caption: &Html) -> Html {
+    pub(crate) fn still(&self, caption: &Html) -> Html {
         let alternative = format!("{} with {}", self.scene, self.name);
         html!(
             "<figure class=\"main\"><div class=\"compare\" style=\"aspect-ratio:{}/{}\">{}</div>\
@@ -67,7 +67,7 @@ impl PicturePair<'_> {
     }
 
     /// The picture of the difference with what is known of it; words alone where the images are the same.
-    pub(super) fn difference(&self, is_same: bool) -> Html {
+    pub(crate) fn difference(&self, is_same: bool) -> Html {
         if self.difference.is_none() && is_same {
             return html!(
                 "<figure class=\"difference\"><figcaption><b>Difference.</b> {}</figcaption></figure>\n",
@@ -93,7 +93,7 @@ impl PicturePair<'_> {
 }
 
 /// A picture that the page knows, or words that none was kept.
-pub(super) fn picture(name: Option<&str>, alternative: &str) -> Html {
+pub(crate) fn picture(name: Option<&str>, alternative: &str) -> Html {
     name.map_or_else(
         || html!("<div class=\"missing\">No picture was kept</div>"),
         |name| html!("<img data-picture=\"{}\" alt=\"{}\" draggable=\"false\">", name, alternative),
@@ -101,14 +101,14 @@ pub(super) fn picture(name: Option<&str>, alternative: &str) -> Html {
 }
 
 /// What is known of the difference of a record's image to that of no culling.
-pub(super) fn verdict(record: &Record) -> String {
+pub(crate) fn verdict(record: &Record) -> String {
     let channels = number(f64::from(record.setting.width) * f64::from(record.setting.height) * 3.0);
     let most = record.image.max_abs_diff.filter(|most| most.is_finite());
     match (record.image.differing_channels, most) {
         (Some(0), _) => format!("The same in every bit: none of {channels} channels differs."),
         (Some(differing), most) => {
             let most = most.map_or_else(
-                || "by more than a number can say".to_owned(),
+                || "by an amount that is not finite".to_owned(),
                 |most| format!("by at most {}", difference(most)),
             );
             let differing = number(differing as f64);

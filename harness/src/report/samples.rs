@@ -7,7 +7,7 @@ use crate::chart::{Strip, half_width};
 use crate::results::{PassTimes, Record};
 
 /// The samples of all records of a comparison, a group of rows per strategy; empty where there is no pass.
-pub(super) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
+pub(crate) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
     let mut strips: Vec<(&Record, &PassTimes, Strip)> = Vec::new();
     for record in records {
         for (name, times) in record.times.passes.iter() {
@@ -27,12 +27,12 @@ pub(super) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
                 row(times, strip)
             })
             .collect();
-        let class = colours.strategy(record);
+        let class = record.strategy.class();
         groups += html!(
             "<tbody><tr><th scope=\"rowgroup\" class=\"strategy\" colspan=\"4\">\
              <i class=\"dot {}\"></i>{}</th></tr>\n{}</tbody>\n",
             class,
-            record.strategy,
+            record.strategy.as_str(),
             rows
         );
     }

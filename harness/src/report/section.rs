@@ -20,17 +20,16 @@ use crate::results::{Record, Results};
 const LOG_ABOVE: f64 = 60.0;
 
 /// One section per comparison. `kept` names the pictures that the page has.
-pub(super) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
+pub(crate) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
     let colours = Colours::new(results);
     let section = |(ix, comparison): (usize, &Comparison<'_>)| {
         let first = comparison.first();
         let heading = format!("{}, {}", first.setting.scene, first.setting.mode.name());
         let records: Vec<&Record> = comparison.all().collect();
-        let body = result_table(&format!("Results: {heading}"), comparison, |record| {
-            colours.strategy(record).to_owned()
-        }) + frame_times(&records, &colours)
-            + pictures(comparison, kept, &colours)
-            + list_lengths(comparison, &colours)
+        let body = result_table(&format!("Results: {heading}"), comparison)
+            + frame_times(&records, &colours)
+            + pictures(comparison, kept)
+            + list_lengths(comparison)
             + samples(&records, &colours);
         html!(
             "<section class=\"comparison\" data-comparison=\"{0}\" aria-labelledby=\"c{0}\">\n\
@@ -45,13 +44,9 @@ pub(super) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
 }
 
 /// The table of a comparison, whose headings sort.
-pub(super) fn result_table(
-    label: &str,
-    comparison: &Comparison<'_>,
-    class: impl Fn(&Record) -> String,
-) -> Html {
+pub(crate) fn result_table(label: &str, comparison: &Comparison<'_>) -> Html {
     table("strategy", comparison, comparison.all(), columns(comparison))
-        .dotted(|row| class(row.record))
+        .dotted(|row| row.record.strategy.class())
         .html(label, Look::Sortable)
 }
 
@@ -59,8 +54,7 @@ pub(super) fn result_table(
 fn frame_times(records: &[&Record], colours: &Colours<'_>) -> Html {
     const TITLE: &str = "Where the time of a frame goes";
     let draw = |name: &str, scale| {
-        let class = |record: &Record| colours.strategy(record).to_owned();
-        let chart = pass_bars(TITLE.to_owned(), scale, Counted::Frame, records, colours, class);
+        let chart = pass_bars(TITLE.to_owned(), scale, Counted::Frame, records, colours);
         // Charts escape their text themselves.
         let drawing = Html::trusted(chart.to_svg());
         let body = html!(

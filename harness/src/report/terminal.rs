@@ -37,7 +37,7 @@ pub fn render_table(results: &Results) -> String {
 }
 
 /// Appends a paragraph in lines that are no wider than a table.
-pub(super) fn push_wrapped(text: &mut String, paragraph: &str) {
+pub(crate) fn push_wrapped(text: &mut String, paragraph: &str) {
     let mut width = 0;
     for word in paragraph.split_whitespace() {
         let size = word.chars().count();

@@ -8,7 +8,7 @@ use super::markup::{Html, html};
 const TERMS: &str = include_str!("../../../docs/terms.md");
 
 /// All terms, folded.
-pub(super) fn terms() -> Html {
+pub(crate) fn terms() -> Html {
     let (body, count) = list(TERMS);
     html!(
         "<details class=\"terms\" id=\"terms\"><summary>What the words mean: {} terms</summary>\n{}</details>\n",

@@ -13,7 +13,7 @@ use super::{
     seal::{sealed, unsealed},
 };
 
-/// Why results cannot be written or read; one line each.
+/// Errors of reading and writing results, one line each.
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// A file or folder cannot be written.
@@ -64,12 +64,11 @@ impl Results {
         serde_json::to_string_pretty(self).expect("keys are strings and values are plain data")
     }
 
-    /// Writes `results.json` with its checksum, whole or not at all; the folder is made where it is
-    /// missing.
+    /// Writes `results.json` with its checksum, completely or not at all. Creates a missing folder.
     ///
     /// # Errors
     ///
-    /// [`ResultsError::Write`] names the path that refused.
+    /// [`ResultsError::Write`] names the path.
     pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
         let text = sealed(self).map_err(|error| ResultsError::Parse {
             path: path.to_owned(),
@@ -87,21 +86,20 @@ impl Results {
         Self::read_checked(path).map(|(results, _)| results)
     }
 
-    /// The same, and what the results lack of what their command asks for.
+    /// Reads results, and checks that they hold all records of their command: returns the first fault.
     ///
     /// # Errors
     ///
     /// As [`read`](Self::read).
     pub fn read_checked(path: &Path) -> Result<(Self, Option<String>), ResultsError> {
         let (mut results, checksum) = Self::read_raw(path)?;
-        // Under the names that the command knows.
         let lack = lack(&results);
-        results.name_as_today();
+        results.bill_as_today();
         results.take_metrics(path, &checksum);
         Ok((results, lack))
     }
 
-    /// Reads what a file holds, under the names of its time, and its checksum.
+    /// Reads a file, with the ids of this version, and its checksum.
     pub(super) fn read_raw(path: &Path) -> Result<(Self, String), ResultsError> {
         let fail = |reason| ResultsError::Parse { path: path.to_owned(), reason };
         let bytes = fs::read(path)
@@ -118,20 +116,19 @@ impl Results {
         Ok((results.map_err(|error| fail(error.to_string()))?, checksum))
     }
 
-    /// Gives records of earlier versions the names and the bills of today, and shows what names hide.
-    pub(super) fn name_as_today(&mut self) {
+    /// Gives records of earlier versions the bills of today, and shows what names hide.
+    pub(super) fn bill_as_today(&mut self) {
         self.show_hidden();
-        self.rename_records();
         self.records.iter_mut().for_each(Record::bill_again);
     }
 }
 
-/// Writes a file whole or not at all: into a temporary file beside it, then renamed. Folders
-/// above it are made where they are missing.
+/// Writes a file completely or not at all: writes a temporary file beside it, then renames it. Creates missing
+/// folders.
 ///
 /// # Errors
 ///
-/// [`ResultsError::Write`] names the path that refused; the temporary file is removed.
+/// [`ResultsError::Write`] names the path. The temporary file is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     let fail = |path: &Path, source| ResultsError::Write { path: path.to_owned(), source };
     if let Some(folder) = path.parent() {
@@ -147,33 +144,33 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
         })
         .and_then(|()| fs::rename(&temporary, path));
     written.map_err(|source| {
-        // Nothing to do where the temporary file was never made.
+        // The temporary file may not exist.
         let _ = fs::remove_file(&temporary);
         fail(path, source)
     })
 }
 
-/// How names of temporary files end, behind the number of their process.
+/// The end of the names of temporary files, after the process id.
 const TEMPORARY: &str = ".tmp";
 
 /// Removes the temporary files that killed runs left in an output folder, among its charts and its jobs.
-/// The folder must be held: files of a run that is still writing would go too.
+/// The caller must hold the folder, or this would remove files of a run that is still writing.
 pub(crate) fn remove_temporaries(folder: &Path) {
     let jobs = folder.join("jobs");
     let each_job = entries(&jobs).filter(|(kind, _)| kind.is_dir()).map(|(_, path)| path);
     let folders = [folder.to_owned(), folder.join("charts"), jobs.clone()];
     for folder in folders.into_iter().chain(each_job) {
-        // Links are neither followed nor removed.
+        // Links are not followed and not removed.
         for (_, path) in entries(&folder).filter(|(kind, _)| kind.is_file()) {
             if path.file_name().is_some_and(|name| is_temporary(&name.to_string_lossy())) {
-                // One that cannot be removed stands in nobody's way.
+                // A file that cannot be removed does no harm.
                 let _ = fs::remove_file(path);
             }
         }
     }
 }
 
-/// What lies in a folder; nothing where it cannot be read.
+/// The entries of a folder; none if it cannot be read.
 fn entries(folder: &Path) -> impl Iterator<Item = (fs::FileType, PathBuf)> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| Some((entry.file_type().ok()?, entry.path())))

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::{
     DeepImageRun, ImageFigures, ListFigures, Machine, Record, RejectedLight, Results,
-    SCHEMA_VERSION, Setting, Times, Truth, TruthImage,
+    SCHEMA_VERSION, Setting, Times, Truth, TruthImage, renamed::named_today,
 };
 
 /// The root of a file of schema 1.
@@ -75,7 +75,8 @@ impl From<FlatRecord> for Record {
             image,
             note,
         } = flat;
-        Self { strategy, strategy_parameters, is_lossy, setting, times, lists, image, note }
+        let strategy = named_today(&strategy, &strategy_parameters, &setting);
+        Self { strategy, is_lossy, setting, times, lists, image, note }
     }
 }
 

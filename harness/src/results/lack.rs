@@ -1,16 +1,15 @@
-//! What results lack of what their command asks for.
+//! Checks that results hold the records that their command asks for.
 //!
-//! A file that was cut by hand, or put together from others, may hold half of the records of its command,
-//! or one twice. It must not count as done.
+//! A file that was edited by hand, or merged from others, may lack records of its command or hold one twice.
+//! A study must not count it as done.
 
-use super::{Record, Results};
+use super::{Record, Results, renamed::named_then};
 use crate::{
-    checks::has_mode,
-    choice::{Choice, choices},
     cli::{self, CompareArgs, Invocation},
+    strategy::StrategyId,
 };
 
-/// What is missing from results, or too many in them; `None` where they are what was asked for.
+/// The first record that is missing or superfluous; `None` if the results match their command.
 pub(super) fn lack(results: &Results) -> Option<String> {
     for (ix, record) in results.records.iter().enumerate() {
         let same = |known: &&Record| {
@@ -20,7 +19,7 @@ pub(super) fn lack(results: &Results) -> Option<String> {
             return Some(format!("it holds {} twice", name(record)));
         }
     }
-    // Commands of earlier versions may have options that are refused today.
+    // Commands of earlier versions may have options without effect, which are errors today.
     match cli::parse_stored(&results.command) {
         Ok(Invocation::Compare(args)) => lack_of_comparison(&args, &results.records),
         Ok(Invocation::Truth(_)) => {
@@ -38,19 +37,24 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
     if records.is_empty() {
         return Some("it has no records".to_owned());
     }
-    let Ok(asked) = choices(args) else { return None };
-    let stored: Option<Vec<Choice>> =
-        records.iter().map(|record| Choice::parse(&record.strategy).ok()).collect();
-    // Strategies of another version cannot be told apart here.
-    let stored = stored?;
+    let Ok(asked) = args.choices() else { return None };
+    // Unknown strategies come from another version, and cannot be compared.
+    if records.iter().any(|record| StrategyId::parse(&record.strategy).is_err()) {
+        return None;
+    }
     let mut is_asked = vec![false; records.len()];
     for &mode in args.mode.modes() {
-        for choice in asked.iter().filter(|choice| has_mode(choice, mode)) {
-            let same =
-                |ix: &usize| records[*ix].setting.mode == mode && stored[*ix].is_same(choice);
-            match (0..records.len()).find(same) {
+        for choice in asked.iter().filter(|choice| choice.refuses_mode(mode).is_none()) {
+            let find = |id: fn(&StrategyId) -> StrategyId| {
+                let same = |record: &Record| {
+                    record.setting.mode == mode && id(&record.strategy) == *choice.id()
+                };
+                records.iter().position(same)
+            };
+            // Commands of earlier versions use the ids of their version.
+            match find(StrategyId::clone).or_else(|| find(named_then)) {
                 Some(ix) => is_asked[ix] = true,
-                // Of all strategies, those that cannot serve a scene are left out. No culling serves all.
+                // `all` leaves out strategies that cannot serve the scene. No culling serves every scene.
                 None if !choice.is_named && !choice.is_reference() => {}
                 None => return Some(format!("{} in {} is missing", choice.id(), mode.name())),
             }
@@ -72,7 +76,7 @@ mod tests {
         let mut results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
         results.command = line.split(' ').map(str::to_owned).collect();
         let record = results.records[0].clone();
-        let records = ids.iter().map(|id| Record { strategy: (*id).to_owned(), ..record.clone() });
+        let records = ids.iter().map(|id| Record { strategy: (*id).into(), ..record.clone() });
         results.records = records.collect();
         results
     }
@@ -88,7 +92,7 @@ mod tests {
         assert!(said(&whole[1..]).contains("None in deferred is missing"));
         assert!(said(&[whole[0]; 5]).contains("holds None in deferred twice"));
         let other = ["None", "SC-E/48x48x40", "T-E/28x28/hs", "T-E/28x28", "M"];
-        assert!(said(&other).contains("sc-e/bvh in deferred is missing"));
+        assert!(said(&other).contains("SC-E/48x48x40/bvh in deferred is missing"));
         let more = [&whole[..], &["G/20x20x20"]].concat();
         assert!(said(&more).contains("G/20x20x20 in deferred, which its command"));
         // Each mode has its records.
@@ -104,7 +108,7 @@ mod tests {
             (results.truth_image, results.deep_images) = (None, None);
             assert!(lack(&results).is_some_and(|lack| lack.contains("missing")));
         }
-        // A command of another version is not understood: what is there counts.
+        // A command of another version cannot be parsed, so its records count as complete.
         assert_eq!(lack(&results("lightbench compare --gone 1", &["None"])), None);
     }
 }

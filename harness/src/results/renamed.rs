@@ -1,66 +1,92 @@
-//! Records of earlier versions, under the ids that say today what they were.
+//! Records of schema 1, under the ids that say today what they were.
 //!
 //! Two ids have changed their meaning. `G/20x20x20` cut the box of the lights' supports, which is
 //! `G/20x20x20/supports` now. `T-I/28x28` asked for HS+SAT-N, but stages had no far plane then, and
-//! without far corners the shader ran HS alone: that is `T-I/28x28/hs`.
+//! without far corners the shader ran HS only: that is `T-I/28x28/hs`.
 
+use std::collections::BTreeMap;
+
+use assign::FrustumTests;
+use assign_grid::GridBox;
 use serde_json::Value;
 
-use super::{Record, Results};
+use super::Setting;
+use crate::strategy::{Options, StrategyId};
 
-impl Results {
-    /// Gives every record the id that says what it was.
-    pub(super) fn rename_records(&mut self) {
-        self.records.iter_mut().for_each(Record::rename);
-    }
+/// An id that has changed its meaning.
+struct Renaming {
+    family: &'static str,
+    /// The parameter that tells an old record, and its value.
+    told_by: (&'static str, &'static str),
+    /// Whether the setting lets the record be an old one.
+    may_be_old: fn(&Setting) -> bool,
+    /// Names what the record was.
+    to_today: fn(&mut Options),
+    /// Undoes that.
+    to_then: fn(&mut Options),
 }
 
-impl Record {
-    fn rename(&mut self) {
-        let (parameter, was, is) = match self.strategy.split('/').next() {
-            Some("G") => ("box", "lights", "supports"),
-            Some("T-I") if self.setting.planes.is_none() => ("tests", "hs+sat-n", "hs"),
-            _ => return,
-        };
-        let known = self.strategy_parameters.get(parameter).and_then(Value::as_str);
-        if known != Some(was) {
-            return;
-        }
-        // The segment stands behind the family and its size, before source and knobs.
-        let mut segments: Vec<&str> = self.strategy.split('/').collect();
-        segments.retain(|segment| *segment != was);
-        segments.insert(segments.len().min(2), is);
-        self.strategy = segments.join("/");
-        self.strategy_parameters.insert(parameter.to_owned(), is.into());
-    }
+const RENAMINGS: [Renaming; 2] = [
+    Renaming {
+        family: "G",
+        told_by: ("box", "lights"),
+        may_be_old: |_| true,
+        to_today: |options| options.grid_box = GridBox::Supports,
+        to_then: |options| options.grid_box = GridBox::default(),
+    },
+    Renaming {
+        family: "T-I",
+        told_by: ("tests", "hs+sat-n"),
+        may_be_old: |setting| setting.planes.is_none(),
+        to_today: |options| options.tests = Some(HS),
+        to_then: |options| options.tests = None,
+    },
+];
+
+const HS: FrustumTests =
+    FrustumTests { hs: true, sat_e: false, sat_n: false, sat_p: false, sat_v: false };
+
+/// The id that says today what a record of schema 1 was.
+pub(super) fn named_today(
+    id: &str,
+    parameters: &BTreeMap<String, Value>,
+    setting: &Setting,
+) -> StrategyId {
+    let id = StrategyId::read(id);
+    let is_old = |renaming: &&Renaming| {
+        let (name, value) = renaming.told_by;
+        let has_value = parameters.get(name).and_then(Value::as_str) == Some(value);
+        renaming.family == id.family() && has_value && (renaming.may_be_old)(setting)
+    };
+    let renaming = RENAMINGS.iter().find(is_old);
+    renaming.and_then(|renaming| id.with(renaming.to_today).ok()).unwrap_or(id)
+}
+
+/// The id under which an old command asked for what is called `id` today: its own where it kept it.
+pub(super) fn named_then(id: &StrategyId) -> StrategyId {
+    let renaming = RENAMINGS.iter().find(|renaming| renaming.family == id.family());
+    let renaming = renaming.filter(|_| id.stand_in().is_some());
+    renaming.and_then(|renaming| id.with(renaming.to_then).ok()).unwrap_or_else(|| id.clone())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{PlaneSource, Planes};
+    use super::super::{PlaneSource, Planes, Results};
     use super::*;
 
-    fn record(strategy: &str, parameter: &str, value: &str) -> Record {
-        let example = include_str!("example.json");
-        let results: Results = serde_json::from_str(example).unwrap();
-        let mut record = results.records.into_iter().next().unwrap();
-        record.strategy = strategy.to_owned();
-        record.strategy_parameters.insert(parameter.to_owned(), value.into());
-        record.setting.planes = None;
-        record
-    }
-
-    fn renamed(mut record: Record) -> String {
-        record.rename();
-        let once = record.clone();
-        record.rename();
-        assert_eq!(record, once, "renaming again changes nothing");
-        record.strategy
+    fn renamed(id: &str, parameter: &str, value: &str, planes: Option<Planes>) -> String {
+        let results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
+        let mut setting = results.records[0].setting.clone();
+        setting.planes = planes;
+        let parameters = [(parameter.to_owned(), value.into())].into();
+        let today = named_today(id, &parameters, &setting);
+        assert_eq!(named_then(&today), StrategyId::read(id), "the old command asked for {id}");
+        today.to_string()
     }
 
     #[test]
     fn a_grid_of_supports_is_called_so() {
-        let name = |strategy, grid_box| renamed(record(strategy, "box", grid_box));
+        let name = |id, grid_box| renamed(id, "box", grid_box, None);
         assert_eq!(name("G/20x20x20", "lights"), "G/20x20x20/supports");
         assert_eq!(name("G/20x20x20/bvh/cap8", "lights"), "G/20x20x20/supports/bvh/cap8");
         assert_eq!(name("G/8x8x8/surfaces/bvh", "surfaces"), "G/8x8x8/surfaces/bvh");
@@ -68,22 +94,17 @@ mod tests {
     }
 
     #[test]
-    fn a_tile_without_a_far_plane_ran_hs_alone() {
-        let old = || record("T-I/28x28/bvh", "tests", "hs+sat-n");
-        assert_eq!(renamed(old()), "T-I/28x28/hs/bvh");
-        assert_eq!(
-            renamed(record("T-I/16x16/hs+sat-e", "tests", "hs+sat-e")),
-            "T-I/16x16/hs+sat-e"
-        );
-        assert_eq!(renamed(record("T-E/28x28", "tests", "hs+sat-n")), "T-E/28x28");
+    fn a_tile_without_a_far_plane_ran_hs_only() {
+        let name = |id, tests| renamed(id, "tests", tests, None);
+        assert_eq!(name("T-I/28x28/bvh", "hs+sat-n"), "T-I/28x28/hs/bvh");
+        assert_eq!(name("T-I/16x16/hs+sat-e", "hs+sat-e"), "T-I/16x16/hs+sat-e");
+        assert_eq!(name("T-E/28x28", "hs+sat-n"), "T-E/28x28");
         let planes = Planes {
             near_m: 0.1,
             near_from: PlaneSource::Scene,
             far_m: Some(40.0),
             far_from: PlaneSource::Scene,
         };
-        let mut with_far_plane = old();
-        with_far_plane.setting.planes = Some(planes);
-        assert_eq!(renamed(with_far_plane), "T-I/28x28/bvh");
+        assert_eq!(renamed("T-I/28x28/bvh", "tests", "hs+sat-n", Some(planes)), "T-I/28x28/bvh");
     }
 }

@@ -1,12 +1,12 @@
-//! Names in results that hide nothing.
+//! Escapes control characters in the text of results.
 
 use crate::visible::visible;
 
 use super::Results;
 
 impl Results {
-    /// Escapes what a terminal would obey in all text that reports show. The command stays as it is: it is
-    /// to be run again.
+    /// Escapes control characters in all text that reports show. The command keeps them, because it can be run
+    /// again.
     pub(super) fn show_hidden(&mut self) {
         let machine = &mut self.machine;
         let mut all: Vec<&mut String> = vec![
@@ -27,11 +27,10 @@ impl Results {
             all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);
         }
         for record in &mut self.records {
-            all.extend([
-                &mut record.setting.scene,
-                &mut record.setting.scene_hash,
-                &mut record.strategy,
-            ]);
+            if let std::borrow::Cow::Owned(shown) = visible(&record.strategy) {
+                record.strategy = shown.into();
+            }
+            all.extend([&mut record.setting.scene, &mut record.setting.scene_hash]);
             let known = [
                 &mut record.setting.path_hash,
                 &mut record.setting.area_model,

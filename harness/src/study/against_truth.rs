@@ -1,6 +1,7 @@
 //! How far the models of a study are from its truth image: an error of shading, never of culling.
 
-use super::{Done, Job, MODELS, TRUTH};
+use super::job::Job;
+use super::manifest::Done;
 use crate::{
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
@@ -8,13 +9,19 @@ use crate::{
     stored::Store,
 };
 
+/// The section of a study whose jobs render the truth images of its scenes.
+pub const TRUTH: &str = "truth";
+
+/// The section whose images are compared with them.
+pub const MODELS: &str = "models";
+
 /// Computes the errors of every record of [`MODELS`] against the truth image of its scene, where both
 /// images are there.
 ///
 /// # Errors
 ///
 /// Where a file is no image, or of another size than the truth.
-pub fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
+pub(crate) fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
     let scenes: Vec<String> = done.scenes().into_iter().map(str::to_owned).collect();
     for scene in &scenes {
         let Some((job, truth)) = truth_of(done, scene) else { continue };

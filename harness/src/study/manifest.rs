@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::StudyScene;
+use crate::study::job::Job;
 use crate::{
     messages::say,
     results::{Results, ResultsError, sealed, unsealed, write_atomically},
@@ -15,38 +15,12 @@ use crate::{
 /// The file that lists a study's jobs.
 const FILE: &str = "study.json";
 
-/// One comparison or truth image of a study.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Job {
-    /// Its name, that of its folder: `sponza-main-10000`.
-    pub name: String,
-    /// The scene that it draws, as the report calls it.
-    pub scene: String,
-    /// The part of the report that it belongs to.
-    pub section: String,
-    /// The command that it is, program name first, without `--out`.
-    pub command: Vec<String>,
-}
-
-impl Job {
-    /// A job of a scene: its section, what tells it from others of the section, and its command without
-    /// the program's name.
-    pub(super) fn new(scene: &StudyScene, section: &str, variant: &str, words: &[&str]) -> Self {
-        let parts = [scene.name.as_str(), section, variant];
-        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-        let command = std::iter::once("lightbench").chain(words.iter().copied());
-        Self {
-            name: parts.join("-"),
-            scene: scene.name.clone(),
-            section: section.to_owned(),
-            command: command.map(str::to_owned).collect(),
-        }
-    }
-}
-
 /// All jobs of a study: `study.json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
+    /// Version of the file: [`VERSION`]. Files without it are of version 1, whose jobs have no settings.
+    #[serde(default = "first_version")]
+    pub version: u32,
     /// The command that was asked for, without its folder and its shard.
     pub identity: Vec<String>,
     /// The study's name.
@@ -55,7 +29,19 @@ pub struct Manifest {
     pub jobs: Vec<Job>,
 }
 
+/// The version that is written.
+const VERSION: u32 = 2;
+
+fn first_version() -> u32 {
+    1
+}
+
 impl Manifest {
+    /// The manifest of a new study: the command that was asked for, the study's name and its jobs.
+    pub fn new(identity: Vec<String>, study: &str, jobs: Vec<Job>) -> Self {
+        Self { version: VERSION, identity, study: study.to_owned(), jobs }
+    }
+
     /// The manifest in a folder; `None` where there is none.
     pub fn find(folder: &Path) -> Result<Option<Self>, ResultsError> {
         let path = folder.join(FILE);
@@ -64,10 +50,12 @@ impl Manifest {
         }
         let bytes = std::fs::read(&path)
             .map_err(|source| ResultsError::Read { path: path.clone(), source })?;
-        let manifest = || {
+        let manifest = || -> Result<Self, String> {
             unsealed(&bytes)?;
-            let manifest: Self = serde_json::from_slice(&bytes).map_err(|e| e.to_string())?;
-            manifest.check().map(|()| manifest)
+            let mut manifest: Self = serde_json::from_slice(&bytes).map_err(|e| e.to_string())?;
+            manifest.check()?;
+            manifest.upgrade();
+            Ok(manifest)
         };
         let manifest = manifest().map_err(|reason| {
             let help =
@@ -77,8 +65,22 @@ impl Manifest {
         Ok(Some(manifest))
     }
 
+    /// Gives the jobs of version 1 the settings that their names and commands imply.
+    fn upgrade(&mut self) {
+        if self.version == 1 {
+            self.jobs.iter_mut().for_each(Job::derive_settings);
+            self.version = VERSION;
+        }
+    }
+
     /// Names of jobs are names of folders: the file may come from anywhere.
     fn check(&self) -> Result<(), String> {
+        if !(1..=VERSION).contains(&self.version) {
+            return Err(format!(
+                "version is {}: this program reads versions 1 to {VERSION}",
+                self.version
+            ));
+        }
         if self.jobs.is_empty() {
             return Err("jobs is empty: it must list at least one job".to_owned());
         }
@@ -178,7 +180,8 @@ impl Done {
                 job.command.join(" ")
             ));
         }
-        let is_same_scene = |known: &Job| known.scene == job.scene && scaled(known).eq(scaled(job));
+        let is_same_scene =
+            |known: &Job| known.scene == job.scene && known.scene_extent() == job.scene_extent();
         let hash = |results: &Results| {
             let record = results.records.first().map(|record| record.setting.scene_hash.clone());
             record.or_else(|| results.truth_image.as_ref().map(|truth| truth.scene_hash.clone()))
@@ -256,12 +259,4 @@ fn read_job(job: &Job, path: &Path) -> Result<Option<Results>, ResultsError> {
         Err(error @ ResultsError::Version { .. }) => Err(error),
         Err(error) => not_done(error.to_string()),
     }
-}
-
-/// What a job's command makes of its scene: how large it is, and how often it is there.
-fn scaled(job: &Job) -> impl Iterator<Item = Option<&String>> {
-    ["--scene-scale", "--replicate"].into_iter().map(|option| {
-        let at = job.command.iter().position(|word| word == option)?;
-        job.command.get(at + 1)
-    })
 }

@@ -53,7 +53,7 @@ impl StudyScene {
     }
 
     /// The options of jobs that draw it, under scattered lights alone.
-    pub(super) fn options(&self, Size { width, height }: Size, seed: u64) -> Vec<String> {
+    pub(crate) fn options(&self, Size { width, height }: Size, seed: u64) -> Vec<String> {
         let (scale, size) = (self.scale.to_string(), format!("{width}x{height}"));
         let scene = ["--scene", &self.scene, "--scene-scale", &scale, "--size", &size];
         let lit = ["--seed", &seed.to_string(), "--no-own-lights"];
@@ -62,7 +62,7 @@ impl StudyScene {
 
     /// The boxes of its core and of all that is in it, metres in world space, and where that begins in the
     /// coordinates that options take.
-    pub(super) fn boxes(&self, bench: &mut Bench) -> Result<([Aabb; 2], DVec3), HarnessError> {
+    pub(crate) fn boxes(&self, bench: &mut Bench) -> Result<([Aabb; 2], DVec3), HarnessError> {
         let scale = self.scale.to_string();
         let words = ["lightbench", "compare", "--scene", &self.scene, "--scene-scale", &scale];
         let words = [&words[..], &["--size", "16x9", "--lights", "1"]].concat();

@@ -1,14 +1,15 @@
 //! A made-up study of the comparison paper, and its report.
 #![allow(dead_code, reason = "each test uses its share")]
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use harness::report::write_study;
 use harness::results::{Mode, PassKind, PassTimes, Record, Results};
-use harness::study::{Done, Job, Manifest};
+use harness::study::{Done, Settings};
 
+use crate::made_study::{self, add_with};
 use crate::report_data::{empty, pictures, record};
+
+pub(crate) use crate::made_study::{Written, verdict, write};
 
 const FAMILIES: [&str; 9] = [
     "T-I/28x28",
@@ -57,22 +58,21 @@ pub(crate) struct Maker {
 
 impl Maker {
     pub(crate) fn new(turned: &'static str) -> Self {
-        let identity = ["lightbench", "study", "comparison"].map(str::to_owned).to_vec();
-        let manifest = Manifest { identity, study: "comparison".into(), jobs: Vec::new() };
-        let done = Done { manifest, results: BTreeMap::new(), folders: BTreeMap::new() };
-        Self { turned, done }
+        Self { turned, done: made_study::study("comparison") }
     }
 
     pub(crate) fn add(&mut self, section: &str, variant: &str, records: Vec<Record>) {
-        let name = format!("atrium-{section}-{variant}");
-        self.done.manifest.jobs.push(Job {
-            name: name.clone(),
-            scene: "atrium".into(),
-            section: section.into(),
-            command: vec!["lightbench".into(), "compare".into()],
-        });
-        let results = Results { records, ..empty() };
-        self.done.results.insert(name, results);
+        self.add_with(section, variant, Settings::default(), records);
+    }
+
+    pub(crate) fn add_with(
+        &mut self,
+        section: &str,
+        variant: &str,
+        settings: Settings,
+        records: Vec<Record>,
+    ) {
+        add_with(&mut self.done, section, variant, settings, Results { records, ..empty() });
     }
 
     /// Every strategy at a count of lights.
@@ -186,9 +186,9 @@ impl Maker {
             for record in &mut records {
                 let id = &record.strategy;
                 record.strategy = if id.contains("-I") {
-                    id.replacen("-I", "-E", 1)
+                    id.replacen("-I", "-E", 1).into()
                 } else {
-                    id.replacen("-E", "-I", 1)
+                    id.replacen("-E", "-I", 1).into()
                 };
                 // Even the depth pre-pass does not raise their offset then.
                 record.times.passes.insert("depth", PassTimes::new(PassKind::Scene, vec![0.01; 8]));
@@ -208,9 +208,7 @@ impl Maker {
         };
         let make = |union: &&str| {
             let (assign, shade) = times(union);
-            let mut record = record(&format!("{family}/{union}"), Mode::Deferred, assign, shade);
-            record.strategy_parameters.insert("tests".into(), (*union).into());
-            record
+            record(&format!("{family}/{union}"), Mode::Deferred, assign, shade)
         };
         ["hs", "hs+sat-n", "hs+sat-v", "hs+sat-e+sat-p+sat-v"].iter().map(make).collect()
     }
@@ -317,12 +315,12 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     }
     maker.add("path", "10000", maker.path(10_000, 40, laps));
     for view in ["low", "high"] {
-        maker.add("views", view, maker.view(view));
+        maker.add_with("views", view, Settings::from([("view", view)]), maker.view(view));
     }
     for (section, lights) in [("growing", 30_000), ("constant", 30_000)] {
         let mut records = maker.all(lights);
         for record in &mut records {
-            record.strategy += "/bvh";
+            record.strategy = format!("{}/bvh", record.strategy).into();
         }
         maker.add(section, "30000", records);
     }
@@ -336,7 +334,7 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     maker.add("caps", "all", maker.caps(folder));
     let mut reuse = maker.path(10_000, 40, 1);
     for (record, error) in reuse.iter_mut().zip([0.1, 0.2, 0.3]) {
-        record.strategy += "/reuse2";
+        record.strategy = format!("{}/reuse2", record.strategy).into();
         record.is_lossy = true;
         record.image.errors.insert("rel_mse".into(), Some(error));
     }
@@ -360,35 +358,7 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     done
 }
 
-pub(crate) struct Written {
-    pub(crate) text: String,
-    pub(crate) page: String,
-    pub(crate) charts: Vec<String>,
-}
-
-pub(crate) fn write(done: &Done) -> Written {
-    let out = tempfile::tempdir().expect("a temporary folder");
-    let text = write_study(done, out.path()).expect("it is there");
-    let page = std::fs::read_to_string(out.path().join("index.html")).expect("it is there");
-    let data = std::fs::read_to_string(out.path().join("study-data.json")).expect("it is there");
-    serde_json::from_str::<serde_json::Value>(&data).expect("it is there");
-    let mut charts = Vec::new();
-    if let Ok(files) = std::fs::read_dir(out.path().join("charts")) {
-        for file in files {
-            let path = file.expect("it is there").path();
-            assert!(std::fs::read_to_string(&path).expect("it is there").contains("<svg"));
-            charts.push(path.file_name().expect("it is there").to_string_lossy().into_owned());
-        }
-    }
-    Written { text, page, charts }
-}
-
 pub(crate) fn whole(turned: &'static str) -> Written {
     let folder = tempfile::tempdir().expect("a temporary folder");
     write(&study(turned, folder.path()))
-}
-
-pub(crate) fn verdict<'a>(page: &'a str, claim: &str) -> &'a str {
-    let start = format!("data-claim=\"{claim}\" data-verdict=\"");
-    page.split_once(&start).expect("the claim").1.split('"').next().expect("it is there")
 }

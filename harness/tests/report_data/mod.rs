@@ -58,8 +58,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
     let is_none = strategy == "None";
     let stem = format!("atrium-{}-{}", mode.name(), strategy.replace('/', "-"));
     let mut record = Record {
-        strategy: strategy.to_owned(),
-        strategy_parameters: BTreeMap::new(),
+        strategy: strategy.into(),
         is_lossy: false,
         note: None,
         setting: Setting {

@@ -1,112 +1,149 @@
 //! How much a comparison study looks at: on a GPU, of a heavy scene, and where quick.
 
 use crate::cli::Size;
+use crate::strategy::{Role, Row, row, rows};
 
 /// From this many triangles on a scene is heavy: drawing its surfaces takes more of a frame than
 /// lighting them, so it gets fewer poses and fewer methods.
 const HEAVY_TRIANGLES: u64 = 2_000_000;
 
 /// One of each kind, for the lossy knobs, through the hierarchy.
-pub(super) const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
+pub(crate) const LOSSY: [&str; 4] = ["T-E", "DC-I", "SC-E", "G"];
 
 /// From this many poses on the images of several are compared.
-pub(super) const LONG: u32 = 60;
+pub(crate) const LONG: u32 = 60;
 
 /// A family with the sizes that its search tries.
 type Sizes = (&'static str, &'static [&'static str]);
 
+/// The sizes that a search tries.
+#[derive(Clone, Copy)]
+pub(crate) enum Searched {
+    /// Every family of the registry, at the sizes of its row.
+    All,
+    /// Some families, at the sizes of their rows.
+    Families(&'static [&'static str]),
+    /// Some families, at sizes of the study's own.
+    Sizes(&'static [Sizes]),
+}
+
+impl Searched {
+    /// The families with their sizes.
+    pub(crate) fn sizes(self) -> Vec<Sizes> {
+        let of_row = |row: &Row| (row.family, row.sizes.many);
+        match self {
+            Self::All => rows().map(of_row).filter(|(_, sizes)| !sizes.is_empty()).collect(),
+            Self::Families(families) => {
+                families.iter().filter_map(|family| row(family)).map(of_row).collect()
+            }
+            Self::Sizes(sizes) => sizes.to_vec(),
+        }
+    }
+}
+
 /// How much a study looks at.
 #[derive(Clone, Copy)]
-pub(super) struct Extent {
-    pub(super) size: Size,
+pub(crate) struct Extent {
+    pub(crate) size: Size,
     /// Frames of each method before the clock starts.
-    pub(super) warmup: &'static str,
-    /// Strategies of the example from the still camera.
-    pub(super) main: &'static str,
-    /// Strategies of the views of low and high depth discontinuity.
-    pub(super) views: &'static str,
+    pub(crate) warmup: &'static str,
+    /// The families that take part.
+    pub(crate) takes: fn(&Row) -> bool,
+    /// Strategies of the example from the still camera, beside all families.
+    pub(crate) main_too: &'static str,
+    /// Strategies of the views of low and high depth discontinuity; `None` for all families with groups.
+    pub(crate) views: Option<&'static str>,
     /// Timed frames of the still camera, and of its lossy settings.
-    pub(super) frames: u32,
-    pub(super) lossy_frames: u32,
+    pub(crate) frames: u32,
+    pub(crate) lossy_frames: u32,
     /// The counts of lights of the ranking, ascending.
-    pub(super) counts: &'static [u32],
+    pub(crate) counts: &'static [u32],
     /// The most of them: those of the views and the searches too.
-    pub(super) most: u32,
+    pub(crate) most: u32,
     /// The counts of lights at which the frames that a renderer may draw are timed.
-    pub(super) frames_at: &'static [u32],
+    pub(crate) frames_at: &'static [u32],
     /// How often each pose is drawn: six laps tell ties with a coverage of 95 %.
-    pub(super) laps: u32,
+    pub(crate) laps: u32,
     /// Poses of a lap of the ranking: at fewer lights, and at the most lights.
-    pub(super) rank_poses: [u32; 2],
-    /// Strategies of the ranking, likewise.
-    pub(super) ranked: &'static str,
-    pub(super) ranked_at_most: &'static str,
+    pub(crate) rank_poses: [u32; 2],
+    /// Strategies of the ranking: at fewer lights; and at the most lights, beside all families with groups.
+    pub(crate) ranked: &'static str,
+    pub(crate) ranked_at_most_too: &'static str,
     /// Methods that take tens of milliseconds a frame, and their poses.
-    pub(super) slow: &'static str,
-    pub(super) slow_poses: u32,
+    pub(crate) slow: &'static str,
+    pub(crate) slow_poses: u32,
     /// Poses of a lap of searches and of scaling.
-    pub(super) search_poses: u32,
+    pub(crate) search_poses: u32,
     /// Counts of lights of the scaling, its strategies, and those of them that stop at `most`.
-    pub(super) scaling: &'static [u32],
-    pub(super) scaled: &'static str,
-    pub(super) scaled_whole: &'static str,
+    pub(crate) scaling: &'static [u32],
+    pub(crate) scaled: &'static str,
+    pub(crate) scaled_whole: &'static str,
     /// Sizes searched from the list of all lights, and through the hierarchy.
-    pub(super) linear_sizes: &'static [Sizes],
-    pub(super) bvh_sizes: &'static [Sizes],
+    pub(crate) linear_sizes: Searched,
+    pub(crate) bvh_sizes: Searched,
     /// Families whose tests are searched, and the tests.
-    pub(super) tested: &'static [&'static str],
-    pub(super) tests: &'static [&'static str],
+    pub(crate) tested: &'static [&'static str],
+    pub(crate) tests: &'static [&'static str],
     /// Many more lights, other radii, and the strategies under both.
-    pub(super) many: &'static [u32],
-    pub(super) radii: &'static [&'static str],
-    pub(super) beyond: &'static str,
-    pub(super) caps: &'static [u32],
-    pub(super) thresholds: &'static [&'static str],
-    pub(super) reuse: &'static [u32],
-    pub(super) reuse_poses: u32,
+    pub(crate) many: &'static [u32],
+    pub(crate) radii: &'static [&'static str],
+    pub(crate) beyond: &'static str,
+    pub(crate) caps: &'static [u32],
+    pub(crate) thresholds: &'static [&'static str],
+    pub(crate) reuse: &'static [u32],
+    pub(crate) reuse_poses: u32,
 }
 
 impl Extent {
     /// That of a scene.
-    pub(super) fn of(quick: bool, triangles: u64) -> Self {
+    pub(crate) fn of(quick: bool, triangles: u64) -> Self {
         match (quick, triangles >= HEAVY_TRIANGLES) {
             (true, _) => QUICK,
             (false, true) => HEAVY,
             (false, false) => FULL,
         }
     }
+
+    /// Strategies of the example from the still camera.
+    pub(crate) fn main(&self) -> String {
+        let families = rows().filter(|row| (self.takes)(row)).flat_map(Row::overview_ids);
+        joined(families, self.main_too)
+    }
+
+    /// Strategies of the views of low and high depth discontinuity.
+    pub(crate) fn views(&self) -> String {
+        self.views.map_or_else(|| joined(self.grouped_ids(), ""), str::to_owned)
+    }
+
+    /// Strategies of the ranking at the most lights, without the slow ones.
+    pub(crate) fn ranked_at_most(&self) -> String {
+        let is_slow = |id: &String| self.slow.split(',').any(|slow| slow == id);
+        joined(self.grouped_ids().filter(|id| !is_slow(id)), self.ranked_at_most_too)
+    }
+
+    /// The ids of the families with groups that take part.
+    fn grouped_ids(&self) -> impl Iterator<Item = String> {
+        let families = rows().filter(|row| row.has_groups && (self.takes)(row));
+        families.flat_map(Row::overview_ids)
+    }
 }
 
-const TILES: &[&str] = &["16x16", "20x20", "24x24", "28x28", "32x32", "40x40"];
+fn joined(ids: impl Iterator<Item = String>, more: &str) -> String {
+    let more = more.split(',').filter(|id| !id.is_empty()).map(str::to_owned);
+    ids.chain(more).collect::<Vec<_>>().join(",")
+}
 
-/// Nine sizes around that of the paper, wide enough that the best found so far lie inside.
-const DENSE_IMPLICIT: &[&str] = &[
-    "96x96x24",
-    "96x96x40",
-    "96x96x64",
-    "128x128x24",
-    "128x128x40",
-    "128x128x64",
-    "192x192x24",
-    "192x192x40",
-    "192x192x64",
-];
-const DENSE_EXPLICIT: &[&str] = &[
-    "48x48x24", "48x48x40", "48x48x64", "64x64x24", "64x64x40", "64x64x64", "96x96x24", "96x96x40",
-    "96x96x64",
-];
-const SPARSE: &[&str] = &[
-    "32x32x40", "32x32x64", "32x32x96", "48x48x40", "48x48x64", "48x48x96", "64x64x40", "64x64x64",
-    "64x64x96",
-];
-const CELLS: &[&str] = &["12x12x12", "16x16x16", "20x20x20", "24x24x24", "28x28x28", "40x12x20"];
+/// Whether a family is of the comparison paper, or a baseline that its strategies are compared with.
+fn is_of_the_paper(row: &Row) -> bool {
+    matches!(row.role, Role::Baseline | Role::EarlyExit | Role::ComparisonPaper)
+}
 
 const FULL: Extent = Extent {
     size: Size { width: 1920, height: 1080 },
     warmup: "4",
-    main: "None,Sphere,RasterSphere,Clay,T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,\
-           T-E/bvh,DC-E/bvh,SC-E/bvh,G/bvh,M/2/bvh",
-    views: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2",
+    takes: |_| true,
+    main_too: "T-E/bvh,DC-E/bvh,SC-E/bvh,G/bvh,M/2/bvh",
+    views: None,
     frames: 16,
     lossy_frames: 8,
     counts: &[100, 1_000, 10_000],
@@ -115,26 +152,15 @@ const FULL: Extent = Extent {
     laps: 6,
     rank_poses: [240, 240],
     ranked: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2,T-E/bvh,SC-E/bvh,G/bvh",
-    ranked_at_most: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M/2,G/20x20x20/surfaces,\
-                     T-E/bvh,DC-E/bvh,SC-E/bvh,G/bvh",
+    ranked_at_most_too: "G/20x20x20/surfaces,T-E/bvh,DC-E/bvh,SC-E/bvh,G/bvh",
     slow: "None,M",
     slow_poses: 12,
     search_poses: 24,
     scaling: &[100, 1_000, 3_000, 10_000, 30_000],
     scaled: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2,SC-E/bvh",
     scaled_whole: "M",
-    linear_sizes: &[
-        ("T-I", TILES),
-        ("T-E", TILES),
-        ("DC-I", DENSE_IMPLICIT),
-        ("DC-E", DENSE_EXPLICIT),
-        ("SC-I", SPARSE),
-        ("SC-E", SPARSE),
-        ("HG", &["32x32x40", "48x48x40", "64x64x40"]),
-        ("G", CELLS),
-        ("M", &["1", "2", "4"]),
-    ],
-    bvh_sizes: &[("T-E", TILES), ("DC-E", DENSE_EXPLICIT), ("SC-E", SPARSE), ("G", CELLS)],
+    linear_sizes: Searched::All,
+    bvh_sizes: Searched::Families(&["T-E", "DC-E", "SC-E", "G"]),
     tested: &["T-E", "DC-I", "SC-I"],
     tests: &[
         "hs",
@@ -157,20 +183,21 @@ const FULL: Extent = Extent {
 
 /// Of a scene whose surfaces take long to draw: the paper's strategies, fewer poses, no lossy knobs.
 const HEAVY: Extent = Extent {
-    main: "None,Sphere,T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M,M/2,SC-E/bvh",
-    views: "T-E,SC-E,G,M,M/2",
+    takes: is_of_the_paper,
+    main_too: "SC-E/bvh",
+    views: Some("T-E,SC-E,G,M,M/2"),
     frames: 8,
     rank_poses: [16, 24],
     ranked: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,SC-E/bvh",
-    ranked_at_most: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,M/2,DC-E/bvh,SC-E/bvh,G/bvh",
+    ranked_at_most_too: "DC-E/bvh,SC-E/bvh,G/bvh",
     slow: "M",
     slow_poses: 6,
     search_poses: 8,
     scaling: &[100, 1_000, 3_000, 10_000],
     scaled: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G",
     frames_at: &[],
-    linear_sizes: &[("T-E", TILES), ("SC-E", SPARSE), ("G", CELLS)],
-    bvh_sizes: &[("SC-E", SPARSE)],
+    linear_sizes: Searched::Families(&["T-E", "SC-E", "G"]),
+    bvh_sizes: Searched::Families(&["SC-E"]),
     tested: &["T-E"],
     tests: &["hs", "hs+sat-n", "hs+sat-e+sat-p+sat-v"],
     many: &[],
@@ -184,8 +211,9 @@ const HEAVY: Extent = Extent {
 const QUICK: Extent = Extent {
     size: Size { width: 192, height: 108 },
     warmup: "1",
-    main: "None,Sphere,RasterSphere,Clay,T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,SC-E/bvh",
-    views: "T-E,SC-E,G,M/2",
+    takes: |_| true,
+    main_too: "SC-E/bvh",
+    views: Some("T-E,SC-E,G,M/2"),
     frames: 6,
     lossy_frames: 6,
     counts: &[100, 500],
@@ -194,19 +222,19 @@ const QUICK: Extent = Extent {
     laps: 6,
     rank_poses: [1, 2],
     ranked: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,SC-E/bvh",
-    ranked_at_most: "T-I,T-E,DC-I,DC-E,SC-I,SC-E,G,HG,M,M/2,SC-E/bvh,G/bvh",
+    ranked_at_most_too: "SC-E/bvh,G/bvh",
     slow: "",
     slow_poses: 1,
     search_poses: 1,
     scaling: &[100, 300, 500, 1_000],
     scaled: "T-E,DC-E,SC-E,SC-I,G,SC-E/bvh",
     scaled_whole: "",
-    linear_sizes: &[
+    linear_sizes: Searched::Sizes(&[
         ("T-E", &["16x16", "28x28"]),
         ("SC-E", &["16x16x16", "32x32x16"]),
         ("G", &["8x8x8", "16x16x16"]),
-    ],
-    bvh_sizes: &[("SC-E", &["16x16x16", "32x32x16"])],
+    ]),
+    bvh_sizes: Searched::Sizes(&[("SC-E", &["16x16x16", "32x32x16"])]),
     tested: &["T-E", "SC-I"],
     tests: &["hs", "hs+sat-n", "hs+sat-e+sat-p+sat-v"],
     many: &[2_000],

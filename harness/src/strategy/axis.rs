@@ -1,0 +1,183 @@
+//! The axes that a family can vary on besides its parameters, and the segments that set them.
+
+use assign::{AreaBounds, FrustumTests, LightSource};
+use assign_clustered::{Normals, SpecularCut};
+use assign_grid::GridBox;
+use serde_json::Value;
+
+use super::{Options, specular};
+
+/// The prefix of a segment that sets the bins of normals.
+const NORMALS: &str = "n";
+/// The prefix of a segment that sets the most lights of a list.
+const CAP: &str = "cap";
+/// The prefix of a segment that sets for how many frames lists are used.
+const REUSE: &str = "reuse";
+/// The segment that turns the early exit off.
+const NO_EXIT: &str = "no-exit";
+
+/// An axis besides the parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
+    Box,
+    /// Bins of normals that split clusters: `n6`.
+    Normals,
+    /// Which specular light of area lights is left out: `s0.001`, `cone45` or `dif`. Lossy.
+    Specular,
+    /// The union of frustum tests: `hs+sat-n`.
+    Tests,
+    /// Where lights come from: `linear` or `bvh`.
+    Source,
+    /// What bounds the reach of an area light: `ball` instead of its outline.
+    AreaBounds,
+    /// For how many frames lists are used: `reuse4`. Lossy where groups or lights move.
+    Reuse,
+    /// The most lights of a list, the others dropped: `cap32`. Lossy.
+    Cap,
+    /// Whether shading evaluates every listed light, also where it adds nothing: `no-exit`.
+    Exit,
+}
+
+impl Axis {
+    /// All axes, in the order of their segments in an id.
+    pub const ALL: [Self; 9] = [
+        Self::Box,
+        Self::Normals,
+        Self::Specular,
+        Self::Tests,
+        Self::Source,
+        Self::AreaBounds,
+        Self::Reuse,
+        Self::Cap,
+        Self::Exit,
+    ];
+
+    /// What its segment may be.
+    pub fn accepted(self) -> &'static str {
+        match self {
+            Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
+            Self::Source => "linear or bvh",
+            Self::AreaBounds => "ball or outline",
+            Self::Box => "positions, supports or surfaces",
+            Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
+            Self::Specular => {
+                "the specular light to leave out: s and a radiance, such as s0.001; cone and the half \
+                 angle of a lobe in degrees, such as cone45 (Swarbrick 2025); or dif, which leaves out \
+                 all beyond the reach of diffuse light"
+            }
+            Self::Cap => "cap and the most lights of a list, such as cap32",
+            Self::Reuse => {
+                "reuse and the number of frames for which lists are used, such as reuse4"
+            }
+            Self::Exit => "no-exit, which evaluates every listed light",
+        }
+    }
+
+    /// The axis that a segment in lower case sets; `None` where it can only be parameters.
+    pub(super) fn of_segment(segment: &str) -> Option<Self> {
+        match segment {
+            "linear" | "bvh" => Some(Self::Source),
+            "positions" | "supports" | "lights" | "surfaces" => Some(Self::Box),
+            "ball" | "outline" => Some(Self::AreaBounds),
+            _ if segment.starts_with(CAP) => Some(Self::Cap),
+            _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
+            NO_EXIT => Some(Self::Exit),
+            _ if specular::parse(segment).is_some() => Some(Self::Specular),
+            _ if segment.starts_with(REUSE) => Some(Self::Reuse),
+            _ => segment.parse::<FrustumTests>().ok().map(|_| Self::Tests),
+        }
+    }
+
+    /// Sets the axis from its segment in lower case; `None` where the segment says nothing valid.
+    pub(super) fn set(self, options: &mut Options, segment: &str) -> Option<()> {
+        match self {
+            Self::Tests => options.tests = Some(segment.parse().ok()?),
+            Self::Source => {
+                options.source = Some(match segment {
+                    "bvh" => LightSource::Hierarchy,
+                    _ => LightSource::Linear,
+                });
+            }
+            Self::AreaBounds => {
+                options.area_bounds = match segment {
+                    "ball" => AreaBounds::Ball,
+                    _ => AreaBounds::Outline,
+                };
+            }
+            Self::Box => options.grid_box = segment.parse().ok()?,
+            Self::Normals => {
+                let normals = Normals::Bins(number_after(segment, NORMALS)?);
+                normals.check().ok()?;
+                options.normals = normals;
+            }
+            Self::Specular => options.specular = specular::parse(segment)?,
+            Self::Cap => options.cap = Some(number_after(segment, CAP)?),
+            Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
+            Self::Exit => options.evaluates_all = true,
+        }
+        Some(())
+    }
+
+    /// The segment that an id has for the axis; `None` at its default.
+    pub(super) fn segment(self, options: &Options) -> Option<String> {
+        let settings = options.settings();
+        match self {
+            Self::Tests => {
+                (settings.tests != FrustumTests::default()).then(|| settings.tests.to_string())
+            }
+            Self::Source => (settings.source == LightSource::Hierarchy).then(|| "bvh".to_owned()),
+            Self::AreaBounds => {
+                (settings.area_bounds == AreaBounds::Ball).then(|| "ball".to_owned())
+            }
+            Self::Box => {
+                (options.grid_box != GridBox::default()).then(|| options.grid_box.name().to_owned())
+            }
+            Self::Normals => match options.normals {
+                Normals::None => None,
+                Normals::Bins(count) => Some(format!("{NORMALS}{count}")),
+            },
+            Self::Specular => specular::segment(options.specular),
+            Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
+            Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
+            Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
+        }
+    }
+
+    /// The name and the value of the axis among the parameters of stored results; `None` where results
+    /// leave it out.
+    pub(super) fn parameter(self, options: &Options) -> Option<(&'static str, Value)> {
+        let settings = options.settings();
+        Some(match self {
+            Self::Tests => ("tests", settings.tests.to_string().into()),
+            Self::Source => match settings.source {
+                LightSource::Hierarchy => ("source", "bvh".into()),
+                LightSource::Linear => ("source", "linear".into()),
+            },
+            Self::Box => ("box", options.grid_box.name().into()),
+            Self::AreaBounds => match settings.area_bounds {
+                AreaBounds::Ball => ("area_bounds", "ball".into()),
+                AreaBounds::Outline => return None,
+            },
+            Self::Normals => match options.normals {
+                Normals::None => return None,
+                Normals::Bins(count) => ("normal_bins", count.into()),
+            },
+            Self::Specular => match options.specular {
+                SpecularCut::None => return None,
+                SpecularCut::Below(radiance) => ("specular_threshold", radiance.into()),
+                SpecularCut::ReflectedCone(degrees) => ("lobe_degrees", degrees.into()),
+                SpecularCut::WhereDiffuse => ("specular_where_diffuse", true.into()),
+            },
+            Self::Cap => ("list_cap", options.cap?.into()),
+            Self::Reuse => ("reuse_frames", options.reuse?.into()),
+            Self::Exit if options.evaluates_all => ("early_exit", false.into()),
+            Self::Exit => return None,
+        })
+    }
+}
+
+/// The number after a prefix, from 1.
+fn number_after(segment: &str, prefix: &str) -> Option<u32> {
+    segment.strip_prefix(prefix)?.parse().ok().filter(|number| *number > 0)
+}

@@ -1,0 +1,300 @@
+//! The id of a strategy: a family, and a point on its axes.
+
+use std::{
+    cmp::Ordering,
+    collections::BTreeMap,
+    fmt,
+    hash::{Hash, Hasher},
+    ops::Deref,
+};
+
+use assign::{FrustumTests, LightSource};
+use assign_clustered::SpecularCut;
+use assign_grid::GridBox;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{Axis, IdError, Options, Role, Row, parse};
+
+/// The id of a strategy, such as `SC-E/48x48x40/bvh`.
+///
+/// [`Display`](fmt::Display) writes it in the canonical form: the family, the parameters, then one
+/// segment per axis that is not at its default, in the order of [`Axis::ALL`]. Ids are equal where their
+/// texts are. Stored results may hold ids that this program cannot run. These keep their text, have no
+/// row where the family is unknown, and say what their segments say.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "Stored", into = "StoredParts")]
+pub struct StrategyId {
+    text: String,
+    row: Option<&'static Row>,
+    options: Options,
+}
+
+impl StrategyId {
+    /// Reads an id that this program can run, in any case and with segments in any order. A family
+    /// without parameters takes its default ones.
+    pub fn parse(id: &str) -> Result<Self, IdError> {
+        parse::parse(id)
+    }
+
+    /// Reads any id, as stored results hold it.
+    pub fn read(id: &str) -> Self {
+        parse::parse(id).unwrap_or_else(|_| {
+            let (row, options) = parse::read_foreign(id);
+            Self { text: id.to_owned(), row, options }
+        })
+    }
+
+    /// The canonical id of a point on the axes of a family.
+    pub(super) fn new(row: &'static Row, options: Options) -> Self {
+        let segments = Axis::ALL.iter().filter(|axis| row.has_axis(**axis));
+        let mut text = row.id_of(&options.parameters);
+        for segment in segments.filter_map(|axis| axis.segment(&options)) {
+            text += "/";
+            text += &segment;
+        }
+        Self { text, row: Some(row), options }
+    }
+
+    /// The same family with other options.
+    ///
+    /// # Errors
+    ///
+    /// Options that contradict each other.
+    pub fn with(&self, change: impl FnOnce(&mut Options)) -> Result<Self, IdError> {
+        let row = self.row.ok_or_else(|| IdError::Unknown { id: self.text.clone() })?;
+        let mut options = self.options.clone();
+        change(&mut options);
+        parse::check_pairs(&self.text, row, &options)?;
+        Ok(Self::new(row, options))
+    }
+
+    /// The id as text.
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+
+    /// The family: `SC-E`.
+    pub fn family(&self) -> &str {
+        self.text.split('/').next().unwrap_or_default()
+    }
+
+    /// The family's row; `None` where this program does not know the family.
+    pub fn row(&self) -> Option<&'static Row> {
+        self.row
+    }
+
+    /// The point on the axes.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The family's role; `None` where this program does not know the family.
+    pub fn role(&self) -> Option<Role> {
+        self.row.map(|row| row.role)
+    }
+
+    /// Whether it cuts the samples into groups.
+    pub fn has_groups(&self) -> bool {
+        self.row.is_some_and(|row| row.has_groups)
+    }
+
+    /// Whether it reads the depth of the surfaces before it assigns lights, so that a renderer without
+    /// a depth pre-pass must draw one for it.
+    pub fn reads_depth(&self) -> bool {
+        self.row.is_some_and(|row| row.needs.depth)
+    }
+
+    /// Whether it finds lights through the hierarchy.
+    pub fn is_bvh(&self) -> bool {
+        self.options.source == Some(LightSource::Hierarchy)
+    }
+
+    /// The parameters: `48x48x40`. Empty where it has none.
+    pub fn size(&self) -> &str {
+        &self.options.parameters
+    }
+
+    /// The tests against frusta, where the family has any.
+    pub fn tests(&self) -> Option<FrustumTests> {
+        self.row?.has_axis(Axis::Tests).then(|| self.options.settings().tests)
+    }
+
+    /// The lossy knob: `cap8`, `reuse4`, `s0.001`, `cone45` or `dif`.
+    pub fn knob(&self) -> Option<String> {
+        [Axis::Specular, Axis::Reuse, Axis::Cap]
+            .into_iter()
+            .find_map(|axis| axis.segment(&self.options))
+    }
+
+    /// The number of segments behind the family and the parameters.
+    pub fn segment_count(&self) -> usize {
+        self.text.split('/').skip(if self.size().is_empty() { 1 } else { 2 }).count()
+    }
+
+    /// Whether it may show another image than no culling of that many lights, because a knob says so.
+    pub fn is_lossy(&self, lights: u64) -> bool {
+        self.options.cap.is_some_and(|most| u64::from(most) < lights)
+            || self.options.reuse.is_some_and(|frames| frames > 1)
+            || self.options.specular != SpecularCut::None
+    }
+
+    /// Whether its groups are parts of what the family has whole where no parameters are given.
+    fn is_parted(&self) -> bool {
+        self.row.is_some_and(|row| row.default.is_empty()) && !self.size().is_empty()
+    }
+
+    /// The family with what tells it from the comparison paper's strategy: the size of the parts of
+    /// models (`M/2`), the box of a grid (`G/supports`), and the tests of a stand-in (`T-I/hs`).
+    pub fn short(&self) -> String {
+        let mut short = self.family().to_owned();
+        let Some(row) = self.row else { return short };
+        let is_stand_in =
+            |segment: &String| row.stand_ins.iter().any(|(known, _)| known == segment);
+        let segments = [
+            self.is_parted().then(|| self.size().to_owned()),
+            Axis::Box.segment(&self.options),
+            Axis::Tests.segment(&self.options).filter(is_stand_in),
+        ];
+        for segment in segments.into_iter().flatten() {
+            short += "/";
+            short += &segment;
+        }
+        short
+    }
+
+    /// What it is instead of the comparison paper's strategy that it stands in for: `G over supports`.
+    /// `None` where it stands in for none.
+    pub fn stand_in(&self) -> Option<&'static str> {
+        let has = |segment: &str| self.text.split('/').skip(1).any(|known| known == segment);
+        self.row?.stand_ins.iter().find(|(segment, _)| has(segment)).map(|(_, what)| *what)
+    }
+
+    /// Whether the comparison paper has it: lists without a hierarchy, whole models, grids that do not
+    /// look at the surfaces. Its stand-ins count too.
+    pub fn is_of_the_paper(&self) -> bool {
+        self.role() == Some(Role::ComparisonPaper)
+            && !self.is_bvh()
+            && !self.is_parted()
+            && self.options.grid_box != GridBox::Surfaces
+    }
+
+    /// The style class that colours it: the same for a family in every table and chart, grey where the
+    /// family is unknown.
+    pub fn class(&self) -> String {
+        self.row.map_or_else(|| "strategy-none".to_owned(), Row::class)
+    }
+
+    /// Parameters and settings by name, as results store them. Empty for an unknown family.
+    pub fn parameters(&self) -> BTreeMap<String, Value> {
+        let Some(row) = self.row else { return BTreeMap::new() };
+        let number = |text: &str| {
+            let whole = text.parse::<u64>().map(Value::from);
+            whole.or_else(|_| text.parse::<f64>().map(Value::from)).unwrap_or_else(|_| text.into())
+        };
+        let values = self.size().split('x').filter(|value| !value.is_empty()).map(number);
+        let parameters = row.parameters.iter().copied().zip(values);
+        let settings = row.axes.iter().filter_map(|axis| axis.parameter(&self.options));
+        parameters.chain(settings).map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}
+
+impl fmt::Display for StrategyId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.text)
+    }
+}
+
+impl Deref for StrategyId {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.text
+    }
+}
+
+impl PartialEq for StrategyId {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl Eq for StrategyId {}
+
+impl PartialOrd for StrategyId {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for StrategyId {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.text.cmp(&other.text)
+    }
+}
+
+impl Hash for StrategyId {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.text.hash(state);
+    }
+}
+
+impl PartialEq<str> for StrategyId {
+    fn eq(&self, other: &str) -> bool {
+        self.text == other
+    }
+}
+
+impl PartialEq<&str> for StrategyId {
+    fn eq(&self, other: &&str) -> bool {
+        self.text == *other
+    }
+}
+
+impl From<&str> for StrategyId {
+    fn from(id: &str) -> Self {
+        Self::read(id)
+    }
+}
+
+impl From<String> for StrategyId {
+    fn from(id: String) -> Self {
+        Self::read(&id)
+    }
+}
+
+/// A strategy in a file of results: its id alone in schema 1, its parts since.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Stored {
+    Id(String),
+    Parts(StoredParts),
+}
+
+/// A strategy in a file of results. The id says everything; the other fields save readers a parser.
+#[derive(Serialize, Deserialize)]
+struct StoredParts {
+    id: String,
+    #[serde(default)]
+    family: String,
+    #[serde(default)]
+    parameters: BTreeMap<String, Value>,
+}
+
+impl From<Stored> for StrategyId {
+    fn from(stored: Stored) -> Self {
+        match stored {
+            Stored::Id(id) | Stored::Parts(StoredParts { id, .. }) => Self::read(&id),
+        }
+    }
+}
+
+impl From<StrategyId> for StoredParts {
+    fn from(id: StrategyId) -> Self {
+        let (family, parameters) = (id.family().to_owned(), id.parameters());
+        Self { id: id.text, family, parameters }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+//! How a strategy lights its pixels, and the point on its axes at which it does.
+
+use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, LightSource};
+use assign_clustered::{Normals, SpecularCut};
+use assign_grid::GridBox;
+
+/// How a strategy lights its pixels.
+pub enum Method {
+    /// An assignment fills lists, and the shared pipeline shades by them.
+    Lists {
+        /// The assignment.
+        strategy: Box<dyn Assignment>,
+        /// Whether shading leaves out lights that add nothing to a sample.
+        early_exit: bool,
+    },
+    /// Light volumes are rasterised; deferred shading only.
+    RasterSphere,
+    /// The control: the surfaces are drawn without lights.
+    Clay,
+}
+
+impl Method {
+    /// Lists that shading reads with the early exit.
+    pub(super) fn lists(strategy: impl Assignment + 'static) -> Self {
+        Self::Lists { strategy: Box::new(strategy), early_exit: true }
+    }
+}
+
+/// One point on all axes of a family.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// The parameters, joined by `x`: `48x48x40`. Empty where there are none.
+    pub parameters: String,
+    /// The tests of a light against a frustum, where the id names them.
+    pub tests: Option<FrustumTests>,
+    /// Where lights come from, where the id says so.
+    pub source: Option<LightSource>,
+    /// What bounds the reach of an area light.
+    pub area_bounds: AreaBounds,
+    /// The box that a grid cuts into cells.
+    pub grid_box: GridBox,
+    /// Bins of normals.
+    pub normals: Normals,
+    /// Which specular light of area lights is left out.
+    pub specular: SpecularCut,
+    /// The most lights of a list.
+    pub cap: Option<u32>,
+    /// The number of frames for which lists are used.
+    pub reuse: Option<u32>,
+    /// Whether shading evaluates every listed light.
+    pub evaluates_all: bool,
+}
+
+impl Options {
+    /// What the culling driver is told: defaults where the id says nothing.
+    pub fn settings(&self) -> CullSettings {
+        CullSettings {
+            tests: self.tests.unwrap_or_default(),
+            source: self.source.unwrap_or_default(),
+            area_bounds: self.area_bounds,
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Reads ids, and rejects segments that contradict each other.
+
+use assign::{AreaBounds, LightSource};
+use assign_clustered::SpecularCut;
+use thiserror::Error;
+
+use super::{Axis, Options, Row, StrategyId, row, rows};
+
+/// Why an id cannot be run.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum IdError {
+    /// No row has this family.
+    #[error("no strategy called {id}")]
+    Unknown {
+        /// The id.
+        id: String,
+    },
+    /// A segment cannot stand in the id.
+    #[error("strategy {id}: {reason}")]
+    Segment {
+        /// The id.
+        id: String,
+        /// The segment, and what the family accepts.
+        reason: String,
+    },
+}
+
+/// Reads an id that this program can run.
+pub(super) fn parse(id: &str) -> Result<StrategyId, IdError> {
+    let mut segments = id.split('/');
+    let family = segments.next().unwrap_or_default();
+    let same = |row: &&Row| row.family.eq_ignore_ascii_case(family);
+    let row = rows().find(same).ok_or_else(|| IdError::Unknown { id: id.to_owned() })?;
+    let mut reader = Reader { id, row, options: Options::default(), set: Vec::new() };
+    for segment in segments {
+        let segment = segment.to_lowercase();
+        match Axis::of_segment(&segment) {
+            Some(axis) => reader.set_axis(axis, segment)?,
+            None => reader.set_parameters(segment)?,
+        }
+    }
+    let mut options = reader.options;
+    check_pairs(id, row, &options)?;
+    if options.parameters.is_empty() {
+        row.default.clone_into(&mut options.parameters);
+    }
+    Ok(StrategyId::new(row, options))
+}
+
+/// Reads what can be read of an id that this program cannot run: a result of another program, or of a
+/// later version. The id keeps its text.
+pub(super) fn read_foreign(id: &str) -> (Option<&'static Row>, Options) {
+    let mut options = Options::default();
+    let mut segments = id.split('/');
+    let row = segments.next().and_then(row);
+    for segment in segments {
+        let lower = segment.to_lowercase();
+        match Axis::of_segment(&lower) {
+            // A segment without a valid value changes nothing.
+            Some(axis) => drop(axis.set(&mut options, &lower)),
+            None if options.parameters.is_empty() && starts_with_digit(segment) => {
+                segment.clone_into(&mut options.parameters);
+            }
+            None => {}
+        }
+    }
+    (row, options)
+}
+
+/// Rejects options that contradict each other. Options of the command line may, as segments may.
+pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), IdError> {
+    if options.specular == SpecularCut::WhereDiffuse
+        && let Some(normals) = Axis::Normals.segment(options)
+    {
+        return Err(contradiction(
+            id,
+            "dif",
+            &normals,
+            "`dif` cannot be combined with normal cones",
+        ));
+    }
+    let settings = options.settings();
+    let is_ball = settings.area_bounds == AreaBounds::Ball;
+    if is_ball && settings.source == LightSource::Hierarchy && row.has_axis(Axis::Source) {
+        // Its lists would not be those of balls.
+        let reason = "the hierarchy's nodes bound the lights' outlines, not their balls";
+        return Err(contradiction(id, "ball", "bvh", reason));
+    }
+    Ok(())
+}
+
+/// An id on its way through its segments.
+struct Reader<'a> {
+    id: &'a str,
+    row: &'static Row,
+    options: Options,
+    /// The axes set so far, each with the segment that set it.
+    set: Vec<(Axis, String)>,
+}
+
+impl Reader<'_> {
+    fn set_axis(&mut self, axis: Axis, segment: String) -> Result<(), IdError> {
+        if !self.row.has_axis(axis) {
+            return Err(self.refuse(&segment));
+        }
+        if let Some((_, earlier)) = self.set.iter().find(|(known, _)| *known == axis) {
+            let reason = format!("only one segment may be {}", axis.accepted());
+            return Err(contradiction(self.id, earlier, &segment, &reason));
+        }
+        axis.set(&mut self.options, &segment).ok_or_else(|| self.refuse(&segment))?;
+        self.set.push((axis, segment));
+        Ok(())
+    }
+
+    fn set_parameters(&mut self, segment: String) -> Result<(), IdError> {
+        let earlier = &self.options.parameters;
+        if !earlier.is_empty() && starts_with_digit(&segment) {
+            let what = self.row.parameters.join(" x ");
+            let reason = format!("only one segment may be {what}");
+            return Err(contradiction(self.id, earlier, &segment, &reason));
+        }
+        let parameters = numbers(&segment, self.row.parameters.len());
+        let parameters = parameters.filter(|_| earlier.is_empty());
+        self.options.parameters = parameters.ok_or_else(|| self.refuse(&segment))?;
+        Ok(())
+    }
+
+    fn refuse(&self, segment: &str) -> IdError {
+        let row = self.row;
+        let mut accepted: Vec<String> = Vec::new();
+        if !row.parameters.is_empty() {
+            accepted.push(row.parameters.join(" x "));
+        }
+        accepted.extend(row.axes.iter().map(|axis| axis.accepted().to_owned()));
+        let accepted = if accepted.is_empty() {
+            "nothing after a slash".to_owned()
+        } else {
+            format!("segments that are {}", accepted.join(", or "))
+        };
+        let reason = format!("{segment:?} is unknown: {} takes {accepted}", row.family);
+        IdError::Segment { id: self.id.to_owned(), reason }
+    }
+}
+
+/// Two segments that cannot stand in one id.
+fn contradiction(id: &str, first: &str, second: &str, reason: &str) -> IdError {
+    let reason = match first == second {
+        true => format!("{first:?} is given twice: it must be given once"),
+        false => format!("{first:?} and {second:?} contradict each other: {reason}"),
+    };
+    IdError::Segment { id: id.to_owned(), reason }
+}
+
+fn starts_with_digit(segment: &str) -> bool {
+    segment.starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// Numbers joined by `x`, each written in the shortest way; `None` where they are not `count` numbers.
+fn numbers(segment: &str, count: usize) -> Option<String> {
+    let number = |part: &str| {
+        let whole = part.parse::<u64>().map(|number| number.to_string());
+        whole.or_else(|_| part.parse::<f32>().map(|number| number.to_string())).ok()
+    };
+    let numbers: Vec<String> = segment.split('x').map(number).collect::<Option<_>>()?;
+    (numbers.len() == count).then(|| numbers.join("x"))
+}

@@ -1,0 +1,123 @@
+//! Tiles of the screen cut into depth slices (`assign-clustered`).
+
+use assign::{
+    AssignError,
+    Bounds::{self, Explicit, Implicit},
+    Gpu,
+};
+use assign_clustered::{
+    Clustered,
+    Occupancy::{self, Dense, Sparse},
+};
+
+use super::super::{Axis, Colour, Method, Options, Role, Row, Sizes, row::NEEDS_DEPTH};
+
+pub(super) const ROWS: &[Row] = &[
+    Row {
+        family: "DC-I",
+        name: "dense clusters, implicit bounds",
+        about: "every depth slice of every tile has a list of the lights that reach it",
+        source: "Enhuber 2019, section 3.2.2, table 4.3",
+        default: "128x128x64",
+        axes: FRUSTA,
+        sizes: Sizes { many: AROUND_128, ..CLUSTERS.sizes },
+        colour: Colour { light: "#8a8420", dark: "#c7c05a" },
+        make: |gpu, options| make(gpu, options, Implicit, Dense),
+        ..CLUSTERS
+    },
+    Row {
+        family: "DC-E",
+        name: "dense clusters, explicit bounds",
+        about: "every cluster has a list of the lights that reach the box around its samples",
+        source: "Enhuber 2019, section 3.2.2, table 4.3",
+        default: "64x64x40",
+        axes: BOXES,
+        sizes: Sizes { many: AROUND_64, ..CLUSTERS.sizes },
+        needs: NEEDS_DEPTH,
+        colour: Colour { light: "#882255", dark: "#e07aa6" },
+        make: |gpu, options| make(gpu, options, Explicit, Dense),
+        ..CLUSTERS
+    },
+    Row {
+        family: "SC-I",
+        name: "sparse clusters, implicit bounds",
+        about: "only clusters that hold samples have a list of the lights that reach them",
+        axes: FRUSTA,
+        needs: NEEDS_DEPTH,
+        colour: Colour { light: "#332288", dark: "#9a8bf0" },
+        make: |gpu, options| make(gpu, options, Implicit, Sparse),
+        ..CLUSTERS
+    },
+    Row {
+        family: "SC-E",
+        name: "sparse clusters, explicit bounds",
+        about: "only clusters that hold samples have a list, of the lights that reach the box around these",
+        axes: &[
+            Axis::Normals,
+            Axis::Specular,
+            Axis::Source,
+            Axis::AreaBounds,
+            Axis::Cap,
+            Axis::Reuse,
+            Axis::Exit,
+        ],
+        needs: NEEDS_DEPTH,
+        colour: Colour { light: "#117733", dark: "#63bd80" },
+        make: |gpu, options| make(gpu, options, Explicit, Sparse),
+        ..CLUSTERS
+    },
+];
+
+const CLUSTERS: Row = Row {
+    role: Role::ComparisonPaper,
+    source: "Enhuber 2019, section 3.2.3, table 4.3",
+    krate: "assign-clustered",
+    parameters: &["tile_width_px", "tile_height_px", "slices"],
+    default: "48x48x40",
+    sizes: Sizes { few: FEW, many: AROUND_48 },
+    has_groups: true,
+    ..Row::PLAIN
+};
+
+const FRUSTA: &[Axis] =
+    &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit];
+const BOXES: &[Axis] = &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit];
+
+/// Sizes that `advise` tries for all clusters.
+pub(super) const FEW: &[&str] =
+    &["32x32x40", "32x32x64", "40x40x64", "48x48x64", "64x64x64", "96x96x64", "128x128x32"];
+
+// Nine sizes around each of the paper, wide enough that the best found so far lie inside.
+const AROUND_128: &[&str] = &[
+    "96x96x24",
+    "96x96x40",
+    "96x96x64",
+    "128x128x24",
+    "128x128x40",
+    "128x128x64",
+    "192x192x24",
+    "192x192x40",
+    "192x192x64",
+];
+const AROUND_64: &[&str] = &[
+    "48x48x24", "48x48x40", "48x48x64", "64x64x24", "64x64x40", "64x64x64", "96x96x24", "96x96x40",
+    "96x96x64",
+];
+const AROUND_48: &[&str] = &[
+    "32x32x40", "32x32x64", "32x32x96", "48x48x40", "48x48x64", "48x48x96", "64x64x40", "64x64x64",
+    "64x64x96",
+];
+
+fn make(
+    gpu: &Gpu,
+    options: &Options,
+    bounds: Bounds,
+    occupancy: Occupancy,
+) -> Result<Method, AssignError> {
+    let size = options.parameters.parse()?;
+    let Options { normals, specular, .. } = *options;
+    let settings = options.settings();
+    Ok(Method::lists(Clustered::with_normals(
+        gpu, size, bounds, occupancy, normals, specular, settings,
+    )?))
+}

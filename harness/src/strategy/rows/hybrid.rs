@@ -1,0 +1,24 @@
+//! The grid of hybrid lighting (`assign-clustered`).
+
+use assign_clustered::HybridGrid;
+
+use super::super::{Axis, Colour, Method, Role, Row, Sizes, row::NEEDS_DEPTH};
+use super::clusters::FEW;
+
+pub(super) const ROWS: &[Row] = &[Row {
+    family: "HG",
+    name: "the grid of hybrid lighting",
+    about: "lights add themselves to the clusters that hold samples",
+    role: Role::OtherPaper,
+    source: "Archer 2019, section 3.2",
+    krate: "assign-clustered",
+    parameters: &["tile_width_px", "tile_height_px", "slices"],
+    default: "48x48x40",
+    axes: &[Axis::Cap, Axis::Reuse, Axis::Exit],
+    sizes: Sizes { few: FEW, many: &["32x32x40", "48x48x40", "64x64x40"] },
+    has_groups: true,
+    needs: NEEDS_DEPTH,
+    colour: Colour { light: "#6e4a26", dark: "#c79b6b" },
+    make: |gpu, options| Ok(Method::lists(HybridGrid::new(gpu, options.parameters.parse()?)?)),
+    ..Row::PLAIN
+}];

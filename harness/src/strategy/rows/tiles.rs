@@ -1,0 +1,48 @@
+//! Tiles of the screen (`assign-tiled`).
+
+use assign::Bounds::{self, Explicit, Implicit};
+use assign::{AssignError, Gpu};
+use assign_tiled::Tiled;
+
+use super::super::{Axis, Colour, Method, Options, Role, Row, Sizes, row::NEEDS_DEPTH};
+
+pub(super) const ROWS: &[Row] = &[
+    Row {
+        family: "T-I",
+        name: "tiles, implicit bounds",
+        about: "every tile has a list of the lights between the near and the far plane",
+        stand_ins: &[("hs", "T-I by HS only")],
+        colour: Colour { light: "#0f8a77", dark: "#45bda9" },
+        make: |gpu, options| make(gpu, options, Implicit),
+        ..TILES
+    },
+    Row {
+        family: "T-E",
+        name: "tiles, explicit bounds",
+        about: "every tile has a list of the lights between its nearest and its farthest sample",
+        needs: NEEDS_DEPTH,
+        colour: Colour { light: "#8b3a8f", dark: "#cf84d2" },
+        make: |gpu, options| make(gpu, options, Explicit),
+        ..TILES
+    },
+];
+
+const TILES: Row = Row {
+    role: Role::ComparisonPaper,
+    source: "Enhuber 2019, section 3.1, table 4.3",
+    krate: "assign-tiled",
+    parameters: &["tile_width_px", "tile_height_px"],
+    default: "28x28",
+    axes: &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit],
+    sizes: Sizes {
+        few: &["16x16", "20x20", "24x24", "32x32", "48x48"],
+        many: &["16x16", "20x20", "24x24", "28x28", "32x32", "40x40"],
+    },
+    has_groups: true,
+    ..Row::PLAIN
+};
+
+fn make(gpu: &Gpu, options: &Options, bounds: Bounds) -> Result<Method, AssignError> {
+    let size = options.parameters.parse()?;
+    Ok(Method::lists(Tiled::new(gpu, size, bounds, options.settings())?))
+}

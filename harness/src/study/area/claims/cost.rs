@@ -1,0 +1,235 @@
+//! What the engine paper (Dobetsberger 2025) claims of times, and what decides it: the paper times whole
+//! frames, so frames decide; shading stands beside them.
+
+use crate::report::format::{percent, significant};
+use crate::report::rank::ALIKE;
+use crate::results::Record;
+use crate::study::area::page::models::{SPOTS, model};
+use crate::study::claims::{Answer, Check, Verdict};
+use crate::study::data::entries;
+use crate::study::manifest::Done;
+
+/// The record of a model at a number of lights.
+pub(crate) fn at<'a>(
+    done: &'a Done,
+    scene: &'a str,
+    wanted: &str,
+    lights: u64,
+) -> Option<&'a Record> {
+    let all = entries(done, scene, "cost");
+    let mut records = all.iter().map(|entry| entry.record);
+    records.find(|record| model(record) == wanted && record.setting.lights == lights)
+}
+
+/// A frame and its shading, ms.
+pub(crate) fn time(record: &Record) -> String {
+    format!(
+        "{} ms (shading {})",
+        significant(record.times.frame_ms),
+        significant(record.times.shade_ms)
+    )
+}
+
+/// Which of two records is faster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Faster {
+    First,
+    Second,
+    /// Their intervals overlap, or they are within half a per cent of each other.
+    Tie,
+}
+
+/// Compares two records of different jobs: by the intervals of their medians, for their frames were
+/// not drawn in turn.
+pub(crate) fn faster(first: &Record, second: &Record) -> Faster {
+    let overlap = match (first.interval_ms(), second.interval_ms()) {
+        (Some(a), Some(b)) => a.low <= b.high && b.low <= a.high,
+        _ => false,
+    };
+    let ratio = first.assign_and_shade_ms() / second.assign_and_shade_ms();
+    if overlap || (ratio - 1.0).abs() <= ALIKE {
+        Faster::Tie
+    } else if ratio < 1.0 {
+        Faster::First
+    } else {
+        Faster::Second
+    }
+}
+
+/// The paper's stochastic algorithm.
+fn stochastic(samples: u32) -> String {
+    format!("monte-carlo-reflected:{samples}")
+}
+
+pub(crate) const ONE_LIGHT: Check = Check {
+    id: "one-light",
+    place: "section 5.5.3, figure 5.22",
+    words: "With one light MRP is fastest and LTC second.",
+    paper: "MRP is 0.21 ms faster",
+    departure: "one stochastic sample stands for the third place; MRP is mrp-published, our reading of equation 5.5",
+    decide: |done, scene| {
+        let of = |name: &str| at(done, scene, name, 1);
+        let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
+            return Answer::unknown("mrp-published and ltc for one light");
+        };
+        let mut figure = format!("MRP {}, LTC {}", time(mrp), time(ltc));
+        let mut parts = vec![faster(mrp, ltc)];
+        if let Some(other) = of(&stochastic(1)) {
+            figure += &format!(", one sample {}", time(other));
+            parts.push(faster(ltc, other));
+        }
+        if let Some(own) = of("mrp") {
+            figure += &format!("; mrp {}", time(own));
+        }
+        let good = parts.iter().filter(|part| **part == Faster::First).count();
+        Answer { figure, verdict: Verdict::of_parts(good, parts.len(), "places") }
+    },
+};
+
+/// The counts of lights for which the paper has a gain, and from which gain on it is the paper's.
+const GAINS: [(u64, f64); 2] = [(16, 0.2), (64, 0.25)];
+
+pub(crate) const MRP_GAIN: Check = Check {
+    id: "mrp-gain",
+    place: "section 5.5.3, figure 5.23",
+    words: "MRP is about 30 % faster than LTC for 16 lights, and 35 % for 64.",
+    paper: "30 and 35 % of the frame",
+    departure: "every light shades every pixel; the paper\u{2019}s frames hold less shading and more of \
+                everything else. MRP is mrp-published, our reading of equation 5.5",
+    decide: |done, scene| {
+        let (mut figures, mut parts) = (Vec::new(), Vec::new());
+        for (lights, least) in GAINS {
+            let of = |name| at(done, scene, name, lights);
+            let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else { continue };
+            let gain = 1.0 - mrp.times.frame_ms / ltc.times.frame_ms;
+            let shading = 1.0 - mrp.times.shade_ms / ltc.times.shade_ms;
+            let mut figure = format!(
+                "{lights} lights: frame {} % less ({} and {} ms), shading {} % less",
+                percent(gain),
+                significant(mrp.times.frame_ms),
+                significant(ltc.times.frame_ms),
+                percent(shading)
+            );
+            if let Some(own) = of("mrp") {
+                figure +=
+                    &format!(", mrp {} %", percent(1.0 - own.times.shade_ms / ltc.times.shade_ms));
+            }
+            figures.push(figure);
+            parts.push((faster(mrp, ltc), gain >= least));
+        }
+        if parts.is_empty() {
+            return Answer::unknown("mrp-published at 16 or 64 lights");
+        }
+        let verdict = if parts.iter().all(|(who, is_much)| *who == Faster::First && *is_much) {
+            Verdict::Holds
+        } else if parts.iter().all(|(who, _)| *who == Faster::First) {
+            Verdict::Differs("faster, by less than in the paper".to_owned())
+        } else if parts.iter().any(|(who, _)| *who == Faster::First) {
+            Verdict::Differs("faster at one of the counts only".to_owned())
+        } else {
+            Verdict::Fails
+        };
+        Answer { figure: figures.join("; "), verdict }
+    },
+};
+
+pub(crate) const ONE_SAMPLE: Check = Check {
+    id: "one-sample",
+    place: "section 5.5.3",
+    words: "The stochastic algorithm is slower than MRP even with one sample.",
+    paper: "a figure without numbers",
+    departure: "MRP is mrp-published, our reading of equation 5.5",
+    decide: |done, scene| {
+        let (mut figures, mut good) = (Vec::new(), 0);
+        for lights in [16, 64] {
+            let mrp = at(done, scene, "mrp-published", lights);
+            let pair = mrp.zip(at(done, scene, &stochastic(1), lights));
+            let Some((mrp, other)) = pair else { continue };
+            good += usize::from(faster(mrp, other) == Faster::First);
+            figures.push(format!("{lights} lights: MRP {}, one sample {}", time(mrp), time(other)));
+        }
+        if figures.is_empty() {
+            return Answer::unknown("mrp-published and one sample at 16 or 64 lights");
+        }
+        let verdict = Verdict::of_parts(good, figures.len(), "counts of lights");
+        Answer { figure: figures.join("; "), verdict }
+    },
+};
+
+pub(crate) const LIGHTS_OR_SAMPLES: Check = Check {
+    id: "lights-or-samples",
+    place: "section 5.5.3",
+    words: "Four times the lights cost the stochastic algorithm more than four times the samples.",
+    paper: "a figure without numbers",
+    departure: "from 16 lights and one sample",
+    decide: |done, scene| {
+        let of = |samples, lights| at(done, scene, &stochastic(samples), lights);
+        let (Some(base), Some(samples), Some(lights)) = (of(1, 16), of(4, 16), of(1, 64)) else {
+            return Answer::unknown("1 and 4 samples at 16 lights, 1 at 64");
+        };
+        let figure = format!(
+            "{}; four times the samples {}; four times the lights {}",
+            time(base),
+            time(samples),
+            time(lights)
+        );
+        let verdict = match faster(samples, lights) {
+            Faster::First => Verdict::Holds,
+            Faster::Tie => Verdict::Differs("a tie".to_owned()),
+            Faster::Second => Verdict::Fails,
+        };
+        Answer { figure, verdict }
+    },
+};
+
+/// What is about twice.
+const ABOUT_TWICE: std::ops::RangeInclusive<f64> = 1.5..=2.5;
+
+pub(crate) const SPOTS_RATIO: Check = Check {
+    id: "spots",
+    place: "section 5.6, figures 5.25 and 5.26",
+    words: "Area lights take about twice as long as spots.",
+    paper: "about 2, of the frame, at 22 lights and at varying counts",
+    departure: "1, 16 and 64 lights; about twice is 1.5 to 2.5 times; every light shades every pixel; neither has shadows",
+    decide: |done, scene| {
+        let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
+        for lights in [16, 64] {
+            let of = |name| at(done, scene, name, lights);
+            let (Some(ltc), Some(spots)) = (of("ltc"), of(SPOTS)) else { continue };
+            let ratio = ltc.times.frame_ms / spots.times.frame_ms;
+            count += 1;
+            good += usize::from(ABOUT_TWICE.contains(&ratio));
+            figures.push(format!(
+                "{lights} lights: frames \u{d7} {}, shading \u{d7} {}",
+                significant(ratio),
+                significant(ltc.times.shade_ms / spots.times.shade_ms)
+            ));
+        }
+        if count == 0 {
+            return Answer::unknown("ltc and spots at 16 or 64 lights");
+        }
+        let verdict = Verdict::of_parts(good, count, "counts of lights");
+        Answer { figure: figures.join("; "), verdict }
+    },
+};
+
+pub(crate) const FASTER: Check = Check {
+    id: "ratings",
+    place: "table 7.1",
+    words: "MRP is very fast, LTC fast and the stochastic algorithm slow.",
+    paper: "ratings without numbers",
+    departure: "the stochastic algorithm with 4 samples; MRP is mrp-published, our reading of equation 5.5",
+    decide: |done, scene| {
+        let of = |name: &str| at(done, scene, name, 64);
+        let stochastic = of(&stochastic(4));
+        let (Some(mrp), Some(ltc), Some(other)) = (of("mrp-published"), of("ltc"), stochastic)
+        else {
+            return Answer::unknown("the three algorithms at 64 lights");
+        };
+        let figure =
+            format!("64 lights: MRP {}, LTC {}, stochastic {}", time(mrp), time(ltc), time(other));
+        let parts = [faster(mrp, ltc), faster(ltc, other)];
+        let good = parts.iter().filter(|part| **part == Faster::First).count();
+        Answer { figure, verdict: Verdict::of_parts(good, parts.len(), "places") }
+    },
+};

@@ -1,0 +1,229 @@
+//! What the engine paper (Dobetsberger 2025) claims of linearly transformed cosines.
+
+use shading::ltc::{POLYNOMIAL_COMPONENTS, Polynomial, Table};
+
+use crate::report::format::{difference, significant};
+use crate::study::area::claims::cost::{Faster, at, faster, time};
+use crate::study::area::claims::errors::error_of;
+use crate::study::claims::{Answer, Check, Verdict};
+use crate::study::manifest::Done;
+
+/// Errors this near are nearly equal; the paper's two differ by 0.43 %.
+const HARDLY: f64 = 0.01;
+
+pub(crate) const TABLES: Check = Check {
+    id: "tables",
+    place: "table 5.1",
+    words: "The engine\u{2019}s table and that of the exact GGX give nearly equal errors; the exact one\u{2019}s is \
+            slightly less.",
+    paper: "FLIP 0.39606 and 0.39435; LPIPS 0.20339 and 0.20316",
+    departure: "no LPIPS; nearly equal is within 1 %",
+    decide: |done, scene| {
+        let of = |name| error_of(done, scene, name, "flip");
+        let (Some(engine), Some(exact)) = (of("ltc-hammon"), of("ltc")) else {
+            return Answer::unknown("both tables");
+        };
+        let figure = format!(
+            "FLIP: engine\u{2019}s (ltc-hammon) {}, exact (ltc) {}",
+            difference(engine),
+            difference(exact)
+        );
+        let is_slight = (engine / exact - 1.0).abs() <= HARDLY;
+        let verdict = match (exact <= engine, is_slight) {
+            (true, true) => Verdict::Holds,
+            (true, false) => Verdict::Differs("the exact one is clearly nearer".to_owned()),
+            (false, true) => {
+                Verdict::Differs("nearly equal; the engine\u{2019}s is nearer".to_owned())
+            }
+            (false, false) => Verdict::Fails,
+        };
+        Answer { figure, verdict }
+    },
+};
+
+/// Root mean square error of the polynomials over the table's entries.
+const FIT_RMSE: f64 = 0.11;
+
+pub(crate) const POLYNOMIAL_FIT: Check = Check {
+    id: "polynomial-fit",
+    place: "section 5.4.3, figure 5.15",
+    words: "Polynomials of low degree fit the table.",
+    paper: "root mean square error below 0.11 for every component at degree 5",
+    departure: "degree 6 over roughness and sqrt(1 - cos view), of M^-1; the paper fits M over the angle",
+    decide: |_, _| {
+        let Ok(table) = Table::ggx() else { return Answer::unknown("the table") };
+        let errors = Polynomial::ggx().rms_errors(&table);
+        let good = errors.iter().filter(|error| **error < FIT_RMSE).count();
+        let told = POLYNOMIAL_COMPONENTS.iter().zip(errors);
+        let told = told.map(|(name, error)| format!("{name} {}", significant(error)));
+        let figure = format!("root mean square errors: {}", told.collect::<Vec<_>>().join(", "));
+        Answer { figure, verdict: Verdict::of_parts(good, errors.len(), "components") }
+    },
+};
+
+pub(crate) const POLYNOMIAL_IMAGE: Check = Check {
+    id: "polynomial-image",
+    place: "section 5.4.3, figure 5.17",
+    words: "Images by polynomials and by the table are no different to the eye.",
+    paper: "root mean square error below 0.01",
+    departure: "the two images are not compared with each other, only with the truth",
+    decide: |done, scene| {
+        let of = |name| error_of(done, scene, name, "flip");
+        let (Some(polynomial), Some(table)) = (of("ltc-polynomial"), of("ltc")) else {
+            return Answer::unknown("polynomials and the table");
+        };
+        let figure = format!(
+            "FLIP against the truth: polynomials {}, table {}",
+            difference(polynomial),
+            difference(table)
+        );
+        Answer { figure, verdict: Verdict::unmeasured("the difference of the two images") }
+    },
+};
+
+pub(crate) const TABLE_OR_POLYNOMIAL: Check = Check {
+    id: "table-or-polynomial",
+    place: "section 5.4.3, figure 5.18",
+    words: "The table is as fast as polynomials for one light, and faster for many.",
+    paper: "a figure without numbers: similar at 16 lights, then a gap that grows",
+    departure: "both find the lobe once per light, as the paper does; the table lies in a storage buffer, \
+                not in a texture; whole frames decide, and shading is told",
+    decide: |done, scene| {
+        let pair = |lights| {
+            let polynomial = at(done, scene, "ltc-polynomial-per-light", lights)?;
+            Some((at(done, scene, "ltc-per-light", lights)?, polynomial))
+        };
+        let (Some(one), Some(many)) = (pair(1), pair(64)) else {
+            return Answer::unknown("look-ups per light at 1 and 64 lights");
+        };
+        let told = [(1, Some(one)), (16, pair(16)), (64, Some(many))];
+        let told = told.into_iter().filter_map(|(lights, pair)| {
+            let (table, polynomial) = pair?;
+            Some(format!("{lights}: table {}, polynomials {}", time(table), time(polynomial)))
+        });
+        let mut figure = told.collect::<Vec<_>>().join("; ");
+        let once = [at(done, scene, "ltc", 64), at(done, scene, "ltc-polynomial", 64)];
+        if let [Some(table), Some(polynomial)] = once {
+            figure += &format!(
+                "; 64, found once per sample: table {}, polynomials {}",
+                time(table),
+                time(polynomial)
+            );
+        }
+        let verdict = match (faster(one.0, one.1), faster(many.0, many.1)) {
+            (Faster::Tie, Faster::First) => Verdict::Holds,
+            (_, Faster::First) => Verdict::Differs("not the same for one light".to_owned()),
+            (_, Faster::Tie) => Verdict::Differs("a tie at 64 lights, too".to_owned()),
+            (_, Faster::Second) => Verdict::Fails,
+        };
+        Answer { figure, verdict }
+    },
+};
+
+/// By how much FLIP must rise without splitting for artefacts to be in the picture.
+const SHOWS: f64 = 0.02;
+
+pub(crate) const SPLITTING: Check = Check {
+    id: "splitting",
+    place: "section 5.4.4, figure 5.19",
+    words: "Long edges give noisy highlights, and splitting them removes the noise.",
+    paper: "pictures only",
+    departure: "the lights of the study are at most five times as long as wide; a test of shading has one of \
+                1,000 to 1, on which the noise shows and splitting removes it",
+    decide: |done, scene| {
+        let of = |name| error_of(done, scene, name, "flip");
+        let (Some(before), Some(after)) = (of("ltc-unsplit"), of("ltc")) else {
+            return Answer::unknown("ltc-unsplit");
+        };
+        let figure = format!("FLIP: unsplit {}, split {}", difference(before), difference(after));
+        let verdict = if before > after * (1.0 + SHOWS) {
+            Verdict::Holds
+        } else if after > before * (1.0 + SHOWS) {
+            Verdict::Fails
+        } else {
+            Verdict::undecided("no edge of this view is long enough")
+        };
+        Answer { figure, verdict }
+    },
+};
+
+pub(crate) const SPLITTING_COST: Check = Check {
+    id: "splitting-cost",
+    place: "section 5.5.3",
+    words: "Splitting edges costs little.",
+    paper: "without it MRP\u{2019}s lead of 30 % is only slightly lower",
+    departure: "split edges take another polynomial for the angle than unsplit ones; little is 10 % of shading",
+    decide: |done, scene| {
+        let pairs: Vec<(u64, f64)> = [16, 64]
+            .into_iter()
+            .filter_map(|lights| {
+                let split = at(done, scene, "ltc", lights)?;
+                let unsplit = at(done, scene, "ltc-unsplit", lights)?;
+                Some((lights, split.times.shade_ms / unsplit.times.shade_ms))
+            })
+            .collect();
+        if pairs.is_empty() {
+            return Answer::unknown("ltc-unsplit");
+        }
+        let good = pairs.iter().filter(|(_, ratio)| *ratio <= 1.1).count();
+        let told = pairs.iter().map(|(lights, ratio)| {
+            format!("{lights} lights: split over unsplit \u{d7} {} in shading", significant(*ratio))
+        });
+        let figure = told.collect::<Vec<_>>().join("; ");
+        Answer { figure, verdict: Verdict::of_parts(good, pairs.len(), "counts of lights") }
+    },
+};
+
+pub(crate) const LEAST: Check = Check {
+    id: "least",
+    place: "table 5.2",
+    words: "LTC is nearest to the truth of all algorithms.",
+    paper: "FLIP 0.39245; MRP 0.51880, stochastic 0.51994 to 0.52226",
+    departure: "stochastic up to 32 samples; uniform samples, which are not the paper\u{2019}s, compete too. \
+                mrp-published is our reading of equation 5.5, so MRP counts where mrp agrees with it",
+    decide: least,
+};
+
+/// MRP by our reading of equation 5.5, and with derived weights.
+const MRP: [&str; 2] = ["mrp-published", "mrp"];
+
+/// LTC's FLIP is below that of every other algorithm of the paper, and of uniform samples.
+fn least(done: &Done, scene: &str) -> Answer {
+    let Some(own) = error_of(done, scene, "ltc", "flip") else { return Answer::unknown("ltc") };
+    let mut others: Vec<(String, f64)> = Vec::new();
+    for samples in [2, 8, 32, 4, 16, 64] {
+        for family in ["monte-carlo-reflected", "monte-carlo"] {
+            let name = format!("{family}:{samples}");
+            if let Some(error) = error_of(done, scene, &name, "flip") {
+                others.push((name, error));
+            }
+        }
+    }
+    for name in MRP {
+        let error = error_of(done, scene, name, "flip");
+        others.extend(error.map(|error| (name.to_owned(), error)));
+    }
+    let Some(nearest) = others.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return Answer::unknown("another algorithm");
+    };
+    let figure = format!(
+        "FLIP: ltc {}; least of the others {} {}",
+        difference(own),
+        nearest.0,
+        difference(nearest.1)
+    );
+    let nearer: Vec<&str> =
+        others.iter().filter(|other| other.1 <= own).map(|other| other.0.as_str()).collect();
+    let is_measured = |name: &str| others.iter().any(|(known, _)| known == name);
+    let by_mrp = MRP.iter().filter(|name| nearer.contains(name)).count();
+    let is_beaten =
+        by_mrp == MRP.len() || nearer.iter().any(|name| name.starts_with("monte-carlo-reflected:"));
+    let verdict = match (is_beaten, by_mrp, nearer.is_empty()) {
+        (true, ..) => Verdict::Fails,
+        (false, 1.., _) => Verdict::Differs("MRP is nearer by one of two readings".to_owned()),
+        (false, 0, false) => Verdict::Differs(format!("uniform {} is nearer", nearer.join(", "))),
+        (false, 0, true) if MRP.into_iter().all(is_measured) => Verdict::Holds,
+        (false, 0, true) => Verdict::Differs("MRP not measured by both readings".to_owned()),
+    };
+    Answer { figure, verdict }
+}

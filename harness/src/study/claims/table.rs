@@ -1,0 +1,63 @@
+//! All claims of a paper as a table.
+
+use super::claim::{Claim, Paper};
+use super::verdict::Answer;
+use crate::report::markup::{Html, html};
+use crate::study::page::figure::table;
+
+const HEADS: [&str; 4] = ["claim", "the paper", "measured here", "verdict"];
+
+/// All claims as a table.
+pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool) -> Html {
+    if claims.is_empty() {
+        return Html::default();
+    }
+    let rows: Vec<Vec<Html>> = claims.iter().map(row).collect();
+    let caveat = if is_software {
+        " This study ran on a software adapter: the verdicts are not a GPU\u{2019}s."
+    } else {
+        ""
+    };
+    html!(
+        "<section class=\"claims\" aria-labelledby=\"claims\"><h2 id=\"claims\">What {} says, and what was \
+         measured</h2>\n<p class=\"note\">{}{}</p>\n{}</section>\n",
+        paper.name,
+        paper.about,
+        caveat,
+        table(&format!("Claims of {}", paper.name), &HEADS, &rows)
+    )
+}
+
+/// The claim, the paper's figures and our departure, what each scene says, and the verdict.
+fn row(claim: &Claim<'_>) -> Vec<Html> {
+    let check = claim.check;
+    let departure = match check.departure {
+        "" => Html::default(),
+        departure => html!("<br><small>Here: {}</small>", departure),
+    };
+    let several = claim.answers.len() > 1;
+    vec![
+        html!("{} <small>{}</small>", check.words, check.place),
+        // Where the table is too narrow for heads, words stand before the figures.
+        html!("<b class=\"of\">paper: </b>{}{}", check.paper, departure),
+        claim.answers.iter().map(|answer| measured(answer, several)).collect(),
+        html!(
+            "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
+            claim.verdict().id(),
+            check.id,
+            claim.verdict_text()
+        ),
+    ]
+}
+
+/// What one scene says; of several, each with its own verdict.
+fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> Html {
+    let (verdict, figure) = (answer.verdict.text(), &answer.figure);
+    let own = html!("<span class=\"verdict {}\">{}</span>", answer.verdict.id(), verdict);
+    match (is_one_of_several, figure.is_empty()) {
+        (false, true) => html!("<p>{}</p>", verdict),
+        (false, false) => html!("<p>{}</p>", figure),
+        (true, true) => html!("<p><b>{}</b> {}</p>", scene, own),
+        (true, false) => html!("<p><b>{}</b> {}<br>{}</p>", scene, own, figure),
+    }
+}

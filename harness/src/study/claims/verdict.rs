@@ -1,0 +1,86 @@
+//! What the figures of a scene say of a claim.
+
+/// What the figures say of a claim.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// They bear it out.
+    Holds,
+    /// They contradict it.
+    Fails,
+    /// They bear a part of it out: which.
+    Differs(String),
+    /// They decide nothing: why, as a phrase.
+    Unknown(String),
+}
+
+impl Verdict {
+    /// The figures are missing: which.
+    pub(crate) fn unmeasured(what: &str) -> Self {
+        Self::Unknown(format!("not measured: {what}"))
+    }
+
+    /// There are figures, and they cannot decide the claim: why.
+    pub(crate) fn undecided(why: &str) -> Self {
+        Self::Unknown(format!("not decided: {why}"))
+    }
+
+    /// Holds where all of the parts do, fails where none does.
+    pub(crate) fn of_parts(good: usize, all: usize, what: &str) -> Self {
+        match (good, all) {
+            (_, 0) => Self::unmeasured(&format!("no {what}")),
+            (good, all) if good == all => Self::Holds,
+            (0, _) => Self::Fails,
+            (good, all) => Self::Differs(format!("{good} of {all} {what}")),
+        }
+    }
+
+    /// The same with what bars it from holding outright: what was not measured, or what stands in for it.
+    pub(crate) fn qualified(self, notes: &[String]) -> Self {
+        match self {
+            Self::Holds if !notes.is_empty() => Self::Differs(notes.join("; ")),
+            Self::Differs(why) if !notes.is_empty() => {
+                Self::Differs(format!("{why}; {}", notes.join("; ")))
+            }
+            other => other,
+        }
+    }
+
+    /// For the page's markup.
+    pub(crate) fn id(&self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Fails => "fails",
+            Self::Differs(_) => "differs",
+            Self::Unknown(_) => "unknown",
+        }
+    }
+
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Self::Holds => "holds".to_owned(),
+            Self::Fails => "does not hold".to_owned(),
+            Self::Differs(why) => format!("differs: {why}"),
+            Self::Unknown(why) => why.clone(),
+        }
+    }
+}
+
+/// What one scene says of a claim.
+#[derive(Clone, Debug)]
+pub(crate) struct Answer {
+    /// Our figures.
+    pub(crate) figure: String,
+    pub(crate) verdict: Verdict,
+}
+
+impl Answer {
+    /// Without figures: what was not measured.
+    pub(crate) fn unknown(what: &str) -> Self {
+        Self { figure: String::new(), verdict: Verdict::unmeasured(what) }
+    }
+
+    /// Without figures, and why they would decide nothing.
+    pub(crate) fn undecided(why: &str) -> Self {
+        Self { figure: String::new(), verdict: Verdict::undecided(why) }
+    }
+}

@@ -1,0 +1,267 @@
+//! Claims on times against the number of lights: figure 4.13 and table 4.6.
+
+use crate::report::fit::Fit;
+use crate::report::format::{number, percent, significant};
+use crate::report::rank::listed;
+use crate::results::Record;
+use crate::strategy::StrategyId;
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
+use crate::study::comparison::page::scaling::{Straight, straight};
+use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, poses, stand};
+use crate::study::manifest::Done;
+use crate::study::page::lines::{Time, fit};
+
+/// The counts of lights between which the paper fits its lines.
+const RANGE: [u64; 2] = [100, 10_000];
+
+/// The records of the paper's strategies over counts of lights, within the paper's range.
+fn grown<'a>(done: &'a Done, scene: &'a str, most: u64) -> Vec<Line<'a>> {
+    let scaling: Vec<Entry<'_>> = entries(done, scene, "scaling")
+        .into_iter()
+        .filter(|entry| is_of_the_paper(entry.record) && entry.record.setting.lights <= most)
+        .collect();
+    let mut lines = lines(&scaling);
+    lines.retain(|(_, records)| records.len() > 2);
+    // The paper's own strategy comes before what stands in for it.
+    lines.sort_by_key(|(id, _)| id.stand_in().is_some());
+    lines
+}
+
+fn basis(lines: &[Line<'_>]) -> String {
+    let records = || lines.iter().flat_map(|(_, records)| records.iter());
+    let low = records().map(|record| record.setting.lights).min().unwrap_or(0);
+    let high = records().map(|record| record.setting.lights).max().unwrap_or(0);
+    let stand = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| stand(r));
+    format!("{} to {} lights, {stand}", number(low as f64), number(high as f64))
+}
+
+/// Straight where the best line misses no time of the paper's range by more than a tenth. Both fits are
+/// of that range; how far the line goes on beyond it is said beside them.
+pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
+    let lines = grown(done, scene, u64::MAX);
+    let paper = grown(done, scene, RANGE[1]);
+    let (mut good, mut all, mut figures) = (0, 0, Vec::new());
+    for (id, records) in &paper {
+        let Some(within) = straight(records, Record::assign_and_shade_ms) else { continue };
+        all += 1;
+        good += usize::from(within.holds());
+        let beyond = lines.iter().find(|(known, _)| known == id);
+        let whole = beyond.and_then(|(_, all)| straight(all, Record::assign_and_shade_ms));
+        figures.push(said(id, &within, whole, records));
+    }
+    if all == 0 {
+        return Answer::unknown("scaling over four counts of lights");
+    }
+    let figure = format!("{}; {}", basis(&paper), figures.join("; "));
+    Answer { figure, verdict: Verdict::of_parts(good, all, "strategies") }
+}
+
+/// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
+/// 30,000`. Both distances are of `records`, those of the paper's range.
+fn said(
+    id: &StrategyId,
+    within: &Straight,
+    whole: Option<Straight>,
+    records: &[&Record],
+) -> String {
+    let mut text = format!(
+        "{} off its line by {} % at most, at {}",
+        id.short(),
+        percent(within.worst),
+        number(within.at as f64)
+    );
+    if let Some(plain) = fit(records, Record::assign_and_shade_ms) {
+        let points: Vec<(f64, f64)> =
+            records.iter().map(|r| (r.setting.lights as f64, r.assign_and_shade_ms())).collect();
+        let (off, at) = plain.worst(&points);
+        text += &format!(" (plain least squares {} % at {})", percent(off), number(at));
+    }
+    match whole.or(Some(*within)).and_then(|whole| whole.range) {
+        Some([low, high]) => {
+            text += &format!(", straight from {} to {}", number(low as f64), number(high as f64));
+        }
+        None => text += ", nowhere straight over four counts",
+    }
+    text
+}
+
+/// The time of each strategy that a claim is about, as a line.
+struct Slopes<'a> {
+    basis: String,
+    all: Vec<(&'a StrategyId, Fit)>,
+}
+
+impl<'a> Slopes<'a> {
+    fn of(done: &'a Done, scene: &'a str, time: Time) -> Result<Self, Answer> {
+        let lines = grown(done, scene, RANGE[1]);
+        let all: Vec<(&StrategyId, Fit)> =
+            lines.iter().filter_map(|(id, records)| Some((*id, fit(records, time)?))).collect();
+        match all.is_empty() {
+            true => Err(Answer::unknown("scaling over three counts of lights")),
+            false => Ok(Self { basis: basis(&lines), all }),
+        }
+    }
+
+    fn of_family(&self, name: &str) -> Option<&(&'a StrategyId, Fit)> {
+        self.all.iter().find(|(id, _)| id.family() == name)
+    }
+
+    fn fit(&self, name: &str) -> Option<&Fit> {
+        self.of_family(name).map(|(_, fit)| fit)
+    }
+
+    /// What stands in for one of some strategies.
+    fn stand_in(&self, names: &[&str]) -> Option<&'static str> {
+        names.iter().find_map(|name| self.of_family(name)?.0.stand_in())
+    }
+
+    fn ascending(&self, names: &[&str], of: fn(&Fit) -> f64) -> String {
+        let own = names.iter().filter_map(|name| self.of_family(name));
+        let mut all: Vec<(String, f64)> = own.map(|(id, fit)| (id.short(), of(fit))).collect();
+        all.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let said = all.iter().map(|(name, figure)| format!("{name} {}", significant(*figure)));
+        said.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Decides by the order of slopes or offsets.
+    fn ordered(&self, chain: &[&[&str]], of: fn(&Fit) -> f64) -> Pairs {
+        let member = |name: &str| Member::of(self.of_family(name).map(|(id, _)| *id));
+        Pairs::of_chain(chain, member, |less, more| {
+            Some(Order::of_fits(of(self.fit(less)?), of(self.fit(more)?)))
+        })
+    }
+}
+
+fn slope(fit: &Fit) -> f64 {
+    fit.slope * 1e6
+}
+
+fn offset(fit: &Fit) -> f64 {
+    fit.offset
+}
+
+/// The groups of table 4.6 by the slope of all stages.
+pub(crate) fn slopes(done: &Done, scene: &str) -> Answer {
+    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let chain: [&[&str]; 5] = [&["SC-E", "SC-I"], &["T-E"], &["DC-I", "G"], &["T-I"], &["M"]];
+    let pairs = slopes.ordered(&chain, slope);
+    let figure = format!(
+        "{}, \u{b5}s per 1,000 lights: {}{}",
+        slopes.basis,
+        slopes.ascending(&chain.concat(), slope),
+        pairs.exceptions()
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// The groups of table 4.6 by the offset of all stages.
+pub(crate) fn offsets(done: &Done, scene: &str) -> Answer {
+    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let chain: [&[&str]; 3] = [&["M", "T-I", "G", "DC-I"], &["T-E"], &["SC-I", "SC-E"]];
+    let pairs = slopes.ordered(&chain, offset);
+    let figure = format!(
+        "{}, ms: {}{}",
+        slopes.basis,
+        slopes.ascending(&chain.concat(), offset),
+        pairs.exceptions()
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// Shading grows faster than assignment, in each strategy.
+pub(crate) fn shading_dominates(done: &Done, scene: &str) -> Answer {
+    let both = Slopes::of(done, scene, |r| r.times.assign_ms)
+        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.times.shade_ms)?)));
+    let (assign, shade) = match both {
+        Ok(both) => both,
+        Err(answer) => return answer,
+    };
+    let (mut pairs, mut figures, mut faster) = (Pairs::default(), Vec::new(), Vec::new());
+    for (id, of_assign) in &assign.all {
+        let Some((_, of_shade)) = shade.all.iter().find(|(known, _)| known == id) else { continue };
+        let name = id.short();
+        let order = Order::of_fits(of_assign.slope, of_shade.slope);
+        pairs.add("assignment", "shading", order);
+        if order == Order::More {
+            faster.push(format!("{name}\u{2019}s"));
+        }
+        let both = [of_assign, of_shade].map(|fit| significant(slope(fit)));
+        figures.push(format!("{name} {} and {}", both[0], both[1]));
+    }
+    let figure = format!(
+        "{}, \u{b5}s per 1,000 lights, assign and shade: {}{}",
+        assign.basis,
+        figures.join(", "),
+        match faster.is_empty() {
+            true => String::new(),
+            false => format!("; {} assignment grows faster than its shading", listed(&faster)),
+        }
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// M assigns with the least slope and shades with the greatest.
+pub(crate) fn model_slopes(done: &Done, scene: &str) -> Answer {
+    let both = Slopes::of(done, scene, |r| r.times.assign_ms)
+        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.times.shade_ms)?)));
+    let (assign, shade) = match both {
+        Ok(both) => both,
+        Err(answer) => return answer,
+    };
+    if assign.fit("M").is_none() {
+        return Answer::unknown("M over three counts of lights");
+    }
+    let others = ["SC-E", "SC-I", "T-E", "T-I", "G", "DC-I"];
+    let less = assign.ordered(&[&["M"], &others], slope);
+    let more = shade.ordered(&[&others, &["M"]], slope);
+    let verdict = match (less.leader_verdict(), more.leader_verdict()) {
+        (Verdict::Fails, Verdict::Fails) => Verdict::Fails,
+        (_, Verdict::Fails) => Verdict::Differs("not the greatest in shading".to_owned()),
+        (Verdict::Fails, _) => Verdict::Differs("not the least in assignment".to_owned()),
+        (Verdict::Holds, other) | (other, _) => other,
+    };
+    let names = [&["M"][..], &others].concat();
+    let figure = format!(
+        "{}, \u{b5}s per 1,000 lights: assign {}; shade {}",
+        assign.basis,
+        assign.ascending(&names, slope),
+        shade.ascending(&names, slope)
+    );
+    Answer { figure, verdict }
+}
+
+/// The slopes and the offsets of DC-I and G are alike.
+pub(crate) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
+    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let (Some(dense), Some(grid)) = (slopes.fit("DC-I"), slopes.fit("G")) else {
+        return Answer::unknown("DC-I and G over three counts of lights");
+    };
+    let apart = |of: fn(&Fit) -> f64| (of(dense) / of(grid)).max(of(grid) / of(dense));
+    let good = [slope as fn(&Fit) -> f64, offset].into_iter().filter(|of| {
+        let apart = apart(*of);
+        apart > 0.0 && apart <= ALIKE
+    });
+    let names = ["DC-I", "G"];
+    let verdict = match slopes.stand_in(&names) {
+        Some(what) => Verdict::Differs(format!("with {what}")),
+        None => Verdict::of_parts(good.count(), 2, "measures"),
+    };
+    let figure = format!(
+        "{}: slope {} \u{b5}s per 1,000 lights, offset {} ms",
+        slopes.basis,
+        slopes.ascending(&names, slope),
+        slopes.ascending(&names, offset)
+    );
+    Answer { figure, verdict }
+}

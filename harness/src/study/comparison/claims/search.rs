@@ -1,0 +1,194 @@
+//! Claims on group sizes and intersection tests: sections 4.3.1, 4.3.2 and 4.5.
+
+use crate::report::format::{percent, significant};
+use crate::report::rank::{first, ranks};
+use crate::results::Record;
+use crate::study::claims::order::Order;
+use crate::study::claims::{Answer, Verdict};
+use crate::study::comparison::claims::pairs::Pairs;
+use crate::study::data::{Entry, entries, stand, tests as tests_of};
+use crate::study::manifest::Done;
+
+/// The sizes that the paper selects (table 4.3).
+const SELECTED: [(&str, &str); 7] = [
+    ("T-I", "28x28"),
+    ("T-E", "28x28"),
+    ("DC-I", "128x128x64"),
+    ("DC-E", "64x64x40"),
+    ("SC-I", "48x48x40"),
+    ("SC-E", "48x48x40"),
+    ("G", "20x20x20"),
+];
+
+/// The test that the paper selects, and the union of all that makes sense.
+const BEST: &str = "hs+sat-n";
+const FULL: &str = "hs+sat-e+sat-p+sat-v";
+
+/// Up to this relative difference two shading times are about the same.
+const ABOUT: f64 = 0.03;
+
+/// The records of the search for sizes of a family: from the list of all lights, as in the paper, where
+/// they were measured so.
+fn searched<'a>(all: &[Entry<'a>], name: &str) -> Vec<&'a Record> {
+    let of = |bvh: bool| -> Vec<&Record> {
+        let own = all.iter().map(|entry| entry.record);
+        own.filter(|r| r.strategy.family() == name && r.strategy.is_bvh() == bvh).collect()
+    };
+    let linear = of(false);
+    if linear.is_empty() { of(true) } else { linear }
+}
+
+/// `; through the hierarchy` where the records are not the paper's.
+fn source(records: &[&Record]) -> &'static str {
+    match records.iter().any(|record| record.strategy.is_bvh()) {
+        true => " (through the hierarchy)",
+        false => "",
+    }
+}
+
+fn time(record: &Record) -> f64 {
+    record.assign_and_shade_ms()
+}
+
+/// Whether a grid has as many cells along each side of its box.
+fn is_cubic(record: &Record) -> bool {
+    let mut counts = record.strategy.size().split('x');
+    let first = counts.next();
+    counts.all(|count| Some(count) == first)
+}
+
+/// The paper's size leads each family, or ties with what leads.
+pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
+    let all = entries(done, scene, "sizes");
+    let (mut good, mut decided, mut figures) = (0, 0, Vec::new());
+    let (mut basis, mut notes) = (String::new(), Vec::new());
+    for (name, selected) in SELECTED {
+        let mut records = searched(&all, name);
+        // The paper tried grids of equal counts only.
+        records.retain(|record| name != "G" || is_cubic(record));
+        let ranked = ranks(records.iter().copied());
+        let best = first(&ranked);
+        let own = records.iter().find(|record| record.strategy.size() == selected);
+        let (Some(own), Some(leader)) = (own, best.first()) else {
+            notes.push(format!("{name} not measured"));
+            continue;
+        };
+        basis = format!("{}{}", stand(own), source(&records));
+        decided += 1;
+        notes.extend(own.strategy.stand_in().map(|what| format!("with {what}")));
+        let name = own.strategy.short();
+        if best.iter().any(|record| record.strategy == own.strategy) {
+            good += 1;
+            figures.push(format!("{name} {selected} {} ms", significant(time(own))));
+        } else {
+            figures.push(format!(
+                "{name} {selected} {} ms, {} % over {}",
+                significant(time(own)),
+                percent(time(own) / time(leader) - 1.0),
+                leader.strategy.size()
+            ));
+        }
+    }
+    if decided == 0 {
+        return Answer::unknown("the paper's sizes among others");
+    }
+    let figure = format!("{basis}; {}", figures.join("; "));
+    let verdict = Verdict::of_parts(good, decided, "families").qualified(&notes);
+    Answer { figure, verdict }
+}
+
+/// Grids whose cells are about cubes against grids with the same number of cells along each side.
+pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
+    let records = searched(&entries(done, scene, "sizes"), "G");
+    let least = |cubic: bool| {
+        let own = records.iter().filter(|record| is_cubic(record) == cubic);
+        own.min_by(|a, b| time(a).total_cmp(&time(b)))
+    };
+    let (Some(equal), Some(shaped)) = (least(true), least(false)) else {
+        return Answer::unknown("a grid shaped like its box, beside grids with equal counts");
+    };
+    let mut pairs = Pairs::default();
+    let names = [shaped, equal].map(|record| record.strategy.size());
+    pairs.add(names[0], names[1], Order::of_times(shaped, equal));
+    let figure = format!(
+        "{}{}: {} {} ms, the best of equal counts {} {} ms",
+        stand(shaped),
+        source(&records),
+        names[0],
+        significant(time(shaped)),
+        names[1],
+        significant(time(equal))
+    );
+    Answer { figure, verdict: pairs.verdict() }
+}
+
+/// The records of each family of the search for tests.
+fn tested<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a str, Vec<&'a Record>)> {
+    let mut families: Vec<(&str, Vec<&Record>)> = Vec::new();
+    for Entry { record, .. } in entries(done, scene, "tests") {
+        let name = record.strategy.family();
+        match families.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, records)) => records.push(record),
+            None => families.push((name, vec![record])),
+        }
+    }
+    families
+}
+
+/// HS+SAT-N leads in each family, or ties with what leads.
+pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
+    let (mut figures, mut good, mut decided) = (Vec::new(), 0, 0);
+    let mut basis = String::new();
+    for (name, records) in tested(done, scene) {
+        let meant = records.iter().find(|record| tests_of(record).as_deref() == Some(BEST));
+        let ranked = ranks(records.iter().copied());
+        let best = first(&ranked);
+        let Some(meant) = meant.filter(|_| !best.is_empty()) else { continue };
+        basis = stand(meant);
+        decided += 1;
+        good += usize::from(best.iter().any(|record| record.strategy == meant.strategy));
+        let said = |record: &Record| {
+            let union = tests_of(record).unwrap_or_default().to_uppercase();
+            format!("{union} {} ms", significant(time(record)))
+        };
+        let fastest = ranked
+            .iter()
+            .map(|ranked| ranked.record)
+            .filter(|record| tests_of(record).as_deref() != Some(BEST))
+            .min_by(|a, b| time(a).total_cmp(&time(b)))
+            .map_or_else(String::new, |other| format!(", the fastest other {}", said(other)));
+        figures.push(format!("{name}: {}{fastest}", said(meant)));
+    }
+    if decided == 0 {
+        return Answer::unknown("intersection tests");
+    }
+    let figure = format!("{basis}; {}", figures.join("; "));
+    Answer { figure, verdict: Verdict::of_parts(good, decided, "families") }
+}
+
+/// The union of all tests shades about as fast as HS+SAT-N, and assigns slower.
+pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
+    let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
+    for (name, records) in tested(done, scene) {
+        let of =
+            |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
+        let (Some(best), Some(full)) = (of(BEST), of(FULL)) else { continue };
+        all += 2;
+        let shade = full.times.shade_ms / best.times.shade_ms;
+        good += usize::from((shade - 1.0).abs() <= ABOUT);
+        good += usize::from(
+            Order::of_figures(best.times.assign_ms, full.times.assign_ms) == Order::Less,
+        );
+        figures.push(format!(
+            "{name}: shade {} and {} ms, assign {} and {} ms",
+            significant(best.times.shade_ms),
+            significant(full.times.shade_ms),
+            significant(best.times.assign_ms),
+            significant(full.times.assign_ms)
+        ));
+    }
+    if all == 0 {
+        return Answer::unknown("HS+SAT-N and the union of all tests");
+    }
+    Answer { figure: figures.join("; "), verdict: Verdict::of_parts(good, all, "measures") }
+}

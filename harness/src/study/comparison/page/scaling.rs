@@ -1,0 +1,303 @@
+//! Times against the number of lights, with straight lines through them.
+
+use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::report::fit::Fit;
+use crate::report::format::{ABSENT, number, percent, significant};
+use crate::report::markup::{Html, html};
+use crate::results::Record;
+use crate::study::data::{Entry, Line, counts, entries, lines, poses, ranking, stand};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::lines::{Time, fit, times_series};
+use crate::study::page::part::Part;
+
+/// Points along a fitted line; on logarithmic axes it is a curve.
+const STEPS: u32 = 40;
+
+/// A time no farther than this share of itself from a line lies on it.
+const TOLERANCE: f64 = 0.1;
+
+/// A line is judged over at least as many counts: through three, a line with two ends always comes
+/// close.
+const FEWEST: usize = 4;
+
+/// How straight a strategy's times are against the number of lights.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Straight {
+    /// The largest relative distance of a time from the best line.
+    pub(crate) worst: f64,
+    /// The count of lights at which it is.
+    pub(crate) at: u64,
+    /// The widest range of neighbouring counts over which the times are straight.
+    pub(crate) range: Option<[u64; 2]>,
+}
+
+impl Straight {
+    /// Whether no time is off the line over all counts.
+    pub(crate) fn holds(&self) -> bool {
+        self.worst <= TOLERANCE
+    }
+}
+
+/// How straight times are: through the line that takes every count's relative distance alike, so that
+/// the greatest counts do not decide alone. `None` of fewer than four counts.
+pub(crate) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
+    let points: Vec<(f64, f64)> =
+        records.iter().map(|r| (r.setting.lights as f64, time(r))).collect();
+    let worst = |points: &[(f64, f64)]| Fit::relative(points).map(|fit| fit.worst(points));
+    if points.len() < FEWEST {
+        return None;
+    }
+    let (whole, at) = worst(&points)?;
+    let mut range: Option<[usize; 2]> = None;
+    let width = |[from, to]: [usize; 2]| points[to].0 / points[from].0.max(1.0);
+    for from in 0..points.len() {
+        for to in from + FEWEST - 1..points.len() {
+            let is_straight = worst(&points[from..=to]).is_some_and(|(off, _)| off <= TOLERANCE);
+            if is_straight && range.is_none_or(|best| width([from, to]) > width(best)) {
+                range = Some([from, to]);
+            }
+        }
+    }
+    let range = range.map(|ends| ends.map(|ix| points[ix].0 as u64));
+    Some(Straight { worst: whole, at: at as u64, range })
+}
+
+/// Scaling with lights: fits, growing and constant density, radii.
+pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3] {
+    let scaling = entries(done, scene, "scaling");
+    let html = by_source(&scaling, |source, entries| {
+        let slug = format!("{scene}-scaling-{source}");
+        let title = "Time against lights, and the straight lines through them".to_owned();
+        charts.xy(&slug, &fitted_chart(title, &lines(entries), Record::assign_and_shade_ms))
+            + fits_table(entries)
+    });
+    let scaled = Part::new(
+        "scaling",
+        "Scaling",
+        format!(
+            "{} Whiskers are intervals; dashes are a least-squares line through each strategy\u{2019}s \
+             times: straight on linear axes, bent on these. How far times are off a line is told of \
+             another one, which takes relative distances, so that few lights count as much as many.",
+            stands(&scaling)
+        ),
+        html,
+    );
+    let density = Part::new(
+        "density",
+        "Many more lights",
+        "Growing density: more lights in the same box. Constant density: the scene grows with the cube \
+         root of their number, and lights keep their size. All through the hierarchy.",
+        density(done, scene, charts),
+    );
+    let radii = Part::new(
+        "radii",
+        "Other radii",
+        "The same mean radius, distributed otherwise; in brackets the time over that with the gamma \
+         distribution.",
+        radii(done, scene),
+    );
+    [scaled, density, radii]
+}
+
+/// What the points of a chart are: means along the path, or medians of one pose.
+fn stands(entries: &[Entry<'_>]) -> String {
+    match entries.iter().map(|entry| entry.record).max_by_key(|record| poses(record)) {
+        Some(record) if record.setting.along_path => {
+            format!("Points are means of {} along the path.", stand(record))
+        }
+        _ => "Points are medians from one pose.".to_owned(),
+    }
+}
+
+/// A panel per source of lights: strategies without one, such as None, are in both.
+fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html) -> Html {
+    let mut shown = Vec::new();
+    for (source, text, bvh) in
+        [("linear", "From the list of all lights", false), ("bvh", "Through the hierarchy", true)]
+    {
+        let has_source = |entry: &&Entry<'_>| entry.record.culls();
+        let own: Vec<Entry<'_>> = all
+            .iter()
+            .filter(|entry| !has_source(entry) || entry.record.strategy.is_bvh() == bvh)
+            .copied()
+            .collect();
+        if own.iter().any(|entry| entry.record.culls()) {
+            shown.push((text.to_owned(), body(source, &own)));
+        }
+    }
+    panels("Where strategies look for lights", &shown)
+}
+
+/// A chart of times against lights, logarithmic, with the fit of each strategy.
+pub(crate) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyChart {
+    let mut series = Vec::new();
+    for (id, records) in lines {
+        let class = id.class();
+        let line = fit(records, time).filter(|fit| fit.points > 2);
+        let ends = (records.first(), records.last());
+        if let (Some(line), (Some(first), Some(last))) = (line, ends) {
+            let (low, high) =
+                (first.setting.lights.max(1) as f64, last.setting.lights.max(1) as f64);
+            let at = |step: u32| low * (high / low).powf(f64::from(step) / f64::from(STEPS));
+            let points = (0..=STEPS)
+                .map(at)
+                .filter(|x| line.at(*x) > 0.0)
+                .map(|x| Point { x, y: line.at(x), ..Point::default() })
+                .collect();
+            let marks = Marks::Dashed;
+            series.push(Series {
+                name: id.short(),
+                class: class.clone(),
+                marks,
+                points,
+                ..Series::default()
+            });
+        }
+        series.push(times_series(id, records, time, Marks::Points));
+    }
+    XyChart {
+        title,
+        x: lights_axis(Scale::Log),
+        y: time_axis(Scale::Log),
+        series,
+        note: String::new(),
+    }
+}
+
+fn lights_axis(scale: Scale) -> Axis {
+    Axis { label: "Lights".to_owned(), unit: String::new(), scale }
+}
+
+fn time_axis(scale: Scale) -> Axis {
+    Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale }
+}
+
+/// Slope, offset and goodness of the line through each strategy's times; slopes of its passes.
+fn fits_table(entries: &[Entry<'_>]) -> Html {
+    let mut rows = Vec::new();
+    for (id, records) in lines(entries) {
+        let Some(both) = fit(&records, Record::assign_and_shade_ms) else { continue };
+        let mut row: Vec<String> = Vec::new();
+        let straight = straight(&records, Record::assign_and_shade_ms);
+        row.extend([
+            significant(both.slope * 1e6),
+            significant(both.offset),
+            r2(&both),
+            straight.map_or_else(|| ABSENT.to_owned(), |straight| percent(straight.worst)),
+            straight.and_then(|straight| straight.range).map_or_else(
+                || ABSENT.to_owned(),
+                |[low, high]| format!("{} to {}", number(low as f64), number(high as f64)),
+            ),
+        ]);
+        let parts: [Time; 2] = [|record| record.times.assign_ms, |record| record.times.shade_ms];
+        for time in parts {
+            let is_there = records.iter().any(|record| time(record) != 0.0);
+            let fit = fit(&records, time).filter(|_| is_there);
+            row.extend([
+                fit.map_or_else(String::new, |fit| significant(fit.slope * 1e6)),
+                fit.map_or_else(String::new, |fit| significant(fit.offset)),
+                fit.map_or_else(String::new, |fit| r2(&fit)),
+            ]);
+        }
+        let cells = row.into_iter().map(Html::from);
+        rows.push(std::iter::once(name(id)).chain(cells).collect::<Vec<_>>());
+    }
+    if rows.is_empty() {
+        return Html::default();
+    }
+    let slope = |head: &str| unit(head, "\u{b5}s per 1,000 lights");
+    let heads = [
+        "strategy".into(),
+        slope("slope"),
+        unit("offset", "ms"),
+        "R\u{b2}".into(),
+        unit("off a straight line by at most", "%"),
+        "straight within 10 %, lights".into(),
+        slope("assign: slope"),
+        unit("offset", "ms"),
+        "R\u{b2}".into(),
+        slope("shade: slope"),
+        unit("offset", "ms"),
+        "R\u{b2}".into(),
+    ];
+    table("Straight lines through times against lights", &heads, &rows)
+}
+
+/// Two points always lie on a line: nothing is said of it.
+fn r2(fit: &Fit) -> String {
+    if fit.points > 2 { format!("{:.3}", fit.r2) } else { "\u{2013}".to_owned() }
+}
+
+fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
+    let scaling = entries(done, scene, "scaling");
+    let bvh = |entry: &&Entry<'_>| entry.record.strategy.is_bvh();
+    let most = counts(&ranking(done, scene)).last().copied();
+    let mut html = Html::default();
+    for (section, title, base) in [
+        ("growing", "More lights in the same box", &scaling),
+        ("constant", "More lights in a larger scene, as dense as before", &scaling),
+    ] {
+        let own = entries(done, scene, section);
+        if own.is_empty() {
+            continue;
+        }
+        let from =
+            |entry: &&Entry<'_>| section == "growing" || Some(entry.record.setting.lights) == most;
+        let known = |entry: &&Entry<'_>| {
+            own.iter().any(|other| other.record.strategy == entry.record.strategy)
+        };
+        let mut all: Vec<Entry<'_>> =
+            base.iter().filter(bvh).filter(from).filter(known).copied().collect();
+        all.extend(&own);
+        let time: Time = Record::assign_and_shade_ms;
+        let series = lines(&all)
+            .iter()
+            .map(|(id, records)| times_series(id, records, time, Marks::LineAndPoints))
+            .collect();
+        let chart = XyChart {
+            title: title.to_owned(),
+            x: lights_axis(Scale::Log),
+            y: time_axis(Scale::Log),
+            series,
+            note: String::new(),
+        };
+        html += charts.xy(&format!("{scene}-{section}"), &chart);
+    }
+    if html.is_empty() { html } else { html!("<div class=\"pair\">{}</div>", html) }
+}
+
+fn radii(done: &Done, scene: &str) -> Html {
+    let all = entries(done, scene, "radii");
+    let mut kinds: Vec<&str> = Vec::new();
+    for entry in &all {
+        let kind = entry.record.setting.radii.as_deref().unwrap_or("unknown");
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    let rows: Vec<Vec<Html>> = lines(&all)
+        .into_iter()
+        .map(|(id, records)| {
+            let of = |kind: &str| {
+                let found =
+                    records.iter().find(|record| record.setting.radii.as_deref() == Some(kind));
+                found.map(|record| record.assign_and_shade_ms())
+            };
+            let cell = |kind: &&str| match (of(kind), of("gamma")) {
+                (Some(time), Some(gamma)) if *kind != "gamma" && gamma > 0.0 => {
+                    format!("{} (\u{d7} {})", significant(time), significant(time / gamma))
+                }
+                (Some(time), _) => significant(time),
+                (None, _) => "\u{2013}".to_owned(),
+            };
+            std::iter::once(name(id)).chain(kinds.iter().map(cell).map(Html::from)).collect()
+        })
+        .collect();
+    if rows.is_empty() {
+        return Html::default();
+    }
+    let kinds = kinds.iter().map(|kind| unit(kind, "ms"));
+    let heads: Vec<Html> = std::iter::once("strategy".into()).chain(kinds).collect();
+    table("Times by the distribution of radii", &heads, &rows)
+}

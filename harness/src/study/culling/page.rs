@@ -1,0 +1,178 @@
+//! The culling survey: times along a path against 0 to 1,500 lights, in both modes. What the survey
+//! claims of them is judged in `claims`.
+
+use crate::chart::{Axis, Marks, Scale, XyChart};
+use crate::report::finding::lights;
+use crate::report::format::{ABSENT, number, significant};
+use crate::report::markup::Html;
+use crate::report::rank::{ALIKE, listed};
+use crate::results::Record;
+use crate::study::data::{Entry, counts, entries, lines};
+use crate::study::manifest::Done;
+use crate::study::page::figure::{Charts, name, table, unit};
+use crate::study::page::lines::{fit, times_series};
+use crate::study::page::part::Part;
+
+/// The sections of the study: how pixels are lit.
+const MODES: [&str; 2] = ["deferred", "forward"];
+
+/// What stands above forward times of a data-centre GPU.
+const FORWARD_CAUTION: &str = " This GPU runs fragment shaders on a few of its processors: compare these times \
+    with each other, not with deferred ones nor with another chip\u{2019}s.";
+
+/// What stands above deferred times of a data-centre GPU.
+const DEFERRED_CAUTION: &str = " This GPU runs fragment shaders on a few of its processors: RasterSphere and Clay \
+    shade there, the other methods in a compute pass.";
+
+fn frame(record: &Record) -> f64 {
+    record.times.frame_ms
+}
+
+/// A chart, the fits and the times of each mode.
+pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> {
+    MODES
+        .iter()
+        .filter_map(|mode| {
+            let all = entries(done, scene, mode);
+            if all.is_empty() {
+                return None;
+            }
+            let chart = XyChart {
+                title: format!("Frame time against lights, {mode}"),
+                x: Axis { label: "Lights".to_owned(), unit: String::new(), scale: Scale::LinearFromZero },
+                y: Axis {
+                    label: "Frame, mean along the path".to_owned(),
+                    unit: "ms".to_owned(),
+                    scale: Scale::LinearFromZero,
+                },
+                series: lines(&all)
+                    .iter()
+                    .map(|(id, records)| times_series(id, records, frame, Marks::LineAndPoints))
+                    .collect(),
+                note: String::new(),
+            };
+            let body = charts.xy(&format!("{scene}-{mode}"), &chart) + times(&all);
+            let caution = match done.results.values().any(|r| r.machine.weak_raster().is_some()) {
+                true if *mode == "forward" => FORWARD_CAUTION,
+                true => DEFERRED_CAUTION,
+                false => "",
+            };
+            let text = format!(
+                "The whole frame, mean over the frames of the path; slope and offset of the straight line \
+                 through these times; relMSE against no culling at the most lights. Clusters of 40 x 40 \
+                 pixels and 24 slices that end at 128 lights are the survey\u{2019}s.{caution}"
+            );
+            Some(Part::new(mode, format!("Times, {mode}"), text, body))
+        })
+        .collect()
+}
+
+fn times(entries: &[Entry<'_>]) -> Html {
+    let counts = counts(entries);
+    let rows: Vec<Vec<Html>> = lines(entries)
+        .into_iter()
+        .map(|(id, records)| {
+            let mut cells: Vec<Option<String>> = Vec::new();
+            cells.extend(counts.iter().map(|count| {
+                let found = records.iter().find(|record| record.setting.lights == *count);
+                found.map(|record| significant(frame(record)))
+            }));
+            cells.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
+                Some(fit) => [
+                    Some(significant(fit.slope * 1e6)),
+                    Some(significant(fit.offset)),
+                    Some(format!("{:.3}", fit.r2)),
+                ],
+                None => [None, None, None],
+            });
+            cells.push(records.last().and_then(|r| error(r)));
+            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| ABSENT.to_owned()));
+            std::iter::once(name(id)).chain(cells.map(Html::from)).collect()
+        })
+        .collect();
+    let mut heads: Vec<Html> = vec!["method".into()];
+    heads.extend(counts.iter().map(|count| unit(&number(*count as f64), "ms")));
+    heads.extend([
+        unit("slope", "\u{b5}s per 1,000 lights"),
+        unit("offset", "ms"),
+        "R\u{b2}".into(),
+        "relMSE".into(),
+    ]);
+    table("Frame times by lights", &heads, &rows)
+}
+
+/// The error of a record against no culling; `None` where it was not compared.
+fn error(record: &Record) -> Option<String> {
+    let error =
+        record.image.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control());
+    error.map(significant)
+}
+
+/// A record's time, and its error where a knob loses light.
+fn said(record: &Record) -> String {
+    let time = format!("{} {} ms", record.strategy, significant(record.times.frame_ms));
+    match error(record).filter(|_| record.is_lossy) {
+        Some(error) => format!("{time} (lossy, relMSE {error})"),
+        None => time,
+    }
+}
+
+/// The methods of a mode at the most lights, fastest first; the control is none.
+fn by_time<'a>(done: &'a Done, scene: &'a str, mode: &'a str) -> Vec<&'a Record> {
+    let all = entries(done, scene, mode);
+    let most = counts(&all).last().copied();
+    let mut records: Vec<&Record> = all
+        .iter()
+        .map(|entry| entry.record)
+        .filter(|r| {
+            Some(r.setting.lights) == most && !r.is_control() && r.times.frame_ms.is_finite()
+        })
+        .collect();
+    records.sort_by(|a, b| a.times.frame_ms.total_cmp(&b.times.frame_ms));
+    records
+}
+
+/// All methods at the most lights, in each mode.
+pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
+    let sentence = |mode: &&str| {
+        let records = by_time(done, scene, mode);
+        let times: Vec<String> = records.iter().map(|record| said(record)).collect();
+        Some(format!(
+            "In {scene} at {}, {mode}, a frame takes, mean along the path: {}.",
+            lights(records.first()?.setting.lights),
+            listed(&times)
+        ))
+    };
+    MODES.iter().filter_map(sentence).collect()
+}
+
+/// The fastest without a loss in each mode by mean frame, the survey's statistic, in the first scene that has
+/// figures. Frames that are alike tie, whether their methods cull or not.
+pub(crate) fn headline(done: &Done) -> Option<String> {
+    done.scenes().into_iter().find_map(|scene| {
+        let fastest = |mode: &&str| {
+            let mut records = by_time(done, scene, mode);
+            records.retain(|record| record.shows_no_loss());
+            let first = *records.first()?;
+            let alike =
+                |record: &&&Record| record.times.frame_ms <= first.times.frame_ms * (1.0 + ALIKE);
+            let names: Vec<&str> =
+                records.iter().take_while(alike).map(|record| record.strategy.as_str()).collect();
+            let verb = if names.len() > 1 { "tie" } else { "is fastest" };
+            let time = significant(first.times.frame_ms);
+            Some((
+                first.setting.lights,
+                format!("{mode} {} {verb} ({time} ms a frame)", listed(&names)),
+            ))
+        };
+        let all: Vec<(u64, String)> = MODES.iter().filter_map(fastest).collect();
+        let most = all.first()?.0;
+        // Modes may have been measured at other counts of lights.
+        let part = |(count, words): &(u64, String)| match *count == most {
+            true => words.clone(),
+            false => format!("at {} {words}", lights(*count)),
+        };
+        let parts: Vec<String> = all.iter().map(part).collect();
+        Some(format!("In {scene} at {}, without a loss: {}.", lights(most), parts.join("; ")))
+    })
+}

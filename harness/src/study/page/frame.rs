@@ -1,0 +1,221 @@
+//! The page of a study, put together from its parts.
+
+use serde_json::json;
+
+use super::figure::Charts;
+use super::part::Part;
+use super::shots::Shots;
+use crate::chart::CHART_CSS;
+use crate::report::finding::clock_notice;
+use crate::report::format::short_adapter;
+use crate::report::html::{PAGE, SCRIPT, STYLE, fill, in_script};
+use crate::report::markup::{Html, html, with_names_whole};
+use crate::report::rank::listed;
+use crate::report::terms::terms;
+use crate::report::{page, raster};
+use crate::results::{DeviceType, Results, TruthLevel};
+use crate::study::claims;
+use crate::study::manifest::Done;
+use crate::study::slice::Study;
+
+/// The page's own rules, beside those of a comparison's page.
+pub(crate) const STUDY_STYLE: &str = include_str!("study.css");
+
+/// More data than this lie beside the page and not in it, bytes.
+const MOST_DATA: usize = 8_000_000;
+
+/// Names of jobs that a notice lists.
+const NAMES: usize = 12;
+
+/// The file of all results.
+pub(crate) const DATA: &str = "study-data.json";
+
+/// A page with what lies beside it.
+pub(crate) struct Page {
+    pub(crate) html: String,
+    pub(crate) charts: Charts,
+    /// All results by job, as JSON.
+    pub(crate) data: String,
+    /// For the terminal: what was found, and what a reader has to know.
+    pub(crate) words: Vec<String>,
+}
+
+/// The page of what is done of a study.
+pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
+    let mut charts = Charts::default();
+    let mut shots = Shots::new(done);
+    let mut body = Html::default();
+    let scenes = done.scenes();
+    let found: Vec<Vec<String>> = scenes.iter().map(|scene| study.findings(done, scene)).collect();
+    let mut words: Vec<String> = study.headline(done).into_iter().collect();
+    let headline = words.first().cloned().unwrap_or_else(|| "Nothing is done yet.".to_owned());
+    words.extend(found.iter().flatten().cloned());
+    // Of several scenes, each lists its findings in its own section, and its first one at the top.
+    let several = scenes.len() > 1;
+    let most = if several { 1 } else { usize::MAX };
+    let others: Vec<String> =
+        found.iter().flat_map(|texts| texts.iter().take(most)).cloned().collect();
+    let mut sections: Vec<Html> = Vec::new();
+    for (scene, texts) in scenes.iter().copied().zip(&found) {
+        let mut parts = study.parts(done, scene, &mut charts, &mut shots);
+        parts.retain(|part| !part.body.is_empty());
+        if !parts.is_empty() {
+            let texts = if several { page::paragraphs("said", texts) } else { Html::default() };
+            sections.push(section(scene, &texts, &parts));
+        }
+    }
+    if !done.results.is_empty() {
+        let claims = claims::judge(done, study.paper());
+        body += claims::claims_html(study.paper(), &claims, is_software(done));
+        words.extend(claims.iter().map(claims::Claim::text));
+    }
+    body += sections.into_iter().collect();
+    body += study.overall(done);
+    body += shots.templates();
+    let notices = notices(study, done, shots.left_out);
+    words.extend(notices.iter().cloned());
+    let data = serde_json::to_string(&json!({
+        "study": done.manifest,
+        "results": done.results,
+    }))
+    .unwrap_or_else(|_| "null".to_owned());
+    let embedded = if data.len() <= MOST_DATA { data.as_str() } else { "null" };
+    let view = shots.view().to_string();
+    let style = [STYLE, CHART_CSS, STUDY_STYLE].join("\n");
+    let html = fill(
+        PAGE,
+        &[
+            ("title", title(done).into()),
+            ("style", Html::trusted(style)),
+            ("headline", with_names_whole(&headline)),
+            ("findings", page::paragraphs("finding", &others)),
+            ("notices", page::notices(&notices)),
+            ("comparisons", body),
+            ("reading", Html::trusted(READING)),
+            ("file", DATA.into()),
+            ("link", DATA.into()),
+            ("columns", page::columns()),
+            ("terms", terms()),
+            ("provenance", provenance(done)),
+            ("data", in_script(embedded)),
+            ("view", in_script(&view)),
+            ("script", Html::trusted(SCRIPT)),
+        ],
+    );
+    Page { html, charts, data, words }
+}
+
+const READING: &str = "<p>Frames are drawn in rounds, every method once a round in an order drawn at \
+    random, so that what drifts hits all alike. Whiskers and small figures are intervals of the median \
+    over rounds. Two methods <b>tie</b> where the interval of their ratio, round by round, \
+    holds 1. A <b>lossy</b> setting is shown at its error: culling error is against no culling with the same \
+    shader, the error of the lights\u{2019} range against lights without one, that of a \
+    model of area lights against a truth image. Every chart is a file in \
+    <code>charts/</code> too.</p>";
+
+/// The section of a scene: what it found, links to its parts, and the parts.
+fn section(scene: &str, texts: &Html, parts: &[Part]) -> Html {
+    let links: Html = parts.iter().map(|part| part.link(scene)).collect();
+    let parts: Html = parts.iter().map(|part| part.html(scene)).collect();
+    html!(
+        "<section class=\"scene\" data-scene=\"{0}\" aria-labelledby=\"scene-{0}\">\n\
+         <h2 id=\"scene-{0}\">{0}</h2>\n{1}<nav class=\"parts\" aria-label=\"Parts of {0}\">{2}</nav>\n\
+         {3}</section>\n",
+        scene,
+        texts,
+        links,
+        parts
+    )
+}
+
+fn title(done: &Done) -> String {
+    let adapter = any(done).map_or("no adapter yet", |r| short_adapter(&r.machine.adapter));
+    format!("{} study, {adapter} \u{b7} lightbench", done.manifest.study)
+}
+
+fn any(done: &Done) -> Option<&Results> {
+    done.manifest.jobs.iter().find_map(|job| done.results.get(&job.name))
+}
+
+fn is_software(done: &Done) -> bool {
+    done.results.values().any(|results| results.machine.device_type == DeviceType::Cpu)
+}
+
+/// What a reader has to know before trusting a figure.
+fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<String> {
+    let mut notices = Vec::new();
+    let missing = done.missing();
+    if !missing.is_empty() {
+        let total = done.manifest.jobs.len();
+        let mut names: Vec<String> =
+            missing.iter().take(NAMES).map(|name| (*name).to_owned()).collect();
+        if missing.len() > NAMES {
+            names.push(format!("{} more", missing.len() - NAMES));
+        }
+        notices.push(format!(
+            "{} of {total} jobs are done; missing: {}.",
+            total - missing.len(),
+            listed(&names)
+        ));
+    }
+    notices.extend(any(done).and_then(clock_notice));
+    let records = || done.results.values().flat_map(|results| &results.records);
+    notices.extend(any(done).and_then(|first| raster::notice(&first.machine, records())));
+    let distinct = |of: fn(&Results) -> &str| {
+        let mut values: Vec<&str> = done.results.values().map(of).collect();
+        values.sort_unstable();
+        values.dedup();
+        values
+    };
+    for (what, values) in [
+        ("adapters", distinct(|r| &r.machine.adapter)),
+        ("commits", distinct(|r| &r.machine.commit)),
+    ] {
+        if values.len() > 1 {
+            notices.push(format!("The jobs ran on several {what}: {}.", listed(&values)));
+        }
+    }
+    for (job, results) in &done.results {
+        for record in results.records.iter().filter(|r| !r.is_lossy && !r.is_lossless()) {
+            notices.push(format!(
+                "{job}, {}: it states no loss, and its lists or its image show one.",
+                record.strategy
+            ));
+        }
+        notices.extend(results.warnings.iter().map(|warning| format!("{job}: {warning}")));
+    }
+    notices.extend(study.notices(done));
+    if pictures_left_out > 0 {
+        notices.push(format!(
+            "{pictures_left_out} pictures are not on this page, which would be too large: they lie in the \
+             folders of their jobs."
+        ));
+    }
+    notices
+}
+
+fn provenance(done: &Done) -> Html {
+    let Some(results) = any(done) else {
+        return html!(
+            "<pre class=\"command\"><code>{}</code></pre>",
+            page::shell_words(&done.manifest.identity)
+        );
+    };
+    // One results file that speaks for all: the machine of the first, the records of all.
+    let mut all = results.clone();
+    all.command.clone_from(&done.manifest.identity);
+    all.records = done.results.values().flat_map(|results| results.records.clone()).collect();
+    let checked = |results: &&Results| results.truth.level == TruthLevel::Full;
+    let count = done.results.values().filter(checked).count();
+    let remark = if count < done.results.len() {
+        html!(
+            "<p class=\"note\">The lists of {} of {} jobs were checked, pair by pair; of the others the \
+             image alone, where there is one of no culling.</p>\n",
+            count,
+            done.results.len()
+        )
+    } else {
+        Html::default()
+    };
+    remark + page::provenance(&all)
+}

@@ -1,0 +1,195 @@
+//! Runs a study, or a share of its jobs, and writes its report.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::{
+    job::Job,
+    list,
+    manifest::{Done, Manifest},
+    report,
+    scene::StudyScene,
+};
+use crate::{
+    bench::Bench,
+    checks::check_options,
+    cli::{self, CdiArgs, CliError, CompareArgs, Invocation, StudyArgs, TruthArgs},
+    compare::compare_on,
+    deep_image_run::measure,
+    error::HarnessError,
+    messages::say,
+    out_folder::OutFolder,
+    results::{Results, ResultsError},
+    truth::render,
+};
+
+/// Runs a study, or a share of it, and writes its report; returns what to print. `command` is the command
+/// line, which others see who want the same folder.
+pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessError> {
+    let study = list::named(&args.study)?;
+    let scenes = StudyScene::all(args)?;
+    let out = &args.folder();
+    let _held = OutFolder::hold(out, command)?;
+    let wanted = args.identity();
+    let known = Manifest::find(out)?;
+    if let Some(known) = known.as_ref().filter(|known| known.identity != wanted) {
+        let value = out.display().to_string();
+        let accepted = format!(
+            "a folder without a study or with this study; it holds `{}`: choose another --out",
+            known.identity.join(" ")
+        );
+        return Err(CliError::out_of_range("--out", &value, &accepted).into());
+    }
+    let mut bench = Bench::open(args.adapter.as_deref())?;
+    let is_new = known.is_none();
+    let manifest = match known {
+        Some(known) => known,
+        None => {
+            let mut jobs = Vec::new();
+            for scene in &scenes {
+                jobs.extend(study.jobs(&mut bench, args, scene)?);
+            }
+            Manifest::new(wanted, study.name(), jobs)
+        }
+    };
+    // What is wrong with a job shows before the first is run, and before anything is written.
+    manifest.jobs.iter().try_for_each(Job::check).map_err(|error| match is_new {
+        true => error,
+        false => CliError::new(format!(
+            "{}: {error}: another version of lightbench listed these jobs; choose another --out",
+            out.display()
+        )),
+    })?;
+    let mine = share(args, &manifest)?;
+    if is_new {
+        manifest.write(out)?;
+    }
+    run(&mut bench, out, &mine)?;
+    let mut done = Done::read(std::slice::from_ref(out))?;
+    study.after_run(&mut done)?;
+    done.write_metrics()?;
+    report::write_study(&done, out)
+}
+
+/// The jobs that are chosen, those of this shard.
+fn share<'a>(args: &StudyArgs, manifest: &'a Manifest) -> Result<Vec<&'a Job>, CliError> {
+    let chosen: Vec<&Job> = manifest.jobs.iter().filter(|job| args.wants(&job.name)).collect();
+    if chosen.is_empty() && !args.only.is_empty() {
+        let (known, others) = manifest.jobs.split_at(manifest.jobs.len().min(NAMED));
+        let known: Vec<&str> = known.iter().map(|job| job.name.as_str()).collect();
+        let more =
+            if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+        let accepted = format!("words from job names, such as {}{more}", known.join(", "));
+        return Err(CliError::out_of_range("--only", &args.only.join(","), &accepted));
+    }
+    let jobs = chosen.into_iter().enumerate();
+    Ok(jobs.filter(|(ix, _)| args.shard.holds(*ix)).map(|(_, job)| job).collect())
+}
+
+/// Names of jobs that a message lists.
+const NAMED: usize = 6;
+
+/// Runs the jobs that are not done.
+fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError> {
+    let began = Instant::now();
+    // What stands in the way of the last job shows before the first is run.
+    let mut open = Vec::new();
+    for (ix, job) in mine.iter().enumerate() {
+        if !is_done(bench, job, &job.folder(out))? {
+            open.push((ix, job));
+        }
+    }
+    for (ix, job) in open {
+        let folder = job.folder(out);
+        let seconds = began.elapsed().as_secs();
+        let (at, of) = (ix + 1, mine.len());
+        say(format!("job      {at} of {of}, {seconds} s so far: {}", job.name));
+        let asked = job.asked(&folder)?;
+        // What an interrupted run left there is not this one's.
+        if folder.is_dir() {
+            std::fs::remove_dir_all(&folder)
+                .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
+        }
+        let results = match asked {
+            Asked::Compare(args) => compare_on(bench, &args, job.command.clone())?.0,
+            Asked::Truth(args) => render(bench, &args, job.command.clone())?,
+            Asked::Cdi(args) => measure(bench, &args, job.command.clone())?,
+        };
+        results.write(&folder.join("results.json"))?;
+    }
+    Ok(())
+}
+
+/// Whether a job was done, by this commit on this adapter: an error where by another. Results that are
+/// damaged or incomplete are none, and the job runs again.
+fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError> {
+    let path = folder.join("results.json");
+    if !path.is_file() {
+        return Ok(false);
+    }
+    let again = |why: &dyn std::fmt::Display| {
+        say(format!("warning  job {} runs again: {why}", job.name));
+        Ok(false)
+    };
+    let (results, lack) = match Results::read_checked(&path) {
+        Ok(read) => read,
+        Err(error @ ResultsError::Version { .. }) => return Err(error.into()),
+        Err(error) => return again(&error),
+    };
+    let (then, now) = (&results.machine, bench.machine());
+    if then.identity() != now.identity() {
+        return Err(CliError::new(format!(
+            "{}: measured on {} by commit {}, this is {} and commit {}: --out must be another folder",
+            path.display(),
+            then.adapter,
+            then.commit,
+            now.adapter,
+            now.commit,
+        ))
+        .into());
+    }
+    if results.command != job.command {
+        return again(&format!("{} belongs to another command", path.display()));
+    }
+    match lack {
+        Some(lack) => again(&format!("{}: {lack}", path.display())),
+        None => Ok(true),
+    }
+}
+
+/// What a job asks for.
+#[allow(clippy::large_enum_variant, reason = "one value a job")]
+enum Asked {
+    /// A comparison.
+    Compare(CompareArgs),
+    /// A truth image.
+    Truth(TruthArgs),
+    /// Deep images.
+    Cdi(CdiArgs),
+}
+
+impl Job {
+    /// Whether its command would be understood.
+    fn check(&self) -> Result<(), CliError> {
+        let checked = self.asked(Path::new("")).and_then(|asked| match asked {
+            Asked::Compare(args) => check_options(&args, &args.choices()?),
+            Asked::Truth(_) | Asked::Cdi(_) => Ok(()),
+        });
+        checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))
+    }
+
+    /// What it asks for, written to `folder`.
+    fn asked(&self, folder: &Path) -> Result<Asked, CliError> {
+        let out = folder.to_owned();
+        match cli::parse(&self.command)? {
+            Invocation::Compare(args) => Ok(Asked::Compare(CompareArgs { out, ..args })),
+            Invocation::Truth(args) => Ok(Asked::Truth(TruthArgs { out, ..args })),
+            Invocation::Cdi(args) => Ok(Asked::Cdi(CdiArgs { out, ..args })),
+            _ => Err(CliError::new(format!(
+                "job {}: its command must be compare, truth or cdi, `{}`",
+                self.name,
+                self.command.join(" ")
+            ))),
+        }
+    }
+}
