@@ -176,7 +176,7 @@ impl Plan<'_> {
                 true => (self.extent.rank_poses[1], self.extent.ranked_at_most()),
                 false => (self.extent.rank_poses[0], self.extent.ranked.to_owned()),
             };
-            self.add_along("path", &[], count, poses, ids);
+            self.add_along("path", &[], count, poses, &ids);
             if !self.extent.slow.is_empty() {
                 let (poses, ids) = (self.extent.slow_poses, self.extent.slow);
                 let lights = count.to_string();
