@@ -101,7 +101,10 @@ fn lists_are_short() {
     };
     let (one, many) = (listed("1x1x1"), listed("16x16x16"));
     println!("{one:.1} in one cell, {many:.1} in many, of 600 lights");
-    assert!(many < 300.0 && many < 0.6 * one, "{one}, {many}");
+    assert!(
+        many < 300.0 && many < 0.6 * one,
+        "lights per sample: {one} in one cell, {many} in many"
+    );
 }
 
 #[test]

@@ -69,9 +69,12 @@ fn lists_are_short() {
         case.listed_per_sample().expect("passed")
     };
     let (whole, parts) = (listed(None), listed(Some(1.0)));
-    println!("{whole:.1} by models, {parts:.1} by parts, of 600 lights");
+    println!("{whole:.1} lights per sample by models, {parts:.1} by parts, of 600 lights");
     // The tilted boxes of the plane and the wall contain about two thirds of the lights.
-    assert!(whole < 480.0 && parts < 0.8 * whole, "{whole}, {parts}");
+    assert!(
+        whole < 480.0 && parts < 0.8 * whole,
+        "lights per sample: {whole} by models, {parts} by parts"
+    );
 }
 
 #[test]

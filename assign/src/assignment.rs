@@ -33,7 +33,7 @@ pub trait Assignment {
     /// The lists, so that a caller can limit their pool.
     fn lists_mut(&mut self) -> &mut LightLists;
 
-    /// GPU memory that only this strategy needs, bytes: lists, the light hierarchy where it uses
+    /// GPU memory that only this strategy needs, bytes: lists, the light hierarchy if it uses
     /// one, marks, bounds, pools and uniforms. It excludes the renderer's images and the lights.
     /// The value is valid right after [`prepare`](Self::prepare).
     fn memory_bytes(&self) -> u64;

@@ -224,7 +224,7 @@ impl Culler {
         &self.lists
     }
 
-    /// The lists, to limit their pool.
+    /// The lists, so that a caller can limit their pool.
     pub fn lists_mut(&mut self) -> &mut LightLists {
         &mut self.lists
     }

@@ -17,7 +17,7 @@ pub const MAX_WORKGROUPS: u32 = 65_535;
 pub enum Slot {
     /// A uniform buffer.
     Uniform,
-    /// A uniform buffer with a dynamic offset, given where the bind group is set.
+    /// A uniform buffer with a dynamic offset, given when the bind group is set.
     UniformAt,
     /// A storage buffer that the kernel only reads.
     Read,

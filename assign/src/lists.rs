@@ -114,12 +114,12 @@ pub struct ListsSnapshot {
 }
 
 impl ListsSnapshot {
-    /// The record of a group, [`ALL_LIGHTS`] included; `None` where there is no such group.
+    /// The record of a group, [`ALL_LIGHTS`] included; `None` if there is no such group.
     pub fn list(&self, group: u32) -> Option<LightList> {
         self.lists.get(group.wrapping_add(1) as usize).copied()
     }
 
-    /// The entries of a group; `None` where the group or its entries lie outside the buffers.
+    /// The entries of a group; `None` if the group or its entries lie outside the buffers.
     pub fn entries_of(&self, group: u32) -> Option<&[u32]> {
         let list = self.list(group)?;
         let first = list.first as usize;

@@ -19,7 +19,7 @@ pub struct LiveGroups {
 const HEADER: u64 = 16;
 
 impl LiveGroups {
-    /// Makes it without room for groups.
+    /// Makes a list without room for groups.
     pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
         Ok(Self { buffer: allocate(gpu, 0)?, most: 0 })
     }

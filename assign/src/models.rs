@@ -60,7 +60,10 @@ mod tests {
                 let corner = Vec3::new(at(1, -1.0, 1.0), at(2, -1.0, 2.0), at(4, -1.0, 3.0));
                 let offset = transform.transform_point3(corner) - model.center_world;
                 for (axis, half) in model.axes.iter().zip(model.half_extents_m.to_array()) {
-                    assert!(offset.dot(*axis).abs() <= half + 1e-5, "{transform} {corner}");
+                    assert!(
+                        offset.dot(*axis).abs() <= half + 1e-5,
+                        "corner {corner} lies outside its box: {transform}"
+                    );
                 }
             }
         }

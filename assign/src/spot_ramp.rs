@@ -62,9 +62,16 @@ mod tests {
                 };
                 for inside in [0.0, 0.5, 0.995] {
                     let full = at(inside * share * outer);
-                    assert!(full > 1.0 - 1e-6, "{full}: {degrees}, {share}, {inside}");
+                    assert!(
+                        full > 1.0 - 1e-6,
+                        "fall-off {full} inside the inner cone: {degrees} degrees, inner share {share}, at {inside}"
+                    );
                 }
-                assert_eq!(at(1.002 * outer), 0.0, "{degrees}, {share}");
+                assert_eq!(
+                    at(1.002 * outer),
+                    0.0,
+                    "light outside the cone: {degrees} degrees, inner share {share}"
+                );
             }
         }
         assert_eq!(SpotRamp::new(PI, PI).at(3.9), 1.0);

@@ -278,14 +278,18 @@ mod tests {
             view.depth = depth;
             assert_eq!(view.check(), Ok(()));
             let clip = view.view_to_clip();
-            assert!(clip.is_finite(), "{depth:?}: {clip}");
+            assert!(clip.is_finite(), "{depth:?}: not finite: {clip}");
             let depth_of = |depth_m: f32| {
                 let point = clip * Vec4::new(0.0, 0.0, -depth_m, 1.0);
                 point.z / point.w
             };
-            // The near plane and a point far off lie where they should.
+            // The near plane and a distant point have the right depths.
             let near = 1.0 - view.depth_clear();
-            assert!((depth_of(10.0) - near).abs() < 1e-6, "{depth:?}: {}", depth_of(10.0));
+            assert!(
+                (depth_of(10.0) - near).abs() < 1e-6,
+                "{depth:?}: the near plane has depth {}",
+                depth_of(10.0)
+            );
             assert!((depth_of(1e9) - view.depth_clear()).abs() < 1e-6, "{depth:?}");
         }
     }

@@ -27,7 +27,7 @@ fn no_culling_lists_every_light_for_every_sample() {
 #[test]
 fn faults_in_no_culling_are_rejected() {
     let planted = conformance::rejects_faults(&everything).expect("rejects");
-    assert_eq!(planted.len(), 10, "{planted:?}");
+    assert_eq!(planted.len(), 10, "planted faults: {planted:?}");
 }
 
 #[test]

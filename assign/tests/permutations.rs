@@ -100,7 +100,7 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
         Culler::kernel_source(FRUSTUM.0, settings, sparse, strategy.as_str(), kinds).unwrap();
     let careful = LinkedModule::new("the culling kernel", &source).constant("CAREFUL");
     let most = 65_535 * u64::from(careful) + (1 << 30);
-    assert!(careful > 0 && most < 1 << 32, "{careful}: {most}");
+    assert!(careful > 0 && most < 1 << 32, "CAREFUL is {careful}: the cursor may reach {most}");
 }
 
 /// The setting for area lights changes only the kernels of scenes with area lights.

@@ -1,4 +1,4 @@
-//! Which camera a stage is seen through: one of the scene's file, or a pose.
+//! Chooses the camera of a stage: one of the scene's file, or a pose.
 
 use glam::DVec3;
 use scenes::{Camera as SceneCamera, Pose, Scene};
@@ -11,12 +11,12 @@ const MOST_LISTED: usize = 20;
 /// The most characters of a camera's name that an error shows.
 const MOST_CHARACTERS: usize = 60;
 
-/// The camera of the scene's file whose lens and planes count: that which was asked for, else the
-/// scene's own. `None` for a pose of one's own, or where the file has none.
+/// The camera of the scene's file that gives the lens and the planes: the one that `--camera` names, else the
+/// scene's default. `None` for `--camera X,Y,Z:X,Y,Z` and for files without cameras.
 ///
 /// # Errors
 ///
-/// A [`CliError`] that lists the cameras where there is none of that name or place, or several.
+/// No camera, or more than one, has that name or number; the [`CliError`] lists the cameras.
 pub fn file_camera<'a>(
     scene: &'a Scene,
     args: &StageArgs,
@@ -27,19 +27,19 @@ pub fn file_camera<'a>(
         None | Some(Camera::OnPath { .. }) => Ok(cameras.get(scene.view_camera)),
         Some(Camera::Numbered(ix)) => match cameras.get(*ix as usize) {
             Some(camera) => Ok(Some(camera)),
-            None => Err(refusal(scene, &format!("#{ix}"))),
+            None => Err(camera_error(scene, &format!("#{ix}"))),
         },
         Some(Camera::Named(name)) => {
             let mut alike = cameras.iter().filter(|camera| camera.name == *name);
             match (alike.next(), alike.next()) {
                 (Some(camera), None) => Ok(Some(camera)),
-                _ => Err(refusal(scene, name)),
+                _ => Err(camera_error(scene, name)),
             }
         }
     }
 }
 
-/// Where the camera of a stage stands.
+/// The pose of a stage's camera.
 ///
 /// # Errors
 ///
@@ -47,21 +47,21 @@ pub fn file_camera<'a>(
 pub fn pose(scene: &Scene, args: &StageArgs) -> Result<Pose, CliError> {
     Ok(match &args.camera {
         Some(Camera::Pose(pose)) => {
-            // The difference first: what is left is small where the scene is.
+            // Subtract in f64 first, because the difference is small near the scene.
             let eye = DVec3::from(pose.eye) - scene.origin;
             Pose::level(eye.as_vec3(), pose.forward().as_vec3())
         }
         Some(Camera::OnPath { frame, count }) => scene.path.pose(*frame, *count),
         _ => match file_camera(scene, args)? {
-            // The path is level where the camera may be tilted.
+            // A camera may be tilted, and the path is level.
             Some(camera) if args.camera.is_some() || !scene.path.is_animation() => camera.pose,
             _ => scene.path.pose(0, 1),
         },
     })
 }
 
-/// That no camera, or more than one, is called so.
-fn refusal(scene: &Scene, value: &str) -> CliError {
+/// The error for a name or number that no camera has, or more than one.
+fn camera_error(scene: &Scene, value: &str) -> CliError {
     let listed = |(ix, camera): (usize, &SceneCamera)| {
         let mut name: String = camera.name.chars().take(MOST_CHARACTERS).collect();
         if name.len() < camera.name.len() {
@@ -76,9 +76,9 @@ fn refusal(scene: &Scene, value: &str) -> CliError {
         all.push(format!("... and {} more", count - MOST_LISTED));
     }
     let accepted = match count {
-        0 => format!("a pose or path:FRAME/COUNT: {} holds no camera", scene.name),
+        0 => format!("a pose or path:FRAME/COUNT, because {} has no cameras", scene.name),
         _ => format!(
-            "one of the cameras of {}, by a name that no other has or by #N: {}",
+            "one of the cameras of {}, by a unique name or by #N: {}",
             scene.name,
             all.join(", ")
         ),
@@ -134,9 +134,9 @@ mod tests {
         }
         let mut unique = scene.clone();
         unique.cameras[2].name = "north".into();
-        let of = |camera: &str| pose(&unique, &args(camera)).unwrap();
-        assert_eq!((of("north").eye.x, of("north").up), (3.0, Vec3::X));
-        // By default the first, tilted as it is.
+        let pose_of = |camera: &str| pose(&unique, &args(camera)).unwrap();
+        assert_eq!((pose_of("north").eye.x, pose_of("north").up), (3.0, Vec3::X));
+        // The default is the first camera with its tilt.
         let words = ["lightbench", "compare"];
         let Ok(Invocation::Compare(default)) = parse(words) else { panic!() };
         assert_eq!(pose(&unique, &default.stage).unwrap(), unique.cameras[0].pose);
@@ -151,7 +151,7 @@ mod tests {
         assert!(error.len() < 1_000 && error.contains("and 280 more"), "{error}");
         assert_eq!(error.lines().count(), 1);
         let error = file_camera(&scene(&[]), &args("b")).unwrap_err().to_string();
-        assert!(error.ends_with("atrium holds no camera"), "{error}");
+        assert!(error.ends_with("atrium has no cameras"), "{error}");
     }
 
     #[test]

@@ -179,3 +179,30 @@ pub(crate) fn remove_stale(out: &Path) -> Result<(), ResultsError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Invocation, parse};
+
+    fn check(line: &str) -> Result<(), CliError> {
+        let words = std::iter::once("lightbench").chain(line.split(' '));
+        let Ok(Invocation::Compare(args)) = parse(words) else { panic!("{line} does not parse") };
+        check_options(&args, &args.choices().expect("strategies"))
+    }
+
+    #[test]
+    fn options_that_apply_to_no_strategy_are_refused() {
+        for (line, option) in [
+            ("--strategies None,T-E/hs --test hs+sat-p", "--test"),
+            ("--strategies None,HG,T-E/bvh --source linear", "--source"),
+            ("--strategies None,Sphere --operations", "--operations"),
+        ] {
+            let error = check(line).expect_err(line).to_string();
+            let expected =
+                format!("{option} has no effect here: it needs a strategy in --strategies that ");
+            assert!(error.starts_with(&expected), "{line}: {error}");
+        }
+        assert_eq!(check("--strategies None,T-E --test hs --source both --operations"), Ok(()));
+    }
+}

@@ -1,8 +1,8 @@
 //! Two clocks behind one recorder of passes.
 //!
-//! On a GPU a timestamp query is written before and after each pass, and all passes of a frame
-//! are submitted together. On a software adapter timestamps say nothing of a pass's cost, so
-//! each pass is submitted alone and waited for.
+//! On a GPU, each pass stands between two timestamp queries, and all passes of a frame are submitted
+//! together. On a software adapter, timestamps do not show the cost of a pass. So each pass is submitted
+//! alone and waited for.
 
 use std::time::Instant;
 
@@ -19,11 +19,11 @@ pub type PassTime = (String, f64);
 /// The times of one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameTimes {
-    /// Passes and their times, in the order in which they ran. Passes of one name are one pass in
-    /// several parts.
+    /// Passes and their times, in the order in which they ran. Passes of the same name are parts of one
+    /// pass.
     pub passes: Vec<PassTime>,
-    /// When each pass began and ended, ms after the first one began, part by part. `None` where each
-    /// pass was submitted alone: what lies between two passes is then the host's doing.
+    /// Start and end of each part of each pass, ms after the first start. `None` if each pass was submitted
+    /// alone, because the host causes the gaps then.
     pub intervals: Option<Vec<(String, [f64; 2])>>,
 }
 
@@ -48,9 +48,9 @@ impl FrameTimes {
         Self { passes, intervals }
     }
 
-    /// The time from the beginning of the first of some passes to the end of the last, ms, gaps
-    /// between two of them included. Where another pass lies between, that pass and the gaps beside
-    /// it are left out. `None` where only sums are known.
+    /// The time from the start of the first of some passes to the end of the last, ms. It includes the gaps
+    /// between two of them, but not other passes in between and the gaps beside these. `None` if only sums
+    /// are known.
     pub fn span_ms(&self, is_counted: impl Fn(&str) -> bool) -> Option<f64> {
         let intervals = self.intervals.as_ref()?;
         let runs = intervals.chunk_by(|(a, _), (b, _)| is_counted(a) == is_counted(b));
@@ -59,18 +59,18 @@ impl FrameTimes {
     }
 }
 
-/// From the first beginning to the last end: passes may overlap.
+/// The time from the first start to the last end. Passes may overlap.
 fn run_ms(run: &[(String, [f64; 2])]) -> f64 {
     let begin = run.iter().map(|(_, [begin, _])| *begin).fold(f64::INFINITY, f64::min);
     let end = run.iter().map(|(_, [_, end])| *end).fold(f64::NEG_INFINITY, f64::max);
     (end - begin).max(0.0)
 }
 
-/// What a clock read of passes, in the order in which they ran.
+/// Readings of the clock for passes, in the order in which they ran.
 enum Times {
-    /// How long each took, ms: each was submitted alone.
+    /// The duration of each pass, ms; each was submitted alone.
     Alone(Vec<f64>),
-    /// When each began and ended, ms after the first one began.
+    /// Start and end of each pass, ms after the first start.
     Together(Vec<[f64; 2]>),
 }
 
@@ -91,7 +91,7 @@ enum Kind {
 }
 
 impl PassClock {
-    /// The clock that fits the device.
+    /// Chooses the clock for the device.
     pub fn new(gpu: &Gpu) -> Self {
         let kind = match clock_of(gpu) {
             Clock::GpuTimestamps => Kind::timestamps(gpu),
@@ -105,12 +105,12 @@ impl PassClock {
         }
     }
 
-    /// Ends the frame: submits what is left, waits, and returns each pass's time, ms.
+    /// Ends the frame: submits the remaining passes, waits, and returns the time of each pass, ms.
     pub fn finish(&mut self) -> Result<Vec<PassTime>, AssignError> {
         Ok(self.finish_frame()?.passes)
     }
 
-    /// Ends the frame as [`finish`](Self::finish) does, and says when its passes began and ended too.
+    /// Ends the frame as [`finish`](Self::finish) does, and also returns start and end of its passes.
     pub fn finish_frame(&mut self) -> Result<FrameTimes, AssignError> {
         self.flush();
         self.gpu.wait()?;
@@ -127,14 +127,14 @@ impl PassClock {
         Ok(FrameTimes::new(names, times))
     }
 
-    /// Submits what has been recorded.
+    /// Submits the recorded passes.
     fn flush(&mut self) {
         let fresh = self.gpu.device.create_command_encoder(&Default::default());
         let encoder = std::mem::replace(&mut self.encoder, fresh);
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Records one pass between two timestamps, or submits it alone between two looks at a watch.
+    /// Records one pass between two timestamps, or submits it alone and times it by wall clock.
     fn timed(
         &mut self,
         name: &str,
@@ -147,7 +147,7 @@ impl PassClock {
             record(&mut self.encoder, query);
             return;
         }
-        // What came before must not be on this pass's bill.
+        // Earlier work must not count in the time of this pass.
         self.flush();
         let mut outcome = self.gpu.wait();
         record(&mut self.encoder, None);
@@ -208,7 +208,7 @@ impl Passes for PassClock {
     }
 }
 
-/// Which clock a device's figures come from.
+/// The clock that times a device.
 pub fn clock_of(gpu: &Gpu) -> Clock {
     let has_queries = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
     if has_queries && !gpu.is_software() { Clock::GpuTimestamps } else { Clock::WallClock }
@@ -245,8 +245,8 @@ impl Kind {
 
 /// Reads the two timestamps of each pass, ms after the first of all.
 ///
-/// Queries are resolved and copied in submissions of their own: resolved and copied by one
-/// encoder they can read 0 (wgpu issue 6406).
+/// Queries are resolved and copied in separate submissions, because they can read 0 if one encoder resolves
+/// and copies them (wgpu issue 6406).
 fn read_timestamps(
     gpu: &Gpu,
     queries: &wgpu::QuerySet,

@@ -1,4 +1,4 @@
-//! What a stage holds and what is wrong with it: on the terminal, and in results.
+//! Describes a stage and its faults, on the terminal and in the results.
 
 use crate::{
     messages::say,
@@ -7,10 +7,10 @@ use crate::{
     stage::Stage,
 };
 
-/// Lights left out that are named on the terminal; the results hold all of them.
+/// The most left-out lights that the terminal names; the results name all of them.
 const MOST_REJECTED_SHOWN: usize = 20;
 
-/// Notes what was wrong with the scene and its lights.
+/// Adds the faults of the scene and its lights to the results.
 pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
     results.warnings.extend(stage.scene.warnings.iter().cloned());
     results.warnings.extend(stage.notes.iter().cloned());
@@ -25,7 +25,7 @@ pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
         .collect();
 }
 
-/// Says on the terminal what a stage holds, and what is wrong with it.
+/// Prints the contents and the faults of a stage.
 pub(crate) fn describe(stage: &Stage) {
     say(format!(
         "scene    {}: {} triangles, {} models, {} lights{}",

@@ -1,10 +1,10 @@
-//! Whether a device had reached its clock when it was timed: warming up until times are steady, and a
-//! rule that refuses samples that were not.
+//! Makes sure that a device has reached its full clock when it is timed: it warms up until times are steady,
+//! and a rule rejects unsteady samples.
 //!
 //! A GPU lowers its clock while it waits. A quarter of a second of small passes does not always raise
-//! it: one set of builds took 0.967 ms in all of 32 samples and 0.316 ms elsewhere. So a device is
-//! warmed by the very work that is timed, without pauses, until its time no longer changes
-//! ([`WarmUp`]), and what was timed is looked at again ([`unsteady`]).
+//! it: one set of builds took 0.967 ms in all of 32 samples and 0.316 ms in another run. So the timed work
+//! itself warms the device, without pauses, until its time no longer changes ([`WarmUp`]). Afterwards
+//! [`unsteady`] checks the samples.
 
 use std::time::{Duration, Instant};
 
@@ -16,10 +16,10 @@ const WINDOW: usize = 8;
 /// Windows whose medians must agree before a device counts as warm.
 const WINDOWS: usize = 3;
 
-/// The most that they may differ, as a share of the least.
+/// The largest difference between them, as a share of the smallest.
 const STEADY: f64 = 0.02;
 
-/// A GPU is kept busy at least as long: twice what was too short for 4 of 81 jobs on an H200.
+/// The shortest warm-up of a GPU: twice the time that was too short for 4 of 81 jobs on an H200.
 const LEAST: Duration = Duration::from_millis(500);
 
 /// A device that is not steady by then is timed anyway; [`unsteady`] decides.
@@ -29,22 +29,22 @@ const MOST: Duration = Duration::from_secs(4);
 /// smaller. Of 171 series of one study on an H200, 164 differ by less than 3.2 %.
 pub const DRIFT: f64 = 0.05;
 
-/// A sample this far below the median says that the clock rose in between: work of one size takes no
-/// shorter by chance. On a warm H200 the least sample lies within 4 % of the median.
+/// A sample this far below the median shows that the clock rose in between, because the same work is never
+/// this much faster by chance. On a warm H200 the smallest sample lies within 4 % of the median.
 pub const RISE: f64 = 0.1;
 
-/// Differences below this are of the clock that reads timestamps, ms.
+/// Differences below this come from the resolution of timestamps, ms.
 const TICK_MS: f64 = 1e-3;
 
-/// Fewer samples say nothing of drift.
+/// The fewest samples that can show drift.
 const LEAST_SAMPLES: usize = 9;
 
-/// Why samples of work of one size are no measurement of it, in the order in which they were taken;
-/// `None` where nothing speaks against them, as of too few to tell.
+/// Why samples of the same work, in the order in which they were taken, are unsteady. `None` if they are
+/// steady or too few.
 ///
-/// Three rules: a sample is not a finite number; the medians of the first and the last third differ by
-/// more than [`DRIFT`]; or the least sample lies more than [`RISE`] below the median. None of them sees
-/// a clock that stayed low throughout: where the same work was timed twice, [`slower_than_again`] does.
+/// Samples are unsteady if one is not a finite number, if the medians of the first and the last third differ
+/// by more than [`DRIFT`], or if the smallest sample lies more than [`RISE`] below the median. These rules
+/// miss a clock that stayed low all the time; [`slower_than_again`] finds it if the same work was timed twice.
 pub fn unsteady(samples_ms: &[f64]) -> Option<String> {
     let count = samples_ms.len();
     let unknown = samples_ms.iter().filter(|ms| !ms.is_finite()).count();
@@ -64,17 +64,16 @@ pub fn unsteady(samples_ms: &[f64]) -> Option<String> {
     let middle = median(samples_ms);
     let least = samples_ms.iter().copied().fold(f64::INFINITY, f64::min);
     if least < middle * (1.0 - RISE) && middle - least > TICK_MS {
-        return Some(format!("its least sample is {least:.4} ms and its median {middle:.4} ms"));
+        return Some(format!("its smallest sample is {least:.4} ms and its median {middle:.4} ms"));
     }
     None
 }
 
-/// How much slower than the fastest time of the same work a time may be: 10 %. A greater time was
-/// taken at a lower clock.
+/// How much slower than the fastest time of the same work a time may be: 10 %. A larger time comes from a
+/// lower clock.
 pub const AGAIN: f64 = 0.1;
 
-/// Whether a time of work of which another job of the study has a time, `least_ms`, was taken at a
-/// lower clock.
+/// Whether a time was taken at a lower clock than `least_ms`, the time of the same work in another job.
 pub fn slower_than_again(ms: f64, least_ms: f64) -> bool {
     ms > least_ms * (1.0 + AGAIN) && ms - least_ms > TICK_MS
 }
@@ -85,8 +84,8 @@ fn apart(a: f64, b: f64) -> f64 {
     if least > 0.0 { (a - b).abs() / least } else { 0.0 }
 }
 
-/// Warms a device up by the work that is to be timed: feed it the time of each frame until it says
-/// that the device is warm.
+/// Warms a device up with the work that will be timed. Feed it the time of each frame until the device is
+/// warm.
 ///
 /// ```
 /// # use harness::drift::WarmUp;
@@ -104,7 +103,7 @@ pub struct WarmUp {
 }
 
 impl WarmUp {
-    /// Begins now. A software adapter has no clock to raise: one frame warms it.
+    /// Starts now. A software adapter has no clock to raise, so one frame warms it.
     pub fn new(is_software: bool) -> Self {
         Self { began: Instant::now(), is_software, times_ms: Vec::new() }
     }
@@ -138,8 +137,8 @@ fn is_level(times_ms: &[f64]) -> bool {
     apart(least, most) <= STEADY || most - least <= TICK_MS
 }
 
-/// Notes on a record that its times drifted while it was measured. A GPU's clock only, and a still
-/// camera only: along a path poses differ in their work, and a software adapter has no clock to raise.
+/// Adds a note to a record whose times drifted. Only for GPUs and still cameras: a software adapter has no
+/// clock to raise, and the poses of a path differ in their work.
 pub fn note_drift(record: &mut Record) {
     if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
         return;
@@ -175,7 +174,7 @@ mod tests {
         assert!(unsteady(&noisy(|ix| if ix < 12 { 5.08 } else { 1.82 }, 32)).is_some());
         // At the very end: both thirds have the same median.
         let last = noisy(|ix| if ix < 30 { 1.82 } else { 0.61 }, 32);
-        assert!(unsteady(&last).expect("rises").contains("least sample"), "{last:?}");
+        assert!(unsteady(&last).expect("rises").contains("smallest sample"), "{last:?}");
         // One slow frame is an outlier and no drift.
         assert_eq!(unsteady(&noisy(|ix| if ix == 5 { 3.0 } else { 0.22 }, 32)), None);
     }

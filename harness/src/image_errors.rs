@@ -1,7 +1,7 @@
-//! How far an image is from another: one row per metric, computed from linear radiance.
+//! Errors of an image against a reference: one row per metric.
 //!
-//! Except FLIP, errors are of linear HDR values, before exposure; FLIP sees what the eye does,
-//! after one exposure and tone curve for both images.
+//! All metrics except FLIP compare linear HDR values, before exposure. FLIP compares what the eye sees, after
+//! the same exposure and tone curve for both images.
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool};
 use shading::{HdrImage, luminance};
@@ -11,24 +11,23 @@ use crate::results::Errors;
 /// Side of the tiles over which [`tile`](ErrorMetric) sums, pixels.
 pub const TILE_PX: usize = 16;
 
-/// A pixel counts as off where it differs by more than this share of its value and a hundredth of
-/// the mean.
+/// A pixel counts as wrong if it differs by more than this share of the reference plus 1/100 of the mean.
 const OFF: f64 = 0.05;
 
-/// An image beside the one it should be, both of one size.
+/// An image and its reference, both of the same size.
 #[derive(Clone, Copy)]
 pub struct ImagePair<'a> {
     /// The image.
     pub image: &'a HdrImage,
-    /// What it should be.
+    /// The reference.
     pub reference: &'a HdrImage,
     /// The factor before the tone curve, for FLIP.
     pub exposure: f32,
 }
 
-/// A metric of error: nearer to 0 is better, 0 is none. Bias alone has a sign.
+/// An error metric: 0 is no error, closer to 0 is better. Only bias has a sign.
 pub struct ErrorMetric {
-    /// Names it in `results.json`.
+    /// Its id in `results.json`.
     pub id: &'static str,
     /// Its name in tables and charts.
     pub head: &'static str,
@@ -115,7 +114,7 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
     },
 ];
 
-/// Errors by metric, in the order of [`ERROR_METRICS`]. Not finite where a pixel is not.
+/// Errors by metric, in the order of [`ERROR_METRICS`]. Not finite if a pixel is not finite.
 pub fn errors(pair: &ImagePair<'_>) -> Vec<(&'static str, f64)> {
     if pair.image.pixels == pair.reference.pixels {
         return ERROR_METRICS.iter().map(|metric| (metric.id, 0.0)).collect();
@@ -124,7 +123,7 @@ pub fn errors(pair: &ImagePair<'_>) -> Vec<(&'static str, f64)> {
     ERROR_METRICS.iter().map(|metric| (metric.id, (metric.value)(&sums, pair))).collect()
 }
 
-/// Errors as results hold them: those that are not finite are absent.
+/// Errors as results store them, without those that are not finite.
 pub fn stored(errors: impl IntoIterator<Item = (&'static str, f64)>) -> Errors {
     let finite = |error: f64| error.is_finite().then_some(error);
     errors.into_iter().map(|(id, error)| (id.to_owned(), finite(error))).collect()
@@ -135,7 +134,7 @@ struct Sums {
     pixels: f64,
     image: f64,
     reference: f64,
-    /// Of what lacks where the image is darker.
+    /// Of the missing luminance where the image is darker.
     darker: f64,
     /// Of the absolute differences.
     off: f64,
@@ -159,13 +158,13 @@ impl Sums {
     }
 }
 
-/// Luminance of the image and of what it should be, pixel by pixel.
+/// Luminance of the image and of the reference, pixel by pixel.
 fn luminances<'a>(pair: &ImagePair<'a>) -> impl Iterator<Item = (f64, f64)> + 'a {
     let pixels = pair.image.pixels.iter().zip(&pair.reference.pixels);
     pixels.map(|(a, b)| (luminance(a), luminance(b)))
 }
 
-/// `part` over `whole`; 0 of nothing is 0.
+/// `part` / `whole`; 0 / 0 is 0.
 fn share(part: f64, whole: f64) -> f64 {
     if part == 0.0 { 0.0 } else { part / whole }
 }
@@ -182,10 +181,10 @@ fn rel_mse(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
     sum / (3.0 * sums.pixels.max(1.0))
 }
 
-/// The floor of [`log_error`], as a share of the mean luminance there should be.
+/// The floor of [`log_error`], as a share of the reference's mean luminance.
 const LOG_FLOOR: f64 = 0.01;
 
-/// The mean over channels of how many doublings they are off.
+/// The mean error in doublings, over all channels.
 fn log_error<'a>(sums: &Sums, pixels: impl Iterator<Item = (&'a [f32; 3], &'a [f32; 3])>) -> f64 {
     let floor = (LOG_FLOOR * sums.mean()).max(f64::MIN_POSITIVE);
     let (mut sum, mut count) = (0.0, 0.0);
@@ -203,7 +202,7 @@ fn log_error<'a>(sums: &Sums, pixels: impl Iterator<Item = (&'a [f32; 3], &'a [f
     sum / f64::max(count, 1.0)
 }
 
-/// The hundredth of the pixels, at least one, whose luminance is greatest in either image.
+/// The brightest 1 % of the pixels (at least one), by the larger luminance of both images.
 fn brightest<'a>(
     pair: &ImagePair<'a>,
 ) -> impl Iterator<Item = (&'a [f32; 3], &'a [f32; 3])> + use<'a> {
@@ -222,8 +221,7 @@ fn worst_tile(sums: &Sums, pair: &ImagePair<'_>) -> f64 {
     share(worst, sums.mean())
 }
 
-/// Where the tile with the greatest error begins, pixels from the left and from the top; `None` of
-/// an image without pixels.
+/// The left and top pixel of the tile with the largest error; `None` for an image without pixels.
 pub fn worst_tile_at(pair: &ImagePair<'_>) -> Option<[u32; 2]> {
     let columns = (pair.image.width as usize).div_ceil(TILE_PX).max(1);
     let all = tiles(pair);
@@ -303,7 +301,7 @@ mod tests {
         assert!((of(&darker, &reference, "pixels_off") - 0.25).abs() < 1e-12);
         assert!((of(&darker, &reference, "rel_mse") - 0.25 * 0.25 / 1.01).abs() < 1e-12);
         assert!((of(&darker, &reference, "tile") - 0.125).abs() < 1e-12);
-        // Brighter by as much elsewhere: no bias, and energy still lacks.
+        // Other pixels are brighter by as much: no bias, but missing energy.
         let both = image(|ix| [0.5, 1.5, 1.0, 1.0][ix % 4]);
         assert!(of(&both, &reference, "bias").abs() < 1e-12);
         assert!((of(&both, &reference, "missing_energy") - 0.125).abs() < 1e-12);

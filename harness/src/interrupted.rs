@@ -1,22 +1,22 @@
-//! Says how to go on where a run is interrupted (Ctrl-C, or a request to end).
+//! Prints how to continue when a run is interrupted (Ctrl-C or SIGTERM).
 
 use std::sync::{Mutex, PoisonError};
 
-/// What is said.
+/// The message to print.
 static WORDS: Mutex<Option<String>> = Mutex::new(None);
 
-/// Sets what is said where the run is interrupted from here on.
+/// Sets the message for interruptions from now on.
 pub fn when_interrupted(words: String) {
     *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(words);
 }
 
-/// Watches for signals that end the program. It still ends by the signal, so that a shell sees why, but
-/// first it says how to go on and leaves the folder that it held.
+/// Watches for signals that end the program. On a signal, it prints how to continue and releases the
+/// output folder. Then the signal ends the program as usual, so that the shell sees the reason.
 #[cfg(unix)]
 pub fn watch() {
     use signal_hook::consts::{SIGINT, SIGTERM};
 
-    // Without a watcher the signal ends the program as it always did.
+    // Without the watcher, a signal ends the program as usual.
     let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) else { return };
     std::thread::spawn(move || {
         for signal in signals.forever() {
@@ -31,6 +31,6 @@ pub fn watch() {
     });
 }
 
-/// Where there are no such signals nothing is watched.
+/// Systems without these signals need no watcher.
 #[cfg(not(unix))]
 pub fn watch() {}

@@ -1,4 +1,4 @@
-//! How long the lists are that the frame's samples read: per pixel, and per group.
+//! Lengths of the lists that samples read, per pixel and per group.
 
 use assign::{ALL_LIGHTS, ListsSnapshot};
 use shading::Samples;
@@ -8,10 +8,10 @@ use shading::Samples;
 pub struct ListLengths {
     /// Lights in the list of each pixel's group, rows from the top; `None` without a surface.
     pub per_pixel: Vec<Option<u32>>,
-    /// Groups that some sample reads, by the length of their list: see [`bin_of`].
+    /// The number of groups that samples read, per bin of list length: see [`bin_of`].
     pub histogram: Vec<u64>,
-    /// All groups, read or not, likewise. A group that the frame's pass skips, such as a cluster without
-    /// samples, counts as without lights.
+    /// The number of all groups per bin, read or not. A group that the pass skips, such as a cluster without
+    /// samples, counts as empty.
     pub all_groups: Vec<u64>,
 }
 
@@ -21,9 +21,9 @@ pub fn bin_of(lights: u32) -> usize {
 }
 
 impl ListLengths {
-    /// Counts a frame's lists. `per_pixel` and `histogram` count only those that a sample reads; the
-    /// records of others may be an earlier frame's, so `all_groups` holds for a camera that stood still
-    /// since the lists were made.
+    /// Counts a frame's lists. `per_pixel` and `histogram` count only lists that a sample reads. Other
+    /// records may be an earlier frame's, so `all_groups` is only right if the camera has not moved since the
+    /// lists were made.
     pub fn new(samples: &Samples, lists: &ListsSnapshot, pixels: usize) -> Self {
         let length = |group: u32| lists.list(group).map_or(0, |list| list.count);
         let mut per_pixel = vec![None; pixels];
@@ -43,7 +43,7 @@ impl ListLengths {
     }
 }
 
-/// How many lists fall into each bin.
+/// The number of lists in each bin.
 fn histogram_of(lengths: impl Iterator<Item = u32>) -> Vec<u64> {
     let mut bins = Vec::new();
     for bin in lengths.map(bin_of) {
@@ -83,7 +83,7 @@ mod tests {
         };
         let lengths = ListLengths::new(&samples, &lists, 5);
         assert_eq!(lengths.per_pixel, [Some(3), None, Some(0), Some(3), Some(9)]);
-        // Group 2 is read by no sample, and all lights are no group.
+        // No sample reads group 2, and the record of all lights is no group.
         assert_eq!(lengths.histogram, [1, 0, 1]);
         // Group 2 counts among all groups; the record of all lights does not.
         assert_eq!(lengths.all_groups, [1, 0, 1, 0, 0, 0, 0, 1]);

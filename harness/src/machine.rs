@@ -1,4 +1,4 @@
-//! Where a run takes place, for its provenance.
+//! The machine and the program of a run, as the results record them.
 
 use std::time::SystemTime;
 
@@ -9,7 +9,7 @@ use crate::{
     visible::visible,
 };
 
-/// What is known of the adapter, the host and the program.
+/// Describes the adapter, the host and the program.
 pub fn machine(gpu: &Gpu) -> Machine {
     let info = &gpu.info;
     Machine {
@@ -32,12 +32,12 @@ pub fn machine(gpu: &Gpu) -> Machine {
     }
 }
 
-/// The time of day, in UTC.
+/// The current date and time, UTC.
 pub(crate) fn now() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }
 
-/// The host's name, as Linux or the environment has it.
+/// The host's name, from Linux or from the environment.
 pub(crate) fn host_name() -> String {
     let known = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
     let known = known.or_else(|| std::env::var("COMPUTERNAME").ok());

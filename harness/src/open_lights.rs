@@ -1,21 +1,21 @@
-//! What a run says of lights whose file gives them no range.
+//! The note about lights that have no range in their file.
 
 use assign::Light;
 use scenes::LOST;
 
-/// Lights without a range of their own, and where they were made to end.
+/// Lights without a range in their file, and the ranges that they got.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenLights {
-    /// How many there are.
+    /// The number of these lights.
     pub count: u64,
-    /// The greatest irradiance that one of them still gives at its end: intensity over squared range.
+    /// The largest irradiance at the end of one of them: intensity / range^2.
     pub threshold: f64,
     /// The shortest and the longest range, metres.
     ranges_m: (f32, f32),
 }
 
 impl OpenLights {
-    /// The sound ones of the lights at some indices; `None` where there are none.
+    /// The valid lights among those at the indices `open`; `None` if there are none.
     pub fn new(lights: &[Light], open: &[u32]) -> Option<Self> {
         let lights = open.iter().filter_map(|&ix| lights.get(ix as usize));
         let one = |light: &Light| Self {
@@ -30,26 +30,28 @@ impl OpenLights {
         })
     }
 
-    /// How many they are, where they end, what that loses, and which options change it.
+    /// States their number, their ranges, the lost light, and the options that change it.
     pub fn note(&self) -> String {
         let Self { count, threshold, ranges_m: (shortest, longest) } = *self;
-        let (lights, their) =
-            if count == 1 { ("light has", "its") } else { ("lights have", "their") };
+        let (lights, their, end) = match count {
+            1 => ("light has", "its", "ends"),
+            _ => ("lights have", "their", "end"),
+        };
         let at = match shortest == longest {
             true => short(longest.into()),
             false => format!("{} to {}", short(shortest.into()), short(longest.into())),
         };
         format!(
-            "{count} {lights} no range in {their} file, and an end at {at} m, where a surface receives {} lux. \
-             Each end takes at most {} lux from a surface: --threshold moves it, --unbounded measures the \
-             loss",
+            "{count} {lights} no range in {their} file, and {end} at {at} m, where a surface receives {} lux. \
+             Each light loses at most {} lux on a surface: --threshold moves its end, --unbounded measures \
+             the loss",
             short(threshold),
             short(LOST * threshold)
         )
     }
 }
 
-/// Three digits.
+/// A number with three digits.
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     rounded.to_string()

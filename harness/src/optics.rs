@@ -1,14 +1,14 @@
-//! How the camera of a stage sees: its lens, its near plane and its far plane.
+//! The lens, the near plane and the far plane of a stage's camera.
 //!
-//! A camera of the scene's file brings all three. `--near` and `--far` replace either plane.
+//! A camera of the scene's file sets all three. `--near` and `--far` replace its planes.
 //!
-//! Where neither says anything, no triangle is lost. The near plane lies at a 500th of the scene's size,
-//! or at half the depth of the nearest surface in view, where the usual plane would cut that away: ground
-//! in front of a person in a town, a floor under the lens. Along a path one near plane serves all poses. The far
-//! plane lies just beyond the farthest corner of the scene's bounds, as seen from the eye: it follows
-//! the eye along a path and does not depend on where the camera looks.
+//! Without these, the planes cut away no triangle. The near plane lies at 1/500 of the scene's size. If this
+//! would cut away a visible surface, such as a floor under the lens, it lies at half the depth of the nearest
+//! one. Along a path, all poses have the same near plane. The far plane lies just beyond the farthest corner
+//! of the scene's bounds, seen from the eye. It follows the eye along a path and does not depend on the
+//! direction of view.
 //!
-//! What planes cut away that an option or the file placed is stated ([`Optics::notes`]).
+//! If a plane from an option or the file cuts away surfaces, a note says so ([`Optics::notes`]).
 
 use assign::{Projection, View};
 use glam::Vec2;
@@ -21,29 +21,29 @@ use crate::{
     results::{PlaneSource, Planes},
 };
 
-/// Vertical field of view where the scene names none, radians.
+/// The vertical field of view for scenes without a camera, radians.
 const FOV_Y: f32 = 60.0 * std::f32::consts::PI / 180.0;
 
 /// The near plane as a share of the scene's size: 5 cm in a hall of 25 m.
 const NEAR_SHARE: f32 = 0.002;
 
-/// Surfaces nearer than this many usual near planes are about to be cut away.
+/// Surfaces nearer than this many usual near planes may be cut away.
 const CUT: f32 = 1.01;
 
 /// The near plane as a share of the depth of such a surface.
 const NEAR_OF_SURFACE: f64 = 0.5;
 
-/// The least near plane as a share of the usual one: an eye may touch a surface.
+/// The smallest near plane as a share of the usual one, for an eye that touches a surface.
 const LEAST_NEAR: f32 = 1e-3;
 
-/// How much farther than the scene the far plane lies: what is drawn exactly at it cannot be told from
-/// background.
+/// Depth of the far plane / depth of the scene's farthest corner. Above 1, because a surface exactly at the
+/// far plane looks like background.
 const BEYOND: f32 = 1.001;
 
-/// What lies less than this share of a plane's depth behind it is not worth a note.
+/// No note for surfaces that a plane cuts away by less than this share of its depth.
 const SLACK: f64 = 1e-4;
 
-/// Positions this share of the near plane apart leave the nearest surfaces without shape.
+/// If positions are this share of the near plane apart, the nearest surfaces lose their shape.
 const COARSE: f32 = 0.25;
 
 /// Lens, near plane and far plane of a stage's camera.
@@ -52,25 +52,25 @@ pub struct Optics {
     lens: Option<Lens>,
     near_m: f32,
     near_from: PlaneSource,
-    /// The near plane where no surface is nearer, metres.
+    /// The near plane if no surface is nearer, metres.
     usual_m: f32,
     far: Far,
 }
 
-/// Where the far plane is.
+/// The far plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Far {
     /// At a view depth, metres.
     At(f32, PlaneSource),
     /// Just beyond the scene.
     Bounds,
-    /// Nowhere.
+    /// No far plane.
     Infinite,
 }
 
 impl Optics {
-    /// What the options ask for, else what the file's camera says, else what suits the scene.
-    /// A pose of one's own (`--camera X,Y,Z:X,Y,Z`) leaves the file's cameras out.
+    /// The planes of the options, else of the file's camera, else those that suit the scene.
+    /// `--camera X,Y,Z:X,Y,Z` ignores the file's cameras.
     ///
     /// # Errors
     ///
@@ -123,8 +123,7 @@ impl Optics {
         format!("{} m {}", self.near_m, source_words(self.near_from, "of --near"))
     }
 
-    /// Brings the near plane in front of every surface that one of the views shows, where neither an
-    /// option nor the file says where it is.
+    /// Moves the near plane in front of every surface in the views, unless an option or the file sets it.
     pub fn fit_near(&mut self, scene: &Scene, views: &[View]) {
         if self.near_from != PlaneSource::Scene {
             return;
@@ -142,7 +141,7 @@ impl Optics {
         };
         let mut view = View::looking(pose.eye, pose.forward(), pose.up, fov_y, self.near_m, size);
         if let Some(Lens::Orthographic { half_height, .. }) = self.lens {
-            // The picture's own shape decides its width.
+            // The aspect ratio of the image sets the width of the view.
             let corner =
                 Vec2::new(half_height * size[0] as f32 / size[1].max(1) as f32, half_height);
             view.projection = Projection::Orthographic { min: -corner, max: corner };
@@ -160,8 +159,7 @@ impl Optics {
         view
     }
 
-    /// What the planes of a view cut away, and where f32 is too coarse for what it shows: one sentence
-    /// each.
+    /// Notes, one sentence each, for planes that cut away surfaces and for positions too large for f32.
     pub fn notes(&self, scene: &Scene, views: &[View]) -> Vec<String> {
         let mut notes = Vec::new();
         let given_far =
@@ -212,7 +210,7 @@ impl Optics {
         notes
     }
 
-    /// The planes of a view that it made, for the record.
+    /// The planes of one of its views, for the record.
     pub fn planes(&self, view: &View) -> Planes {
         Planes {
             near_m: f64::from(view.near_m),
@@ -232,8 +230,8 @@ impl Optics {
     }
 }
 
-/// How finely positions must be known for what a view shows to have its shape, metres: to a share of the
-/// near plane, and to a pixel of what lies far from the eye or is seen by an orthographic view.
+/// The largest step between positions, metres, at which surfaces in a view keep their shape: a share of the
+/// near plane. For an orthographic view it is one pixel; for a distant scene at most one pixel.
 fn finest_m(scene: &Scene, view: &View) -> f32 {
     let core = scene.core_bounds;
     let eye = view.eye();

@@ -1,11 +1,11 @@
-//! A method with the pipelines that draw with it.
+//! A strategy with the pipelines that draw its frames.
 
 use assign::{Assignment, Gpu, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
 use crate::{error::HarnessError, stage::Stage, strategy::Method};
 
-/// A method with the pipelines that draw with it.
+/// A strategy with the pipelines that draw its frames.
 pub enum Painter<'a> {
     /// Lists, and lighting by them.
     Lists {
@@ -16,12 +16,12 @@ pub enum Painter<'a> {
     },
     /// Light volumes.
     RasterSphere(RasterSpheres),
-    /// Surfaces alone.
+    /// Surfaces without lights.
     Clay,
 }
 
 impl<'a> Painter<'a> {
-    /// Compiles what `method` needs in one mode.
+    /// Compiles the pipelines that `method` needs in one mode.
     pub fn new(
         stage: &Stage,
         method: &'a mut Method,
@@ -48,7 +48,7 @@ impl<'a> Painter<'a> {
         })
     }
 
-    /// Whether lists are made, whose pool may have to grow.
+    /// Whether it makes lists, whose pool may have to grow.
     pub fn has_groups(&self) -> bool {
         match self {
             Self::Lists { strategy, .. } => strategy.lists().group_count() > 0,
@@ -56,15 +56,15 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// Has lists that are kept over frames made anew.
+    /// Expires lists that are reused over frames, so that the next frame makes new ones.
     pub fn expire(&mut self) {
         if let Self::Lists { strategy, .. } = self {
             strategy.lists_mut().expire();
         }
     }
 
-    /// Records one frame: geometry, the strategy's passes, lighting. Returns whether no list of
-    /// the frame before overflowed.
+    /// Records one frame: geometry, the strategy's passes, lighting. Returns whether all lists of the previous
+    /// frame did fit.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -79,7 +79,7 @@ impl<'a> Painter<'a> {
                 strategy.prepare(gpu, &frame)?;
                 record_before_lighting(renderer, mode, *strategy, &frame, passes);
                 lighting.record(renderer, view, *strategy, passes)?;
-                // The counters of the frame before: this one grew the pool to what it asked for.
+                // These are the counters of the previous frame; `prepare` grew the pool to what it asked for.
                 Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
             }
             Self::RasterSphere(spheres) => {

@@ -1,4 +1,4 @@
-//! Times of passes, frame by frame.
+//! Collects the times of passes, frame by frame.
 
 use shading::Mode;
 
@@ -13,7 +13,7 @@ pub struct PassSamples {
     mode: Mode,
     passes: Vec<(String, PassKind, Vec<f64>)>,
     frames: usize,
-    /// `None` once a frame had none.
+    /// `None` after a frame without spans.
     spans: Option<Spans>,
 }
 
@@ -24,13 +24,12 @@ impl Default for PassSamples {
 }
 
 impl PassSamples {
-    /// No frame yet, of frames that light their pixels in one mode, which decides who is billed for
-    /// a pass.
+    /// No frames yet. The mode decides which methods pay for a pass.
     pub fn new(mode: Mode) -> Self {
         Self { mode, passes: Vec::new(), frames: 0, spans: Some(Spans::default()) }
     }
 
-    /// Adds a frame's times; a pass that a frame did without took 0 ms.
+    /// Adds a frame's times. A pass that is missing in a frame takes 0 ms.
     pub fn collect(&mut self, times: Vec<PassTime>) {
         for (name, ms) in times {
             match self.passes.iter_mut().find(|(known, ..)| *known == name) {
@@ -49,7 +48,7 @@ impl PassSamples {
         }
     }
 
-    /// Adds a frame's times, and its two spans where it has any.
+    /// Adds a frame's times, and its two spans if it has any.
     pub fn collect_frame(&mut self, times: FrameTimes) {
         let mode = self.mode;
         let is_billed =
@@ -69,7 +68,7 @@ impl PassSamples {
         self.finish_frames().0
     }
 
-    /// The passes with their statistics, and the spans where every frame had some.
+    /// The passes with their statistics, and the spans if every frame has them.
     pub fn finish_frames(self) -> (Passes, Option<Spans>) {
         let times = |(name, kind, samples)| (name, PassTimes::new(kind, samples));
         let spans = self.spans.filter(|spans| spans.frame_ms.len() == self.frames);

@@ -1,4 +1,4 @@
-//! The images of a comparison: what they are compared with, and the pictures that are kept.
+//! The images of a comparison: the reference that they are compared with, and the pictures that are kept.
 
 use std::path::Path;
 
@@ -18,10 +18,10 @@ use crate::{
 /// Pictures of a report, PNG files, by name.
 pub type Pictures = Vec<(String, Vec<u8>)>;
 
-/// Gain of difference images: a difference of 1/64 shows as white.
+/// Gain of difference images: a difference of 1/64 is white.
 const DIFFERENCE_GAIN: f32 = 64.0;
 
-/// What the images of one mode are compared with, and the exposure that all its pictures share.
+/// The images that those of one mode are compared with, and the exposure that all pictures of the mode share.
 pub(crate) struct Reference {
     image: HdrImage,
     unbounded: Option<HdrImage>,
@@ -32,7 +32,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// Keeps the images that others are compared with; returns the pictures for the report.
+    /// Keeps the images that others are compared with. Returns the pictures for the report.
     pub(crate) fn new(
         args: &CompareArgs,
         image: HdrImage,
@@ -65,7 +65,7 @@ impl Reference {
     }
 }
 
-/// Writes a picture, and the linear image that it shows; returns it for the report.
+/// Writes a picture, and the linear image that it shows. Returns the picture for the report.
 fn keep(
     out: &Path,
     name: &str,
@@ -80,7 +80,7 @@ fn keep(
     Ok((name.to_owned(), png))
 }
 
-/// Compares a method's image with what it should be, and keeps its pictures.
+/// Compares a strategy's image with the reference, and keeps its pictures.
 pub(crate) fn see(
     args: &CompareArgs,
     choice: &Choice,
@@ -102,7 +102,7 @@ pub(crate) fn see(
         };
     }
     if args.path {
-        // Along a path errors are means over the frames that are compared there.
+        // Along a path, errors are means over the frames that are compared later.
         seen.forget_errors();
     }
     let mut pictures = Pictures::new();
@@ -120,7 +120,7 @@ pub(crate) fn see(
     };
     let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
     if is_same {
-        // An image that is the same in every number is kept once.
+        // An identical image is kept once.
         (images.image, images.raw) = (Some(baseline.clone()), raw(baseline));
     } else {
         let name = format!("{stem}.png");

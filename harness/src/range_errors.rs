@@ -1,4 +1,4 @@
-//! Rays through deep images against exact ones: how far off their lengths are.
+//! Errors of the lengths of rays through deep images, against exact rays.
 
 use assign::{EncoderPasses, Gpu};
 use assign_cdi::{DeepImages, Primary, RangeCaster, RangePoints, RangeRule};
@@ -14,7 +14,7 @@ use crate::{error::HarnessError, results::RangeErrors};
 /// Steps between two quantiles that are stored: every 20th of the rays.
 const QUANTILES: usize = 20;
 
-/// How far exact rays start off their surface, as a share of a footprint.
+/// The distance from the surface at which exact rays start, as a share of a footprint.
 const OFFSET: f64 = 1e-4;
 
 /// A point of a surface.
@@ -26,11 +26,11 @@ pub struct SurfacePoint {
     pub normal: Vec3,
 }
 
-/// Places along a path from which points are looked for.
+/// Places along the path from which rays look for points.
 const PLACES: u32 = 16;
 
-/// Surfaces that are seen from along a path, in directions drawn evenly over the sphere. Fewer than
-/// `count` where most meet nothing.
+/// Points on surfaces that rays from the path meet, in directions drawn evenly over the sphere. Fewer than
+/// `count` if most rays meet nothing.
 pub fn seen_points(
     scene: &TracedScene<'_>,
     path: &CameraPath,
@@ -44,7 +44,7 @@ pub fn seen_points(
         let radius = (1.0 - z * z).max(0.0).sqrt();
         DVec3::new(radius * cos, radius * sin, z)
     };
-    // Some directions meet the sky.
+    // Some rays meet nothing but sky.
     let rays: Vec<(DVec3, DVec3)> = (0..2 * count)
         .map(|ix| (path.pose(ix as u32 % PLACES, PLACES).eye.as_dvec3(), direction()))
         .collect();
@@ -57,11 +57,11 @@ pub fn seen_points(
     all.into_iter().take(count).collect()
 }
 
-/// Casts the rays of `rule` from points through deep images that are built, and exactly.
+/// Casts the rays of `rule` from points, through built deep images and exactly.
 ///
 /// # Errors
 ///
-/// What the device refuses.
+/// The device fails.
 pub fn range_errors(
     gpu: &Gpu,
     images: &DeepImages,

@@ -1,13 +1,13 @@
-//! `results.json`: the product of a comparison, of which every table and chart is a view.
+//! `results.json`: the data of a comparison. Every table and chart shows a part of it.
 //!
 //! One file holds one run: the machine, the command, and one [`Record`] per scene, mode and
-//! strategy. Every sample of every pass is kept, so that a statistic can be computed later.
-//! Times are milliseconds, sizes bytes, differences linear HDR radiance. A metric that was not
-//! measured is `null`; so is a number that JSON cannot hold (NaN, infinite).
+//! strategy. The file keeps every sample of every pass, so that any statistic can be computed later.
+//! Times are in milliseconds, sizes in bytes, differences in linear HDR radiance. `null` stands for a metric
+//! that was not measured, and for a number that JSON cannot hold (NaN, infinite).
 //!
-//! A reader accepts any file whose [`schema_version`](Results::schema_version) it knows
-//! ([`SCHEMA_VERSION`]). Fields are only ever added within a version; a field that is removed,
-//! renamed or given another meaning raises it.
+//! A reader accepts every file whose [`schema_version`](Results::schema_version) it knows
+//! ([`SCHEMA_VERSION`]). Within a version, fields are only added. The version rises when a field is removed,
+//! renamed or changes its meaning.
 //!
 //! ```json
 #![doc = include_str!("results/example.json")]
@@ -67,37 +67,37 @@ pub const SCHEMA_VERSION: u32 = 2;
 pub struct Results {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
-    /// Where it ran.
+    /// The machine that it ran on.
     pub machine: Machine,
     /// The command line, program name first.
     pub command: Vec<String>,
     /// What the errors are measured against.
     pub truth: Truth,
-    /// One entry per scene, mode and strategy, in the order of the command; none of a truth image.
+    /// One entry per scene, mode and strategy, in the order of the command. Empty for a truth image.
     pub records: Vec<Record>,
-    /// The truth image, where this is a run of `lightbench truth`.
+    /// The truth image of a run of `lightbench truth`.
     #[serde(default)]
     pub truth_image: Option<TruthImage>,
-    /// Deep images and rays, where this is a run of `lightbench cdi`.
+    /// Deep images and rays of a run of `lightbench cdi`.
     #[serde(default)]
     pub deep_images: Option<DeepImageRun>,
     /// Lights left out because a field was NaN, infinite or out of range.
     #[serde(default)]
     pub rejected_lights: Vec<RejectedLight>,
-    /// Whatever a reader of the figures has to know, one sentence each.
+    /// Warnings for readers of the figures, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
 
-/// What the errors of all records are measured against.
+/// The truth that the lists of all records are checked against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// How much was checked.
     pub level: TruthLevel,
-    /// A (light, sample) pair closer to the edge of the light's range than this share of the
-    /// range is not counted as missed.
+    /// A (light, sample) pair does not count as missed if its distance to the edge of the light's range is
+    /// below this share of the range.
     pub edge_tolerance: f64,
-    /// Further remarks, one sentence each.
+    /// Notes, one sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
 }
@@ -107,13 +107,13 @@ pub struct Truth {
 pub struct RejectedLight {
     /// The scene that it belongs to.
     pub scene: String,
-    /// Its index among the lights that were handed over.
+    /// Its index among all lights of the run.
     pub index: u64,
-    /// The field at fault, and its value.
+    /// The faulty field and its value.
     pub reason: String,
 }
 
-/// What took the times of a record.
+/// The clock that took the times of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Clock {
     /// Timestamp queries around each pass.
@@ -125,7 +125,7 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// As in `results.json`.
+    /// The name in `results.json`.
     pub fn name(self) -> &'static str {
         match self {
             Self::GpuTimestamps => "gpu-timestamps",

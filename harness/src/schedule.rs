@@ -1,16 +1,16 @@
-//! In which order frames are drawn: rounds of all methods, each round in an order of its own, so
-//! that whatever drifts meanwhile hits all methods alike.
+//! The order of timed frames: rounds of all methods. Each round has another order, so that drift affects all
+//! methods equally.
 
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_pcg::Pcg64Mcg;
 
-/// Frames on the clock where the command line names none: on a GPU, and on a software adapter.
+/// Timed frames if the command line gives no number: on a GPU, and on a software adapter.
 pub(crate) const DEFAULT_FRAMES: [u32; 2] = [64, 3];
 
-/// The most rounds of a still camera: as many as a confidence interval of the median can use.
+/// The most rounds of a still camera: more would not improve the confidence interval of the median.
 const MAX_ROUNDS: u32 = 16;
 
-/// Rounds for that many frames: one frame each where there are few.
+/// The number of rounds for that many frames. Few frames give rounds of one frame.
 pub fn rounds(frames: u32) -> u32 {
     frames.clamp(1, MAX_ROUNDS)
 }
@@ -22,7 +22,7 @@ pub fn frames_of_round(round: u32, rounds: u32, frames: u32) -> std::ops::Range<
     first(round)..first(round + 1)
 }
 
-/// Orders of the methods, round by round, the same for the same seed.
+/// The orders of the methods, round by round. The same seed gives the same orders.
 pub struct Orders {
     rng: Pcg64Mcg,
     order: Vec<usize>,

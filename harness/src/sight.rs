@@ -1,7 +1,8 @@
-//! Whether what is drawn puts lists to a test at all.
+//! Finds out whether a view can test light lists at all.
 //!
-//! A view that shows no surface has no sample, so any list is right and any image is black. The same holds
-//! where no light reaches what it shows. Nothing may be called exact, ranked or advised from such a run.
+//! A view that shows no surface has no samples, so every list is right and every image is black. The same
+//! holds if no light reaches a visible surface. Such a run proves no method exact, ranks none and recommends
+//! none.
 
 use assign::{Assignment, EncoderPasses, Everything, Gpu};
 use rayon::prelude::*;
@@ -9,11 +10,11 @@ use shading::{LightBvh, Samples, probe, record_for_probe};
 
 use crate::{error::HarnessError, results::Untested, stage::Stage};
 
-/// Samples that are tried against every light before a hierarchy over the lights is built.
+/// Samples to test against every light before building a hierarchy over the lights.
 const TRIED: usize = 64;
 
-/// Why neither the stage's view nor one of some poses along the path, of `count`, tests anything; `None`
-/// where a light reaches a sample in one. Leaves the camera at the pose that was looked at last.
+/// Why neither the stage's view nor one of `poses` (of `count` along the path) tests anything. `None` if a
+/// light reaches a sample in one of them. Leaves the camera at the last pose that was tested.
 pub fn untested(
     gpu: &Gpu,
     stage: &mut Stage,
@@ -27,7 +28,7 @@ pub fn untested(
             break;
         }
         stage.go_to(pose, count)?;
-        // Where surfaces are seen from somewhere, the lights are to blame.
+        // If one view shows surfaces, the missing light is the reason.
         why = match (why, untested_here(gpu, stage)?) {
             (Some(unlit @ (Untested::NoLight | Untested::OnlySuns)), Some(_)) => Some(unlit),
             (_, here) => here,
@@ -36,7 +37,7 @@ pub fn untested(
     Ok(why)
 }
 
-/// The same of the view alone.
+/// Why the current view tests nothing.
 fn untested_here(gpu: &Gpu, stage: &Stage) -> Result<Option<Untested>, HarnessError> {
     let samples = samples(gpu, stage)?;
     if samples.positions.is_empty() {
@@ -65,7 +66,7 @@ fn untested_here(gpu: &Gpu, stage: &Stage) -> Result<Option<Untested>, HarnessEr
     Ok(Some(if stage.suns.is_empty() { Untested::NoLight } else { Untested::OnlySuns }))
 }
 
-/// The surfaces that the pixels show.
+/// The samples of the view: visible surfaces, one per pixel.
 fn samples(gpu: &Gpu, stage: &Stage) -> Result<Samples, HarnessError> {
     let Stage { renderer, view, lights, .. } = stage;
     let mut strategy = Everything::new(gpu)?;

@@ -29,23 +29,23 @@ pub struct Stage {
     pub radius_scale: f64,
     /// Where lights were scattered.
     pub light_box: Aabb,
-    /// Lights of the scene's own among all that were handed over.
+    /// The number of the scene's own lights among all lights.
     pub own_lights: usize,
     /// Lights whose file gives no range.
     pub open_lights: Option<OpenLights>,
-    /// Suns, which light all samples beside the lists.
+    /// Suns, which light all samples and stand in no list.
     pub suns: Suns,
-    /// The lights, faulty ones left out.
+    /// The lights without the faulty ones.
     pub lights: LightBuffer,
     /// How area lights are shaded.
     pub area_model: AreaModel,
-    /// Lights that add something to a sample of usual brightness, where brightness is compensated.
+    /// With `--compensate N`, the number N.
     pub compensation: Option<f32>,
-    /// How the lights were made, where they are virtual point lights.
+    /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
     /// The camera.
     pub view: View,
-    /// What the camera's planes cut away, and the like: one sentence each.
+    /// Notes about the view, one sentence each, such as surfaces that the camera's planes cut away.
     pub notes: Vec<String>,
     /// The pipeline.
     pub renderer: Renderer,
@@ -55,7 +55,7 @@ pub struct Stage {
     unscaled_m: f32,
 }
 
-/// What arguments make of a scene.
+/// The view and the lights that the arguments give a scene.
 struct Set {
     optics: Optics,
     view: View,
@@ -91,7 +91,7 @@ impl Stage {
         let unscaled_m = scene.core_bounds.diagonal();
         let mut scene = scene.scaled(args.scene_scale)?.replicated(args.replicate)?;
         if args.bounce.is_on() {
-            // What is seen is what the primary light sends, and the truth knows nothing else.
+            // Only the primary light may light the image, as in the truth.
             scene = scene.without_emission();
         }
         let Set { optics, view, notes, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
@@ -117,8 +117,8 @@ impl Stage {
         })
     }
 
-    /// The same scene under the lights and from the camera of other arguments, which must name the
-    /// same scene at the same scale.
+    /// Replaces lights and camera by those of other arguments, which must name the same scene at the same
+    /// scale.
     pub fn set_up(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
         let Set { optics, view, notes, radius_scale, lit } =
             Set::new(&self.scene, self.unscaled_m, args)?;
@@ -134,8 +134,7 @@ impl Stage {
         self.bounce(gpu, args)
     }
 
-    /// Puts the primary light, or what surfaces reflect of it, in place of the lights, where options
-    /// ask for it.
+    /// With `--primary` or `--vpls`, replaces the lights by the primary light or by its reflections.
     fn bounce(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
         self.vpls = None;
         if !args.bounce.is_on() {
@@ -155,7 +154,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Uploads camera and lights: outside the clock.
+    /// Uploads camera and lights, untimed.
     pub fn prepare(&mut self) -> Result<(), HarnessError> {
         Ok(self.renderer.prepare(&self.view, &self.lights)?)
     }
@@ -167,8 +166,8 @@ impl Stage {
         self.prepare()
     }
 
-    /// Brings the near plane in front of every surface that the view or a pose of the path shows, of
-    /// `count` poses, where no option and no file says where it is.
+    /// Moves the near plane in front of every surface in the view and in `count` poses of the path, unless an
+    /// option or the file sets it.
     pub fn follow_path(&mut self, count: u32) {
         let size = [self.view.viewport.width, self.view.viewport.height];
         let pose = |frame| self.scene.path.pose(frame, count);
@@ -182,7 +181,7 @@ impl Stage {
         self.note_plain_vpls();
     }
 
-    /// Says what virtual point lights leave out.
+    /// Adds a note about materials that virtual point lights simplify.
     fn note_plain_vpls(&mut self) {
         if self.vpls.is_some() && self.has_dielectrics() {
             self.notes.push(
@@ -193,7 +192,7 @@ impl Stage {
         }
     }
 
-    /// Whether a material reflects other than glTF's plain dielectric does.
+    /// Whether a material differs from glTF's default dielectric.
     pub fn has_dielectrics(&self) -> bool {
         let plain = Dielectric::default();
         self.scene.materials.iter().any(|material| !material.unlit && material.dielectric != plain)
@@ -229,13 +228,13 @@ struct Lit {
     suns: Suns,
     bounds: Aabb,
     own: usize,
-    /// What the file that other lights come from leaves out.
+    /// Warnings of the file of --lights-from.
     warnings: Vec<String>,
     open: Option<OpenLights>,
 }
 
 impl Lit {
-    /// The scene's own lights and those that are scattered, with the range that a threshold gives.
+    /// The scene's own lights, those of --lights-from and the scattered ones, with their final ranges.
     fn new(scene: &Scene, radius_scale: f64, args: &StageArgs) -> Result<Self, HarnessError> {
         let bounds = match args.light_box {
             LightBox::Core | LightBox::Cylinders => scene.core_bounds,
@@ -257,7 +256,7 @@ impl Lit {
                 let accepted = "a file with lights (KHR_lights_punctual)";
                 return Err(CliError::out_of_range("--lights-from", file, accepted).into());
             }
-            // The scene that they light decides where they end.
+            // The size of the lit scene sets the ranges of lights without one.
             let first = lights.len() as u32;
             let closed = close_ranges(&mut other.lights, scene.core_bounds.diagonal());
             open.extend(closed.into_iter().map(|ix| first + ix));
@@ -316,8 +315,7 @@ impl Lit {
     }
 }
 
-/// Gives area lights the range at which their light ends by the polygon-light paper's rule; other lights keep
-/// theirs.
+/// Gives area lights the range of the polygon-light paper's rule. Other lights keep their range.
 fn set_influence(lights: &mut [Light], least: f32) {
     for light in lights {
         if let LightShape::Area(emitter) = &light.shape {
@@ -328,7 +326,7 @@ fn set_influence(lights: &mut [Light], least: f32) {
     }
 }
 
-/// Scattered lights, those of each copy of the scene: the first lot first.
+/// The scattered lights of all copies of the scene, copy by copy.
 fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
     let side = args.replicate;
     let step = (scene.bounds.max - scene.bounds.min) / side as f32;
@@ -340,8 +338,8 @@ fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
     offsets.flat_map(moved).collect()
 }
 
-/// Lights as large, against their scene, as lights of one metre are in a hall: a town under
-/// lights of one metre is dark. Rooms and halls keep the comparison paper's radii.
+/// The factor that makes scattered lights as large in their scene as lights of one metre are in a hall: lights
+/// of one metre would leave a town dark. Rooms and halls keep the comparison paper's radii.
 fn radius_scale_of(diagonal_m: f32) -> f64 {
     let diagonal_m = f64::from(diagonal_m);
     (diagonal_m / diagonal_m.clamp(10.0, 60.0)).clamp(1e-6, 1e6)

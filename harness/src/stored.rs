@@ -1,4 +1,4 @@
-//! Linear images that earlier runs stored beside their results.
+//! Reads the linear images that earlier runs stored beside their results.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,16 +15,16 @@ pub struct Store<'a> {
 }
 
 impl<'a> Store<'a> {
-    /// Those of a folder, none read yet.
+    /// The images of a folder, none read yet.
     pub fn new(folder: &'a Path) -> Self {
         Self { folder, images: HashMap::new() }
     }
 
-    /// The image of a name; `None` where none is named or there.
+    /// The image with this name; `None` without a name or a file.
     ///
     /// # Errors
     ///
-    /// Where a file is no image.
+    /// The file is not an image.
     pub fn image(&mut self, name: Option<&str>) -> Result<Option<Rc<HdrImage>>, HarnessError> {
         let Some(name) = name.filter(|name| is_plain(name)) else { return Ok(None) };
         if let Some(known) = self.images.get(name) {
@@ -39,11 +39,11 @@ impl<'a> Store<'a> {
         Ok(image)
     }
 
-    /// The image of a name, which must be as large as another, of the name `other`.
+    /// The image with this name. It must have the size of `like`, which errors call `other`.
     ///
     /// # Errors
     ///
-    /// Names the file and both sizes where they differ.
+    /// The sizes differ; the error names the file and both sizes.
     pub fn image_like(
         &mut self,
         name: Option<&str>,
@@ -63,7 +63,7 @@ impl<'a> Store<'a> {
     }
 }
 
-/// Whether a name is that of a file in the folder itself: results may come from anywhere.
+/// Whether a name is a plain file name. Results may come from anywhere, so it must not lead to another folder.
 pub fn is_plain(name: &str) -> bool {
     Path::new(name).file_name().is_some_and(|file| file == name)
 }
@@ -73,7 +73,7 @@ mod tests {
     use super::is_plain;
 
     #[test]
-    fn names_that_lead_elsewhere_are_not_read() {
+    fn names_that_lead_to_other_folders_are_not_read() {
         assert!(is_plain("deferred-None.exr"));
         for name in ["../x.exr", "/etc/passwd", "a/b.png", "", ".."] {
             assert!(!is_plain(name), "{name}");

@@ -18,7 +18,7 @@ use crate::{
 /// The file of results in a folder.
 const FILE: &str = "results.json";
 
-/// Makes the report of a comparison or of a study; returns what to print.
+/// Makes the report of a stored comparison or study. Returns what to print.
 pub fn report_stored(args: &ReportArgs) -> Result<String, HarnessError> {
     let Some(first) = args.folders.first() else {
         return Ok(String::new());
@@ -44,36 +44,36 @@ pub fn report_stored(args: &ReportArgs) -> Result<String, HarnessError> {
     }
     let mut text = String::new();
     for given in &args.folders {
-        let Source { file, folder, report: own } = Source::of(given)?;
+        let Source { file, folder, report: default_out } = Source::find(given)?;
         let (mut results, lack) = Results::read_checked(&file)?;
         refresh(&mut results, &folder)?;
         if args.out.is_none() {
             results.write_metrics(&file)?;
         }
         if let Some(lack) = lack {
-            // Not for the file of errors: the reader of this report has to know.
+            // Only this report says so, not the metrics file.
             results.warnings.push(format!("{}: {lack}", file.display()));
         }
-        let out = args.out.as_ref().unwrap_or(&own);
+        let out = args.out.as_ref().unwrap_or(&default_out);
         let page = report::write_html(&results, &pictures(&results, &folder), out)?;
         text += &format!("{}\nreport   {}\n", report::render_table(&results), page.display());
     }
     Ok(text)
 }
 
-/// Where the results of a comparison are read from, and where their report goes.
+/// Where the results of a comparison are, and where their report goes.
 struct Source {
     /// The file of results.
     file: PathBuf,
-    /// The folder that it lies in, with its images.
+    /// The folder that holds it and its images.
     folder: PathBuf,
-    /// The folder of its report where the command line names none.
+    /// The folder of its report if the command line names none.
     report: PathBuf,
 }
 
 impl Source {
-    /// Of a folder that holds `results.json`, or of a file of results under any name.
-    fn of(given: &Path) -> Result<Self, HarnessError> {
+    /// Finds the results in a folder that holds `results.json`, or in a file of results under any name.
+    fn find(given: &Path) -> Result<Self, HarnessError> {
         if given.is_file() {
             let parent = given.parent().filter(|parent| !parent.as_os_str().is_empty());
             let folder = parent.unwrap_or(Path::new(".")).to_owned();
@@ -104,7 +104,7 @@ impl Source {
     }
 }
 
-/// The paths of the .json files in a folder, in order; none where it cannot be read.
+/// The paths of the .json files in a folder, in order; none if the folder cannot be read.
 fn json_files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<String> = entries
@@ -116,7 +116,7 @@ fn json_files(folder: &Path) -> Vec<String> {
     files
 }
 
-/// The pictures that records name, as far as they are there.
+/// The pictures that records name, as far as their files exist.
 pub fn pictures(results: &Results, folder: &Path) -> Pictures {
     let mut pictures = Pictures::new();
     for record in &results.records {
@@ -134,7 +134,7 @@ pub fn pictures(results: &Results, folder: &Path) -> Pictures {
     pictures
 }
 
-/// Computes the errors of every record whose linear images are there, and its times.
+/// Computes the times of every record, and its errors where the linear images exist.
 fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
     let mut store = Store::new(folder);
     for record in &mut results.records {
@@ -161,7 +161,7 @@ fn refresh(results: &mut Results, folder: &Path) -> Result<(), HarnessError> {
     Ok(())
 }
 
-/// Whether a record's errors come from images that are not kept, or from none.
+/// Whether the stored errors stay: they come from images that were not kept, or from none.
 fn keeps_errors(record: &Record) -> bool {
     record.setting.along_path || record.is_control()
 }
@@ -171,30 +171,34 @@ mod tests {
     use super::*;
     use crate::results::ResultsError;
 
-    fn of(folder: &Path) -> ReportArgs {
+    fn report_args(folder: &Path) -> ReportArgs {
         ReportArgs { folders: vec![folder.to_owned()], out: None }
     }
 
     #[test]
-    fn a_folder_without_results_is_named() {
+    fn an_error_names_the_folder_without_results() {
         let folder = tempfile::tempdir().unwrap();
-        let error = report_stored(&of(folder.path())).unwrap_err().to_string();
+        let error = report_stored(&report_args(folder.path())).unwrap_err().to_string();
         assert!(error.contains("results.json"), "{error}");
         let is_read = |error: &HarnessError| {
             matches!(error, HarnessError::Results(ResultsError::Read { .. }))
         };
-        assert!(is_read(&report_stored(&of(&folder.path().join("gone"))).unwrap_err()));
+        assert!(is_read(&report_stored(&report_args(&folder.path().join("gone"))).unwrap_err()));
     }
 
     #[test]
-    fn a_file_of_results_is_read_and_a_folder_of_them_says_so() {
+    fn a_single_file_is_read_and_a_folder_of_several_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("atrium.json");
         std::fs::write(&file, include_str!("results/example.json")).unwrap();
-        let error = report_stored(&of(folder.path())).unwrap_err().to_string();
+        let error = report_stored(&report_args(folder.path())).unwrap_err().to_string();
         assert!(error.contains("atrium.json") && error.contains("a file of results"), "{error}");
-        report_stored(&of(&file)).unwrap();
+        report_stored(&report_args(&file)).unwrap();
         assert!(folder.path().join("atrium/index.html").is_file());
         assert!(!folder.path().join("index.html").exists());
+        let out = folder.path().join("elsewhere");
+        let args = ReportArgs { out: Some(out.clone()), ..report_args(&file) };
+        report_stored(&args).unwrap();
+        assert!(out.join("index.html").is_file(), "--out names the folder of the page");
     }
 }

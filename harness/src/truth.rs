@@ -1,7 +1,7 @@
-//! `lightbench truth`: what a view should look like, rendered on the CPU from the triangles themselves.
+//! `lightbench truth`: renders on the CPU, from the triangles, what a view should look like.
 //!
-//! Without shadows it is what the shading pipeline approaches. There the same light on the surfaces of the
-//! G-buffer tells what its formats cost.
+//! Without shadows, the shading pipeline approximates this image. Then the same light on the surfaces of the
+//! G-buffer shows the error of the G-buffer's formats.
 
 use std::path::Path;
 use std::time::Instant;
@@ -28,7 +28,7 @@ use crate::{
     stage::Stage,
 };
 
-/// Where the standard error is this share of the mean luminance, its picture is white.
+/// The picture of the standard error is white at this share of the mean luminance.
 const WHITE: f64 = 0.01;
 
 /// Files of a truth image.
@@ -120,7 +120,7 @@ pub fn render(
     Ok(results)
 }
 
-/// The surfaces that the pixels show, as shading sees them.
+/// The visible surfaces as the G-buffer stores them.
 fn surfaces(gpu: &Gpu, stage: &mut Stage) -> Result<GBufferSamples, HarnessError> {
     stage.prepare()?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -131,14 +131,14 @@ fn surfaces(gpu: &Gpu, stage: &mut Stage) -> Result<GBufferSamples, HarnessError
     Ok(GBufferSamples::read(&stage.renderer, &stage.view)?)
 }
 
-/// What a reader of the image must know.
+/// Notes for readers of the image.
 fn notes(emissive_triangles: usize, args: &TruthArgs) -> Vec<String> {
     let is_dark = emissive_triangles > 0 && args.bounces == 0;
     let note = "surfaces that emit light no others: --shadows --bounces 1 adds their light";
     is_dark.then(|| note.to_owned()).into_iter().collect()
 }
 
-/// What the rounding of depth and G-buffer costs: the same light on their surfaces, against the truth.
+/// The errors from rounding depth and G-buffer: the same light on their surfaces, compared with the truth.
 fn gbuffer_errors(
     gpu: &Gpu,
     stage: &mut Stage,
@@ -155,7 +155,7 @@ fn gbuffer_errors(
     Ok(stored(errors(&pair)))
 }
 
-/// Direct light, and bounces where they are asked for.
+/// Direct light, and bounces if the options ask for them.
 fn trace(
     stage: &Stage,
     scene: &TracedScene<'_>,
@@ -178,7 +178,7 @@ fn trace(
 }
 
 fn settings(stage: &Stage, args: &TruthArgs, transport: Transport) -> TruthSettings {
-    // Other numbers for each transport: their errors are independent.
+    // Each transport has its own random numbers, so that their errors are independent.
     let of_transport = if transport == Transport::Bounce { 2 } else { 1 };
     let seed = args.sample_seed.unwrap_or(args.stage.seed);
     TruthSettings {
@@ -190,7 +190,7 @@ fn settings(stage: &Stage, args: &TruthArgs, transport: Transport) -> TruthSetti
     }
 }
 
-/// The stage's lights on samples, with a bar of progress.
+/// Evaluates the stage's lights at samples, with a progress bar.
 fn lit(
     stage: &Stage,
     scene: &TracedScene<'_>,

@@ -1,4 +1,4 @@
-//! The virtual point lights of a stage: from the primary light's view to lights with ranges.
+//! Makes the virtual point lights of a stage, from the primary light's view to lights with ranges.
 
 use assign::{EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M, MIN_RANGE_M, Passes, View};
 use assign_cdi::{
@@ -19,7 +19,7 @@ use crate::{
     results::{self, Vpls},
 };
 
-/// Frames in which the steps are timed: on a GPU, and on a software adapter.
+/// Frames to time: on a GPU, and on a software adapter.
 const FRAMES: [u32; 2] = [32, 1];
 
 /// The clamp of a light's fall-off as a share of the diagonal of the scene's core.
@@ -31,33 +31,33 @@ const RANDOM_SHARE: f32 = 0.25;
 /// The constant range as a share of it: the mean of random ones.
 const CONSTANT_SHARE: f32 = 0.125;
 
-/// Half the width of the middle of a scene, as a share of its core's.
+/// Half the width of the middle of a scene, as a share of the width of its core.
 const MIDDLE_SHARE: f32 = 0.25;
 
-/// Infinite ranges are as many diagonals of the scene: the window is above 0.9999 in it.
+/// An infinite range in diagonals of the scene. Within the scene, the window is then above 0.9999.
 const INFINITE_DIAGONALS: f32 = 20.0;
 
-/// Makes virtual point lights, and keeps the scene's triangles from one set to the next.
+/// Makes virtual point lights. Keeps the scene's triangles between calls.
 #[derive(Default)]
 pub struct VplMaker {
     triangles: Option<WorldTriangles>,
 }
 
-/// Lights and what they took.
+/// Lights, and figures about making them.
 pub struct Made {
     /// The lights.
     pub lights: Vec<Light>,
-    /// What they took.
+    /// Times and counts of making them.
     pub figures: Vpls,
 }
 
 impl VplMaker {
-    /// Makes what surfaces reflect of `primary` into lights, as options ask for. The scene must be the
+    /// Turns the light of `primary` that surfaces reflect into virtual point lights. The scene must be the
     /// same in every call.
     ///
     /// # Errors
     ///
-    /// Where the light has no shadow map, deep images do not fit, or the device refuses.
+    /// The light has no shadow map, the deep images do not fit, or the device fails.
     pub fn make(
         &mut self,
         gpu: &Gpu,
@@ -86,7 +86,7 @@ impl VplMaker {
             ranges.prepare(gpu, &vpls)?;
             record(&map, &view, &mut vpls, &mut ranges, &mut clock)?;
             let times = clock.finish()?;
-            // On a software adapter the first frame counts: it has no clock to raise.
+            // A software adapter has no clock to raise, so its first frame counts.
             if gpu.is_software() || warm_up.is_warm() {
                 samples.collect(times);
                 timed += 1;
@@ -147,7 +147,7 @@ fn rsm_of<'a>(map: &'a Renderer, view: &'a View, light: &'a Light) -> Rsm<'a> {
     }
 }
 
-/// Draws the map and chooses the lights that come of it.
+/// Draws the map and chooses lights from its pixels.
 fn record_map(map: &Renderer, view: &View, vpls: &VplBuffer, passes: &mut dyn Passes) {
     let mut named = OfMap(passes);
     map.record_depth(view, &mut named);
@@ -169,12 +169,12 @@ fn record(
     Ok(())
 }
 
-/// How lights are kept.
+/// The settings that choose lights and limit their ranges.
 fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
     let core_m = scene.core_bounds.diagonal();
     let is_infinite = args.ranges == RangeChoice::Infinite;
     let infinite_m = INFINITE_DIAGONALS * scene.bounds.diagonal().clamp(1e-3, 1e6);
-    // A light whose rays meet nothing lights nothing: it alone has no range, however long others are.
+    // Only a light whose rays meet nothing has no range, and such a light lights nothing.
     let longest_m = if is_infinite { infinite_m } else { MAX_RANGE_M };
     let (low_m, high_m) = args
         .keep_ranges
@@ -183,7 +183,7 @@ fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
     VplSettings {
         spacing_m: args.vpl_spacing as f32,
         limit: None,
-        // Random ranges are ranges, not distances.
+        // Random ranges are ranges already; the factor is only for measured distances.
         range_scale: if args.ranges.measures() { args.range_scale as f32 } else { 1.0 },
         min_range_m: low_m.clamp(MIN_RANGE_M, high_m),
         max_range_m: high_m,
@@ -192,7 +192,7 @@ fn settings(scene: &Scene, args: &VplArgs) -> VplSettings {
     }
 }
 
-/// The bounds of ranges that do not come from the lengths of rays: equal where there is one range.
+/// The bounds of ranges that do not come from the lengths of rays. Both are equal for a constant range.
 fn drawn_span(scene: &Scene, args: &VplArgs) -> Option<Span> {
     let share = |share: f32| f64::from((share * scene.core_bounds.diagonal()).clamp(1e-3, 1e6));
     match args.ranges {
@@ -214,7 +214,7 @@ enum Ranges<'a> {
         triangles: Triangles<'a>,
         caster: RangeCaster,
         light_world: Vec3,
-        /// Takes the place of the lengths that were found; lights that found none stay out.
+        /// Replaces the measured lengths. Lights whose rays met nothing stay left out.
         drawn: Option<RandomRanges>,
     },
     Random(RandomRanges),
@@ -333,9 +333,8 @@ impl Passes for OfMap<'_> {
     }
 }
 
-/// Draws the map once and makes a light of each texel that shows a surface: their positions and normals
-/// are there then. Where `is_middle`, the map is of the middle of the scene, so that about every texel
-/// does.
+/// Draws the map once and makes a light of each texel that shows a surface, with position and normal. If
+/// `is_middle`, the map shows the middle of the scene, so that almost every texel shows a surface.
 ///
 /// # Errors
 ///
@@ -349,7 +348,7 @@ pub fn all_texels(
 ) -> Result<VplBuffer, HarnessError> {
     let mut view = rsm_view(&primary, size_px, (scene.bounds.min, scene.bounds.max))?;
     let (centre, half) = (scene.core_bounds.center(), MIDDLE_SHARE * scene.core_bounds.size());
-    // A spot of the scene's own may look elsewhere.
+    // A spot of the scene may point elsewhere.
     if let (true, Ok(middle)) =
         (is_middle, rsm_view(&primary, size_px, (centre - half, centre + half)))
     {

@@ -64,8 +64,15 @@ fn the_table_shows_the_data() {
     assert_eq!(texts("lists_bytes")[1], "1.25");
     let fault = dom.matches("class=\"fault\"").count();
     assert_eq!(fault, 3, "the missed pairs and the difference stand out");
-    assert_eq!(dom.matches("class=\"track\"").count(), results.records.len());
-    assert_eq!(dom.matches("type=\"range\"").count(), 2, "one slider per comparison");
+    let rows = dom.matches("<g class=\"row\">").count();
+    assert_eq!(rows, 2 * results.records.len(), "a bar per record on each of two axes");
+    let strips = dom.matches("<svg class=\"strip\"").count();
+    let passes: usize = results.records.iter().map(|r| r.times.passes.iter().count()).sum();
+    assert_eq!(strips, passes, "a strip of samples per pass");
+    assert_eq!(dom.matches("type=\"range\"").count(), 4, "a slider per strategy that culls");
+    let pictures = dom.matches("<img data-picture=").count();
+    let sources = dom.matches("src=\"data:image/png;base64,").count();
+    assert!(pictures > 0 && pictures == sources, "{sources} of {pictures} pictures have a source");
 }
 
 /// The names in the first table, from top to bottom.
@@ -103,7 +110,23 @@ fn a_heading_sorts() {
 }
 
 #[test]
-fn a_script_that_fails_is_noticed() {
+fn a_button_chooses_a_panel() {
+    let page = render_html(&typical(), &[]);
+    let shown = |dom: &str| {
+        let panels = dom.split("<div data-panel=\"").skip(1).take(2);
+        panels
+            .map(|panel| !panel.split('>').next().unwrap_or("").contains("hidden"))
+            .collect::<Vec<_>>()
+    };
+    let Some(before) = dump(&page, 1200) else { return };
+    assert_eq!(shown(body(&before)), [true, false]);
+    let click = "<script>document.querySelectorAll('[data-choose]')[1].click()</script></body>";
+    let after = dump(&page.replace("</body>", click), 1200).expect("the browser is there");
+    assert_eq!(shown(body(&after)), [false, true]);
+}
+
+#[test]
+fn a_failing_script_is_noticed() {
     let page = render_html(&typical(), &[]);
     let planted = "<script>throw new Error('planted')</script></body>";
     let Some(dom) = dump(&page.replace("</body>", planted), 1200) else { return };

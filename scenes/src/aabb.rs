@@ -25,7 +25,7 @@ impl Aabb {
         points.into_iter().fold(Self::EMPTY, Self::extended)
     }
 
-    /// Whether it holds no point.
+    /// Whether it contains no point.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
@@ -50,7 +50,7 @@ impl Aabb {
         Self::new(self.min.min(other.min), self.max.max(other.max))
     }
 
-    /// What both share; may be empty.
+    /// The box that both share; it may be empty.
     pub fn intersection(self, other: Self) -> Self {
         Self::new(self.min.max(other.min), self.max.min(other.max))
     }

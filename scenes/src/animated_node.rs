@@ -1,16 +1,17 @@
-//! A camera's animation: the transforms of the nodes from the root to the camera, evaluated exactly.
+//! A camera's animation: the transforms of the nodes from the root to the camera, evaluated exactly
+//! at any time.
 
 use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4, Vec4Swizzles};
 use gltf::json::{animation::Interpolation, scene::Node};
 
 use crate::Pose;
 
-/// A camera whose node, or one above it, is animated.
+/// A camera that is animated, or below a node that is animated.
 #[derive(Clone, Debug)]
 pub(crate) struct AnimatedNode {
-    /// From the root to the camera.
+    /// The nodes from the root to the camera.
     pub(crate) chain: Vec<Part>,
-    /// Where world space begins, in the file's.
+    /// The origin of world space, in the file's coordinates.
     pub(crate) origin: DVec3,
     pub(crate) start_s: f32,
     pub(crate) end_s: f32,
@@ -42,7 +43,7 @@ pub(crate) enum Local {
 }
 
 impl Local {
-    pub(crate) fn of(node: &Node) -> Self {
+    pub(crate) fn from_node(node: &Node) -> Self {
         if let Some(matrix) = node.matrix {
             return Self::Matrix(Mat4::from_cols_array(&matrix));
         }
@@ -67,7 +68,7 @@ impl Local {
         }
     }
 
-    /// The matrix with axes of length 0 replaced, so that it still turns what looks along them.
+    /// The matrix with axes of length 0 replaced, so that it still turns directions along them.
     pub(crate) fn facing(&self) -> Mat4 {
         match *self {
             Self::Matrix(matrix) => with_axes(matrix),
@@ -79,7 +80,7 @@ impl Local {
     }
 }
 
-/// A matrix whose axes of length 0 are replaced by ones across the others.
+/// A matrix whose axes of length 0 are replaced by axes perpendicular to the others.
 fn with_axes(matrix: Mat4) -> Mat4 {
     let mut axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
     for ix in 0..3 {
@@ -104,7 +105,8 @@ impl AnimatedNode {
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
         let root = DMat4::from_translation(-self.origin);
-        // As `gltf_import::walk` places what stands still: scales of 0 turn no camera.
+        // `gltf_import::walk` places nodes at rest in the same way: a scale of 0 does not turn a
+        // camera.
         let (place, facing) = self.chain.iter().fold((root, root), |(place, facing), part| {
             let local = part.local(time);
             (place * local.matrix().as_dmat4(), facing * local.facing().as_dmat4())

@@ -1,5 +1,5 @@
-//! Meshes from profiles swept along paths, surfaces and boxes, with normals, tangents and uv in
-//! metres.
+//! Builds meshes from profiles swept along paths, surfaces and boxes, with normals, tangents, and
+//! uv in metres.
 
 use std::f32::consts::TAU;
 
@@ -7,8 +7,8 @@ use glam::{Mat4, Vec2, Vec3};
 
 use crate::{Aabb, Mesh, Vertex};
 
-/// Where a profile point `(a, b)` lies along a sweep: `origin + a * x + b * y`. Its normal is
-/// taken in the plane of `normal_x` and `y`, which is that of `x` except at mitred ends.
+/// Where a profile point `(a, b)` lies along a sweep: `origin + a * x + b * y`. Its normal lies in
+/// the plane of `normal_x` and `y`. That is the plane of `x` and `y` except at mitred ends.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
     pub(crate) origin: Vec3,
@@ -17,7 +17,7 @@ pub(crate) struct Frame {
     pub(crate) normal_x: Vec3,
 }
 
-/// A mesh in the making.
+/// A mesh under construction.
 #[derive(Clone, Default)]
 pub(crate) struct Builder {
     vertices: Vec<Vertex>,
@@ -51,7 +51,7 @@ impl Builder {
         });
     }
 
-    /// A triangle, wound to agree with its vertices' normals; none where it has no area.
+    /// Adds a triangle, wound to agree with its vertices' normals. Adds nothing if it has no area.
     fn triangle(&mut self, corners: [u32; 3]) {
         let [a, b, c] = corners.map(|ix| self.vertices[ix as usize]);
         let position = |v: Vertex| Vec3::from(v.position);
@@ -72,7 +72,7 @@ impl Builder {
         }
     }
 
-    /// A surface over the unit square, `columns` by `rows` quads, facing `du x dv`. uv is in
+    /// Adds a surface over the unit square, `columns` by `rows` quads, facing `du x dv`. uv is in
     /// metres, measured along the middle lines.
     pub(crate) fn surface(&mut self, columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) {
         const H: f32 = 1e-3;
@@ -99,8 +99,8 @@ impl Builder {
         }
     }
 
-    /// Sweeps a profile along frames. The profile's outside is on its right: going up, the
-    /// outside is `+a`. A repeated point makes a sharp edge; other corners are smooth.
+    /// Sweeps a profile along frames. The outside is on the profile's right: for a profile that
+    /// goes up, the outside is `+a`. A repeated point makes a sharp edge; other corners are smooth.
     pub(crate) fn sweep(&mut self, frames: &[Frame], profile: &[Vec2]) {
         let mut length_v = 0.0;
         for run in profile.chunk_by(|a, b| a != b) {
@@ -139,7 +139,7 @@ impl Builder {
         }
     }
 
-    /// A solid of revolution about +Y: the profile is (radius, height), going up.
+    /// Adds a solid of revolution about +Y. The profile is (radius, height), going up.
     pub(crate) fn lathe(&mut self, center: Vec3, segments: u32, profile: &[Vec2]) {
         let frames: Vec<_> = (0..=segments)
             .map(|i| {
@@ -151,8 +151,8 @@ impl Builder {
         self.sweep(&frames, profile);
     }
 
-    /// A straight moulding from `from` to `to`, its profile's `a` towards `out`; `mitre` shifts
-    /// the ends along the run by that much per metre of `a`.
+    /// Adds a straight moulding from `from` to `to`. The profile's `a` points towards `out`.
+    /// `mitre` shifts the ends along the run by that many metres per metre of `a`.
     pub(crate) fn moulding(
         &mut self,
         from: Vec3,
@@ -171,7 +171,7 @@ impl Builder {
         self.sweep(&[frame(from, -mitre), frame(to, mitre)], profile);
     }
 
-    /// Adds a copy of another mesh, moved and turned, not scaled.
+    /// Adds a copy of another mesh, moved and turned but not scaled.
     pub(crate) fn append(&mut self, other: &Self, rigid: &Mat4) {
         let first = self.vertices.len() as u32;
         let turned = |v: [f32; 3]| rigid.transform_vector3(v.into());
@@ -187,8 +187,8 @@ impl Builder {
         self.indices.extend(other.indices.iter().map(|ix| first + ix));
     }
 
-    /// A flat quad with a normal of its own: `corner` and two edges, the face on the side of
-    /// `u x v`, which must be the normal's side.
+    /// Adds a flat quad with a given normal: `corner` and two edges. The face is on the side of `u
+    /// x v`, which must be the normal's side.
     pub(crate) fn card(&mut self, corner: Vec3, u: Vec3, v: Vec3, normal: Vec3) {
         let first = self.vertices.len() as u32;
         for (p, uv) in [
@@ -202,7 +202,7 @@ impl Builder {
         self.strip(first, first + 2, 2);
     }
 
-    /// A triangle, facing counter-clockwise.
+    /// Adds a triangle that faces the side from which it is counter-clockwise.
     pub(crate) fn gable(&mut self, corners: [Vec3; 3]) {
         let first = self.vertices.len() as u32;
         let [a, b, c] = corners;
@@ -215,11 +215,11 @@ impl Builder {
         self.triangle([first, first + 1, first + 2]);
     }
 
-    /// A flat quad: `corner`, and two edges with the face on the side of `u x v`.
+    /// Adds a flat quad: `corner` and two edges. The face is on the side of `u x v`.
     pub(crate) fn quad(&mut self, corner: Vec3, u: Vec3, v: Vec3) {
         let first = self.vertices.len() as u32;
         let normal = u.cross(v);
-        // uv from world positions, so that neighbours continue each other's pattern.
+        // uv comes from world positions, so the pattern continues from one quad to the next.
         let (unit_u, unit_v) = (u.normalize_or_zero(), v.normalize_or_zero());
         for p in [corner, corner + u, corner + v, corner + u + v] {
             self.vertex(p, normal, u, Vec2::new(p.dot(unit_u), -p.dot(unit_v)));
@@ -227,7 +227,7 @@ impl Builder {
         self.strip(first, first + 2, 2);
     }
 
-    /// A box between two corners.
+    /// Adds a box between two corners.
     pub(crate) fn block(&mut self, min: Vec3, max: Vec3) {
         let d = max - min;
         let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);
@@ -239,7 +239,7 @@ impl Builder {
         self.quad(min, x, z);
     }
 
-    /// A box given by the middle of its lower face and its size.
+    /// Adds a box, given the middle of its lower face and its size.
     pub(crate) fn block_on(&mut self, foot: Vec3, size: Vec3) {
         let half = Vec3::new(0.5 * size.x, 0.0, 0.5 * size.z);
         self.block(foot - half, foot + half + Vec3::Y * size.y);

@@ -1,4 +1,4 @@
-//! Rays and distances against a scene's triangles, which obvhs traverses.
+//! Rays and distances against a scene's triangles. obvhs traverses the hierarchy.
 
 use glam::Vec3;
 use obvhs::{
@@ -10,7 +10,7 @@ use obvhs::{
 
 use crate::{Aabb, BuildEffort, DistinctTriangles, Scene, build_hierarchy};
 
-/// The most triangles of a hierarchy: 64 bytes each while it is built.
+/// The most triangles of a hierarchy. Each takes 64 bytes while it is built.
 const MAX_TRIANGLES: u64 = 4_000_000;
 
 /// Where a ray meets a triangle.
@@ -25,17 +25,18 @@ pub(crate) struct Hit {
 /// A bounding volume hierarchy over world-space triangles.
 pub(crate) struct TriangleBvh {
     bvh: Bvh2,
-    /// In the hierarchy's order, so that its leaves index them directly.
+    /// The triangles in the hierarchy's order, so that its leaves index them directly.
     triangles: Vec<Triangle>,
 }
 
 impl TriangleBvh {
-    /// Over the triangles that touch `region`: all of them in scenes of up to [`MAX_TRIANGLES`],
-    /// else at most as many, the largest first. Repeats and triangles without area are left out.
+    /// Builds it over the triangles that touch `region`: all of them in scenes of up to
+    /// [`MAX_TRIANGLES`], otherwise at most that many, the largest first. Repeats and triangles
+    /// without area are left out.
     pub(crate) fn new(scene: &Scene, region: Aabb) -> Self {
         let chosen = choose(scene, region, MAX_TRIANGLES);
         let convert = |[a, b, c]: [Vec3; 3]| Triangle { v0: a.into(), v1: b.into(), v2: c.into() };
-        let firsts = DistinctTriangles::of(&chosen).firsts;
+        let firsts = DistinctTriangles::find(&chosen).firsts;
         let triangles: Vec<_> = firsts.iter().map(|ix| convert(chosen[*ix as usize])).collect();
         let boxes: Vec<_> = triangles.iter().map(Boundable::aabb).collect();
         let bvh = build_hierarchy(&boxes, BuildEffort::Fast);
@@ -52,7 +53,7 @@ impl TriangleBvh {
         let ray = Ray::new(origin.into(), direction.into(), 0.0, max_m);
         let mut hit = RayHit::none();
         self.bvh.ray_traverse(ray, &mut hit, |ray, ix| self.triangles[ix].intersect(ray));
-        // Where nothing is hit, obvhs leaves the id invalid but not the distance infinite.
+        // Where nothing is hit, obvhs returns an invalid id but not an infinite distance.
         let normal = self.triangles.get(hit.primitive_id as usize)?.compute_normal();
         Some(Hit { distance_m: hit.t, is_back: Vec3::from(normal).dot(direction) > 0.0 })
     }
@@ -74,9 +75,9 @@ impl TriangleBvh {
     }
 }
 
-/// The triangles that touch `region`. Where the scene has more than `most`, about half of that
-/// number are the scene's largest triangles (walls and floors, which views and loops depend on
-/// most), and the rest are evenly chosen among the others.
+/// The triangles that touch `region`. In a scene of more than `most`, about half of that number are
+/// the scene's largest triangles: walls and floors, on which views and loops depend most. The rest
+/// are chosen evenly among the others.
 fn choose(scene: &Scene, region: Aabb, most: u64) -> Vec<[Vec3; 3]> {
     let touching =
         scene.world_triangles().filter(|t| !Aabb::from_points(*t).intersection(region).is_empty());
@@ -86,14 +87,14 @@ fn choose(scene: &Scene, region: Aabb, most: u64) -> Vec<[Vec3; 3]> {
     }
     let half = most / 2;
     let step = count.div_ceil(half);
-    // What about `half` of all triangles exceed, known from a sample.
+    // The size that about `half` of all triangles exceed, estimated from a sample.
     let mut areas: Vec<f32> = scene.sampled_triangles(half).map(double_area).collect();
     let rank = areas.len() - 1 - areas.len() / step as usize;
     let limit = *areas.select_nth_unstable_by(rank, f32::total_cmp).1;
     let (mut large, mut others) = (0, 0);
     touching
         .filter(|&triangle| {
-            // The sample may mislead: never more than `half`.
+            // The sample may mislead, so never take more than `half`.
             if large < half && double_area(triangle) > limit {
                 large += 1;
                 return true;

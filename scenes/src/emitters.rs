@@ -1,4 +1,4 @@
-//! Emitters of scattered area lights, drawn from a seed.
+//! Draws the emitters of scattered area lights from a seed.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use crate::random::random_direction;
 /// Outlines of scattered area lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outlines {
-    /// Half of each.
+    /// Half rectangles, half polygons.
     #[default]
     Both,
     /// Rectangles.
@@ -40,14 +40,14 @@ const ASPECT: (f64, f64) = (0.2, 1.0);
 /// Share of emitters that emit from both sides.
 const TWO_SIDED_SHARE: f64 = 0.25;
 
-/// An emitter that faces anywhere, of a size that goes with its range: a rectangle, or a polygon
-/// with its vertices on an ellipse.
+/// An emitter of random direction whose size is proportional to its range: a rectangle, or a
+/// polygon with its vertices on an ellipse.
 pub(crate) fn random_emitter(rng: &mut impl Rng, outlines: Outlines, range_m: f32) -> Emitter {
     let normal = random_direction(rng);
     let x =
         DQuat::from_axis_angle(normal, TAU * rng.random::<f64>()) * normal.any_orthonormal_vector();
     let half = f64::from(range_m) * rng.random_range(HALF_SIZE_SHARE.0..HALF_SIZE_SHARE.1);
-    // The smallest range gives an emitter that is just large enough.
+    // With the smallest range, this is just large enough for an emitter.
     let x = x * half.max(2e-4);
     let y = normal.cross(x) * rng.random_range(ASPECT.0..ASPECT.1);
     let two_sided = rng.random::<f64>() < TWO_SIDED_SHARE;

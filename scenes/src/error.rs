@@ -1,5 +1,5 @@
-//! What can go wrong, each in one line that names the file, the field, the value and what would
-//! be accepted.
+//! Errors of scenes. Each is one line that names the file, the field, the value, and what is
+//! accepted.
 
 use std::{fmt::Display, path::PathBuf};
 
@@ -13,7 +13,7 @@ pub enum SceneError {
     Read {
         /// The file that could not be read.
         file: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
     /// A file that the scene's file names cannot be read.
@@ -28,7 +28,7 @@ pub enum SceneError {
         field: String,
         /// The file that could not be read.
         part: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
     /// A file does not follow glTF 2.0, or asks for more than is accepted.
@@ -46,7 +46,7 @@ pub enum SceneError {
         /// What would be accepted.
         accepted: String,
     },
-    /// The file requires a glTF extension that this importer does not know.
+    /// The file requires a glTF extension that this importer does not support.
     #[error(
         "{}: extensionsRequired names {}: the supported extensions are {supported}",
         one_line(file.display()), quoted(extension)
@@ -69,7 +69,7 @@ pub enum SceneError {
         file: PathBuf,
         /// Which image.
         image: String,
-        /// What the decoder said.
+        /// The decoder's message.
         reason: String,
     },
     /// The scene has no triangles.
@@ -88,13 +88,13 @@ pub enum SceneError {
         /// What would be accepted.
         accepted: &'static str,
     },
-    /// Neither the id of a scene nor a glTF file.
+    /// A name that is neither the id of a scene nor the path of a glTF file.
     #[error(
         "scene is \"{}\": it must be a path that ends in .gltf or .glb, or one of {known}{nearest}",
         quoted(name)
     )]
     Unknown {
-        /// What was asked for.
+        /// The name.
         name: String,
         /// The ids of all procedural scenes.
         known: String,
@@ -103,7 +103,7 @@ pub enum SceneError {
     },
 }
 
-/// The most characters that a message quotes of what a file or a person wrote.
+/// The most characters that a message quotes from a file or a person.
 const MAX_QUOTED: usize = 300;
 
 /// Line separators, and marks that change the direction of the text around them.

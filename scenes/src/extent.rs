@@ -1,19 +1,19 @@
-//! How far a scene extends: the box around everything, and the box without a far backdrop.
+//! The extent of a scene: the box around everything, and the box without a far backdrop.
 
 use glam::Vec3;
 
 use crate::{Aabb, Instance, Scene};
 
-/// Shares of the triangles cut off at both ends of an axis that has a backdrop.
+/// The share of the triangles that is cut off at both ends of an axis with a backdrop.
 const CORE_SHARE: f64 = 0.02;
 
-/// An axis has a backdrop when the scene is this much longer than its core.
+/// An axis has a backdrop if the scene is this many times as long as its core.
 const BACKDROP_RATIO: f32 = 3.0;
 
-/// With fewer triangles than this, percentiles say nothing.
+/// With fewer triangles than this, percentiles are not meaningful.
 const CORE_TRIANGLES: usize = 1000;
 
-/// Scenes of more triangles are judged by a sample of at most that many, evenly chosen.
+/// Scenes of more triangles are measured by a sample of at most that many, evenly chosen.
 pub(crate) const MAX_SAMPLES: u64 = 2_000_000;
 
 /// The box around all triangles drawn.
@@ -26,9 +26,9 @@ pub(crate) fn bounds(scene: &Scene) -> Aabb {
     scene.instances.iter().map(place).fold(Aabb::EMPTY, Aabb::union)
 }
 
-/// The box around the part that most triangles belong to: along each axis the whole extent, or,
-/// where that is more than three times as long, the range of the middle 96 % of the triangles'
-/// centroids and a margin.
+/// The box around the part that most triangles belong to. Along each axis it is the range of the
+/// middle 96 % of the triangles' centroids, plus a margin. Where the whole extent is at most three
+/// times as long as that range, it is the whole extent.
 pub(crate) fn core_bounds(scene: &Scene) -> Aabb {
     let whole = scene.bounds;
     let sample = scene.sampled_triangles(MAX_SAMPLES);

@@ -1,11 +1,12 @@
-//! A camera path fitted to any scene.
+//! Fits a camera path to any scene.
 //!
-//! A path is found in three steps. Points spread over the core look around by casting rays
-//! against the scene's triangles; points inside solids (which see back faces) or close to walls
-//! drop out. Every direction of every point left is scored by what a picture from there would
-//! show. The best views then get a loop around a point ahead of them, the largest ellipse that
-//! keeps clear of all triangles, and the view with the best product of score and loop wins. Its
-//! loop is then bent: it climbs, sinks and weaves ([`tour`](crate::tour)).
+//! 1. Points spread over the core look around by casting rays against the scene's triangles. Points
+//!    inside solids, which see back faces, or close to walls drop out.
+//! 2. Each direction from each remaining point gets a score: how good would a picture from there
+//!    be?
+//! 3. The best views get a loop around a point ahead of them: the largest ellipse that keeps clear
+//!    of all triangles. The view with the best product of score and loop wins.
+//! 4. Its loop is bent, so that it climbs, sinks and weaves ([`tour`](crate::tour)).
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -20,29 +21,29 @@ use crate::{
     tour::Room,
 };
 
-/// What a scene looks at before its path is fitted.
+/// The view of a scene before its path is fitted.
 pub(crate) const ORIGIN: Pose = Pose::looking(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y);
 
-/// Points that look around: along x, y and z.
+/// The number of points that look around, along x, y and z.
 const GRID: [u32; 3] = [14, 5, 14];
 
-/// Elevations that each looks in at every azimuth, degrees.
+/// The elevations at which each point looks around at every azimuth, degrees.
 const ELEVATIONS: [f32; 7] = [-36.0, -24.0, -12.0, -2.0, 8.0, 18.0, 28.0];
 
-/// A point with more empty azimuths than this stands outside.
+/// A point with more empty azimuths than this stands outside the scene.
 const MAX_OPEN: usize = AZIMUTHS / 3;
 
-/// Views whose loops are tried.
+/// The number of views whose loops are tried.
 const FINALISTS: usize = 40;
 
-/// Of the scene's own lights, how many a view is rated by.
+/// The most lights of the scene by which a view is rated.
 const MAX_LAMPS: usize = 256;
 
-/// Knots of a loop: enough to go between two columns and back.
+/// Knots of a loop. They are enough to pass between two columns and back.
 const KNOTS: usize = 48;
 
-/// A path through the core that shows a lot of the scene. It starts at the scene's first camera
-/// where there is one.
+/// A path through the core that shows much of the scene. It starts at the scene's first camera if
+/// there is one.
 pub(crate) fn path(scene: &Scene) -> CameraPath {
     let core = scene.core_bounds;
     let region = core.grown(0.25 * core.diagonal()).intersection(scene.bounds.grown(1.0));
@@ -67,7 +68,7 @@ pub(crate) fn path(scene: &Scene) -> CameraPath {
     });
     match rated.max_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((_, view, ellipse)) => {
-            // Where there is much sky, look down on what there is.
+            // Where there is much sky, look down.
             let pitch = -0.05 - 0.25 * view.sky;
             fit.tour(view.eye, view.heading(), pitch, ellipse)
         }
@@ -93,12 +94,12 @@ fn middle_height(scene: &Scene) -> f32 {
     *heights.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// A place to look from, and how good the picture would be.
+/// A place to look from, and how good its picture would be.
 struct View {
     eye: Vec3,
     azimuth: f32,
     score: f32,
-    /// Share of rays that meet nothing.
+    /// The share of rays that hit nothing.
     sky: f32,
 }
 
@@ -116,13 +117,13 @@ fn direction(azimuth: f32, elevation: f32) -> Vec3 {
 struct Fit {
     bvh: TriangleBvh,
     core: Aabb,
-    /// How far rays go, metres.
+    /// The length of rays, metres.
     reach_m: f32,
-    /// Half the triangles lie below, metres.
+    /// Half the triangles lie below this height, metres.
     middle_height: f32,
     /// The least distance between the camera and any triangle, metres.
     margin_m: f32,
-    /// The scene's own lights: a view should show what they light.
+    /// Position and range of the scene's own lights. A view should show what they light.
     lamps: Vec<(Vec3, f32)>,
 }
 
@@ -130,8 +131,8 @@ impl Fit {
     /// The best view of every usable point of a jittered grid over the core.
     fn views(&self) -> Vec<View> {
         let [nx, ny, nz] = GRID;
-        // Not at the rims, below most of the geometry or among the roofs; where the scene has
-        // lights, among them.
+        // The region leaves out the rims, what lies below most of the geometry, and the roofs.
+        // Where the scene has lights, it is the region that they reach.
         let size = self.core.size();
         let mut region = Aabb::new(self.core.min + 0.1 * size, self.core.max - 0.1 * size);
         let reached = |(at, range): &(Vec3, f32)| Aabb::new(*at - *range, *at + *range);
@@ -152,7 +153,7 @@ impl Fit {
             .filter_map(|ix| {
                 let cell =
                     Vec3::new((ix % nx) as f32, (ix / nx % ny) as f32, (ix / nx / ny) as f32);
-                // Halton points in bases 2, 3 and 5 as jitter.
+                // Jitter by Halton points in bases 2, 3 and 5.
                 let jitter = Vec3::new(halton(ix, 2), halton(ix, 3), halton(ix, 5));
                 let at = (cell + jitter) / Vec3::new(nx as f32, ny as f32, nz as f32);
                 self.look_around(region.min + region.size() * at)
@@ -188,7 +189,7 @@ impl Fit {
         let best = (0..AZIMUTHS)
             .map(|middle| (picture_score(&columns, middle, !self.lamps.is_empty()), middle))
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
-        // Back faces tell of open or inside-out geometry nearby.
+        // Back faces indicate open or inside-out geometry nearby.
         let front_share = 1.0 - back_hits as f32 / hits as f32;
         Some(View {
             eye,
@@ -205,7 +206,7 @@ impl Fit {
     }
 
     /// The semi-axes, ahead and sideways, of the largest ellipse that starts at `eye`, has its
-    /// middle ahead and keeps its margin; zero where there is none.
+    /// middle ahead and keeps its margin. They are zero if there is none.
     fn ellipse(&self, eye: Vec3, heading: Vec3) -> Vec2 {
         let longest = 0.5 * self.reach_m;
         let mut best = Vec2::ZERO;
@@ -222,7 +223,7 @@ impl Fit {
     }
 
     fn is_clear(&self, eye: Vec3, heading: Vec3, axes: Vec2) -> bool {
-        // Points no further apart than the margin, so that none between them touches.
+        // Points no further apart than the margin, so that no part between them touches a triangle.
         let points = (TAU * axes.max_element() / self.margin_m.max(1e-12)).clamp(16.0, 600.0);
         let room = self.room();
         (0..points as u32)
@@ -233,8 +234,8 @@ impl Fit {
         Room { bvh: &self.bvh, core: self.core, margin_m: self.margin_m }
     }
 
-    /// Around the ellipse once, turning once, so that the camera always looks across it. The eye
-    /// leaves the ellipse where there is room; the point that it looks at does not.
+    /// Goes around the ellipse once and turns once, so that the camera always looks across it. The
+    /// eye leaves the ellipse where there is room; the point that it looks at stays on it.
     fn tour(&self, eye: Vec3, heading: Vec3, pitch: f32, axes: Vec2) -> CameraPath {
         let right = heading.cross(Vec3::Y);
         let angle = |ix: usize| TAU * ix as f32 / KNOTS as f32;
@@ -282,7 +283,8 @@ fn halton(ix: u32, base: u32) -> f32 {
     value
 }
 
-/// Around an object that cannot be entered: at a distance that fills the picture, slightly above.
+/// A path around an object that cannot be entered, from a distance that fills the picture, slightly
+/// above.
 fn orbit(around: Aabb) -> CameraPath {
     let center = around.center();
     let radius = 0.85 * around.diagonal();

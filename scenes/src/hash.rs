@@ -1,4 +1,4 @@
-//! A scene's content hash and its path's hash, for provenance.
+//! Hashes of a scene's content and of its path, for provenance.
 
 use assign::LightShape;
 use blake3::Hasher;
@@ -6,13 +6,13 @@ use glam::Vec3;
 
 use crate::{Dielectric, Encoding, Lens, Pose, Scene, TextureRef};
 
-/// Changes whenever what goes into the hash, or its order, changes.
+/// Increases whenever the values in the hash, or their order, change.
 const VERSION: u32 = 1;
 
-/// Poses of a path that enter its hash: more than a fitted loop has knots.
+/// The number of poses of a path in its hash: more than a fitted loop has knots.
 const PATH_POSES: u32 = 1_024;
 
-/// Feeds values to the hash, each list led by its length so that no two scenes share a stream.
+/// Feeds values to the hash. The length precedes each list, so no two scenes give the same stream.
 struct Feed(Hasher);
 
 impl Feed {
@@ -27,13 +27,13 @@ impl Feed {
 
     fn floats(&mut self, values: &[f32]) {
         for value in values {
-            // Which NaN arithmetic gives depends on the platform.
+            // Which NaN arithmetic returns depends on the platform.
             let value = if value.is_nan() { f32::NAN } else { *value };
             self.0.update(&value.to_le_bytes());
         }
     }
 
-    /// The eye, a point looked at, and what is up.
+    /// Adds the eye, a point looked at, and the up vector.
     fn pose(&mut self, marks: [Vec3; 3]) {
         for v in marks {
             self.floats(&v.to_array());
@@ -61,9 +61,10 @@ impl Feed {
 }
 
 impl Scene {
-    /// BLAKE3 over geometry, transforms, materials, images, lights, suns and cameras, as 64 hexadecimal
-    /// digits. Names, the path ([`path_hash`](Self::path_hash)) and the warnings do not enter.
-    /// Procedural scenes may differ in the last bit between platforms whose `sin` and `cos` do.
+    /// BLAKE3 over geometry, transforms, materials, images, lights, suns and cameras, as 64
+    /// hexadecimal digits. Names, warnings and the path ([`path_hash`](Self::path_hash)) are not
+    /// part of it. Procedural scenes may differ in the last bit between platforms whose `sin` and
+    /// `cos` differ.
     pub fn hash(&self) -> String {
         let mut feed = Feed(Hasher::new());
         feed.int(u64::from(VERSION));
@@ -75,8 +76,8 @@ impl Scene {
         feed.0.finalize().to_hex().to_string()
     }
 
-    /// BLAKE3 over poses along the path, as 64 hexadecimal digits: two versions of a scene's path
-    /// differ in it even where their first pose is the same.
+    /// BLAKE3 over poses along the path, as 64 hexadecimal digits. It differs between two versions
+    /// of a path even if their first poses are the same.
     pub fn path_hash(&self) -> String {
         let mut feed = Feed(Hasher::new());
         feed.int(u64::from(VERSION));
@@ -149,7 +150,7 @@ impl Scene {
         }
     }
 
-    /// What most scenes have none of: without it they keep the hash that they always had.
+    /// Adds features that few scenes have. Scenes without them keep the hash of earlier versions.
     fn hash_additions(&self, feed: &mut Feed) {
         if self.meshes.iter().any(|mesh| !mesh.colors.is_empty()) {
             feed.int(COLORS);
@@ -189,7 +190,7 @@ impl Scene {
     }
 }
 
-/// Marks the start of what scenes may have beside the rest.
+/// Each marks the start of a feature that few scenes have.
 const COLORS: u64 = 0x636f_6c6f_7273;
 const SUNS: u64 = 0x7375_6e73;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
@@ -198,7 +199,7 @@ const REFLECTANCES: u64 = 0x0066_3066_3930;
 mod tests {
     use crate::{CameraPath, atrium};
 
-    /// The first pose, where every path of a scene starts, does not tell paths apart.
+    /// The first pose, where every path of a scene starts, cannot distinguish paths.
     #[test]
     fn paths_of_the_same_first_pose_have_different_hashes() {
         let scene = atrium(1);

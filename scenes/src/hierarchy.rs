@@ -1,14 +1,13 @@
-//! Bounding volume hierarchies that are built in time on any triangles.
+//! Builds bounding volume hierarchies in bounded time on any triangles.
 //!
-//! obvhs clusters neighbours whose common box is smallest. Where all choices are the same (coincident
-//! triangles, a row of equal posts), it joins one pair per pass, so that its time is quadratic and
-//! its tree as deep as a list. Two steps prevent that:
+//! obvhs joins the neighbours whose common box is smallest. Where all choices are equal (coincident
+//! triangles, a row of equal posts), it joins one pair per pass. Its time is then quadratic and its
+//! tree is as deep as a list. Two steps prevent that:
 //!
-//! 1. [`DistinctTriangles`] leaves out triangles without area, which no ray meets, and keeps one of
-//!    those that are exactly the same. Rays would meet all of them at the same distance.
-//! 2. [`build_hierarchy`] clusters copies of the boxes that are brought to unit size and grown by
-//!    up to 0.2 % each, at random, so that hardly any two choices are the same. The tree then gets
-//!    the true boxes.
+//! 1. [`DistinctTriangles`] leaves out triangles without area, which no ray hits. Of equal
+//!    triangles it keeps one, because rays would hit all of them at the same distance.
+//! 2. [`build_hierarchy`] scales copies of the boxes to unit size and grows each by up to 0.2 % at
+//!    random, so that hardly any two choices are equal. The tree then gets the true boxes.
 
 use std::{
     hash::{DefaultHasher, Hash, Hasher},
@@ -24,16 +23,17 @@ use obvhs::{
 };
 use rayon::prelude::*;
 
-/// By how much a box grows at most, as a share of its longest side and of all boxes together.
+/// The most by which a box grows, as a share of its longest side and of the size of all boxes
+/// together.
 const GROWTH: f64 = 2e-3;
 const LEAST_GROWTH: f64 = 1e-6;
 
-/// How much time a hierarchy is worth.
+/// How much time the build may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BuildEffort {
-    /// Built fast: one triangle per leaf.
+    /// A fast build: one triangle per leaf.
     Fast,
-    /// Built for many rays.
+    /// A slower build, for many rays.
     Thorough,
 }
 
@@ -83,7 +83,7 @@ fn apart(boxes: &[Aabb]) -> Vec<Aabb> {
     boxes.par_iter().enumerate().map(place).collect()
 }
 
-/// Bits that look random (SplitMix64).
+/// Pseudo-random bits (SplitMix64).
 fn scramble(ix: u64) -> u64 {
     let mut bits = ix.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -91,28 +91,28 @@ fn scramble(ix: u64) -> u64 {
     bits ^ bits >> 31
 }
 
-/// Triangles that rays can meet, without repeats.
+/// The triangles that rays can hit, without repeats.
 #[derive(Clone, Debug, Default)]
 pub struct DistinctTriangles {
-    /// Indices of the first of each, ascending.
+    /// For each set of equal triangles, the index of the first; ascending.
     pub firsts: Vec<u32>,
-    /// By triangle, the next that is the same, or itself where none follows. Empty where no triangle
-    /// is repeated.
+    /// For each triangle, the next equal one, or itself if none follows. Empty if no triangle is
+    /// repeated.
     next: Vec<u32>,
 }
 
 impl DistinctTriangles {
-    /// Finds them among triangles, each given by its corners. Two are the same when they have the
-    /// same corners in the same order. Those without area or with a corner that is not finite are
+    /// Finds the distinct triangles, each given by its corners. Two are equal if they have the same
+    /// corners in the same order. Triangles without area, or with a corner that is not finite, are
     /// left out.
-    pub fn of(corners: &[[Vec3; 3]]) -> Self {
+    pub fn find(corners: &[[Vec3; 3]]) -> Self {
         let hashed = |ix: usize| has_area(corners[ix]).then(|| (hash(corners[ix]), ix as u32));
         let mut hashes: Vec<(u64, u32)> =
             (0..corners.len()).into_par_iter().filter_map(hashed).collect();
         hashes.par_sort_unstable();
         let mut distinct = Self::default();
         for run in hashes.chunk_by(|a, b| a.0 == b.0) {
-            // Triangles of one hash that differ stay apart.
+            // Triangles of the same hash that differ stay separate.
             let same = |b: u32| corners[run[0].1 as usize] == corners[b as usize];
             distinct.firsts.push(run[0].1);
             distinct.firsts.extend(run[1..].iter().map(|(_, ix)| *ix).filter(|ix| !same(*ix)));
@@ -129,7 +129,7 @@ impl DistinctTriangles {
         distinct
     }
 
-    /// The next triangle that is the same as this one.
+    /// The next triangle that is equal to this one.
     pub fn next(&self, triangle: u32) -> Option<u32> {
         self.next.get(triangle as usize).copied().filter(|next| *next != triangle)
     }
@@ -164,9 +164,10 @@ mod tests {
         (0..count).map(place).collect()
     }
 
-    /// Boxes that leave obvhs no choice: without growth, a hundred thousand take 8 s and more.
+    /// Boxes that give obvhs no choice. Without growth, a hundred thousand of them take 8 s and
+    /// more.
     #[test]
-    fn ties_do_not_make_builds_slow_or_deep() {
+    fn equal_choices_do_not_make_builds_slow_or_deep() {
         const COUNT: u32 = 100_000;
         let along = |ix: u32| Vec3::new(ix as f32, 0.0, 0.0);
         let cases: [(&str, Vec<Aabb>); 6] = [
@@ -196,11 +197,11 @@ mod tests {
         let flat = [a, b, b * 2.0];
         let odd = [a, b, Vec3::splat(f32::NAN)];
         let corners = [flat, [a, b, c], [a, c, b], odd, [-a, b, c], [b, c, a], [a, b, c]];
-        let distinct = DistinctTriangles::of(&corners);
+        let distinct = DistinctTriangles::find(&corners);
         assert_eq!(distinct.firsts, [1, 2, 5]);
         let chain: Vec<u32> = std::iter::successors(Some(1), |ix| distinct.next(*ix)).collect();
         assert_eq!(chain, [1, 4, 6]);
-        assert_eq!(DistinctTriangles::of(&corners[..3]).next(1), None);
-        assert!(DistinctTriangles::of(&[]).firsts.is_empty());
+        assert_eq!(DistinctTriangles::find(&corners[..3]).next(1), None);
+        assert!(DistinctTriangles::find(&[]).firsts.is_empty());
     }
 }

@@ -1,10 +1,10 @@
-//! Scenes on the CPU: what is drawn, what lights it and where the camera goes.
+//! Scenes on the CPU: geometry, materials, lights and camera paths.
 //!
-//! [`open`] makes a [`Scene`] from the id of a procedural scene ([`list`]) or from a glTF 2.0
-//! file ([`load_gltf`]). [`scatter_lights`] draws any number of lights from a seed, and
-//! [`CameraPath`] leads a camera through the scene, timed by frame number only.
+//! [`open`] makes a [`Scene`] from the id of a procedural scene ([`list`]) or from a glTF 2.0 file
+//! ([`load_gltf`]). [`scatter_lights`] draws any number of lights from a seed. [`CameraPath`] leads
+//! a camera through the scene; the frame number alone decides where it is.
 //!
-//! World space is right-handed with +Y up, in metres; colours are linear RGB; triangles are
+//! World space is right-handed with +Y up, in metres. Colours are linear RGB. Triangles are
 //! counter-clockwise seen from the front.
 
 mod aabb;

@@ -1,4 +1,4 @@
-//! Lights drawn from a seed.
+//! Draws scattered lights from a seed.
 
 use assign::{Light, LightShape};
 use glam::Vec3;
@@ -13,44 +13,44 @@ use crate::{
     random::{random_color, random_direction, seed_of},
 };
 
-/// The most lights [`scatter_lights`] makes.
+/// The most lights that [`scatter_lights`] makes.
 pub const MAX_LIGHTS: u32 = 1 << 24;
 
-/// The smallest radius a scattered light gets, metres: smaller draws are raised to it.
+/// The smallest radius of a scattered light, metres. Smaller draws are raised to it.
 pub const MIN_RADIUS_M: f32 = 1e-4;
 
 /// The irradiance at which an unbounded light's range ends: `range = sqrt(I / THRESHOLD)`
 /// (Watrous 2024, "Light volumes").
 pub const THRESHOLD: f32 = 0.02;
 
-/// Half angles at which spots end, degrees.
+/// Range of the half angles at which spots end, degrees.
 const SPOT_OUTER_DEGREES: (f64, f64) = (15.0, 60.0);
 
-/// Inner angle of spots as a share of the outer.
+/// Range of the inner angle of spots, as a share of the outer.
 const SPOT_INNER_SHARE: (f64, f64) = (0.5, 0.95);
 
-/// What [`scatter_lights`] is asked for.
+/// The parameters of [`scatter_lights`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSpec {
-    /// How many, at most [`MAX_LIGHTS`].
+    /// The number of lights, at most [`MAX_LIGHTS`].
     pub count: u32,
-    /// With a light's index, all that decides it.
+    /// The seed. It and the light's index decide everything random about a light.
     pub seed: u64,
-    /// Factor on the radii, `> 0`; at 1 their mean is one metre.
+    /// Factor on the radii, `> 0`. At 1 their mean is one metre.
     pub radius_scale: f32,
     /// How the radii are distributed.
     pub radii: Radii,
-    /// Where the lights are.
+    /// The box of the lights' positions.
     pub bounds: Aabb,
-    /// How they fill the box.
+    /// Where they lie in the box.
     pub places: Places,
-    /// Share of spots among them, 0..=1.
+    /// The share of spots, 0..=1.
     pub spot_share: f32,
-    /// Share of area lights, 0..=1; the rest are points.
+    /// The share of area lights, 0..=1. The rest are points.
     pub area_share: f32,
     /// Outlines of the area lights.
     pub outlines: Outlines,
-    /// Where the diffuse light of area lights ends, as a share of their range.
+    /// Where diffuse light of area lights ends, as a share of their range.
     pub diffuse_share: f32,
 }
 
@@ -100,13 +100,13 @@ impl LightSpec {
     }
 }
 
-/// Draws lights: radii from a gamma distribution of mode 0.25 and mean 1.0 times
-/// `radius_scale`, positions uniform in `bounds`, colours of random hue and saturation. The
-/// intensity's largest channel is `THRESHOLD * range^2`, so that the range is where an unbounded
-/// light would have faded to [`THRESHOLD`].
+/// Draws lights. Radii follow a gamma distribution of mode 0.25 and mean 1.0, times `radius_scale`.
+/// Positions are uniform in `bounds`. Colours have random hue and saturation. The intensity's
+/// largest channel is `THRESHOLD * range^2`, so an unbounded light would have faded to
+/// [`THRESHOLD`] at the range.
 ///
-/// Every light depends on the seed and its own index only: 1,000 lights are the first of 10,000,
-/// and the `i`-th light's position does not depend on `radius_scale` or `spot_share`.
+/// Every light depends only on the seed and its own index. So 1,000 lights are the first of 10,000,
+/// and the position of the `i`-th light does not depend on `radius_scale` or `spot_share`.
 ///
 /// # Errors
 ///
@@ -119,7 +119,7 @@ pub fn scatter_lights(spec: &LightSpec) -> Result<Vec<Light>, SceneError> {
 }
 
 fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
-    // The gamma draw takes a varying number of values and so comes last.
+    // The radius comes last, because the gamma distribution draws a varying number of values.
     let mut rng = Pcg64Mcg::seed_from_u64(seed_of(spec.seed, ix));
     let shares = spec.places.sample(&mut rng);
     let position = Vec3::from_array(std::array::from_fn(|axis| {
@@ -132,7 +132,8 @@ fn scatter_one(spec: &LightSpec, radii: &RadiusSource, ix: u32) -> Light {
     let kind = rng.random::<f64>();
     let is_spot = kind < f64::from(spec.spot_share);
     let is_area = !is_spot && kind < f64::from(spec.spot_share) + f64::from(spec.area_share);
-    // Drawn in f64 and rounded, so that a platform's ln and pow can hardly show.
+    // The radius is drawn in f64 and rounded, so that differences in a platform's ln and pow hardly
+    // show.
     let range_m = (radii.sample(&mut rng) as f32 * spec.radius_scale).max(MIN_RADIUS_M);
     let intensity = color * (THRESHOLD * range_m * range_m);
     if is_area {
@@ -173,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thousand_are_the_first_of_ten_thousand() {
+    fn fewer_lights_are_the_first_of_more() {
         let few = scatter_lights(&spec(1_000)).expect("valid");
         let many = scatter_lights(&spec(10_000)).expect("valid");
         assert_eq!(few[..], many[..1_000]);
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn every_light_is_usable_and_inside() {
+    fn every_light_is_valid_and_inside_the_box() {
         let spec = LightSpec { radius_scale: 1e-6, area_share: 0.5, ..spec(5_000) };
         for light in scatter_lights(&spec).expect("valid") {
             light.check().expect("usable");
@@ -194,8 +195,8 @@ mod tests {
         assert!(lights.iter().all(|l| l.position == Vec3::ZERO && l.check().is_ok()));
     }
 
-    /// Over 100,000 draws the standard error of the mean is 0.0027 (the variance is 0.75), and
-    /// the share below the mode is known to 0.0011; tolerances are five of them.
+    /// Over 100,000 draws the standard error of the mean is 0.0027 (the variance is 0.75), and that
+    /// of the share below the mode is 0.0011. Tolerances are five standard errors.
     #[test]
     fn radii_follow_the_gamma_distribution() {
         let lights = scatter_lights(&spec(100_000)).expect("valid");
@@ -266,7 +267,7 @@ mod tests {
         assert!(lit.clone().all(|l| (l.diffuse_range_m() / l.range_m - 0.6).abs() < 1e-6));
     }
 
-    /// The stream of values is pinned: a change of generator would make results incomparable.
+    /// The values drawn are fixed: with another generator, results could not be compared.
     #[test]
     fn draws_are_pinned() {
         let light =
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_specs_name_the_field() {
+    fn errors_name_the_faulty_field() {
         let bad = |spec: LightSpec| scatter_lights(&spec).expect_err("bad").to_string();
         let base = spec(1);
         let error = bad(LightSpec { count: MAX_LIGHTS + 1, ..base });

@@ -3,10 +3,10 @@
 use glam::{Affine2, Vec3, Vec4};
 
 /// A surface's appearance: the metallic-roughness model of glTF 2.0. Every factor multiplies its
-/// texture where there is one.
+/// texture if there is one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// For people; need not be unique.
+    /// A name for people; it need not be unique.
     pub name: String,
     /// Base colour and opacity, linear.
     pub base_color: Vec4,
@@ -14,11 +14,11 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness, 0..1; GGX's alpha is its square.
     pub roughness: f32,
-    /// Emitted radiance, linear RGB, KHR_materials_emissive_strength multiplied in.
+    /// Emitted radiance, linear RGB, including KHR_materials_emissive_strength.
     pub emissive: Vec3,
     /// Scale of the normal texture's x and y.
     pub normal_scale: f32,
-    /// Opacity below which nothing is drawn; `None` is opaque.
+    /// The opacity below which nothing is drawn; `None` is opaque.
     pub alpha_cutoff: Option<f32>,
     /// Whether back faces are drawn, with the normal turned to the viewer.
     pub double_sided: bool,
@@ -30,14 +30,14 @@ pub struct Material {
     pub normal_texture: Option<TextureRef>,
     /// Emission, sRGB.
     pub emissive_texture: Option<TextureRef>,
-    /// What its dielectric share reflects (KHR_materials_ior, KHR_materials_specular).
+    /// Reflectance of its dielectric share (KHR_materials_ior, KHR_materials_specular).
     pub dielectric: Dielectric,
-    /// Whether its colour is shown as it is (KHR_materials_unlit): `emissive` holds it then, and
-    /// nothing is reflected. Colours of vertices multiply the emission.
+    /// Whether its colour is shown as it is (KHR_materials_unlit). `emissive` then holds the
+    /// colour, and nothing is reflected. Vertex colours multiply the emission.
     pub unlit: bool,
 }
 
-/// Reflectance of a dielectric: Schlick's curve between two ends.
+/// Reflectance of a dielectric: Schlick's curve from normal to grazing incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
     /// At normal incidence, linear RGB.
@@ -47,7 +47,7 @@ pub struct Dielectric {
 }
 
 impl Default for Dielectric {
-    /// glTF's: an index of refraction of 1.5.
+    /// glTF's default: an index of refraction of 1.5.
     fn default() -> Self {
         Self { f0: Vec3::splat(0.04), f90: 1.0 }
     }
@@ -99,12 +99,12 @@ pub struct TextureRef {
     pub image: u32,
     /// How it is sampled.
     pub sampler: Sampler,
-    /// From the vertex's uv to the texture's (KHR_texture_transform); the identity by default.
+    /// Maps the vertex's uv to the texture's (KHR_texture_transform); the identity by default.
     pub uv_transform: Affine2,
 }
 
 impl TextureRef {
-    /// The image, repeated, filtered trilinearly, uv untransformed.
+    /// The image, repeated, filtered trilinearly, with uv untransformed.
     pub fn new(image: u32) -> Self {
         Self { image, sampler: Sampler::default(), uv_transform: Affine2::IDENTITY }
     }
@@ -113,15 +113,15 @@ impl TextureRef {
 /// How a texture is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sampler {
-    /// Outside 0..1 in u.
+    /// Behaviour outside 0..1 in u.
     pub wrap_s: Wrap,
-    /// Outside 0..1 in v.
+    /// Behaviour outside 0..1 in v.
     pub wrap_t: Wrap,
-    /// Between texels when magnified.
+    /// Filter between texels when magnified.
     pub mag: Filter,
-    /// Between texels when minified.
+    /// Filter between texels when minified.
     pub min: Filter,
-    /// Between mip levels; `None` reads the finest level only.
+    /// Filter between mip levels; `None` reads only the finest level.
     pub mip: Option<Filter>,
 }
 
@@ -140,9 +140,9 @@ impl Default for Sampler {
 /// What a texture shows outside 0..1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// Itself again.
+    /// The texture again.
     Repeat,
-    /// Itself mirrored.
+    /// The mirrored texture.
     MirroredRepeat,
     /// Its edge.
     ClampToEdge,
@@ -151,7 +151,7 @@ pub enum Wrap {
 /// How neighbouring texels are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Filter {
-    /// The nearest only.
+    /// Only the nearest one.
     Nearest,
     /// A linear blend.
     Linear,
@@ -160,7 +160,7 @@ pub enum Filter {
 /// Pixels of a texture, top row first.
 #[derive(Clone, PartialEq)]
 pub struct Image {
-    /// For people; need not be unique.
+    /// A name for people; it need not be unique.
     pub name: String,
     /// Pixels per row, `> 0`.
     pub width: u32,
@@ -168,7 +168,7 @@ pub struct Image {
     pub height: u32,
     /// `width * height` pixels of red, green, blue, alpha.
     pub rgba: Vec<u8>,
-    /// What the numbers mean.
+    /// Whether the numbers are sRGB or linear.
     pub encoding: Encoding,
 }
 
@@ -178,7 +178,7 @@ impl std::fmt::Debug for Image {
     }
 }
 
-/// What the numbers of an [`Image`] mean.
+/// The encoding of an [`Image`]'s numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Encoding {
     /// Colour in the sRGB transfer function; alpha is linear.

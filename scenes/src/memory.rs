@@ -1,10 +1,10 @@
-//! How much memory the machine offers.
+//! How much memory the machine has for this process.
 
-/// What is assumed where the system does not say, bytes.
+/// The memory assumed where the system does not tell it, bytes.
 const ASSUMED: u64 = 8 << 30;
 
-/// The bytes of memory that this process may use: the least of the machine's memory, its control
-/// group's limit and the limit on its address space.
+/// The bytes of memory that this process may use: the smallest of the machine's memory, the limit
+/// of its control group, and the limit on its address space.
 pub(crate) fn machine_bytes() -> u64 {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let total = read("/proc/meminfo").and_then(|text| number_after(&text, "MemTotal:"));
@@ -17,7 +17,7 @@ pub(crate) fn machine_bytes() -> u64 {
     known.into_iter().flatten().min().unwrap_or(ASSUMED)
 }
 
-/// The first number of the line that starts with `label`; `None` where that is "unlimited".
+/// The first number of the line that starts with `label`; `None` if it is "unlimited".
 fn number_after(text: &str, label: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(label))?;
     rest.split_whitespace().next()?.parse().ok()

@@ -1,11 +1,12 @@
-//! How near and how far the surfaces lie that a view shows.
+//! Finds the nearest and farthest surfaces that a view shows.
 //!
-//! No ray can miss a thin thing here: every triangle that may lie in the view is clipped to its window,
-//! and the depths of what is left count. Triangles whose back is turned to the eye do not, where they
-//! are not drawn. Holes of masked materials count as surface.
+//! No thin surface can be missed: every triangle that may lie in the view is clipped to its window,
+//! and the depths of the remaining part count. Back faces count only where they are drawn. Holes of
+//! masked materials count as surface.
 //!
-//! Cost: one pass over all triangles. Where only near surfaces are asked for, whole meshes and most
-//! triangles are passed over by their boxes; a path of 1,200 poses takes its neighbours 32 at a time.
+//! Cost: one pass over all triangles. If only near surfaces are asked for, boxes rule out whole
+//! meshes and most triangles. A path of 1,200 poses is processed in batches of 32 neighbouring
+//! views.
 
 use assign::{Projection, View};
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
@@ -13,20 +14,20 @@ use rayon::prelude::*;
 
 use crate::{Aabb, Instance, Scene};
 
-/// Views whose boxes are looked at together first.
+/// The number of views whose common box is tested first.
 const TOGETHER: usize = 32;
 
-/// View depths, metres: the nearest and the farthest.
+/// View depths, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthSpan {
-    /// The nearest.
+    /// The depth of the nearest surface.
     pub nearest_m: f64,
-    /// The farthest.
+    /// The depth of the farthest surface.
     pub farthest_m: f64,
 }
 
 impl DepthSpan {
-    /// Both.
+    /// The span that contains both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -37,8 +38,8 @@ impl DepthSpan {
 }
 
 impl Scene {
-    /// The least view depth at which one of the views shows a surface, where that is below `below_m`.
-    /// Near and far planes of the views do not matter.
+    /// The smallest view depth at which one of the views shows a surface, if it is below `below_m`.
+    /// Near and far planes of the views are ignored.
     pub fn nearest_shown_m(&self, views: &[View], below_m: f32) -> Option<f64> {
         let windows: Vec<Window> =
             views.iter().map(|view| Window::new(view, Some(below_m))).collect();
@@ -46,8 +47,8 @@ impl Scene {
         (span.nearest_m < f64::from(below_m)).then_some(span.nearest_m)
     }
 
-    /// The view depths of all surfaces in the view's window; `None` where it holds none. Near and far
-    /// plane do not matter.
+    /// The view depths of all surfaces in the view's window; `None` if it shows none. Near and far
+    /// plane are ignored.
     pub fn depths_shown(&self, view: &View) -> Option<DepthSpan> {
         self.span_of(&[Window::new(view, None)])
     }
@@ -102,19 +103,19 @@ fn touches(a: &Aabb, b: &Aabb) -> bool {
     a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
 }
 
-/// The window of a view, endless in depth.
+/// The window of a view, unbounded in depth.
 struct Window {
-    /// To the eye's space; its z is depth in front of the eye.
+    /// Maps to the eye's space, in which z is the depth in front of the eye.
     to_view: DMat4,
-    /// Inside where `dot(plane, (x, y, depth, 1)) >= 0`.
+    /// A point is inside where `dot(plane, (x, y, depth, 1)) >= 0`.
     planes: [DVec4; 5],
     perspective: bool,
-    /// The box around what is looked at, world space.
+    /// The box around the visible region, world space.
     reach: Aabb,
 }
 
 impl Window {
-    /// Up to a view depth, or all of it.
+    /// The region up to a view depth, or without a limit.
     fn new(view: &View, below_m: Option<f32>) -> Self {
         let (perspective, min, max) = match view.projection {
             Projection::Perspective { min, max } => (true, min.as_dvec2(), max.as_dvec2()),
@@ -145,14 +146,14 @@ impl Window {
             let ends = [0.0, f64::from(below_m)];
             let corners = ends.into_iter().flat_map(|depth| (0..4).map(move |ix| (ix, depth)));
             let exact = Aabb::from_points(corners.map(|(ix, depth)| corner(ix, depth)));
-            // What f32 rounds off.
+            // A margin for the rounding of f32.
             exact.grown(f32::EPSILON * 4.0 * exact.max.abs().max(exact.min.abs()).max_element())
         });
         let depth = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
         Self { to_view: depth * world_to_view, planes, perspective, reach }
     }
 
-    /// The depths of the part of a triangle that is in the window.
+    /// The depths of the part of a triangle that lies in the window.
     fn depths(
         &self,
         corners: [Vec3; 3],
@@ -160,7 +161,7 @@ impl Window {
         polygon: &mut Polygon,
     ) -> Option<DepthSpan> {
         let [a, b, c] = corners.map(|corner| self.to_view.transform_point3(corner.as_dvec3()));
-        // Mirrored by the turn of z: the front is where the normal points away from the eye.
+        // Reversing z mirrors the triangle: the front is where the normal points away from the eye.
         let normal = (b - a).cross(c - a);
         let towards = if self.perspective { normal.dot(a) } else { normal.z };
         if !is_double && towards <= 0.0 {
@@ -178,7 +179,7 @@ impl Window {
     }
 }
 
-/// A convex polygon on its way through planes (Sutherland and Hodgman 1974).
+/// A convex polygon that is clipped by planes (Sutherland and Hodgman 1974).
 #[derive(Default)]
 struct Polygon {
     corners: Vec<DVec3>,
@@ -211,7 +212,7 @@ mod tests {
     use super::*;
     use crate::{CameraPath, Pose};
 
-    /// A floor of 200 m, its front upwards.
+    /// A floor of 200 m whose front faces up.
     fn floor() -> Scene {
         let mut scene = crate::atrium(1);
         let corner = |x: f32, z: f32| crate::Vertex {
@@ -247,20 +248,20 @@ mod tests {
         let expected = 1.6 / 0.5_f64.tan();
         let found = nearest(&[level], 10.0).expect("ground");
         assert!((found - expected).abs() < 1e-5 * expected, "{found} {expected}");
-        // Nothing is as near as that, and nothing is to be seen from below or upwards.
+        // Nothing is as near as that, and nothing is visible from below or looking up.
         assert_eq!(nearest(&[level], 2.9), None);
         assert_eq!(nearest(&[view(Vec3::NEG_Y, Vec3::X)], 50.0), None);
         assert_eq!(nearest(&[view(Vec3::Y, Vec3::new(0.0, 9.0, 0.1))], 50.0), None);
-        // Of several views the nearest, whatever their order.
+        // Of several views the nearest surface counts, in any order.
         let close = view(Vec3::new(0.0, 0.1, 0.0), Vec3::new(0.1, 0.0, 0.0));
         let mut many = vec![level; 70];
         many[51] = close;
         let found = nearest(&many, 10.0).expect("ground");
         assert_eq!(Some(found), nearest(&[close], 10.0));
         assert!(found > 0.05 && found < 0.15, "{found}");
-        // An eye in the surface.
+        // The eye lies in the surface.
         let inside = view(Vec3::ZERO, Vec3::new(1.0, -0.1, 0.0));
-        assert_eq!(nearest(&[inside], 1.0), None, "its front is turned away");
+        assert_eq!(nearest(&[inside], 1.0), None, "the eye is behind its front");
         let mut both = scene.clone();
         both.materials.iter_mut().for_each(|material| material.double_sided = true);
         assert_eq!(both.nearest_shown_m(&[inside], 1.0), Some(0.0));
@@ -276,7 +277,7 @@ mod tests {
         down.projection = Projection::Orthographic { min: Vec2::splat(-3.0), max: Vec2::ONE };
         let span = of(&down);
         assert!((span.nearest_m - 8.0).abs() < 1e-5 && (span.farthest_m - 8.0).abs() < 1e-5);
-        // Along the axis the floor's end is farthest, as far as the window shows it.
+        // The farthest point lies along the axis, at the edge of the window.
         let level = view(Vec3::new(0.0, 1.6, 0.0), Vec3::new(1.0, 1.6, 0.0));
         assert!((of(&level).farthest_m - 100.0).abs() < 1e-3, "{:?}", of(&level));
     }

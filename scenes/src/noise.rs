@@ -1,4 +1,4 @@
-//! Small tileable textures made from noise.
+//! Makes small tileable textures from noise.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ const SIZE: u32 = 256;
 /// A colour for each uv of a tile, 0..1.
 pub(crate) type Paint = Box<dyn Fn(Vec2) -> Vec3 + Send + Sync>;
 
-/// Renders tiles: name, what the numbers mean, and the picture.
+/// Renders tiles, each given by its name, encoding, and picture.
 pub(crate) fn render_all(jobs: Vec<(&str, Encoding, Paint)>) -> Vec<Image> {
     jobs.into_par_iter().map(|(name, encoding, paint)| render(name, encoding, &paint)).collect()
 }
@@ -68,8 +68,8 @@ pub(crate) fn fractal(uv: Vec2, period: u32, octaves: u32, seed: u32) -> f32 {
     sum / total
 }
 
-/// The tangent-space normal of a height field whose heights are `scale` hundredths of a tile.
-/// The image's v points down, the normal's y up.
+/// The tangent-space normal of a height field whose heights are `scale` hundredths of a tile. The
+/// image's v axis points down; the normal's y axis points up.
 pub(crate) fn normal(uv: Vec2, scale: f32, height: impl Fn(Vec2) -> f32) -> Vec3 {
     let h = 1.0 / SIZE as f32;
     let slope = |d: Vec2| (height(uv + d) - height(uv - d)) / (2.0 * h) * scale * 0.01;

@@ -1,10 +1,10 @@
-//! Where the camera is, timed by frame number only.
+//! Where the camera is, as a function of the frame number.
 
 use glam::Vec3;
 
 use crate::{Pose, animated_node::AnimatedNode};
 
-/// A smooth way for a camera.
+/// A smooth path of a camera.
 #[derive(Clone, Debug)]
 pub struct CameraPath(Way);
 
@@ -13,7 +13,7 @@ enum Way {
     Still(Pose),
     /// Closed uniform Catmull-Rom splines through the eyes and the targets.
     Loop(Vec<(Vec3, Vec3)>),
-    /// A glTF camera's animation, its result scaled by the factor.
+    /// A glTF camera's animation, scaled by the factor.
     Animated(Box<AnimatedNode>, f32),
 }
 
@@ -23,9 +23,10 @@ impl CameraPath {
         Self(Way::Still(pose))
     }
 
-    /// A closed loop through `(eye, target)` knots, starting at the first: Catmull-Rom, so that
-    /// position and velocity are continuous. Knots should lie about evenly apart; each takes the
-    /// same time. `fallback` is used when there are fewer than three.
+    /// A closed loop through `(eye, target)` knots that starts at the first. It is a Catmull-Rom
+    /// spline, so position and velocity are continuous. Knots should lie about evenly apart,
+    /// because each takes the same time. With fewer than three knots the camera stays still, at the
+    /// first one or at `fallback`.
     pub fn closed_loop(knots: Vec<(Vec3, Vec3)>, fallback: Pose) -> Self {
         if knots.len() < 3 {
             Self::still(knots.first().map_or(fallback, |k| Pose::new(k.0, k.1)))
@@ -38,7 +39,7 @@ impl CameraPath {
         Self(Way::Animated(Box::new(node), 1.0))
     }
 
-    /// Whether it leads anywhere.
+    /// Whether the camera moves.
     pub fn moves(&self) -> bool {
         !matches!(self.0, Way::Still(_))
     }
@@ -50,7 +51,7 @@ impl CameraPath {
 
     /// The pose of frame `frame` of a run of `frame_count` frames.
     ///
-    /// A loop closes after `frame_count` frames; an animation reaches its last key in frame
+    /// A loop closes after `frame_count` frames. An animation reaches its last key in frame
     /// `frame_count - 1`. Frames beyond the run wrap around.
     pub fn pose(&self, frame: u32, frame_count: u32) -> Pose {
         let count = frame_count.max(1);
@@ -65,8 +66,9 @@ impl CameraPath {
         }
     }
 
-    /// What tells the pose of a frame from others: its eye, a point that it looks at, its up. On a loop
-    /// that point is the spline's, so that hashes of earlier versions hold.
+    /// The values of a frame that go into the path's hash: its eye, a point that it looks at, and
+    /// its up direction. On a loop, that point is the spline's, so that hashes of earlier versions
+    /// hold.
     pub(crate) fn marks(&self, frame: u32, frame_count: u32) -> [Vec3; 3] {
         let pose = self.pose(frame, frame_count);
         let target = match &self.0 {
@@ -140,7 +142,7 @@ mod tests {
     }
 
     /// Second differences of a C1 cubic are bounded by its curvature, here under 40 m per turn
-    /// squared times the step squared; a kink would be of the order of the step itself.
+    /// squared, times the step squared. A kink would be of the order of the step itself.
     #[test]
     fn velocity_is_continuous() {
         let path = square();

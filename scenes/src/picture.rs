@@ -1,12 +1,12 @@
-//! How good a picture from a point would be, judged by rays in all directions.
+//! Rates the picture that a camera at a point would show, from rays in all directions.
 
-/// Directions around a point.
+/// The number of directions around a point.
 pub(crate) const AZIMUTHS: usize = 24;
 
-/// Azimuths to either side of a view's middle that a picture shows: 90 degrees in all.
+/// How many azimuths a picture shows on either side of its middle: 90 degrees in all.
 const HALF_WINDOW: usize = 3;
 
-/// What one azimuth sees, over all elevations. Distances are shares of the scene's diagonal.
+/// Sums over the rays of one azimuth, all elevations. Distances are shares of the scene's diagonal.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Column {
     pub(crate) hits: f32,
@@ -29,8 +29,9 @@ impl Column {
     }
 }
 
-/// How good a picture around azimuth `middle` would be: far and varied depth; little that is
-/// very near; some sky, but no more than a third; where the scene has lights, what they reach.
+/// The score of a picture around azimuth `middle`. It rewards far and varied depth, and punishes
+/// near surfaces and more than a third of sky. Where the scene has lights, it rewards surfaces that
+/// they reach.
 pub(crate) fn picture_score(columns: &[Column; AZIMUTHS], middle: usize, has_lamps: bool) -> f32 {
     let mut all = Column::default();
     for offset in 0..=2 * HALF_WINDOW {

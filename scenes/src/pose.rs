@@ -2,15 +2,15 @@
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
-/// Where a camera is and where it looks. It keeps a direction, because a point that it looks at would
-/// lose its bits far from the origin.
+/// Where a camera is and where it looks. It holds a direction instead of a point to look at,
+/// because such a point would lose its digits far from the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The camera's position, world space, metres.
     pub eye: Vec3,
     /// The unit view direction.
     forward: Vec3,
-    /// Which way is up in the image; not along the view direction.
+    /// The up direction of the image; not along the view direction.
     pub up: Vec3,
 }
 
@@ -27,7 +27,7 @@ impl Pose {
         Self { eye, forward, up }
     }
 
-    /// At `eye`, looking along the unit vector `forward`, with `up` upwards in the image.
+    /// At `eye`, looking along the unit vector `forward`, with `up` pointing up in the image.
     pub const fn looking(eye: Vec3, forward: Vec3, up: Vec3) -> Self {
         Self { eye, forward, up }
     }
@@ -47,8 +47,8 @@ impl Pose {
         Self { eye: self.eye * factor, ..self }
     }
 
-    /// The pose of a camera or spot that a glTF node holds: it looks along the node's -Z axis. The node's
-    /// scale does not matter, and one axis may have no length.
+    /// The pose of a camera or spot that a glTF node holds: it looks along the node's -Z axis. The
+    /// node's scale does not matter, and one axis may have length 0.
     pub(crate) fn of_node(to_world: &DMat4) -> Self {
         let [x, y, z] = [to_world.x_axis, to_world.y_axis, to_world.z_axis].map(DVec4::truncate);
         let back = z.try_normalize().or_else(|| x.cross(y).try_normalize()).unwrap_or(DVec3::Z);

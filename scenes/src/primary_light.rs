@@ -1,4 +1,4 @@
-//! The light that a reflective shadow map is drawn from.
+//! Chooses the light from which a reflective shadow map is drawn.
 
 use std::f32::consts::PI;
 
@@ -7,34 +7,37 @@ use glam::Vec3;
 
 use crate::{Aabb, Scene};
 
-/// How far away the sun stands, in radii of the scene's core.
+/// The distance of the sun, in radii of the scene's core.
 const SUN_DISTANCE: f32 = 50.0;
 
-/// The farthest sun, metres: its intensity stays well below the greatest accepted.
+/// The farthest distance of the sun, metres. Its intensity then stays well below the greatest
+/// accepted.
 const FARTHEST_SUN_M: f32 = 1e7;
 
-/// Height of the sun above the horizon, degrees: into a court as deep as it is wide.
+/// Height of the sun above the horizon, degrees. It shines into a court as deep as it is wide.
 const ELEVATION_DEG: f32 = 60.0;
 
-/// Angle between the sun's azimuth and the scene's longer side, degrees: the floor of a long court
-/// is lit even where it is as narrow as Sponza's, and one of its long walls.
+/// Angle between the sun's azimuth and the scene's longer side, degrees. The sun lights the floor
+/// of a long court even if it is as narrow as Sponza's, and one of its long walls.
 const AZIMUTH_DEG: f32 = 20.0;
 
-/// Irradiance of a wall that faces the sun: a white one's radiance is 1.
+/// Irradiance of a wall that faces the sun. A white wall then has radiance 1.
 const SUN_IRRADIANCE: f32 = PI;
 
-/// Range of the sun in distances to the farthest point: the window is above 0.9997 there.
+/// Range of the sun, in distances to the farthest point. The window is above 0.9997 there.
 const SUN_RANGE: f32 = 10.0;
 
-/// How far the cosine falls from the sun's inner cone to its outer one.
+/// The difference of the cosines of the sun's inner and outer cone.
 const RAMP: f32 = 1.01 * 1e-3;
 
-/// The scene's primary light: the brightest of its own suns, else of its own spots, else a sun.
+/// The scene's primary light: the brightest of its own suns, otherwise of its own spots, otherwise
+/// an added sun.
 ///
-/// A shadow map is drawn from a point, so the sun is a spot some fifty scene radii from the middle of
-/// [`Scene::core_bounds`]. The cone of its full intensity just holds the core; its range is so long
-/// that the window dims nothing. In the middle it gives what the scene's own sun gives. Where the scene
-/// has none, it is white, 60 degrees above the horizon, and a white wall that faces it has radiance 1.
+/// A shadow map is drawn from a point, so the sun is a spot some fifty scene radii from the middle
+/// of [`Scene::core_bounds`]. The cone of its full intensity just contains the core. Its range is
+/// so long that the window dims nothing. In the middle, its irradiance is that of the scene's own
+/// sun. The added sun is white, 60 degrees above the horizon; a white wall that faces it has
+/// radiance 1.
 pub fn primary_light(scene: &Scene) -> Light {
     const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
     let suns = scene.suns.iter().filter(|sun| sun.check().is_ok());
@@ -55,7 +58,7 @@ pub fn primary_light(scene: &Scene) -> Light {
         .unwrap_or_else(|| sun(scene.core_bounds, scene.bounds))
 }
 
-/// A sun for a scene that has none of its own.
+/// A sun for a scene without suns and spots.
 fn sun(core: Aabb, whole: Aabb) -> Light {
     let core = sound(core);
     let (rise, level) = ELEVATION_DEG.to_radians().sin_cos();
@@ -68,8 +71,8 @@ fn sun(core: Aabb, whole: Aabb) -> Light {
     distant_spot(core, whole, to_sun, Vec3::splat(SUN_IRRADIANCE))
 }
 
-/// A sun as a spot that lights a scene's `core` in full, with an irradiance in its middle, and has its
-/// `whole` in range.
+/// A sun as a spot. It lights a scene's `core` in full, has the given irradiance in the core's
+/// middle, and has all of `whole` in range.
 fn distant_spot(core: Aabb, whole: Aabb, to_sun: Vec3, irradiance: Vec3) -> Light {
     let (core, whole) = (sound(core), sound(whole));
     let radius = (0.5 * core.diagonal()).clamp(1e-3, FARTHEST_SUN_M / SUN_DISTANCE);
@@ -78,7 +81,7 @@ fn distant_spot(core: Aabb, whole: Aabb, to_sun: Vec3, irradiance: Vec3) -> Ligh
     let direction = -to_sun.normalize();
     let angle = |corner: Vec3| direction.angle_between(corner - position);
     let widest = core.corners().map(angle).into_iter().fold(0.0, f32::max);
-    // A hundredth wider, so that rounding leaves the corners inside.
+    // A hundredth wider, so that rounding keeps the corners inside.
     let inner_angle = (1.01 * widest).min(1.0);
     let outer_angle = (inner_angle.cos() - RAMP).acos();
     let farthest =
@@ -91,7 +94,7 @@ fn distant_spot(core: Aabb, whole: Aabb, to_sun: Vec3, irradiance: Vec3) -> Ligh
     }
 }
 
-/// The box, or a small one around the origin where it is empty or not finite.
+/// The box, or a small one around the origin if it is empty or not finite.
 fn sound(bounds: Aabb) -> Aabb {
     if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
         Aabb::new(Vec3::NEG_ONE, Vec3::ONE)
@@ -107,7 +110,8 @@ mod tests {
     use super::*;
     use crate::{TownSize, atrium, town};
 
-    /// Fall-off of a spot as the lighting shader computes it, in f32, without the cosine.
+    /// The fall-off of a spot as the lighting shader computes it, in f32, without the cosine of
+    /// incidence.
     fn irradiance(light: &Light, point: Vec3) -> f32 {
         let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape else {
             panic!("not a spot");
@@ -140,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_own_sun_comes_first() {
+    fn the_scenes_brightest_sun_is_chosen_first() {
         let mut scene = atrium(1);
         let sun =
             |x: f32, irradiance| Sun { direction: Vec3::new(x, -1.0, 0.2).normalize(), irradiance };
@@ -164,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_own_spot_comes_first() {
+    fn the_scenes_brightest_spot_is_chosen_next() {
         let mut scene = atrium(1);
         let spot = |intensity: f32| Light {
             shape: LightShape::Spot { direction: Vec3::X, inner_angle: 0.1, outer_angle: 0.5 },

@@ -12,13 +12,13 @@ const GAMMA: (f64, f64) = (4.0 / 3.0, 0.75);
 /// Standard deviation of the logarithm of [`Radii::LogNormal`].
 const LOG_SPREAD: f64 = 1.0;
 
-/// How the radii of scattered lights are distributed; their mean is one metre, scaled.
+/// How the radii of scattered lights are distributed. Their mean is one metre times a scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Radii {
     /// Gamma with mode 0.25 (Enhuber 2019, equation 4.3).
     #[default]
     Gamma,
-    /// All alike.
+    /// All equal.
     Equal,
     /// Log-normal with a standard deviation of the logarithm of 1: many small, a few very large.
     LogNormal,
@@ -38,7 +38,7 @@ impl Radii {
     }
 }
 
-/// A distribution, ready to draw from.
+/// A distribution that radii are drawn from.
 pub(crate) enum RadiusSource {
     Gamma(Gamma<f64>),
     Equal,

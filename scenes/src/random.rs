@@ -1,4 +1,4 @@
-//! Random values that several kinds of lights are drawn from.
+//! Random values for all kinds of lights.
 
 use std::f64::consts::TAU;
 

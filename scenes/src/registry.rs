@@ -9,9 +9,9 @@ use crate::{Scene, SceneError, TownSize, atrium, gltf_import::load_gltf_lights, 
 /// A procedural scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneEntry {
-    /// What [`open`] takes.
+    /// Its id, for [`open`].
     pub id: &'static str,
-    /// One line for people.
+    /// A short description.
     pub summary: &'static str,
     make: fn() -> Scene,
 }
@@ -42,12 +42,12 @@ pub fn list() -> &'static [SceneEntry] {
     ENTRIES
 }
 
-/// Opens the procedural scene of that id, or the glTF file at that path.
+/// Opens the procedural scene with that id, or the glTF file at that path.
 ///
 /// # Errors
 ///
-/// [`SceneError::Unknown`] when it is neither an id nor ends in `.gltf` or `.glb`; what
-/// [`load_gltf`] returns for a file.
+/// [`SceneError::Unknown`] if the name is not an id and does not end in `.gltf` or `.glb`. For a
+/// file, the errors of [`load_gltf`].
 pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
     if let Some(entry) = ENTRIES.iter().find(|entry| entry.id == name_or_path) {
         return Ok((entry.make)());
@@ -58,13 +58,13 @@ pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
     }
 }
 
-/// Opens the lights of a procedural scene or of a glTF file: a scene whose lights are all there
-/// is to use. The file may hold nothing but lights. World space begins at `origin` of the file. Lights
-/// without a range reach infinitely far: [`close_ranges`](crate::close_ranges) ends them.
+/// Opens only the lights of a procedural scene or of a glTF file, as a scene. The file need not
+/// hold anything else. World space begins at `origin` of the file. Lights without a range keep an
+/// infinite one; [`close_ranges`](crate::close_ranges) chooses it later.
 ///
 /// # Errors
 ///
-/// As [`open`], but for scenes without triangles.
+/// As for [`open`], except that a scene without triangles is accepted.
 pub fn open_lights(name_or_path: &str, origin: DVec3) -> Result<Scene, SceneError> {
     if let Some(path) = gltf_path(name_or_path) {
         return load_gltf_lights(path, origin);
@@ -76,7 +76,7 @@ pub fn open_lights(name_or_path: &str, origin: DVec3) -> Result<Scene, SceneErro
     Ok(scene)
 }
 
-/// The path where a name is that of a glTF file.
+/// The path, if the name is that of a glTF file.
 fn gltf_path(name_or_path: &str) -> Option<&Path> {
     let path = Path::new(name_or_path);
     let is_one =
@@ -84,7 +84,7 @@ fn gltf_path(name_or_path: &str) -> Option<&Path> {
     path.extension().is_some_and(is_one).then_some(path)
 }
 
-/// How alike a name must be to be offered, by Jaro-Winkler.
+/// How similar an id must be to be suggested, by Jaro-Winkler.
 const NEAR: f64 = 0.7;
 
 fn unknown(name: &str) -> SceneError {
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unknown_names_list_the_nearest() {
+    fn unknown_names_list_similar_ids() {
         let error = open("Atrum").expect_err("no such scene").to_string();
         assert!(error.contains("nearest: atrium"), "{error}");
         let error = open("xyz").expect_err("no such scene").to_string();

@@ -6,7 +6,7 @@ use glam::{DVec3, Mat4, Vec3};
 
 use crate::{Aabb, CameraPath, Image, Material, Pose, SceneError};
 
-/// Everything that is drawn, and where it is looked at from. World space is right-handed, +Y up,
+/// Everything that is drawn, lit, and looked from. World space is right-handed with +Y up, in
 /// metres.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -14,35 +14,36 @@ pub struct Scene {
     pub name: String,
     /// Geometry, each with one material.
     pub meshes: Vec<Mesh>,
-    /// Materials; at least one.
+    /// At least one material.
     pub materials: Vec<Material>,
     /// Images that the materials' textures refer to.
     pub images: Vec<Image>,
     /// What is drawn: meshes placed by models.
     pub instances: Vec<Instance>,
-    /// Placed objects; the groups of per-model assignment.
+    /// Placed objects. Per-model assignment uses them as groups.
     pub models: Vec<Model>,
-    /// The scene's own lights; may be empty. Faulty ones are among them: they are quarantined
-    /// and reported where lights are uploaded.
+    /// The scene's own lights; may be empty. They include faulty ones, which uploading quarantines
+    /// and reports.
     pub lights: Vec<Light>,
-    /// Indices of those lights whose file gives no range; [`close_ranges`](crate::close_ranges) chose it.
+    /// Indices of the lights whose file gives no range. [`close_ranges`](crate::close_ranges) chose
+    /// their range.
     pub open_lights: Vec<u32>,
-    /// The scene's own suns, at most [`MAX_SUNS`](assign::MAX_SUNS), without faults.
+    /// The scene's own suns, at most [`MAX_SUNS`](assign::MAX_SUNS). None is faulty.
     pub suns: Vec<Sun>,
     /// The scene's own cameras; may be empty.
     pub cameras: Vec<Camera>,
-    /// The camera whose lens and planes the scene is seen through where none is asked for: the one that
-    /// the path animates, else the first. Beyond the end where there are none.
+    /// Index of the camera that gives lens and planes by default: the one that the path animates,
+    /// otherwise the first. It is out of range if the scene has no camera.
     pub view_camera: usize,
-    /// Where world space begins in the coordinates of the scene's file, metres: 0 but for files whose
-    /// scene stands far from their origin.
+    /// The origin of world space, in the coordinates of the scene's file, metres. It is 0 unless
+    /// the scene stands far from the origin of its file.
     pub origin: DVec3,
-    /// A camera's way through the scene; frame 0 shows a lot of it.
+    /// The path of a camera through the scene. Frame 0 shows much of it.
     pub path: CameraPath,
     /// Box around all triangles, world space.
     pub bounds: Aabb,
-    /// Box around the part that most triangles belong to, world space: [`Scene::bounds`] without
-    /// a far backdrop. Lights are scattered in it.
+    /// Box around the part that most triangles belong to, world space: [`Scene::bounds`] without a
+    /// far backdrop. Scattered lights lie in it.
     pub core_bounds: Aabb,
     /// What the importer left out or changed, one line each.
     pub warnings: Vec<String>,
@@ -59,20 +60,21 @@ pub struct Vertex {
     /// Unit tangent (the direction of increasing u), and the sign of the bitangent
     /// `cross(normal, tangent) * w`.
     pub tangent: [f32; 4],
-    /// Texture coordinate; v points down the image.
+    /// Texture coordinate. The v axis points down the image.
     pub uv: [f32; 2],
 }
 
 /// A triangle list with one material: a glTF primitive.
 #[derive(Clone, PartialEq)]
 pub struct Mesh {
-    /// For people; need not be unique.
+    /// A name for people; it need not be unique.
     pub name: String,
     /// Vertices, object space.
     pub vertices: Vec<Vertex>,
     /// Three per triangle, counter-clockwise seen from the front; each below `vertices.len()`.
     pub indices: Vec<u32>,
-    /// Factors on the base colour, linear RGB and opacity, 0..=1: one per vertex, or none at all.
+    /// Factors on the base colour: linear RGB and opacity, 0..=1. Either one per vertex, or none at
+    /// all.
     pub colors: Vec<[f32; 4]>,
     /// Index into [`Scene::materials`].
     pub material: u32,
@@ -113,19 +115,19 @@ impl Mesh {
 /// An object placed in the world: a glTF node with a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// For people; need not be unique.
+    /// A name for people; it need not be unique.
     pub name: String,
     /// Box around all its meshes, object space.
     pub bounds_object: Aabb,
-    /// Affine, invertible or not; a negative determinant mirrors, and so flips the winding of
-    /// triangles.
+    /// Affine, possibly not invertible. A negative determinant mirrors, which reverses the winding
+    /// of triangles.
     pub object_to_world: Mat4,
 }
 
 impl Model {
-    /// Whether it turns counter-clockwise triangles clockwise.
+    /// Whether it reverses the winding of triangles.
     pub fn is_mirrored(&self) -> bool {
-        // In f64: tiny determinants are 0 in f32.
+        // The determinant is computed in f64, because tiny ones are 0 in f32.
         self.object_to_world.as_dmat4().determinant() < 0.0
     }
 }
@@ -142,7 +144,7 @@ pub struct Instance {
 /// A camera that came with the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// For people; need not be unique.
+    /// A name for people; it need not be unique.
     pub name: String,
     /// Where it is and where it looks.
     pub pose: Pose,
@@ -172,25 +174,26 @@ pub enum Lens {
 }
 
 impl Scene {
-    /// Triangles drawn: every instance counts its mesh's.
+    /// The number of triangles drawn. Each instance counts the triangles of its mesh.
     pub fn triangle_count(&self) -> u64 {
         let count = |instance: &Instance| self.meshes[instance.mesh as usize].triangle_count();
         self.instances.iter().map(|i| count(i) as u64).sum()
     }
 
-    /// The corners of every triangle drawn, world space, counter-clockwise seen from the front
-    /// even where the model mirrors.
+    /// The corners of every triangle drawn, world space. Triangles are counter-clockwise seen from
+    /// the front, even where the model mirrors.
     pub fn world_triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
         self.every_nth_triangle(1)
     }
 
-    /// At most `most` of [`Scene::world_triangles`], evenly chosen; all where there are no more.
+    /// At most `most` triangles of [`Scene::world_triangles`], evenly chosen, or all if there are
+    /// no more.
     pub(crate) fn sampled_triangles(&self, most: u64) -> impl Iterator<Item = [Vec3; 3]> + '_ {
         self.every_nth_triangle(self.triangle_count().div_ceil(most).max(1) as usize)
     }
 
     fn every_nth_triangle(&self, step: usize) -> impl Iterator<Item = [Vec3; 3]> + '_ {
-        // How many triangles of the next instance to pass over.
+        // How many triangles of the next instance to skip.
         let mut skipped = 0;
         self.instances.iter().flat_map(move |instance| {
             let model = &self.models[instance.model as usize];
@@ -206,8 +209,9 @@ impl Scene {
         })
     }
 
-    /// The scene `side` x `side` times beside itself, along X and Z: the first where it was, its
-    /// lights with it; its suns shine on all. Camera, path and [`Scene::core_bounds`] stay those of the first.
+    /// Copies the scene `side` x `side` times along X and Z, with its lights. The first copy stays
+    /// in place. Suns shine on all copies. Camera, path and [`Scene::core_bounds`] stay those of
+    /// the first copy.
     ///
     /// # Errors
     ///
@@ -245,7 +249,7 @@ impl Scene {
         Ok(self)
     }
 
-    /// The scene without anything that emits by itself: what is left is lit by lights alone.
+    /// The scene without emitting materials, so that only lights light it.
     #[must_use]
     pub fn without_emission(mut self) -> Self {
         for material in &mut self.materials {
@@ -258,8 +262,8 @@ impl Scene {
     /// The scene, uniformly scaled about the origin.
     ///
     /// Geometry, boxes, cameras, the path and the positions of the scene's own lights scale by
-    /// `factor`; those lights' ranges scale by `factor` and their intensities by its square, so
-    /// that the lit image stays the same. Suns give what they gave.
+    /// `factor`. The ranges of these lights scale by `factor` and their intensities by its square,
+    /// so that the lit image stays the same. Suns stay as they are.
     ///
     /// # Errors
     ///
@@ -312,7 +316,7 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn copies_stand_beside_the_first() {
+    fn copies_stand_beside_the_original() {
         let mut one = crate::atrium(1);
         one.lights = vec![Light::point(Vec3::Y, 1.0, Vec3::ONE)];
         let four = one.clone().replicated(2).expect("in range");

@@ -1,7 +1,7 @@
 //! Bends a level loop so that it climbs, sinks and weaves through the space around it.
 //!
 //! A level loop shows a scene from one height only. It never looks over a parapet, and it crosses
-//! few of the edges where near and far surfaces meet. Four steps give it both:
+//! few of the edges where near and far surfaces meet. Four steps change that:
 //!
 //! 1. The level loop comes from [`fit`](crate::fit). It is known to keep clear of all triangles.
 //! 2. A wave raises the knots of its first half and lowers those of its second half, within the
@@ -20,13 +20,13 @@ use rayon::prelude::*;
 
 use crate::{Aabb, bvh::TriangleBvh, path::catmull_rom};
 
-/// Shares of the free space above, below and beside a knot that it moves by at most.
+/// The largest shares of the free space above, below and beside a knot by which it moves.
 const ABOVE: f32 = 0.7;
 const BELOW: f32 = 0.7;
 const BESIDE: f32 = 0.75;
 
-/// The most that a knot rises, as a share of the core's height: a camera high above the roofs of a
-/// town looks at nothing but roofs.
+/// The most that a knot rises, as a share of the core's height. A camera high above a town would
+/// see only roofs.
 const MOST_RISE: f32 = 0.35;
 
 /// The most that a knot is pushed outwards, as a share of the core's diagonal.
@@ -35,26 +35,26 @@ const MOST_PUSH: f32 = 0.25;
 /// How often the loop is pushed outwards.
 const WEAVES: f32 = 6.0;
 
-/// By how much a knot moves back each time.
+/// The factor by which a knot's way shrinks each time it moves back.
 const BACK: f32 = 0.75;
 
-/// Below this share of its way a knot returns to the level loop.
+/// Below this share of its way, a knot returns to the level loop.
 const LEAST_SHARE: f32 = 0.08;
 
-/// Neighbouring knots differ by no more than this share of their ways: the loop stays smooth.
+/// The most by which the shares of neighbouring knots differ, so that the loop stays smooth.
 const SLOPE: f32 = 0.34;
 
-/// Knots go back at most this often: `BACK` to that power is far below `LEAST_SHARE`.
+/// The most steps back. `BACK` to that power is far below `LEAST_SHARE`.
 const ROUNDS: usize = 24;
 
-/// A stretch between two knots that takes more points than this to look at counts as blocked.
+/// A stretch between two knots that needs more sample points than this counts as blocked.
 const MOST_POINTS: f32 = 1024.0;
 
 /// Where a camera may be.
 pub(crate) struct Room<'a> {
     /// The scene's triangles.
     pub(crate) bvh: &'a TriangleBvh,
-    /// The box that it stays in.
+    /// The box in which the camera stays.
     pub(crate) core: Aabb,
     /// The least distance to any triangle, metres.
     pub(crate) margin_m: f32,
@@ -70,8 +70,8 @@ impl Room<'_> {
         self.core.contains(at) && self.bvh.clearance(at, margin_m) >= margin_m
     }
 
-    /// The eyes of the bent loop, one for each knot of the level one. A camera that has no room for a
-    /// loop stays where it is: its knots are all the same.
+    /// The eyes of the bent loop, one for each knot of the level one. If there is no room for a
+    /// loop, all knots stay at the same place.
     pub(crate) fn bend(&self, level: &[Vec3]) -> Vec<Vec3> {
         if level.windows(2).all(|pair| pair[0] == pair[1]) {
             return level.to_vec();
@@ -90,7 +90,7 @@ impl Room<'_> {
                 (0..count).into_par_iter().filter(|ix| !self.is_clear(&eyes, *ix)).collect();
             let mut moved = false;
             for segment in blocked {
-                // Of the four knots that shape a segment, the first lies one before it.
+                // The first of the four knots that shape a segment lies one knot before it.
                 for offset in 0..4 {
                     let knot = (segment + count + offset - 1) % count;
                     moved |= shares[knot] > 0.0;
@@ -108,7 +108,7 @@ impl Room<'_> {
         level.to_vec()
     }
 
-    /// Where a knot of the level loop would go if nothing stood between its neighbours and it.
+    /// Where a knot of the level loop would go if the way were free.
     fn wish(&self, at: Vec3, middle: Vec3, turn: f32) -> Vec3 {
         let wave = (TAU * turn).sin().powi(2);
         let lift = if turn < 0.5 {
@@ -140,7 +140,7 @@ impl Room<'_> {
     }
 
     /// Whether the spline from knot `ix` to the next is known to be clear. A tenth of the margin is
-    /// left for the difference between the level loop and the spline through its knots.
+    /// reserved for the difference between the level loop and the spline through its knots.
     fn is_clear(&self, eyes: &[Vec3], ix: usize) -> bool {
         let count = eyes.len();
         let knot = |offset: usize| eyes[(ix + count + offset - 1) % count];
@@ -157,7 +157,7 @@ impl Room<'_> {
     }
 }
 
-/// Knots at a share of their way from the level loop to where they would go.
+/// Knots at a share of their way from the level loop to their goal.
 fn blend(level: &[Vec3], wished: &[Vec3], shares: &[f32]) -> Vec<Vec3> {
     let ends = level.iter().zip(wished);
     ends.zip(shares).map(|((from, to), share)| from.lerp(*to, *share)).collect()
@@ -166,7 +166,7 @@ fn blend(level: &[Vec3], wished: &[Vec3], shares: &[f32]) -> Vec<Vec3> {
 /// Lowers shares until neighbours differ by at most [`SLOPE`].
 fn smooth(shares: &mut [f32]) {
     let count = shares.len();
-    // Twice around in both directions: a limit may pass the end of the list.
+    // Go around twice in both directions, because a limit may pass the end of the list.
     for step in 0..2 * count {
         let (here, next) = (step % count, (step + 1) % count);
         shares[next] = shares[next].min(shares[here] + SLOPE);

@@ -1,4 +1,4 @@
-//! What files may ask for: small ones that stand for a lot are refused or drawn within seconds.
+//! Tests of files that ask for a lot in few bytes: they are refused, or drawn within seconds.
 
 mod made_up;
 
@@ -7,7 +7,7 @@ use std::{fs, process::Command, time::Instant};
 use made_up::{MadeUp, floats, load_file, png, png_header};
 use serde_json::json;
 
-/// Longer than any of these files takes, shorter than any took before it was bounded, seconds.
+/// Seconds. Each of these files takes less now, and took more before its cost was bounded.
 const SECONDS: f64 = 30.0;
 
 #[track_caller]
@@ -65,7 +65,7 @@ fn equal_sources_are_decoded_once() {
     let used: Vec<_> = scene.materials.iter().filter_map(|m| m.base_color_texture).collect();
     let used: Vec<u32> = used.iter().map(|texture| texture.image).collect();
     assert_eq!((scene.images.len(), used), (2, vec![0, 0, 0, 1]));
-    // The same bytes as colours and as numbers: two images of one source.
+    // The same bytes as colours and as numbers give two images of one source.
     let texture = json!({"index": 0});
     file.json["materials"][1]["normalTexture"] = texture;
     let scene = file.load().expect("valid");
@@ -96,7 +96,7 @@ fn images_cut_short_are_refused_or_named() {
                 Ok(scene) => scene.warnings.join("; "),
                 Err(error) => error,
             };
-            let named = says.contains("images[0]\" is a JPEG cut short")
+            let named = says.contains("images[0]\" is a truncated JPEG")
                 || says.contains("images[0] does not decode")
                 || says.contains("bufferViews");
             assert!(named, "{format:?} {end}: {says}");
@@ -140,7 +140,7 @@ fn buffers_are_read_from_regular_files_and_no_further_than_their_length() {
         assert!(scene.as_ref().is_ok_and(|s| s.triangle_count() == 1), "{:?}", scene.err());
         for name in ["zero.bin", "pipe.bin", "sub"] {
             let error = with_buffer(&folder, name).expect_err(name);
-            let expected = format!("{name}, which cannot be read: it is no regular file");
+            let expected = format!("{name}, which cannot be read: it is not a regular file");
             assert!(
                 error.contains("buffers[0].uri names ") && error.contains(&expected),
                 "{error}"
@@ -159,7 +159,8 @@ fn buffers_are_read_from_regular_files_and_no_further_than_their_length() {
     });
 }
 
-/// A file of a few hundred bytes whose one sparse accessor makes triangles of zeros and one corner.
+/// A file of a few hundred bytes. Its one sparse accessor makes triangles of zeros and one other
+/// corner.
 fn sparse_triangles(vertices: usize) -> MadeUp {
     let mut file = MadeUp::triangle();
     let at = file.view(&[1, 0, 0, 0]);
@@ -174,7 +175,7 @@ fn sparse_triangles(vertices: usize) -> MadeUp {
     file
 }
 
-/// The triangle, `count` times over, by indices of one byte.
+/// The triangle `count` times, by indices of one byte.
 fn repeated(count: usize) -> MadeUp {
     let mut file = MadeUp::triangle();
     let indices = file.accessor(&[0, 1, 2].repeat(count), 3 * count, 5121, "SCALAR");
@@ -188,9 +189,9 @@ fn triangles_without_area_and_coincident_ones_take_seconds() {
     assert!(error.contains("scene has 0 triangles"), "{error}");
     let scene = within_seconds("repeated", || repeated(400_000).load()).expect("drawn");
     assert_eq!(scene.triangle_count(), 1);
-    let expected = "399999 of 400000 triangles repeat another one and are left out";
+    let expected = "399999 of 400000 triangles repeat another triangle and are left out";
     assert!(scene.warnings[0].contains(expected), "{:?}", scene.warnings);
-    // With a normal map, tangents are made of them.
+    // With a normal map, tangents are computed for them.
     let mut mapped = repeated(400_000);
     let view = mapped.view(&png());
     mapped.textured(json!({"bufferView": view}));
@@ -244,7 +245,7 @@ fn warnings_and_names_stay_short_and_few() {
     file.json["meshes"][0]["name"] = "short".into();
     let scene = within_seconds("many", || file.load()).expect("valid");
     assert_eq!(scene.warnings.len(), 21);
-    assert_eq!(scene.warnings[0], "mesh \"short.0\": Points are not drawn");
+    assert_eq!(scene.warnings[0], "mesh \"short.0\": primitives of type Points are not drawn");
     assert_eq!(scene.warnings[20], "and 79,979 more like the last one");
     file.json["meshes"][0]["name"] = "long \u{1b}[31m\u{202e}\n".repeat(200_000).into();
     let scene = within_seconds("long", || file.load()).expect("valid");

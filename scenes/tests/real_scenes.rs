@@ -1,17 +1,17 @@
-//! The real scenes that measurements use, where they are at hand.
+//! Tests of the real scenes that measurements use, where they are present.
 
 use std::{io::Write, path::PathBuf};
 
 use scenes::{Scene, load_gltf};
 
-/// The file below `$LIGHTBENCH_SCENES` or `../shared/scenes` beside the workspace; says so and
-/// returns nothing where it is absent.
+/// The file below `$LIGHTBENCH_SCENES` or `../shared/scenes` beside the workspace. If it is absent,
+/// prints so and returns `None`.
 fn open(file: &str) -> Option<Scene> {
     let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes");
     let folder = std::env::var_os("LIGHTBENCH_SCENES").map_or_else(beside, PathBuf::from);
     let path = folder.join(file);
     if !path.exists() {
-        // Straight to stderr: what eprintln! writes, tests show only when they fail.
+        // Write straight to stderr, because tests show what eprintln! writes only when they fail.
         let line = format!("skipped: {} is absent, nothing was tested\n", path.display());
         let _ = std::io::stderr().write_all(line.as_bytes());
         return None;
@@ -25,7 +25,7 @@ fn sponza() {
     assert_eq!(scene.triangle_count(), 262_267);
     assert_eq!((scene.meshes.len(), scene.images.len()), (25, 64));
     assert_eq!(scene.core_bounds, scene.bounds);
-    // Inside the court: between the columns, below the roof.
+    // Inside the court, between the columns and below the roof.
     let eye = scene.path.pose(0, 1200).eye;
     assert!(eye.x.abs() < 10.0 && eye.z.abs() < 2.5 && (0.5..8.0).contains(&eye.y), "{eye}");
 }

@@ -10,49 +10,49 @@ use crate::ltc::Masking;
 /// The most samples of [`AreaModel::MonteCarlo`].
 pub const MAX_AREA_SAMPLES: u32 = 4096;
 
-/// A model of area lights, from the floor up.
+/// A model of area lights. From the cheapest to the most exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum AreaModel {
     /// All light comes from the emitter's middle.
     Point,
-    /// The most representative point of each term (Drobot 2014), weighed by solid angles that are
-    /// derived in `area_mrp.wesl`.
+    /// The most representative point of each term (Drobot 2014), weighted by solid angles that
+    /// `area_mrp.wesl` derives.
     Mrp,
     /// The most representative point with the weights of Dobetsberger 2025, section 5.3: the cone of
     /// equation 5.5 for the specular term.
     MrpPublished,
-    /// Linearly transformed cosines: each sample looks its matrix up once in the fitted table.
+    /// Linearly transformed cosines. Each sample looks its matrix up once, in the fitted table.
     #[default]
     LtcTable,
     /// The same with a table fitted to GGX with Hammon's approximate masking, which some engines
-    /// have. The truth stays that of the exact masking (Dobetsberger 2025, table 5.1).
+    /// use. The truth still uses the exact masking (Dobetsberger 2025, table 5.1).
     LtcHammon,
     /// The table, without splitting edges that span more than a right angle (Dobetsberger 2025,
     /// section 5.4.4, before the fix).
     LtcUnsplit,
-    /// The table, looked up once per light and sample: the image of [`Self::LtcTable`], bit for
-    /// bit.
+    /// The table, looked up once per light and sample. Its image equals that of [`Self::LtcTable`],
+    /// bit for bit.
     LtcPerLight,
     /// Matrices from the fitted polynomials, evaluated once per sample.
     LtcPolynomial,
-    /// The polynomials, evaluated once per light and sample: the image of [`Self::LtcPolynomial`],
-    /// bit for bit.
+    /// The polynomials, evaluated once per light and sample. Its image equals that of
+    /// [`Self::LtcPolynomial`], bit for bit.
     LtcPolynomialPerLight,
-    /// Samples over the spherical rectangle: the integral itself, with noise.
+    /// Random samples over the spherical rectangle: the integral itself, with noise.
     MonteCarlo {
-        /// Samples of a light, 1 to [`MAX_AREA_SAMPLES`].
+        /// Samples per light, 1 to [`MAX_AREA_SAMPLES`].
         samples: u32,
     },
     /// The same, but specular samples come only from the part that the surface mirrors
-    /// (Dobetsberger 2025, section 5.2): less noise, and biased.
+    /// (Dobetsberger 2025, section 5.2). It has less noise and is biased.
     MonteCarloReflected {
-        /// Samples of a light, 1 to [`MAX_AREA_SAMPLES`].
+        /// Samples per light, 1 to [`MAX_AREA_SAMPLES`].
         samples: u32,
     },
 }
 
-/// Samples where none are named.
+/// The number of samples if none is given.
 const DEFAULT_SAMPLES: u32 = 16;
 
 impl AreaModel {
@@ -71,7 +71,7 @@ impl AreaModel {
         Self::MonteCarloReflected { samples: DEFAULT_SAMPLES },
     ];
 
-    /// The flags that compile it, together with `areas`.
+    /// The flags that compile this model, together with `areas`.
     pub fn flags(self) -> &'static [&'static str] {
         match self {
             Self::Point => &["area_point"],
@@ -87,7 +87,7 @@ impl AreaModel {
         }
     }
 
-    /// The masking whose table shading looks up; `None` where it looks none up.
+    /// The masking of the table that shading looks up; `None` if it looks none up.
     pub fn table(self) -> Option<Masking> {
         match self {
             Self::LtcTable | Self::LtcUnsplit | Self::LtcPerLight => Some(Masking::Correlated),
@@ -96,7 +96,7 @@ impl AreaModel {
         }
     }
 
-    /// Samples of a light; 0 where none are drawn.
+    /// Samples per light; 0 if the model draws none.
     pub fn samples(self) -> u32 {
         match self {
             Self::MonteCarlo { samples } | Self::MonteCarloReflected { samples } => samples,
@@ -155,7 +155,8 @@ impl fmt::Display for AreaModel {
 impl FromStr for AreaModel {
     type Err = AssignError;
 
-    /// Reads what [`Display`](fmt::Display) writes; sampling without a number draws 16 samples.
+    /// Reads what [`Display`](fmt::Display) writes. A sampling model without a number draws 16
+    /// samples.
     fn from_str(text: &str) -> Result<Self, AssignError> {
         let (name, samples) = match text.split_once(':') {
             Some((name, samples)) => (name, Some(samples)),
@@ -188,7 +189,7 @@ impl From<AreaModel> for String {
     }
 }
 
-/// What names a model.
+/// The accepted names.
 pub const ACCEPTED_AREA_MODELS: &str = "point, mrp, mrp-published, ltc, ltc-hammon, ltc-unsplit, \
     ltc-per-light, ltc-polynomial, ltc-polynomial-per-light, monte-carlo:SAMPLES or \
     monte-carlo-reflected:SAMPLES, 1 to 4096 samples";

@@ -1,4 +1,4 @@
-//! What can go wrong in shading.
+//! Errors of shading.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Why a scene cannot be drawn, or an image not written.
 #[derive(Debug, Error)]
 pub enum ShadingError {
-    /// The contract's own errors.
+    /// An error of the contract.
     #[error(transparent)]
     Assign(#[from] AssignError),
     /// The image size lies outside what the device draws.
@@ -35,7 +35,7 @@ pub enum ShadingError {
         /// The device's limit, pixels.
         limit: u32,
     },
-    /// Two images differ in size and cannot be compared.
+    /// Two images of different sizes cannot be compared.
     #[error("an image of {}x{} pixels cannot be compared with one of {}x{}", left[0], left[1], right[0], right[1])]
     Mismatch {
         /// Width and height of the first, pixels.
@@ -43,24 +43,24 @@ pub enum ShadingError {
         /// Width and height of the second, pixels.
         right: [u32; 2],
     },
-    /// A lighting pass meets a kind of light that its shader was not made for.
+    /// The prepared lights are of a kind for which the lighting pass was not compiled.
     #[error(
-        "the lighting pass was made for {made:?}, and the lights are of {lights:?}: create it again"
+        "the lighting pass was compiled for {made:?}, but the lights are {lights:?}: create a new pass"
     )]
     Kinds {
-        /// The kinds that it was made for.
+        /// The kinds that the pass was compiled for.
         made: LightKinds,
         /// The kinds of the prepared lights.
         lights: LightKinds,
     },
-    /// A table of linearly transformed cosines is not one.
+    /// A table of linearly transformed cosines is not valid.
     #[error("LTC table: {field} is {value}: it must be {accepted}")]
     LtcTable {
-        /// What is wrong with it.
+        /// The faulty field.
         field: &'static str,
         /// Its value.
         value: String,
-        /// What would be accepted.
+        /// What is accepted.
         accepted: String,
     },
     /// A file could not be read.
@@ -68,7 +68,7 @@ pub enum ShadingError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A file could not be written.
@@ -76,7 +76,7 @@ pub enum ShadingError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }

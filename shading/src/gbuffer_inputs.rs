@@ -1,10 +1,10 @@
-//! Binds depth and G-buffer for the passes that read drawn pixels: `gbuffer.wesl`.
+//! Binds depth and G-buffer for the passes that read drawn pixels with `gbuffer.wesl`.
 
 use assign::Shader;
 
 use crate::{geometry::SceneGpu, targets::Targets};
 
-/// Bind group of depth and G-buffer, and of what else such a pass reads and writes.
+/// Bind group of depth and G-buffer, and of the pass's other inputs and outputs.
 pub(crate) const PIXELS_GROUP: u32 = 2;
 
 /// Bindings of `gbuffer.wesl`.
@@ -24,18 +24,18 @@ pub(crate) struct GBufferInputs {
 }
 
 impl GBufferInputs {
-    /// The images that a scene's surfaces fill; without the model of each pixel.
+    /// The images that the scene's surfaces fill, without the model of each pixel.
     pub(crate) fn of_scene(scene: &SceneGpu) -> Self {
         let (emissive, dielectrics) = (scene.has_emissive(), scene.has_dielectrics());
         Self { emissive, dielectrics, model_ids: false }
     }
 
-    /// Only what tells a pixel's sample, and its model where a strategy needs it.
+    /// Only the images that determine a pixel's sample, with its model if a strategy needs it.
     pub(crate) fn of_sample(model_ids: bool) -> Self {
         Self { emissive: false, dielectrics: false, model_ids }
     }
 
-    /// Compiles the loads of these images.
+    /// Sets the flags that compile the loads of these images.
     pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
         shader
             .flag("emissive", self.emissive)

@@ -1,4 +1,4 @@
-//! A scene's triangles on the GPU, and the order in which they are drawn.
+//! Uploads a scene's triangles and draws them in a fixed order.
 
 use assign::{AssignError, Gpu, entry, storage_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
@@ -44,23 +44,23 @@ pub(crate) struct Draw {
     pub(crate) instance_count: u32,
 }
 
-/// What a draw's pipeline depends on.
+/// The properties of a draw that decide its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct DrawKey {
     pub(crate) material: MaterialKey,
     pub(crate) mirrored: bool,
 }
 
-/// A scene's geometry and materials on the GPU, bind group 2. Cloning shares them.
+/// A scene's geometry and materials on the GPU: bind group 2. Clones share them.
 #[derive(Clone, Debug)]
 pub struct SceneGpu {
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
-    /// Colours of all vertices, where any mesh has some.
+    /// Colours of all vertices, if any mesh has colours.
     colors: Option<wgpu::Buffer>,
     pub(crate) draws: Vec<Draw>,
     pub(crate) materials: Materials,
-    /// Of bind group 2, for each of [`Bound::ALL`].
+    /// Layouts of bind group 2, one for each of [`Bound::ALL`].
     layouts: [wgpu::BindGroupLayout; 4],
     pub(crate) instances: wgpu::Buffer,
 }
@@ -106,7 +106,7 @@ impl SceneGpu {
         &self.layouts[bound.index()]
     }
 
-    /// Bind group 2, with what lighting reads.
+    /// Bind group 2, together with the inputs of lighting.
     pub(crate) fn bind_group(&self, gpu: &Gpu, inputs: &LightingInputs) -> wgpu::BindGroup {
         let own = [entry(0, &self.instances), entry(1, &self.materials.factors)];
         let entries: Vec<_> = own.into_iter().chain(inputs.entries()).collect();
@@ -122,7 +122,7 @@ impl SceneGpu {
         self.materials.has_emissive
     }
 
-    /// Whether any material reflects other than glTF's plain dielectric does.
+    /// Whether any material has a reflectance other than that of glTF's default dielectric.
     pub(crate) fn has_dielectrics(&self) -> bool {
         self.materials.has_dielectrics
     }
@@ -132,7 +132,7 @@ impl SceneGpu {
         self.draws.iter().any(|draw| draw.key.material.mask)
     }
 
-    /// Every pipeline its draws need.
+    /// The keys of all pipelines that its draws need.
     pub(crate) fn keys(&self) -> Vec<DrawKey> {
         let mut keys: Vec<DrawKey> = self.draws.iter().map(|draw| draw.key).collect();
         keys.sort_unstable();
@@ -140,7 +140,7 @@ impl SceneGpu {
         keys
     }
 
-    /// Issues all draws, in the order of their pipelines; `pipeline` looks one up.
+    /// Issues all draws, sorted by pipeline. `pipeline` looks up a pipeline.
     pub(crate) fn draw<'a>(
         &'a self,
         pass: &mut wgpu::RenderPass<'_>,
@@ -194,7 +194,7 @@ fn check_size(
     Ok(())
 }
 
-/// Where a mesh lies in the shared buffers.
+/// The place of a mesh in the shared buffers.
 #[derive(Clone, Copy)]
 struct MeshRange {
     first_index: u32,
@@ -202,7 +202,7 @@ struct MeshRange {
     base_vertex: i32,
 }
 
-/// All meshes behind each other: their ranges, vertex bytes and index bytes.
+/// Concatenates all meshes: their ranges, vertex bytes and index bytes.
 fn concatenate(scene: &Scene) -> (Vec<MeshRange>, Vec<u8>, Vec<u8>) {
     let mut vertices: Vec<u8> = Vec::new();
     let mut indices: Vec<u8> = Vec::new();
@@ -223,8 +223,8 @@ fn concatenate(scene: &Scene) -> (Vec<MeshRange>, Vec<u8>, Vec<u8>) {
     (ranges, vertices, indices)
 }
 
-/// The colours of all meshes' vertices behind each other, white where a mesh has none; nothing
-/// where no mesh has any.
+/// Concatenates the vertex colours of all meshes, white where a mesh has none. Empty if no mesh has
+/// colours.
 fn colors(scene: &Scene) -> Vec<[f32; 4]> {
     if scene.meshes.iter().all(|mesh| mesh.colors.is_empty()) {
         return Vec::new();
@@ -286,8 +286,9 @@ fn plan(
 pub(crate) fn record(model: &Model, model_ix: u32, material_ix: u32) -> InstanceRecord {
     let linear = Mat3::from_mat4(model.object_to_world);
     let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
-    // The cofactor matrix is the inverse transpose times the determinant, and exists for a
-    // transform that flattens as well. Scaled to its longest column: tiny models stay inside f32.
+    // The cofactor matrix is the inverse transpose times the determinant. It also exists for a
+    // transform that flattens. Its longest column is scaled to 1, so that tiny models stay in the
+    // range of f32.
     let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
     let longest = cofactors.iter().map(|c| c.length()).fold(f32::MIN_POSITIVE, f32::max);
     let handedness = if model.is_mirrored() { -1.0 } else { 1.0 };

@@ -1,14 +1,14 @@
-//! Lights per pixel, painted over the scene.
+//! Paints the number of lights per pixel over the scene.
 //!
-//! The comparison paper's scale (Enhuber 2019, section 4.4): from blue at no light to red at
-//! [`HEAT_MAP_RED`], green above.
+//! The scale is that of the comparison paper (Enhuber 2019, section 4.4): blue for no light, red
+//! for [`HEAT_MAP_RED`] lights, green above that.
 
 use crate::{HdrImage, ShadingError, image::encode_png};
 
-/// The number of lights that is painted red; more are green.
+/// The number of lights that is painted red. More lights are green.
 pub const HEAT_MAP_RED: u32 = 150;
 
-/// Share of the scale in a pixel's colour; the rest is the scene's brightness.
+/// The share of the scale in a pixel's colour. The rest is the scene's brightness.
 const OPACITY: f32 = 0.65;
 
 /// The scale's colour, sRGB.
@@ -20,8 +20,8 @@ pub fn heat_color(lights: u32) -> [u8; 3] {
     [(red * 255.0).round() as u8, 0, ((1.0 - red) * 255.0).round() as u8]
 }
 
-/// A PNG of the scene in grey under the scale; `lights` holds a number per pixel, rows from the
-/// top, `None` where there is no surface, which stays black.
+/// A PNG of the scene in grey, covered with the scale. `lights` holds a number per pixel, rows from
+/// the top. `None` means that there is no surface; such pixels stay black.
 pub fn heat_map_png(
     image: &HdrImage,
     exposure: f32,
@@ -55,7 +55,7 @@ mod tests {
         let png = heat_map_png(&image, 1.0, &[None, Some(0), Some(200)]).unwrap();
         let read = ::image::load_from_memory(&png).unwrap().to_rgb8();
         assert_eq!(read.as_raw()[..], [0, 0, 0, 0, 0, 165, 0, 165, 0]);
-        // A pixel without a number is an error, not a shorter image.
+        // A pixel without a number is an error. The image must not become shorter.
         assert!(heat_map_png(&image, 1.0, &[None]).is_err());
     }
 }

@@ -10,27 +10,27 @@ use crate::{ShadingError, Targets, mips::linear_to_srgb};
 /// A linear HDR image, single precision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HdrImage {
-    /// Pixels a row.
+    /// Pixels per row.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
     /// Linear RGB, rows from the top.
     pub pixels: Vec<[f32; 3]>,
 }
 
-/// How far one image lies from another, over all channels of all pixels.
+/// The difference between two images, over all channels of all pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageDifference {
-    /// Greatest `|a - b|`, linear radiance. Infinite where either is not a number.
+    /// Greatest `|a - b|`, linear radiance. Infinite if either is NaN.
     pub max_abs: f64,
     /// Greatest `|a - b| / max(|b|, 1e-6)`.
     pub max_rel: f64,
-    /// Channels whose bits differ, or that are no number in either image.
+    /// The number of channels whose bits differ, or that are NaN in either image.
     pub differing_channels: u64,
 }
 
 impl HdrImage {
-    /// Copies the radiance image from the GPU, blocking; crops it to the viewport.
+    /// Copies the radiance image from the GPU and crops it to the viewport. Blocks.
     pub fn read(
         gpu: &Gpu,
         targets: &Targets,
@@ -73,7 +73,7 @@ impl HdrImage {
         Ok(Self { width: viewport.width, height: viewport.height, pixels })
     }
 
-    /// Compares with `reference`, which must be of the same size.
+    /// Compares with `reference`, which must have the same size.
     pub fn difference(&self, reference: &Self) -> Result<ImageDifference, ShadingError> {
         if (self.width, self.height) != (reference.width, reference.height) {
             return Err(ShadingError::Mismatch {
@@ -96,8 +96,8 @@ impl HdrImage {
         Ok(difference)
     }
 
-    /// The exposure that brings the 90th percentile of luminance, over lit pixels, to 0.6: a
-    /// bright surface keeps its colour, and most of the image lies below it.
+    /// The exposure that maps the 90th percentile of luminance, over lit pixels, to 0.6. Most of
+    /// the image then lies below 0.6, and a bright surface keeps its colour.
     pub fn auto_exposure(&self) -> f32 {
         let mut lit: Vec<f64> =
             self.pixels.iter().map(luminance).filter(|l| l.is_finite() && *l > 1e-6).collect();
@@ -109,7 +109,7 @@ impl HdrImage {
         (0.6 / *bright).clamp(1e-6, 1e6) as f32
     }
 
-    /// Exposed, tone mapped and encoded as sRGB: 3 bytes a pixel.
+    /// Exposed, tone mapped and encoded as sRGB: 3 bytes per pixel.
     pub fn tone_mapped(&self, exposure: f32) -> Vec<u8> {
         self.pixels.iter().flat_map(|pixel| tone_map(pixel.map(|v| v * exposure))).collect()
     }
@@ -119,7 +119,7 @@ impl HdrImage {
         encode_png(self.width, self.height, self.tone_mapped(exposure))
     }
 
-    /// A PNG of `|self - reference|` times `gain`, no tone map.
+    /// A PNG of `|self - reference|` times `gain`, without tone mapping.
     pub fn difference_png(&self, reference: &Self, gain: f32) -> Result<Vec<u8>, ShadingError> {
         let bytes = self
             .pixels
@@ -131,7 +131,8 @@ impl HdrImage {
         encode_png(self.width, self.height, bytes)
     }
 
-    /// Reads an EXR file that [`write_exr`](Self::write_exr) wrote, or another with R, G and B.
+    /// Reads an EXR file that [`write_exr`](Self::write_exr) wrote, or any other with channels R, G
+    /// and B.
     pub fn read_exr(path: &Path) -> Result<Self, ShadingError> {
         let read = exr::prelude::read_first_rgba_layer_from_file(
             path,
@@ -182,7 +183,7 @@ pub fn luminance(pixel: &[f32; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Narkowicz's fit of the ACES curve (2015), each channel alone, then sRGB.
+/// Narkowicz's fit of the ACES curve (2015) for each channel separately, then sRGB.
 fn tone_map(pixel: [f32; 3]) -> [u8; 3] {
     pixel.map(|x| {
         let x = if x.is_nan() { 0.0 } else { x.clamp(0.0, 1e4) };
@@ -212,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn difference_sees_one_bit() {
+    fn difference_detects_one_bit() {
         let mut image = grey(0.5);
         assert_eq!(image.difference(&grey(0.5)).unwrap(), ImageDifference::default());
         image.pixels[3][1] = f32::from_bits(0.5_f32.to_bits() + 1);
@@ -222,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn not_a_number_differs() {
+    fn nan_counts_as_a_difference() {
         let difference = grey(f32::NAN).difference(&grey(f32::NAN)).unwrap();
         assert_eq!(difference.max_abs, f64::INFINITY);
     }

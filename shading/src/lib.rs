@@ -1,22 +1,23 @@
-//! The one shading pipeline: whatever the strategy, the same triangles, materials, BRDF and sum.
+//! The one shading pipeline. Every strategy gets the same triangles, materials, BRDF and order of
+//! summation.
 //!
 //! # A frame
 //!
 //! | pass | mode | reads | writes |
 //! |---|---|---|---|
-//! | `depth` | all but forward without a pre-pass, and there where a strategy reads surfaces | triangles | depth |
+//! | `depth` | all; in forward without a pre-pass only where a strategy reads surfaces | triangles | depth |
 //! | `gbuffer` | deferred, and where a strategy needs normals | triangles, textures | base colour, normal, roughness, emissive; in `deferred-ids` the index of each pixel's model |
 //! | `model-ids` | deferred, where a strategy needs models | triangles | index of each pixel's model |
-//! | the strategy's own | all | depth, lights | lists |
+//! | the strategy's passes | all | depth, lights | lists |
 //! | `shade` | deferred | G-buffer, lists, lights | radiance, by compute |
 //! | `shade` | forward | triangles, textures, lists, lights | radiance, by fragments |
 //!
-//! All modes call the one lighting function in `lighting.wesl`; a sample is found from pixel and
-//! depth by `sample_at` in all of them, so a strategy's groups are the same. Only what a scene contains
-//! is compiled and bound: each texture, alpha masks, emission, spots, area lights.
+//! All modes call the one lighting function in `lighting.wesl`. All modes find a sample from pixel
+//! and depth by `sample_at`, so a strategy assigns it to the same group. Only features that a scene
+//! contains are compiled and bound: each texture, alpha masks, emission, spots, area lights.
 //!
-//! [`truth`](LightBvh) checks a strategy's lists on the CPU in f64; [`HdrImage`] compares images
-//! bit for bit; [`traced`] renders the true image, shadows and one bounce included.
+//! [`LightBvh`] checks a strategy's lists on the CPU in f64. [`HdrImage`] compares images bit for
+//! bit. [`traced`] renders the true image, including shadows and bounces.
 
 mod area_model;
 mod error;

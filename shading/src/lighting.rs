@@ -1,4 +1,4 @@
-//! Lighting with one strategy's lists, in one mode.
+//! The lighting pass: shades all pixels with one strategy's lists, in one mode.
 
 use assign::{AssignError, Assignment, Gpu, Passes, View};
 
@@ -11,10 +11,10 @@ use crate::{
     targets::RADIANCE_FORMAT,
 };
 
-/// Where deferred lighting binds the image that it writes, in [`PIXELS_GROUP`].
+/// The binding in [`PIXELS_GROUP`] of the image that deferred lighting writes.
 const RADIANCE_BINDING: u32 = 4;
 
-/// The lighting pass of one strategy and mode; recorded as the pass `shade`.
+/// The lighting pass of one strategy and mode. It is recorded as the pass `shade`.
 #[derive(Debug)]
 pub struct Lighting {
     kind: Kind,
@@ -31,13 +31,13 @@ enum Kind {
 struct Forward {
     pipelines: RasterPipelines,
     scene: wgpu::BindGroup,
-    /// Whether depth is drawn before.
+    /// Whether depth is drawn before lighting.
     has_depth: bool,
 }
 
 impl Lighting {
-    /// Splices the strategy's look-up into the pipeline's shader. It is made for the renderer's mapping
-    /// of depth, and must be made anew where that changes.
+    /// Compiles the strategy's look-up into the pipeline's shader. The pass is for the renderer's
+    /// present mapping of depth; another mapping needs a new pass.
     pub fn new(
         renderer: &Renderer,
         strategy: &dyn Assignment,
@@ -84,13 +84,13 @@ impl Lighting {
         Ok(Self { kind, options })
     }
 
-    /// What it was made with.
+    /// The options with which it was created.
     pub fn options(&self) -> LightingOptions {
         self.options
     }
 
-    /// Records the pass `shade`, after the strategy's own. An error where the prepared lights
-    /// are of a kind that the shader was made without.
+    /// Records the pass `shade`, after the strategy's own passes. Returns an error if the prepared
+    /// lights are of a kind for which the shader was not compiled.
     pub fn record(
         &self,
         renderer: &Renderer,
@@ -138,7 +138,7 @@ impl Deferred {
             .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
             .strategy(lists.lookup.module);
         // SAFETY: its loops count up to the number of suns and to the length of a list, which is a
-        // `u32` read once. The strategy's author vouches for its look-up.
+        // `u32` read once. The strategy's author guarantees that loops of its look-up end.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::deferred") }?;
         let layouts = [Some(renderer.frame.layout()), Some(lists.lookup.layout), Some(&layout)];

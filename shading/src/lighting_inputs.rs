@@ -1,15 +1,15 @@
-//! What lighting reads beside surfaces, lights and lists: its numbers, the suns where there are any,
-//! and the table of linearly transformed cosines where a model of area lights looks it up.
+//! The inputs of lighting beside surfaces, lights and lists: its numbers, the suns if there are
+//! any, and the table of linearly transformed cosines if the model of area lights uses it.
 
 use assign::{Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
 use bytemuck::{Pod, Zeroable};
 
 use crate::{LightingOptions, ShadingError, ltc};
 
-/// Where `LightingUniform` is bound in group 2.
+/// Binding of `LightingUniform` in group 2.
 pub(crate) const LIGHTING_BINDING: u32 = 6;
 
-/// Where the table is bound in group 2.
+/// Binding of the table in group 2.
 pub(crate) const LTC_BINDING: u32 = 7;
 
 /// `lighting_uniform.wesl`, `struct LightingUniform`. 12 bytes.
@@ -18,13 +18,13 @@ pub(crate) const LTC_BINDING: u32 = 7;
 pub struct LightingRecord {
     /// [`LightingOptions::exit_weight`].
     pub exit_weight: f32,
-    /// Samples of each term of an area light; 0 where its model draws none.
+    /// Samples of each term of an area light; 0 if its model draws none.
     pub area_samples: u32,
-    /// [`LightingOptions::compensation`]; 0 where it is off.
+    /// [`LightingOptions::compensation`]; 0 if it is off.
     pub applicable_lights: f32,
 }
 
-/// Where `Suns` is bound in group 2.
+/// Binding of `Suns` in group 2.
 pub(crate) const SUNS_BINDING: u32 = 10;
 
 /// `suns.wesl`, `struct Sun`. 32 bytes.
@@ -33,7 +33,7 @@ pub(crate) const SUNS_BINDING: u32 = 10;
 pub struct SunRecord {
     /// Unit vector to the sun, world space, and padding.
     pub to_sun: [f32; 4],
-    /// Linear RGB of a surface that faces it, and padding.
+    /// Irradiance of a surface that faces it, linear RGB, and padding.
     pub irradiance: [f32; 4],
 }
 
@@ -41,9 +41,9 @@ pub struct SunRecord {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SunsRecord {
-    /// The suns, those beyond the count unused.
+    /// The suns. Those beyond the count are unused.
     pub suns: [SunRecord; MAX_SUNS],
-    /// How many there are.
+    /// The number of suns.
     pub count: u32,
     /// Pads to 16 bytes.
     pub padding: [u32; 3],
@@ -76,7 +76,7 @@ impl Bound {
         Self { table: true, suns: true },
     ];
 
-    /// Its place in [`ALL`](Self::ALL).
+    /// Its index in [`ALL`](Self::ALL).
     pub(crate) fn index(self) -> usize {
         usize::from(self.table) + 2 * usize::from(self.suns)
     }
@@ -91,7 +91,7 @@ pub(crate) struct LightingInputs {
 }
 
 impl LightingInputs {
-    /// Uploads what the options ask for.
+    /// Uploads the resources that the options need.
     pub(crate) fn new(gpu: &Gpu, options: LightingOptions) -> Result<Self, ShadingError> {
         let uniform = gpu.uniform("lighting", 16);
         options.area.check()?;
@@ -105,7 +105,7 @@ impl LightingInputs {
         let table = match options.area.table().filter(|_| options.kinds.areas) {
             None => None,
             Some(masking) => {
-                let table = ltc::Table::of(masking)?;
+                let table = ltc::Table::load(masking)?;
                 let bytes = table.as_bytes();
                 let buffer = gpu.storage("LTC table", bytes.len() as u64)?;
                 gpu.queue.write_buffer(&buffer, 0, bytes);
@@ -138,14 +138,14 @@ impl LightingInputs {
         [entry(LIGHTING_BINDING, &self.uniform)].into_iter().chain(table).chain(suns)
     }
 
-    /// Which of them there are.
+    /// Which resources it holds.
     pub(crate) fn bound(&self) -> Bound {
         Bound { table: self.table.is_some(), suns: self.suns.is_some() }
     }
 }
 
 impl LightingOptions {
-    /// What their shader binds.
+    /// Which resources their shader binds.
     pub(crate) fn bound(&self) -> Bound {
         let table = self.kinds.areas && self.area.table().is_some();
         Bound { table, suns: !self.suns.is_empty() }

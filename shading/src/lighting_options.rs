@@ -8,25 +8,28 @@ use crate::AreaModel;
 /// How the lights of a list are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightingOptions {
-    /// The kinds of lights that it lights.
+    /// The kinds of lights that the pass lights.
     pub kinds: LightKinds,
-    /// A light is left out of a sample, before its BRDF, where its fall-off or the cosine of
-    /// incidence is at most this. 0 leaves out what adds nothing, out of range (the survey's
-    /// bounding sphere, Watrous 2024), cone or horizon, and changes no bit of the image, for the
-    /// shader is one, told by a uniform; [`EVALUATE_ALL`](Self::EVALUATE_ALL) leaves out nothing.
-    /// Anything above 0 loses light: per square metre of the fall-off, and as a cosine.
+    /// A light is skipped at a sample, before its BRDF, if its fall-off or the cosine of incidence
+    /// is at most this.
+    ///
+    /// 0 skips lights that add nothing because the sample is out of range (the survey's bounding
+    /// sphere, Watrous 2024), out of the cone, or behind the horizon. It changes no bit of the
+    /// image: a uniform holds the number, so the shader is the same.
+    /// [`EVALUATE_ALL`](Self::EVALUATE_ALL) skips nothing. Values above 0 lose light; they compare
+    /// with the fall-off per square metre, and with the cosine.
     pub exit_weight: f32,
     /// How the fall-off ends at a light's range.
     pub cut: Cut,
-    /// How the light of area lights is integrated.
+    /// The model that integrates the light of area lights.
     pub area: AreaModel,
-    /// Brightness compensation (Archer, Leach, Knowles 2019, section 3.2): a sample's radiance times
-    /// this number over that of the lights that add something to it, within a factor of 4. It hides
-    /// where virtual point lights lie thick or thin, and is no light that anything sends: `None`,
-    /// which changes no bit, wherever errors are measured.
+    /// Brightness compensation (Archer, Leach, Knowles 2019, section 3.2): a sample's radiance is
+    /// multiplied by this number over the number of lights that add something to it, within a
+    /// factor of 4. It hides where virtual point lights are dense or sparse. No light emits what it
+    /// adds, so it is off (`None`) wherever errors are measured. Off, it changes no bit.
     pub compensation: Option<f32>,
-    /// Suns, which light every sample beside its list; without any, nothing of them is compiled or
-    /// bound.
+    /// Suns light every sample in addition to its list. Without suns, none of their code is
+    /// compiled and nothing is bound for them.
     pub suns: Suns,
 }
 
@@ -34,15 +37,15 @@ pub struct LightingOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cut {
-    /// Smoothly: times `(1 - (d / range)^4)^2`.
+    /// Smoothly: inverse square times `(1 - (d / range)^4)^2`.
     #[default]
     Windowed,
-    /// At once: inverse square up to the range, 0 beyond.
+    /// Abruptly: inverse square up to the range, 0 beyond.
     Hard,
 }
 
 impl Cut {
-    /// As in results: `windowed` or `hard`.
+    /// The name in results: `windowed` or `hard`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Windowed => "windowed",
@@ -55,7 +58,7 @@ impl LightingOptions {
     /// The [`exit_weight`](Self::exit_weight) with which every light of a list is evaluated.
     pub const EVALUATE_ALL: f32 = -1.0;
 
-    /// Compiles what they ask for.
+    /// Sets the shader flags that these options need.
     pub(crate) fn set_flags(self, shader: Shader<'_>) -> Shader<'_> {
         let shader = shader
             .light_kinds(self.kinds)

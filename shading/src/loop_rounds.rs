@@ -1,13 +1,13 @@
-//! Rounds of the loops that light a sample, where an adapter ends loops by their number.
+//! Counts the rounds of the loops that light a sample, for adapters that limit them.
 //!
-//! llvmpipe counts the rounds of all loops of an invocation together, and ends them without a word:
-//! its image would be wrong, and is refused instead.
+//! llvmpipe counts the rounds of all loops of an invocation together, and ends the loops silently
+//! at its limit. The image would be wrong, so such a scene is refused.
 
 use assign::{AssignError, Gpu, Light, LightKinds, LightShape};
 
 use crate::{AreaModel, LightingOptions, ShadingError};
 
-/// What of some lights decides the rounds.
+/// The properties of a set of lights that decide the number of rounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LightTotals {
     pub(crate) kinds: LightKinds,
@@ -16,12 +16,13 @@ pub(crate) struct LightTotals {
     vertices: u64,
 }
 
-/// Four corners, each with two steps, and the end of every loop: `angle_above` of
+/// Four corners with two steps each, and the end of every loop: `angle_above` of
+/// `area_mrp_published.wesl`.
 /// `area_mrp_published.wesl`.
 const PUBLISHED_ROUNDS: u64 = 5 + 4 * 3;
 
 impl LightTotals {
-    pub(crate) fn of(lights: &[Light]) -> Self {
+    pub(crate) fn count(lights: &[Light]) -> Self {
         let areas = lights.iter().filter_map(|light| match &light.shape {
             LightShape::Area(emitter) => Some(emitter.vertices().len() as u64),
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
@@ -30,10 +31,11 @@ impl LightTotals {
         Self { kinds: LightKinds::among(lights), count: lights.len() as u64, areas, vertices }
     }
 
-    /// Rounds of lighting a sample by all of them: a round a light; of an area light one a vertex for
-    /// the closest point, one for the horizon, and those of its model: a walk around the vertices for
-    /// each term, one for both, a rectangle's corners twice, or a sample and its test for each term.
-    /// Every loop takes one more to end.
+    /// The rounds of lighting a sample by all of the lights. A light takes one round. An area light
+    /// also takes one per vertex for the closest point, one per vertex for the horizon, and those
+    /// of its model: a walk around the vertices for each term, one for both terms, a rectangle's
+    /// corners twice, or a sample and its test for each term. Every loop takes one more round to
+    /// end.
     fn rounds(&self, model: AreaModel) -> u64 {
         let walks = 2 * (self.vertices + self.areas);
         let terms = match model {
@@ -53,12 +55,13 @@ impl LightTotals {
         self.count + walks + terms
     }
 
-    /// Whether an adapter lights a sample by all of them: a list may be all lights at any time.
+    /// Checks that an adapter can light a sample by all of the lights, because any list may hold
+    /// all of them.
     pub(crate) fn check(&self, gpu: &Gpu, options: LightingOptions) -> Result<(), ShadingError> {
         self.check_rounds(gpu, self.rounds(options.area) + rounds_of_suns(options))
     }
 
-    /// The same where light operations are counted, which walks the vertices twice more: for the closest
+    /// The same for counting light operations, which walks the vertices twice more: for the closest
     /// point and for the horizon.
     pub(crate) fn check_counted(
         &self,
@@ -73,7 +76,7 @@ impl LightTotals {
         match gpu.max_loop_rounds() {
             Some(most) if rounds > u64::from(most) => Err(AssignError::Parameter {
                 field: "lights".into(),
-                value: format!("{}, {rounds} rounds of loops a sample", self.count),
+                value: format!("{}, {rounds} rounds of loops per sample", self.count),
                 accepted: format!(
                     "at most {most} rounds on {}, which ends longer loops: fewer lights, fewer of \
                      them area lights, or fewer samples",
@@ -86,7 +89,7 @@ impl LightTotals {
     }
 }
 
-/// A round for each sun, and one to end, where there are suns.
+/// One round for each sun and one to end, if there are suns.
 fn rounds_of_suns(options: LightingOptions) -> u64 {
     match options.suns.as_slice().len() as u64 {
         0 => 0,
@@ -106,7 +109,7 @@ mod tests {
         let point = Light::point(Vec3::ZERO, 1.0, Vec3::ONE);
         let square = Emitter::rectangle(Vec3::X, Vec3::Y);
         let area = Light::area(square, Vec3::ZERO, 1.0, Vec3::ONE);
-        let rounds = |lights: &[Light], model| LightTotals::of(lights).rounds(model);
+        let rounds = |lights: &[Light], model| LightTotals::count(lights).rounds(model);
         assert_eq!(rounds(&[point; 7], AreaModel::LtcTable), 7);
         assert_eq!(rounds(&[point, area], AreaModel::Point), 2 + 10);
         assert_eq!(rounds(&[area], AreaModel::LtcTable), 1 + 10 + 12);

@@ -1,4 +1,4 @@
-//! Materials and textures on the GPU. Each material binds the textures it has, and no other.
+//! Materials and textures on the GPU. Each material binds only the textures that it has.
 
 use std::collections::HashMap;
 
@@ -33,7 +33,7 @@ pub struct MaterialRecord {
     pub uv_transforms: [[f32; 4]; 8],
 }
 
-/// What a material's shader is compiled for.
+/// The properties of a material that its shader is compiled for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct MaterialKey {
     /// Base colour, metallic-roughness, normal, emissive.
@@ -42,7 +42,7 @@ pub(crate) struct MaterialKey {
     pub(crate) mask: bool,
     pub(crate) double_sided: bool,
     pub(crate) unlit: bool,
-    /// Whether the mesh that is drawn has colours.
+    /// Whether the drawn mesh has vertex colours.
     pub(crate) vertex_colors: bool,
 }
 
@@ -51,7 +51,7 @@ pub(crate) const TEXTURE_FLAGS: [&str; 4] =
     ["base_color_texture", "metallic_roughness_texture", "normal_texture", "emissive_texture"];
 
 impl MaterialKey {
-    fn of(material: &Material) -> Self {
+    fn new(material: &Material) -> Self {
         let textures = material.textures();
         let moved = |t: &&TextureRef| t.uv_transform != glam::Affine2::IDENTITY;
         Self {
@@ -73,13 +73,13 @@ pub(crate) struct Materials {
     layouts: HashMap<[bool; 4], wgpu::BindGroupLayout>,
     pub(crate) factors: wgpu::Buffer,
     pub(crate) has_emissive: bool,
-    /// Whether any reflects other than glTF's plain dielectric does.
+    /// Whether any material has a reflectance other than that of glTF's default dielectric.
     pub(crate) has_dielectrics: bool,
 }
 
 impl Materials {
     pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, ShadingError> {
-        let keys: Vec<MaterialKey> = scene.materials.iter().map(MaterialKey::of).collect();
+        let keys: Vec<MaterialKey> = scene.materials.iter().map(MaterialKey::new).collect();
         let records: Vec<MaterialRecord> = scene.materials.iter().map(record).collect();
         let factors = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("materials"),

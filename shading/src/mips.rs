@@ -1,4 +1,4 @@
-//! Mip chains, averaged in linear light.
+//! Computes mip chains, averaged in linear light.
 
 use std::sync::LazyLock;
 
@@ -12,7 +12,7 @@ pub(crate) static TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     })
 });
 
-/// The sRGB byte of a linear value, through a table of 4,096 steps.
+/// The sRGB byte of a linear value, from a table of 4,096 steps.
 static TO_SRGB: LazyLock<[u8; 4096]> = LazyLock::new(|| {
     std::array::from_fn(|step| (linear_to_srgb(step as f32 / 4095.0) * 255.0 + 0.5) as u8)
 });
@@ -38,7 +38,7 @@ pub(crate) fn mip_chain(image: &Image) -> (u32, Vec<u8>) {
     (levels, bytes)
 }
 
-/// The next smaller level: each texel averages the texels it covers.
+/// The next smaller level: each texel is the average of the texels that it covers.
 fn halve(level: &[u8], size: [usize; 2], encoding: Encoding) -> Vec<u8> {
     let half = size.map(|s| (s / 2).max(1));
     let mut out = Vec::with_capacity(half[0] * half[1] * 4);
@@ -68,7 +68,7 @@ fn halve(level: &[u8], size: [usize; 2], encoding: Encoding) -> Vec<u8> {
     out
 }
 
-/// The texels of the larger level under texel `i` of the smaller: two, or three at an odd end.
+/// The texels of the larger level under texel `i` of the smaller one: two, or three at an odd end.
 fn covered(i: usize, half: usize, full: usize) -> std::ops::Range<usize> {
     let end = if i + 1 == half { full } else { 2 * i + 2 };
     2 * i..end.min(full).max(2 * i + 1)
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn levels_end_at_one_texel() {
         let (levels, bytes) = mip_chain(&image(5, 3, Encoding::Linear, |_| [7; 4]));
-        // 5x3, 2x1, 1x1.
+        // The levels are 5x3, 2x1 and 1x1.
         assert_eq!((levels, bytes.len()), (3, (15 + 2 + 1) * 4));
         assert!(bytes.iter().all(|&b| b == 7));
     }

@@ -1,4 +1,4 @@
-//! The frames that lighting can be part of: which passes are drawn before it, and how it runs.
+//! How pixels are lit: the passes before lighting, and the stage that runs it.
 
 use assign::Needs;
 use serde::{Deserialize, Serialize};
@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
-    /// A depth pre-pass and a G-buffer, then one compute thread per pixel. The models of pixels take a
-    /// pass of their own, which only strategies that need them draw.
+    /// A depth pre-pass and a G-buffer, then one compute thread per pixel. The models of pixels are
+    /// drawn in a separate pass, and only for strategies that need them.
     Deferred,
-    /// The same with the model of each pixel in the G-buffer, drawn for every strategy.
+    /// The same, but the G-buffer holds the model of each pixel, for every strategy.
     DeferredIds,
-    /// A depth pre-pass, then lit fragments.
+    /// A depth pre-pass, then fragments that light.
     Forward,
-    /// Lit fragments that test and write depth themselves, so that hidden surfaces are lit as well
-    /// where they are drawn first. Only strategies that read the surfaces draw a depth pre-pass.
+    /// Fragments that light, and that test and write depth themselves. Hidden surfaces are lit too
+    /// if they are drawn first. A depth pre-pass is drawn only for strategies that read surfaces.
     ForwardNoPrepass,
 }
 
@@ -34,23 +34,23 @@ impl Mode {
         }
     }
 
-    /// Whether fragments are lit as they are drawn.
+    /// Whether fragments light pixels while they are drawn.
     pub fn is_forward(self) -> bool {
         matches!(self, Self::Forward | Self::ForwardNoPrepass)
     }
 
-    /// Whether depth is drawn before lighting, for a strategy that reads this.
+    /// Whether depth is drawn before lighting, for a strategy with these needs.
     pub fn has_prepass(self, needs: Needs) -> bool {
         self != Self::ForwardNoPrepass || needs.depth || needs.normals || needs.materials
     }
 
-    /// Whether a G-buffer is drawn, for a strategy that reads this.
+    /// Whether a G-buffer is drawn, for a strategy with these needs.
     pub fn has_gbuffer(self, needs: Needs) -> bool {
         !self.is_forward() || needs.normals || needs.materials
     }
 
-    /// Whether the models of pixels are drawn in a pass of their own, for a strategy that reads this.
-    /// Fragments know their model.
+    /// Whether the models of pixels are drawn in a separate pass, for a strategy with these needs.
+    /// In forward modes, fragments know their model.
     pub fn has_model_pass(self, needs: Needs) -> bool {
         self == Self::Deferred && needs.models
     }

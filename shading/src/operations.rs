@@ -1,5 +1,5 @@
-//! Light operations: how many terms of lights the lists name, how many of those shading evaluates, and how
-//! many would be seen.
+//! Counts light operations: how many terms of lights the lists name, how many of those shading
+//! evaluates, and how many would be visible.
 
 use std::{iter::Sum, ops::Add};
 
@@ -14,30 +14,31 @@ use crate::{
     shaders::{LISTS_GROUP, lighting_modules},
 };
 
-/// Terms of lights at samples, summed over an image.
+/// Numbers of terms of lights at samples, summed over an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Terms {
     /// Diffuse terms.
     pub diffuse: u64,
     /// Specular terms.
     pub specular: u64,
-    /// Of the specular terms, those at samples beyond the reach of the light's diffuse term.
+    /// The specular terms at samples beyond the diffuse range of the light.
     pub outer_specular: u64,
 }
 
-/// Light operations: one term of one light at one sample each (Swarbrick 2025, appendix I).
+/// Light operations. One operation is one term of one light at one sample (Swarbrick 2025, appendix
+/// I).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
     /// Terms that the samples' lists name. The paper counts these.
     pub listed: Terms,
-    /// Listed terms that shading evaluates: it leaves out, sample by sample, what adds nothing there.
+    /// Listed terms that shading evaluates. At each sample, it skips terms that add nothing there.
     pub evaluated: Terms,
-    /// Listed terms whose light would be seen, 0 to 2 of each pair: on a white surface, under a
-    /// colourless light, its luminance on a display of gamma 2.2 is above 0.005, or both terms' above
-    /// 0.01.
+    /// Listed terms that would be visible, 0 to 2 of each light and sample. A term is visible if
+    /// its luminance, on a white surface and from a colourless light, is above 0.005 on a display
+    /// of gamma 2.2. Both terms together are visible if their luminance is above 0.01.
     pub perceptible: u64,
-    /// The same of every listed light's two terms, whichever of them its entry names. The difference to
-    /// [`perceptible`](Self::perceptible) would be seen and is not drawn.
+    /// The same for both terms of every listed light, whichever of them its entry names. The
+    /// difference to [`perceptible`](Self::perceptible) would be visible but is not drawn.
     pub perceptible_of_lights: u64,
 }
 
@@ -64,12 +65,12 @@ impl Sum for Operations {
     }
 }
 
-/// Where the counts and the exposure are bound.
+/// Bindings of the counts and the exposure.
 const COUNTS_BINDING: u32 = 8;
 const EXPOSURE_BINDING: u32 = 9;
 
-/// Counts the operations of a frame's lists, blocking. `exposure` is the factor from radiance to the
-/// display's scale. G-buffer and model ids are those of the last recorded geometry passes: see
+/// Counts the operations of a frame's lists. Blocks. `exposure` is the factor from radiance to the
+/// display's scale. The G-buffer and model ids are those of the last recorded geometry passes: see
 /// [`record_for_probe`](crate::record_for_probe).
 pub fn count_operations(
     renderer: &Renderer,

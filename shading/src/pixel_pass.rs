@@ -1,4 +1,4 @@
-//! A compute pass with one thread per pixel that runs at once: probe, light operations, surfaces.
+//! Runs a compute pass with one thread per pixel at once: probe, light operations, surfaces.
 
 use assign::{AssignError, Assignment, EncoderPasses, Passes, Shader, Viewport};
 
@@ -8,23 +8,23 @@ use crate::{
     shaders::LISTS_GROUP,
 };
 
-/// What such a pass runs, and what it reads and writes.
+/// The shader of such a pass, with its inputs and outputs.
 pub(crate) struct PixelPass<'a> {
-    /// Its name; its shader is the module `package::NAME`.
+    /// The pass's name. Its shader is the module `package::NAME`.
     pub(crate) name: &'static str,
     pub(crate) entry_point: &'static str,
     pub(crate) shader: Shader<'a>,
-    /// The images that it reads.
+    /// The images that the pass reads.
     pub(crate) images: GBufferInputs,
     /// The rest of [`PIXELS_GROUP`]: layout entries and resources.
     pub(crate) layout: Vec<wgpu::BindGroupLayoutEntry>,
     pub(crate) resources: Vec<wgpu::BindGroupEntry<'a>>,
-    /// Whose look-up the shader calls.
+    /// The strategy whose look-up the shader calls.
     pub(crate) strategy: Option<&'a dyn Assignment>,
 }
 
 impl PixelPass<'_> {
-    /// Runs it over a viewport of the renderer's targets, and submits it.
+    /// Runs the pass over a viewport of the renderer's targets, and submits it.
     pub(crate) fn submit(self, renderer: &Renderer, viewport: Viewport) -> Result<(), AssignError> {
         let gpu = &renderer.gpu;
         let mut entries = self.images.layout(wgpu::ShaderStages::COMPUTE);

@@ -1,4 +1,4 @@
-//! What the GPU saw: each pixel's position, normal and group, copied to the CPU for the truth.
+//! Copies each pixel's position, normal and group from the GPU, to check lists on the CPU.
 
 use assign::{Assignment, Frame, Passes, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
@@ -14,21 +14,21 @@ use crate::{
 const SEEN_BINDING: u32 = 8;
 const GROUPS_BINDING: u32 = 9;
 
-/// The view samples of a frame with the groups a strategy put them in.
+/// The view samples of a frame, and the group of each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// World-space positions, metres, as shading reconstructs them.
     pub positions: Vec<[f32; 3]>,
-    /// World-space shading normals of unit length, as the G-buffer holds them.
+    /// World-space shading normals of unit length, from the G-buffer.
     pub normals: Vec<[f32; 3]>,
     /// The group of each sample.
     pub groups: Vec<u32>,
-    /// The pixel of each sample, index into the viewport, rows from the top.
+    /// The pixel of each sample: an index into the viewport, rows from the top.
     pub pixels: Vec<u32>,
 }
 
-/// Records what [`probe`] reads beside depth: G-buffer, and model ids where the strategy needs them.
-/// Forward shading draws neither.
+/// Records the passes that [`probe`] reads beside depth: the G-buffer, and model ids if the
+/// strategy needs them. Forward shading draws neither.
 pub fn record_for_probe(
     renderer: &Renderer,
     view: &View,
@@ -41,7 +41,7 @@ pub fn record_for_probe(
     }
 }
 
-/// Asks the strategy for every pixel's group, blocking.
+/// Computes every pixel's group by the strategy's look-up. Blocks.
 ///
 /// Depth, normals and model ids are those of the last recorded geometry passes: see
 /// [`record_for_probe`].

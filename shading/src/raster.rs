@@ -1,4 +1,4 @@
-//! The passes over the triangles, each a set of pipelines, one for what a material needs.
+//! The passes over the triangles. Each is a set of pipelines, one per kind of material.
 
 use std::collections::HashMap;
 
@@ -16,33 +16,34 @@ use crate::{
     },
 };
 
-/// What a pass over the triangles draws.
+/// A pass over the triangles.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "it is made once per pipeline, and never stored")]
 pub(crate) enum RasterPass<'a> {
     /// Depth only.
     Depth,
-    /// The G-buffer, where the depth equals.
+    /// The G-buffer, drawn where the depth is equal.
     GBuffer {
         /// Whether it holds the index of the model.
         ids: bool,
     },
-    /// Index of the model, where the depth equals.
+    /// The index of the model, drawn where the depth is equal.
     ModelIds,
     /// Lit radiance.
     Forward {
-        /// What lights it.
+        /// The strategy's look-up and the options of lighting.
         lists: Lists<'a>,
-        /// Whether depth was drawn before, so that only fragments of equal depth are lit; else the
-        /// pass tests and writes it.
+        /// Whether depth was drawn before. If so, only fragments of equal depth are lit; otherwise
+        /// the pass tests and writes depth.
         has_depth: bool,
     },
-    /// The control, where the depth equals.
+    /// The control without lights, drawn where the depth is equal.
     Clay,
 }
 
 impl RasterPass<'_> {
-    /// Whether it tests depth for the nearest and writes it; else it draws where the depth equals.
+    /// Whether the pass tests for the nearest depth and writes it. Otherwise it draws where the
+    /// depth is equal.
     fn writes_depth(self) -> bool {
         matches!(self, Self::Depth | Self::Forward { has_depth: false, .. })
     }
@@ -55,7 +56,7 @@ pub(crate) struct Lists<'a> {
     pub(crate) options: LightingOptions,
 }
 
-/// The pipelines of one pass. Cloning shares them.
+/// The pipelines of one pass. Clones share them.
 #[derive(Clone, Debug)]
 pub(crate) struct RasterPipelines {
     pipelines: HashMap<DrawKey, wgpu::RenderPipeline>,
@@ -81,7 +82,7 @@ impl RasterPipelines {
     }
 }
 
-/// What a scene's surfaces have beside colour, normal and roughness.
+/// Which optional properties a scene's surfaces have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown {
     emissive: bool,
@@ -89,12 +90,12 @@ pub(crate) struct Shown {
 }
 
 impl Shown {
-    fn of(scene: &SceneGpu) -> Self {
+    fn from_scene(scene: &SceneGpu) -> Self {
         Self { emissive: scene.has_emissive(), dielectrics: scene.has_dielectrics() }
     }
 }
 
-/// The WESL of one pass for one material, and the module that is its root.
+/// The WESL of one pass for one material.
 pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Shader<'a> {
     let material = key.material;
     let is = |wanted: &str| match pass {
@@ -135,11 +136,11 @@ fn pipeline(
     pass: RasterPass<'_>,
     key: DrawKey,
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
-    let shown = Shown::of(scene);
+    let shown = Shown::from_scene(scene);
     let shader = shader(pass, key, shown);
     // SAFETY: forward lighting's loops count up to the number of suns and to the length of a list,
-    // which is a `u32` read once; the strategy's author vouches for its look-up. The other passes have
-    // no loop.
+    // which is a `u32` read once. The strategy's author guarantees that loops of its look-up end.
+    // The other passes have no loop.
     #[allow(unsafe_code, reason = "its loops end")]
     let module = unsafe { shader.create_uncounted(gpu, "package::geometry") }?;
     let (vertex, fragment, formats) = entry_points(pass, key, shown);
@@ -196,7 +197,7 @@ fn pipeline(
     }))
 }
 
-/// Vertex and fragment entry point of a pass, and the formats it writes.
+/// Vertex and fragment entry point of a pass, and the formats that it writes.
 fn entry_points(
     pass: RasterPass<'_>,
     key: DrawKey,

@@ -1,8 +1,9 @@
 //! `RasterSphere`: deferred lighting by drawing each light's volume (Watrous 2024).
 //!
-//! No lists: the rasteriser finds the pixels that a light may reach. The back faces of a sphere
-//! around each light are drawn where they lie behind the surface, every fragment adds one light to
-//! one pixel, and blending sums. A pixel is read and written once per volume that covers it.
+//! There are no lists: the rasteriser finds the pixels that a light may reach. The pass draws the
+//! back faces of a sphere around each light where they lie behind the surface. Every fragment adds
+//! one light to one pixel, and blending sums them. So a pixel is read and written once per volume
+//! that covers it.
 
 use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, Suns, View};
 use glam::Vec3;
@@ -17,16 +18,16 @@ use crate::{
     targets::{DEPTH_FORMAT, RADIANCE_FORMAT},
 };
 
-/// The largest relative difference of a channel to no culling that this method may show. It sums
-/// in the order of the lights, as all do, but through the target: a blend unit may round a product
-/// and a sum as one, or in another order.
+/// The largest relative difference of a channel to no culling that this method may show. It sums in
+/// the order of the lights, as all methods do, but through the render target. A blend unit may
+/// round a product and a sum together, or in another order.
 pub const RASTER_SPHERE_TOLERANCE: f64 = 1e-3;
 
 /// Light volumes as spheres of triangles.
 #[derive(Debug)]
 pub struct RasterSpheres {
     volumes: wgpu::RenderPipeline,
-    /// Emission and suns, where there are any.
+    /// Draws emission and suns, if there are any.
     first: Option<wgpu::RenderPipeline>,
     layout: wgpu::BindGroupLayout,
     triangles: wgpu::Buffer,
@@ -37,10 +38,10 @@ pub struct RasterSpheres {
 }
 
 impl RasterSpheres {
-    /// Makes the pipelines. An error where the device cannot blend into single precision.
+    /// Creates the pipelines. Returns an error if the device cannot blend into single precision.
     ///
-    /// With [`Cut::Hard`] a light ends at once, so where this shader rounds otherwise than that of no
-    /// culling, a sample at the very edge of a range gains or loses that light's whole share.
+    /// With [`Cut::Hard`] a light ends abruptly. If this shader rounds differently from that of no
+    /// culling, a sample at the very edge of a range gains or loses the light's whole share.
     pub fn new(
         renderer: &Renderer,
         kinds: LightKinds,
@@ -100,9 +101,9 @@ impl RasterSpheres {
         if !made.cover(lights.kinds()) {
             return Err(ShadingError::Kinds { made, lights: lights.kinds() });
         }
-        // A fragment adds one light.
+        // Each fragment adds only one light, so each is checked separately.
         for light in lights.lights() {
-            LightTotals::of(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
+            LightTotals::count(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);
@@ -122,7 +123,7 @@ impl RasterSpheres {
                     store: wgpu::StoreOp::Store,
                 },
             })],
-            // Read-only: the shader samples it as well.
+            // Depth is read-only, because the shader samples it as well.
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: None,
@@ -171,7 +172,7 @@ fn pipeline(
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &wgpu::vertex_attr_array![0 => Float32x3],
     };
-    // A volume's back face lies behind the surfaces that it may light.
+    // The back face of a volume lies behind the surfaces that it may light.
     let behind = match renderer.depth_mapping {
         DepthMapping::Standard => wgpu::CompareFunction::GreaterEqual,
         DepthMapping::Reversed => wgpu::CompareFunction::LessEqual,
@@ -213,8 +214,8 @@ fn pipeline(
     })
 }
 
-/// Triangles around the unit ball, counter-clockwise from outside: an icosahedron, each face cut
-/// in four, scaled until every face lies outside.
+/// Triangles around the unit ball, counter-clockwise from outside: an icosahedron, each face
+/// divided into four, scaled until every face lies outside the ball.
 fn sphere() -> Vec<Vec3> {
     let golden = 0.5 * (1.0 + 5_f32.sqrt());
     let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z).normalize();
@@ -222,7 +223,7 @@ fn sphere() -> Vec<Vec3> {
     for (a, b) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         corners.extend([corner(a, b, 0.0), corner(0.0, a, b), corner(b, 0.0, a)]);
     }
-    // The faces of the hull: three corners that are each other's nearest.
+    // A face consists of three corners that are each other's nearest.
     let edge = corners[1..].iter().map(|c| c.distance(corners[0])).fold(f32::MAX, f32::min) * 1.01;
     let near = |a: Vec3, b: Vec3| a.distance(b) < edge;
     let mut triangles = Vec::new();
@@ -244,7 +245,7 @@ fn sphere() -> Vec<Vec3> {
     let faces: Vec<[Vec3; 3]> = triangles.into_iter().flat_map(halves).collect();
     let distance = |[a, b, c]: &[Vec3; 3]| (*b - *a).cross(*c - *a).normalize().dot(*a);
     let nearest = faces.iter().map(distance).fold(f32::MAX, f32::min);
-    // A little more than touching, for rounding.
+    // Scale a little further than touching, because of rounding.
     let scale = 1.0001 / nearest;
     faces.into_iter().flatten().map(|corner| corner * scale).collect()
 }

@@ -1,4 +1,4 @@
-//! The lighting function in f64 on the CPU: what the shaders are tested against.
+//! The lighting function in f64 on the CPU. Tests compare the shaders with it.
 
 mod area;
 mod brdf;
@@ -11,8 +11,8 @@ use glam::DVec3;
 
 use crate::ltc;
 
-/// Radiance that one light adds at `position`: of an area light the BRDF's integral over its emitter,
-/// to 1e-4 of it.
+/// Radiance that one light adds at `position`. For an area light, the BRDF is integrated over its
+/// emitter, to a relative error of 1e-4.
 pub fn light_contribution(
     light: &Light,
     position: DVec3,
@@ -32,8 +32,8 @@ pub fn sun_contribution(sun: &Sun, surface: &Surface, to_eye: DVec3) -> DVec3 {
     sun.irradiance.as_dvec3() * reflect_light(surface, to_eye, to_sun)
 }
 
-/// What linearly transformed cosines make of an area light at `position`; of other lights
-/// [`light_contribution`].
+/// Radiance that an area light adds at `position` by linearly transformed cosines. For other lights
+/// it is that of [`light_contribution`].
 pub fn ltc_contribution(
     table: &ltc::Table,
     light: &Light,
@@ -49,15 +49,16 @@ pub fn ltc_contribution(
     seen.map_or(DVec3::ZERO, |seen| seen.ltc(&entry))
 }
 
-/// A point, a spot or a VPL; an area light counts as a point at its middle that faces all ways.
+/// Radiance of a point, a spot or a VPL. An area light counts as a point at its middle that faces
+/// all ways.
 fn point_contribution(light: &Light, position: DVec3, surface: &Surface, to_eye: DVec3) -> DVec3 {
     let (arriving, to_light) = arriving(light, position);
     arriving * reflect_light(surface, to_eye, to_light)
 }
 
-/// Radiance that a surface sends out alike in all directions where it reflects as a virtual point light
-/// emits: diffusely, what is left of Fresnel's term being its mean over these directions. An area light
-/// counts as a point.
+/// Diffuse radiance of a surface that acts as a virtual point light. It is the same in all
+/// directions, because Fresnel's term is replaced by its mean over them. An area light counts as a
+/// point.
 pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surface) -> DVec3 {
     let (arriving, to_light) = arriving(light, position);
     let cos = surface.normal.dot(to_light).clamp(0.0, 1.0);
@@ -68,14 +69,15 @@ pub(crate) fn matte_contribution(light: &Light, position: DVec3, surface: &Surfa
     arriving * albedo * cos / std::f64::consts::PI
 }
 
-/// Irradiance across the way from a light to a position, and the unit vector to the light.
+/// Irradiance perpendicular to the way from a light to a position, and the unit vector to the
+/// light.
 fn arriving(light: &Light, position: DVec3) -> (DVec3, DVec3) {
     let offset = light.position.as_dvec3() - position;
     let to_light = offset.normalize_or_zero();
     let mut weight = fall_off(offset.length_squared(), f64::from(light.range_m), MIN_DISTANCE_2);
     if let LightShape::Spot { direction, inner_angle, outer_angle } = light.shape {
         let cos_outer = f64::from(outer_angle).cos();
-        // Equal angles end the light at once.
+        // Equal angles end the light abruptly.
         let scale = 1.0 / (f64::from(inner_angle).cos() - cos_outer).max(1e-30);
         let cos = direction.as_dvec3().normalize().dot(-to_light);
         weight *= ((cos - cos_outer) * scale).clamp(0.0, 1.0).powi(2);

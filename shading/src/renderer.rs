@@ -1,4 +1,4 @@
-//! One scene drawn into one set of targets: the passes that all strategies share.
+//! Draws one scene into one set of targets: the passes that all strategies share.
 
 use assign::{
     AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
@@ -15,13 +15,13 @@ use crate::{
     targets::Targets,
 };
 
-/// A scene on the GPU with the pipelines of depth, G-buffer and clay.
+/// A scene on the GPU, with the pipelines of depth, G-buffer and clay.
 #[derive(Debug)]
 pub struct Renderer {
     pub(crate) gpu: Gpu,
     pub(crate) frame: FrameBindings,
     pub(crate) scene: SceneGpu,
-    /// Bind group 2 of the passes that light nothing.
+    /// Bind group 2 of the passes without lighting.
     scene_group: wgpu::BindGroup,
     pub(crate) targets: Targets,
     pub(crate) depth_mapping: DepthMapping,
@@ -37,7 +37,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Uploads `scene` and makes targets for views like `view`: its viewport and depth mapping.
+    /// Uploads `scene` and creates targets for views with the viewport and depth mapping of `view`.
     pub fn new(gpu: &Gpu, scene: &Scene, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(gpu);
@@ -69,8 +69,8 @@ impl Renderer {
         })
     }
 
-    /// A renderer of the same scene for a second view in the same frame, such as a light's: with a
-    /// view, lights and targets of its own, and the uploaded scene and pipelines shared.
+    /// A renderer of the same scene for a second view in the same frame, such as a light's. It has
+    /// its own view, lights and targets, and shares the uploaded scene and pipelines.
     pub fn beside(&self, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(&self.gpu);
@@ -108,8 +108,8 @@ impl Renderer {
         &self.targets
     }
 
-    /// The frame a strategy gets: this view and these lights, with this renderer's depth, normals
-    /// and base colours, its models' boxes and the box around its surfaces.
+    /// The frame that a strategy gets: this view and these lights, with this renderer's depth,
+    /// normals and base colours, the boxes of its models, and the box around its surfaces.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
         Frame::new(view, lights)
             .with_depth(&self.targets.depth)
@@ -119,7 +119,8 @@ impl Renderer {
             .with_surface_bounds(self.surface_bounds.0, self.surface_bounds.1)
     }
 
-    /// Uploads the view and the lights: outside the clock. The view must fit the targets.
+    /// Uploads the view and the lights. This is not part of the measured time. Targets are replaced
+    /// if the view does not fit them.
     pub fn prepare(
         &mut self,
         view: &View,
@@ -140,7 +141,7 @@ impl Renderer {
             }
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights))?;
-        self.lights = LightTotals::of(lights.lights());
+        self.lights = LightTotals::count(lights.lights());
         Ok(())
     }
 
@@ -191,14 +192,14 @@ impl Renderer {
         self.record_raster("model-ids", view, &descriptor, &self.model_ids, (None, scene), passes);
     }
 
-    /// Records the pass `clay`, after `depth`: the scene at the cost of no lights at all.
+    /// Records the pass `clay`, after `depth`: the scene without any light, as a control.
     pub fn record_clay(&self, view: &View, passes: &mut dyn Passes) {
         let groups = (None, &self.scene_group);
         self.record_radiance(("clay", true), view, &self.clay, groups, passes);
     }
 
-    /// A pass over the triangles into the radiance image, with the bind groups of lists and scene:
-    /// its name, and whether it finds depth drawn or draws it.
+    /// A pass over the triangles into the radiance image, with the bind groups of lists and scene.
+    /// `name` is its name; `has_depth` says whether depth is drawn already or by this pass.
     pub(crate) fn record_radiance(
         &self,
         (name, has_depth): (&str, bool),
@@ -259,7 +260,7 @@ impl Renderer {
     }
 }
 
-/// Records what a mode draws before lighting, then the strategy's own passes.
+/// Records the passes that a mode draws before lighting, then the strategy's own passes.
 pub fn record_before_lighting(
     renderer: &Renderer,
     mode: Mode,

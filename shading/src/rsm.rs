@@ -3,25 +3,25 @@
 use assign::{AssignError, DepthMapping, Light, LightShape, Projection, View};
 use glam::{Vec2, Vec3};
 
-/// The widest cone that a map is drawn of, radians from the axis: 80 degrees.
+/// The widest cone for which a map is drawn, radians from the axis: 80 degrees.
 pub const MAX_RSM_ANGLE: f32 = 1.396;
 
-/// Of a light inside the scene's box: its near plane, as a share of the box's diagonal.
+/// The near plane of a light inside the scene's box, as a share of the box's diagonal.
 const NEAR_SHARE: f32 = 1e-4;
 
-/// The view from a spot light of the part of its cone that holds `scene_bounds`, the scene's
-/// smallest and largest corner in world space, on `size_px` by `size_px` pixels.
+/// The view from a spot light of the part of its cone that contains `scene_bounds`, on `size_px` by
+/// `size_px` pixels. `scene_bounds` are the scene's smallest and largest corner in world space.
 ///
-/// Near and far plane lie just outside the box; where the light stands in it or beside it, the near
-/// plane is a ten-thousandth of the box's diagonal away. The window is the smaller of the cone's and
-/// the box's, so pixels need not be square in space: what a pixel receives follows from its own
-/// solid angle.
+/// Near and far plane lie just outside the box. If the light stands in the box or beside it, the
+/// near plane is a ten-thousandth of the box's diagonal away. The window is the intersection of the
+/// cone's and the box's. So pixels need not be square in space; the light of a pixel follows from
+/// its own solid angle.
 ///
 /// # Errors
 ///
-/// [`AssignError::Parameter`] where the light is no spot, its cone is wider than
-/// [`MAX_RSM_ANGLE`], the box is empty or not finite, or none of it lies in the cone's window;
-/// [`AssignError::View`] where the view does not fit f32.
+/// [`AssignError::Parameter`] if the light is not a spot, its cone is wider than [`MAX_RSM_ANGLE`],
+/// the box is empty or not finite, or none of it lies in the cone's window. [`AssignError::View`]
+/// if the view does not fit f32.
 pub fn rsm_view(
     light: &Light,
     size_px: u32,
@@ -50,7 +50,8 @@ pub fn rsm_view(
     let seen = Seen::new(&view, min, max);
     let cone = Vec2::splat(outer_angle.tan());
     let (low, high) = seen.window.map_or((-cone, cone), |(low, high)| {
-        // A box seen from its edge has no width; a pixel's breadth more keeps what lies in its faces.
+        // A box seen from its edge has no width. A margin of one pixel keeps points on its faces
+        // inside.
         let margin =
             (high - low) / size_px.max(1) as f32 + 1e-5 * (1.0 + high.abs().max(low.abs()));
         ((low - margin).max(-cone), (high + margin).min(cone))
@@ -69,11 +70,11 @@ pub fn rsm_view(
     Ok(view)
 }
 
-/// A box as a view sees it.
+/// A box in the coordinates of a view.
 struct Seen {
     nearest: f32,
     farthest: f32,
-    /// At view depth 1; `None` where a part of the box lies behind the eye.
+    /// The window at view depth 1; `None` if a part of the box lies behind the eye.
     window: Option<(Vec2, Vec2)>,
 }
 
@@ -106,9 +107,9 @@ mod tests {
         }
     }
 
-    /// Every point of the box that is in the cone lands in the image, between near and far.
+    /// Every point of the box inside the cone lands in the image, between near and far.
     #[test]
-    fn the_view_holds_what_the_light_reaches() {
+    fn the_view_contains_everything_the_light_reaches() {
         let (min, max) = (Vec3::new(-3.0, 0.0, -2.0), Vec3::new(4.0, 5.0, 6.0));
         let toward = |eye: Vec3| (Vec3::new(0.5, 2.5, 2.0) - eye).normalize();
         let far = Vec3::new(-200.0, 340.0, 110.0);
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_map_is_refused() {
+    fn lights_without_a_map_are_refused() {
         let bounds = (Vec3::ZERO, Vec3::ONE);
         let message = |light: Light, bounds| rsm_view(&light, 64, bounds).unwrap_err().to_string();
         let lamp = Light::point(Vec3::ONE, 1.0, Vec3::ONE);

@@ -5,13 +5,13 @@ use assign::Shader;
 /// Bind group of the lists in lighting shaders.
 pub(crate) const LISTS_GROUP: u32 = 1;
 
-/// The contract's modules and the pipeline's, for a shader of one's own: `package::lighting`
-/// and `package::brdf` among them. All flags off; mount a look-up with `Shader::strategy`.
+/// The contract's modules and the pipeline's, for your own shader: `package::lighting` and
+/// `package::brdf` among them. All flags are off. Add a look-up with `Shader::strategy`.
 pub fn lighting_shader<'a>() -> Shader<'a> {
     lighting_modules(LISTS_GROUP)
 }
 
-/// The contract's modules and the pipeline's; all flags off.
+/// The contract's modules and the pipeline's, with all flags off.
 pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
     let flags = [
         "gbuffer",

@@ -12,9 +12,9 @@ pub(crate) const BASE_COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R
 pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Emitted radiance.
 pub(crate) const EMISSIVE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// What the dielectric share reflects at normal and at grazing incidence.
+/// Reflectance of the dielectric share at normal and at grazing incidence.
 pub(crate) const DIELECTRIC_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Lit radiance: single precision, so that images compare bit for bit.
+/// Lit radiance in single precision, so that images compare bit for bit.
 pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Index of the model.
 pub(crate) const MODEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
@@ -28,23 +28,23 @@ pub struct Targets {
     pub depth: wgpu::TextureView,
     /// Base colour, sRGB; metallic in alpha.
     pub base_color: wgpu::TextureView,
-    /// World-space shading normal; perceptual roughness in alpha. 0 where nothing was drawn.
+    /// World-space shading normal; perceptual roughness in alpha. 0 where no triangle was drawn.
     pub normal: wgpu::TextureView,
-    /// Emitted radiance, where the scene emits.
+    /// Emitted radiance, if the scene emits.
     pub emissive: Option<wgpu::TextureView>,
-    /// What the dielectric share reflects at normal incidence and, in alpha, at grazing incidence,
-    /// where the scene has other than glTF's plain dielectrics.
+    /// Reflectance of the dielectric share at normal incidence and, in alpha, at grazing incidence.
+    /// Present only if the scene has other dielectrics than glTF's default.
     pub dielectric: Option<wgpu::TextureView>,
-    /// Index of each pixel's model, where a strategy asked for it.
+    /// Index of each pixel's model, if a strategy needs it.
     pub model_ids: wgpu::TextureView,
     /// The lit image, linear RGB.
     pub radiance: wgpu::TextureView,
-    /// The texture behind `radiance`.
+    /// The texture of `radiance`.
     pub radiance_texture: wgpu::Texture,
 }
 
 impl Targets {
-    /// Makes targets that hold the view's viewport.
+    /// Creates targets that contain the view's viewport.
     pub(crate) fn new(gpu: &Gpu, view: &View, scene: &SceneGpu) -> Result<Self, ShadingError> {
         let viewport = view.viewport;
         let width = viewport.x.saturating_add(viewport.width);
@@ -59,9 +59,9 @@ impl Targets {
             let (bytes, limit) = (needed.into(), offered.into());
             return Err(AssignError::TooLarge { what, bytes, limit }.into());
         }
-        // Depth 4, base colour 4, normal 8, emissive 8, model 4, radiance 16 bytes a pixel, and 8 of
-        // reflectances where they differ; the largest
-        // must be read back through one buffer.
+        // Bytes per pixel: depth 4, base colour 4, normal 8, emissive 8, model 4, radiance 16, and
+        // 8 for reflectances if they differ. The largest image must be read back through one
+        // buffer.
         let pixels = u64::from(width) * u64::from(height);
         let readable = gpu.device.limits().max_buffer_size;
         if pixels * 16 > readable {
@@ -73,8 +73,8 @@ impl Targets {
         Ok(gpu.allocate(&what, pixels * texel, || Self::make(gpu, [width, height], scene))?)
     }
 
-    /// Bytes of the images that are drawn in a mode only for a strategy that needs this: the models of
-    /// pixels, and in forward shading the G-buffer.
+    /// Bytes of the images that a mode draws only for a strategy with these needs: the models of
+    /// pixels and, in forward shading, the G-buffer.
     pub fn bytes_for(&self, mode: Mode, needs: Needs) -> u64 {
         let mut formats = Vec::new();
         if mode.has_model_pass(needs) {

@@ -1,4 +1,4 @@
-//! The truth about lists, on the CPU in f64: which lights reach which sample.
+//! Checks lists on the CPU in f64: which lights reach which sample.
 
 use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, ListsSnapshot, Sun, Suns};
 use glam::{DVec3, Vec3A};
@@ -8,18 +8,18 @@ use scenes::{BuildEffort, build_hierarchy};
 
 use crate::Samples;
 
-/// A pair that lies closer to the edge of the light's support than this share of it does not
-/// count as missed: the window there is below 2e-11.
+/// A pair closer to the edge of the light's support than this share of it does not count as missed.
+/// The window is below 2e-11 there.
 pub const EDGE: f64 = 1e-6;
 
-/// A hierarchy over the lights' bounding boxes: an oracle apart from every strategy's code.
+/// A hierarchy over the bounding boxes of lights. It shares no code with any strategy.
 pub struct LightBvh<'a> {
     lights: &'a [Light],
     bvh: Bvh2,
     suns: Suns,
 }
 
-/// What the truth says of one strategy's lists in one frame.
+/// The check of one strategy's lists in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ListsTruth {
     /// Samples checked.
@@ -28,19 +28,19 @@ pub struct ListsTruth {
     pub contributing: u64,
     /// (Light, sample) pairs that shading evaluates.
     pub listed: u64,
-    /// Contributing pairs, off the edge, that are not listed or lack the flag of a term that
-    /// contributes, and samples without a position. Of a strategy that knows normals those alone
-    /// whose light rises above the sample's horizon.
+    /// Contributing pairs, away from the edge, that are not listed or whose entry has no flag of a
+    /// contributing term; and samples without a position. For a strategy that knows normals, only
+    /// lights above the sample's horizon count.
     pub missed: u64,
 }
 
 impl ListsTruth {
-    /// Mean contributing lights of a sample.
+    /// Mean contributing lights per sample.
     pub fn contributing_per_sample(&self) -> f64 {
         self.contributing as f64 / self.samples.max(1) as f64
     }
 
-    /// Mean listed lights of a sample.
+    /// Mean listed lights per sample.
     pub fn listed_per_sample(&self) -> f64 {
         self.listed as f64 / self.samples.max(1) as f64
     }
@@ -61,7 +61,7 @@ impl<'a> LightBvh<'a> {
         let boxes: Vec<Aabb> = lights
             .iter()
             .map(|light| {
-                // A little more than the range: traversal decides in f32.
+                // The box is a little larger than the range, because traversal decides in f32.
                 let reach = light.radius_m() * 1.000_01 + light.position.abs().max_element() * 1e-6;
                 Aabb::new((light.position - reach).into(), (light.position + reach).into())
             })
@@ -70,7 +70,7 @@ impl<'a> LightBvh<'a> {
         Self { lights, bvh, suns: Suns::default() }
     }
 
-    /// The same with suns, which reach every sample and stand in no list.
+    /// The same with suns, which reach every sample and appear in no list.
     #[must_use]
     pub fn with_suns(self, suns: Suns) -> Self {
         Self { suns, ..self }
@@ -81,7 +81,7 @@ impl<'a> LightBvh<'a> {
         self.suns.as_slice()
     }
 
-    /// The lights it was built over.
+    /// The lights over which it was built.
     pub fn lights(&self) -> &'a [Light] {
         self.lights
     }
@@ -103,8 +103,8 @@ impl<'a> LightBvh<'a> {
         });
     }
 
-    /// Checks a frame's lists against every sample; `knows_normals` is whether the strategy may
-    /// leave out what stays below a sample's horizon.
+    /// Checks a frame's lists against every sample. `knows_normals` says whether the strategy may
+    /// leave out lights below a sample's horizon.
     pub fn check(
         &self,
         samples: &Samples,
@@ -119,7 +119,7 @@ impl<'a> LightBvh<'a> {
             .reduce(ListsTruth::default, ListsTruth::plus)
     }
 
-    /// Checks samples whose groups ascend.
+    /// Checks samples that are sorted by group.
     fn check_chunk(
         &self,
         samples: &Samples,
@@ -127,7 +127,7 @@ impl<'a> LightBvh<'a> {
         knows_normals: bool,
         chunk: &[u32],
     ) -> ListsTruth {
-        // The run of samples in which a light was last seen listed, and its flags there.
+        // For each light, the run of samples in which it was last seen listed, and its flags there.
         let mut listed_in = vec![(u32::MAX, 0); self.lights.len()];
         let mut truth = ListsTruth::default();
         let runs =
@@ -143,7 +143,7 @@ impl<'a> LightBvh<'a> {
             truth.samples += run.len() as u64;
             truth.listed += run.len() as u64 * entries.len() as u64;
             for &sample in run {
-                // A position that is no number is reached by nothing and lit by anything.
+                // No light reaches or lights a position that is not a number.
                 if !samples.positions[sample as usize].iter().all(|x| x.is_finite()) {
                     truth.missed += 1;
                     continue;
@@ -207,7 +207,7 @@ mod tests {
     fn counts_agree_with_a_hand_count() {
         let lights = lights(10);
         let bvh = LightBvh::new(&lights);
-        // Sample 0 is reached by lights 0 and 1; sample 1 by 4, 5 and 6; sample 2 by none.
+        // Lights 0 and 1 reach sample 0; lights 4, 5 and 6 reach sample 1; none reaches sample 2.
         let truth = bvh.check(&samples(), &snapshot(&[&[3, 4, 5, 6], &[0, 1]]), false);
         assert_eq!(truth, ListsTruth { samples: 3, contributing: 5, listed: 4 + 4 + 2, missed: 0 });
     }
@@ -230,11 +230,11 @@ mod tests {
     }
 
     #[test]
-    fn below_the_horizon_nothing_is_missed_of_those_who_know_normals() {
+    fn strategies_that_know_normals_miss_nothing_below_the_horizon() {
         let lights = lights(10);
         let bvh = LightBvh::new(&lights);
         let none = snapshot(&[&[], &[]]);
-        // At 5.2 facing along x: lights 4 and 5 lie behind, 6 in front.
+        // Seen from 5.2 along x, lights 4 and 5 lie behind and light 6 in front.
         let mut samples = samples();
         samples.normals[1] = [1.0, 0.0, 0.0];
         assert_eq!(bvh.check(&samples, &none, false).missed, 5);
@@ -267,7 +267,7 @@ mod tests {
         assert!(seconds < 30.0, "{seconds} s");
     }
 
-    /// Lights of every kind along a line, among them emitters much larger than their range.
+    /// Lights of every kind along a line, with some emitters much larger than their range.
     fn mixed(count: u32) -> Vec<Light> {
         let mut lights = lights(count);
         for (ix, light) in lights.iter_mut().enumerate() {

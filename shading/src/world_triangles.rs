@@ -1,32 +1,32 @@
-//! All triangles of a scene in world space, in one buffer.
+//! Uploads all triangles of a scene in world space, in one buffer.
 
 use assign::{AssignError, Gpu};
 use bytemuck::cast_slice;
 use glam::Vec3;
 use scenes::Scene;
 
-/// Triangles uploaded at once: 1.1 MiB.
+/// The number of triangles uploaded at once: 1.1 MiB.
 const CHUNK: usize = 1 << 15;
 
-/// Every triangle drawn, on the GPU, as what casts rays or voxelises wants them.
+/// Every triangle of the scene on the GPU, for passes that cast rays or voxelise.
 #[derive(Debug)]
 pub struct WorldTriangles {
-    /// `array<f32>`: three corners of three coordinates a triangle, world space, metres,
+    /// `array<f32>` with nine numbers per triangle: three corners, world space, metres,
     /// counter-clockwise seen from the front.
     pub positions: wgpu::Buffer,
     /// Number of triangles.
     pub count: u32,
-    /// Smallest and largest corner of the box around them; zeros where there are none.
+    /// Smallest and largest corner of the box around them; zeros if there are none.
     pub bounds_world: (Vec3, Vec3),
 }
 
 impl WorldTriangles {
-    /// Places and uploads every triangle, a chunk at a time.
+    /// Transforms and uploads every triangle, a chunk at a time.
     ///
     /// # Errors
     ///
-    /// [`AssignError::TooLarge`] where the device binds no buffer of 36 bytes a triangle, or there
-    /// are 2^32 of them; [`AssignError::OutOfMemory`], [`AssignError::Device`].
+    /// [`AssignError::TooLarge`] if the device binds no buffer of 36 bytes per triangle, or there
+    /// are 2^32 triangles or more; [`AssignError::OutOfMemory`], [`AssignError::Device`].
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, AssignError> {
         let total = scene.triangle_count();
         let count = u32::try_from(total).map_err(|_| AssignError::TooLarge {
@@ -48,7 +48,7 @@ impl WorldTriangles {
                 gpu.queue.write_buffer(&positions, offset, cast_slice(&chunk));
                 offset += 36 * chunk.len() as u64;
                 chunk.clear();
-                // Frees the copy that the queue made, before the next.
+                // This frees the queue's copy before the next one.
                 gpu.queue.submit([]);
                 gpu.wait()?;
             }

@@ -1,4 +1,4 @@
-//! Area lights: every model against f64, on the adapter of this machine.
+//! Tests every model of area lights against f64, on this machine's adapter.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -15,7 +15,7 @@ use shading::ltc::Table;
 use shading::reference::{light_contribution, ltc_contribution};
 
 #[test]
-fn linearly_transformed_cosines_are_those_of_f64() {
+fn linearly_transformed_cosines_match_f64() {
     let gpu = common::gpu();
     let lights = lights(40);
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
@@ -37,11 +37,11 @@ fn linearly_transformed_cosines_are_those_of_f64() {
 }
 
 #[test]
-fn models_are_as_far_from_the_truth_as_they_should_be() {
+fn each_model_has_its_expected_error() {
     let gpu = common::gpu();
     let lights = lights(40);
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
-    // Off the emitters and rough enough for the quadrature to be quick.
+    // Points away from the emitters, and rough enough that the quadrature is fast.
     let mut queries = queries(&lights, 1_500);
     queries.iter_mut().for_each(|query| query[1][3] = 0.2 + 0.8 * query[1][3]);
     let truth = truth_of(&buffer, &queries);
@@ -55,7 +55,7 @@ fn models_are_as_far_from_the_truth_as_they_should_be() {
     assert!(point > 4.0 * table, "{point} {table}");
 }
 
-/// Four times the samples halve the error of independent ones; evenly spread ones do better.
+/// Four times as many independent samples halve the error. Evenly spread samples do better.
 #[test]
 fn sampling_converges_to_the_truth() {
     let gpu = common::gpu();
@@ -71,16 +71,18 @@ fn sampling_converges_to_the_truth() {
     });
     println!("{}: samples {counts:?}, errors {errors:.5?}", gpu.info.name);
     assert!(errors.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{errors:?}");
-    // Over 256 times the samples a sixteenth at least, to below what the quadrature is good to.
+    // With 256 times as many samples, the error falls at least to a sixteenth, or to the
+    // quadrature's own error.
     assert!(errors[4] < errors[0] / 16.0 && errors[4] < 0.01, "{errors:?}");
 }
 
 #[test]
-fn nothing_is_lit_below_the_horizon_behind_a_light_or_out_of_its_range() {
+fn no_light_below_the_horizon_behind_the_emitter_or_out_of_range() {
     let gpu = common::gpu();
     let square = Emitter::rectangle(Vec3::X, Vec3::Y);
     let at = |z: f32| Light::area(square, Vec3::new(0.0, 0.0, z), 3.0, Vec3::splat(50.0));
-    // The light looks up: from below it is behind, from above it is below the horizon of normals up.
+    // The light looks up. A point below is behind it; for a point above with its normal up, the
+    // light is below the horizon.
     let lights = [at(-1.0), at(1.0)];
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
     let query = |light: u32, position: Vec3, normal: Vec3, roughness: f32| -> Query {
@@ -96,10 +98,10 @@ fn nothing_is_lit_below_the_horizon_behind_a_light_or_out_of_its_range() {
     for step in 0..40 {
         let roughness = step as f32 / 39.0;
         let across = Vec3::new(step as f32 * 0.05 - 1.0, 0.3, 0.0);
-        // Looking up from above, straight and tilted by less than the light is low.
+        // Looking up from above, straight and tilted by less than the height of the light.
         dark.push(query(0, across, Vec3::Z, roughness));
         dark.push(query(0, across, Vec3::new(0.2, 0.0, 1.0).normalize(), roughness));
-        // Behind.
+        // Behind the light.
         dark.push(query(1, across, Vec3::Z, roughness));
         // Beyond the range.
         dark.push(query(0, across + Vec3::Z * 2.1, Vec3::NEG_Z, roughness));
@@ -114,10 +116,10 @@ fn nothing_is_lit_below_the_horizon_behind_a_light_or_out_of_its_range() {
     }
 }
 
-/// A rectangle of 100 to 1, seen at 5 cm, along which a surface passes: no step differs from its
-/// neighbours' mean by more than curvature.
+/// A surface passes along a rectangle of 100 to 1 at a distance of 5 cm. No step may differ from
+/// the mean of its neighbours by more than the curvature.
 #[test]
-fn a_long_light_close_by_is_without_noise() {
+fn a_long_light_nearby_gives_no_noise() {
     let gpu = common::gpu();
     let table = Table::ggx().unwrap();
     let lamp = Emitter::rectangle(Vec3::X * 2.0, Vec3::NEG_Y * 0.02);
@@ -153,7 +155,7 @@ fn a_long_light_close_by_is_without_noise() {
 }
 
 #[test]
-fn surfaces_on_edge_on_and_inside_emitters_give_numbers() {
+fn surfaces_on_edge_on_to_and_inside_emitters_give_finite_light() {
     let gpu = common::gpu();
     let square = Emitter::rectangle(Vec3::X, Vec3::Y).two_sided();
     let lights = [
@@ -195,13 +197,13 @@ fn surfaces_on_edge_on_and_inside_emitters_give_numbers() {
     }
 }
 
-/// Two-sided lights light both sides alike, and two halves of a light as much as all of it.
+/// Two-sided lights light both sides equally, and two halves of a light add up to the whole.
 #[test]
-fn sides_are_alike_and_parts_add_up() {
+fn both_sides_are_equal_and_parts_add_up() {
     let gpu = common::gpu();
     let lamp = |x: f32, center: f32| {
         let emitter = Emitter::rectangle(Vec3::X * x, Vec3::Y * 0.4).two_sided();
-        // Without a window that would tell the parts apart.
+        // Without a window, which would differ between the parts.
         Light::area(emitter, Vec3::X * center, 1e5, Vec3::splat(x))
     };
     let lights = [lamp(1.0, 0.0), lamp(0.5, -0.5), lamp(0.5, 0.5)];
@@ -234,8 +236,8 @@ fn sides_are_alike_and_parts_add_up() {
     }
 }
 
-/// A surface in the plane of a light, outside of it, however both are turned: rounding leaves the
-/// light's corners above and below the horizon at random.
+/// A surface in the plane of a light but outside its outline, in any orientation. Rounding moves
+/// the light's corners above and below the horizon at random.
 #[test]
 fn a_light_in_the_surfaces_own_plane_adds_nothing() {
     let gpu = common::gpu();
@@ -279,15 +281,16 @@ fn a_light_in_the_surfaces_own_plane_adds_nothing() {
     }
 }
 
-/// With many samples no error remains, whatever the emitter looks like: small, edge-on, long, near.
+/// With many samples no error remains, whatever the emitter looks like: small, edge-on, long, or
+/// near.
 #[test]
-fn sampling_is_without_bias() {
+fn sampling_is_unbiased() {
     let gpu = common::gpu();
     let lights = lights(40);
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
     let mut queries = queries(&lights, 1_500);
     for query in &mut queries {
-        // Looking at the light, so that none of it is a sliver above the horizon.
+        // The surface faces the light, so that no part of it is a sliver above the horizon.
         let [x, y, z, _] = query[0];
         let normal = (buffer.lights()[light_of(query)].position - Vec3::new(x, y, z)).normalize();
         let to_eye = Vec3::new(query[1][0], query[1][1], query[1][2]);

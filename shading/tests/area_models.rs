@@ -1,4 +1,5 @@
-//! What tells the models of area lights apart: each against the truth, and against its neighbour.
+//! Tests the differences between models of area lights: each against the truth, and against a
+//! similar one.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -10,7 +11,7 @@ use common::evaluate::{Query, evaluate};
 use glam::Vec3;
 use shading::AreaModel;
 
-/// The same queries on a surface of another metallic and base color.
+/// The same queries on a surface of another metallic value and base colour.
 fn with_surface(queries: &[Query], metallic: f32, base_color: f32) -> Vec<Query> {
     let one = |query: &Query| {
         let mut query = *query;
@@ -31,7 +32,7 @@ fn with_roughness(queries: &[Query], roughness: f32) -> Vec<Query> {
 }
 
 #[test]
-fn looking_the_lobe_up_for_each_light_changes_no_bit() {
+fn looking_up_the_lobe_per_light_changes_no_bit() {
     let gpu = common::gpu();
     let lights = lights(40);
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
@@ -47,8 +48,8 @@ fn looking_the_lobe_up_for_each_light_changes_no_bit() {
     assert!(differing(&image(AreaModel::LtcHammon), &table) > 1_000);
 }
 
-/// A rectangle of 1,000 to 1, seen from 5 mm, along which a surface passes: the most that an answer
-/// is off its neighbours' mean, relative.
+/// A surface passes along a rectangle of 1,000 to 1 at a distance of 5 mm. Returns the largest
+/// relative difference between an answer and the mean of its neighbours.
 fn noise_along_a_long_light(model: AreaModel) -> f32 {
     let gpu = common::gpu();
     let lamp = Emitter::rectangle(Vec3::X * 20.0, Vec3::NEG_Y * 0.02);
@@ -71,10 +72,10 @@ fn noise_along_a_long_light(model: AreaModel) -> f32 {
     answers.windows(3).map(noise).fold(0.0, f32::max)
 }
 
-/// Section 5.4.4 of Dobetsberger 2025, before and after the fix: without splitting, long edges give
-/// noise, which splitting removes.
+/// Section 5.4.4 of Dobetsberger 2025, before and after the fix: long edges give noise without
+/// splitting, and none with it.
 #[test]
-fn splitting_edges_removes_the_noise_that_shows_without() {
+fn splitting_edges_removes_noise() {
     let (unsplit, split) = (
         noise_along_a_long_light(AreaModel::LtcUnsplit),
         noise_along_a_long_light(AreaModel::LtcTable),
@@ -84,7 +85,7 @@ fn splitting_edges_removes_the_noise_that_shows_without() {
     assert!(unsplit > 1e-2 && unsplit > 20.0 * split, "unsplit {unsplit:e}, split {split:e}");
 }
 
-/// On ordinary emitters splitting changes nothing that an eye would see.
+/// On ordinary emitters, splitting changes nothing visible.
 #[test]
 fn splitting_edges_changes_little_on_ordinary_lights() {
     let gpu = common::gpu();
@@ -98,8 +99,8 @@ fn splitting_edges_changes_little_on_ordinary_lights() {
     assert!((split - unsplit).abs() < 2e-3, "{split} {unsplit}");
 }
 
-/// Samples of the reflected region have less noise where the lobe is narrow, and lack light that
-/// comes from elsewhere: more samples do not remove that error.
+/// Samples of the reflected region have less noise where the lobe is narrow. They miss light from
+/// elsewhere, and more samples do not remove that error.
 #[test]
 fn sampling_the_reflected_region_trades_noise_for_bias() {
     let gpu = common::gpu();
@@ -107,7 +108,7 @@ fn sampling_the_reflected_region_trades_noise_for_bias() {
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
     let uniform = |samples| AreaModel::MonteCarlo { samples };
     let reflected = |samples| AreaModel::MonteCarloReflected { samples };
-    // A floor that mirrors a wide ceiling light straight above.
+    // A floor mirrors a wide ceiling light straight above.
     let lamp = Emitter::rectangle(Vec3::X * 4.0, Vec3::NEG_Y * 4.0);
     let ceiling = [Light::area(lamp, Vec3::Z * 2.0, 30.0, Vec3::splat(1.0))];
     let ceiling = LightBuffer::new(&gpu, &ceiling).unwrap();
@@ -139,13 +140,13 @@ fn sampling_the_reflected_region_trades_noise_for_bias() {
 /// The error of each term of both models of the most representative point: the share of the light
 /// that is wrong, and the signed bias.
 #[test]
-fn the_two_weights_of_the_most_representative_point_err_in_different_terms() {
+fn the_two_weightings_of_the_most_representative_point_err_in_different_terms() {
     let gpu = common::gpu();
     let lights = lights(40);
     let buffer = LightBuffer::new(&gpu, &lights).unwrap();
     let mut base = queries(&lights, 1_500);
     base.iter_mut().for_each(|query| query[1][3] = 0.2 + 0.8 * query[1][3]);
-    // A white dielectric less a black one is diffuse; a black dielectric is specular.
+    // A white dielectric minus a black one is diffuse; a black dielectric is specular.
     let (white, black) = (with_surface(&base, 0.0, 1.0), with_surface(&base, 0.0, 0.0));
     let sum = |values: &[[f32; 4]]| values.iter().map(|v| f64::from(v[0])).sum::<f64>();
     let (white_truth, black_truth) = (truth_of(&buffer, &white), truth_of(&buffer, &black));
@@ -166,7 +167,7 @@ fn the_two_weights_of_the_most_representative_point_err_in_different_terms() {
     };
     let [derived, published, point, ltc] =
         [AreaModel::Mrp, AreaModel::MrpPublished, AreaModel::Point, AreaModel::LtcTable].map(of);
-    // METHODOLOGY's table of biases by term.
+    // The biases by term in METHODOLOGY's table.
     let stated = [[0.15, 0.96], [0.47, 40.8], [1.05, 0.51], [-0.001, -0.009]];
     for (found, stated) in [derived, published, point, ltc].iter().zip(stated) {
         for (found, stated) in found.iter().zip(stated) {
@@ -176,8 +177,8 @@ fn the_two_weights_of_the_most_representative_point_err_in_different_terms() {
     }
 }
 
-/// Where the cone of equation 5.5 misses the emitter, the published model has no specular light, and
-/// the BRDF has some: its missing Fresnel reflections.
+/// Where the cone of equation 5.5 misses the emitter, the published model has no specular light.
+/// The BRDF has some there: its Fresnel reflections.
 #[test]
 fn the_published_point_has_no_specular_light_outside_its_cone() {
     let gpu = common::gpu();
@@ -201,7 +202,7 @@ fn the_published_point_has_no_specular_light_outside_its_cone() {
     assert!(derived[0][0] > 0.0 && truth[0].x > 0.0, "{derived:?} {truth:?}");
 }
 
-/// A small emitter far off is a point, whose term no weight changes.
+/// A small, distant emitter is a point, and no weight changes its diffuse term.
 #[test]
 fn all_models_agree_on_the_diffuse_light_of_a_small_emitter() {
     let gpu = common::gpu();

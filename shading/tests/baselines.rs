@@ -1,4 +1,4 @@
-//! Methods without lists of their own against no culling, and the models of pixels.
+//! Tests methods without lists against no culling, and the models of pixels.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -17,7 +17,7 @@ use shading::{
     RasterSpheres, Renderer, probe, record_before_lighting, record_for_probe,
 };
 
-/// Points, spots, one around the camera and one beyond any far plane that reaches in.
+/// Points, spots, one light around the camera, and one that reaches in from beyond any far plane.
 fn lights(view: &View) -> Vec<Light> {
     let mut lights = common::lights(60);
     for light in lights.iter_mut().step_by(3) {
@@ -57,7 +57,7 @@ fn views() -> Vec<(&'static str, View)> {
 
 const EVALUATE_ALL: f32 = LightingOptions::EVALUATE_ALL;
 
-/// The image of no culling, lights left out at or under `exit_weight`.
+/// The image of no culling. Lights at or under `exit_weight` are skipped.
 fn everything(
     gpu: &Gpu,
     renderer: &mut Renderer,
@@ -71,7 +71,7 @@ fn everything(
     image_of(gpu, renderer, view, lights, mode, options)
 }
 
-/// The image of no culling with some options.
+/// The image of no culling with the given options.
 fn image_of(
     gpu: &Gpu,
     renderer: &mut Renderer,
@@ -108,7 +108,7 @@ fn an_early_exit_changes_no_bit() {
                 difference.differing_channels
             };
             assert_eq!(differs(0.0), 0, "{name}, {mode:?}");
-            // The number reaches the shader: a greater one leaves out what adds something.
+            // The number reaches the shader: a greater one skips lights that add something.
             assert!(differs(0.1) > 0, "{name}, {mode:?}");
         }
     }
@@ -133,7 +133,7 @@ fn compensation_divides_by_the_number_of_lights() {
             let difference = image(count, Some(target)).difference(&one).unwrap();
             assert!(difference.max_rel < 1e-5, "{mode:?}, {count}: {difference:?}");
         }
-        // No more than by a factor of four, and nothing where it is off.
+        // The factor is at most four, and nothing changes while compensation is off.
         let eight = image(8, Some(1.0)).difference(&one).unwrap();
         assert!((eight.max_rel - 1.0).abs() < 1e-5, "{mode:?}: {eight:?}");
         assert!(image(2, None).difference(&one).unwrap().max_rel > 0.9, "{mode:?}");
@@ -152,7 +152,7 @@ fn raster_spheres_show_the_image_of_no_culling() {
         let all = lights(&view);
         let lights = LightBuffer::new(&gpu, &all).unwrap();
         let mut renderer = Renderer::new(&gpu, &common::showcase(), &view).unwrap();
-        // Once with suns: they are drawn in a pass of their own.
+        // Test once with suns, which are drawn in a separate pass.
         let suns = if name == "orthographic" { common::suns() } else { Suns::default() };
         let options = LightingOptions {
             kinds: lights.kinds(),
@@ -176,16 +176,16 @@ fn raster_spheres_show_the_image_of_no_culling() {
         let difference = draw(&lights).difference(&reference).unwrap();
         println!("{name}, {cut:?}: {difference:?}");
         assert!(difference.max_rel <= RASTER_SPHERE_TOLERANCE, "{name}: {difference:?}");
-        // The camera's own light left out must show.
+        // Leaving out the camera's own light must be visible.
         let fewer = LightBuffer::new(&gpu, &all[..60]).unwrap();
         let difference = draw(&fewer).difference(&reference).unwrap();
         assert!(difference.max_rel > 10.0 * RASTER_SPHERE_TOLERANCE, "{name}: {difference:?}");
     }
 }
 
-/// Suns are added once to every sample, in every mode, and make no difference to what lists hold.
+/// Suns are added once to every sample, in every mode, whatever the lists hold.
 #[test]
-fn suns_shine_in_every_mode_and_whatever_the_list() {
+fn suns_light_every_sample_in_every_mode() {
     let gpu = common::gpu();
     let view = common::view([48, 32]);
     let lights = LightBuffer::new(&gpu, &common::lights(20)).unwrap();
@@ -241,7 +241,7 @@ fn both_modes_find_the_models_of_their_pixels() {
         let image = HdrImage::read(&gpu, renderer.targets(), view.viewport).unwrap();
         let difference = image.difference(&reference).unwrap();
         assert_eq!(difference.differing_channels, 0, "{mode:?}: {difference:?}");
-        // Every pixel found its model's box, and there are several.
+        // Every pixel lies in its model's box, and there are several models.
         let mut groups = probe(&renderer, &strategy, &frame).unwrap().groups;
         groups.sort_unstable();
         groups.dedup();

@@ -1,4 +1,4 @@
-//! The shaders' lighting function against the f64 reference, on the adapter of this machine.
+//! Tests the shaders' lighting function against the f64 reference, on this machine's adapter.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -19,7 +19,7 @@ fn direction(i: usize, count: usize) -> Vec3 {
     Vec3::new(r * angle.cos(), r * angle.sin(), z)
 }
 
-/// The same queries with lights left out at or under a weight.
+/// The same queries, with lights skipped at or under a weight.
 fn leaving_out(queries: &[Query], exit_weight: f32) -> Vec<Query> {
     let mut queries = queries.to_vec();
     queries.iter_mut().for_each(|query| query[3][3] = exit_weight);
@@ -38,7 +38,7 @@ fn queries(lights: &[Light], count: usize) -> Vec<Query> {
             let position =
                 lights[light].position + direction(i, count) * lights[light].range_m * share;
             let normal = direction((i * 7) % count, count);
-            // Half of the eyes look from the front.
+            // Half of the eyes look at the front.
             let to_eye = direction((i * 13) % count, count);
             let to_eye = if i % 2 == 0 && to_eye.dot(normal) < 0.0 { -to_eye } else { to_eye };
             let roughness = (i as f32 * 0.137).fract();
@@ -66,8 +66,8 @@ fn expected(lights: &[Light], query: &Query) -> DVec3 {
     light_contribution(light, xyz(query[0]), &surface, xyz(query[1]))
 }
 
-/// How far f32 may be off: GGX's peak amplifies the rounding of the half vector by 1 / alpha, which is up
-/// to 500.
+/// The accepted error of f32. GGX's peak amplifies the rounding of the half vector by 1 / alpha,
+/// which is up to 500.
 fn relative_error(query: &Query) -> f64 {
     let alpha = f64::from(query[1][3].max(0.045)).powi(2);
     2e-4 + 8.0 * f64::from(f32::EPSILON) / alpha
@@ -93,7 +93,7 @@ fn shaders_agree_with_the_reference() {
             }
             lit += usize::from(expected.x > 1e-4);
         }
-        // Without an exit every bit is the same; a greater weight leaves out what adds something.
+        // Skipping nothing changes no bit. A greater weight skips lights that add something.
         let at = |exit_weight| {
             bits(&evaluate(
                 &gpu,
@@ -109,7 +109,7 @@ fn shaders_agree_with_the_reference() {
 }
 
 #[test]
-fn lights_on_a_surface_and_out_of_range_give_numbers() {
+fn lights_on_a_surface_and_out_of_range_give_finite_light() {
     let gpu = common::gpu();
     let lights = [
         Light::point(Vec3::ZERO, 1.0, Vec3::ONE),
@@ -143,12 +143,12 @@ fn lights_on_a_surface_and_out_of_range_give_numbers() {
         assert!(answer.iter().all(|v| v.is_finite() && *v >= 0.0), "{query:?}: {answer:?}");
         lit += usize::from(answer[0] > 0.0);
     }
-    // The light of 1e8 m that is straight above lights both its samples.
+    // The light of 1e8 m straight above lights both of its samples.
     assert!(lit >= 2, "{lit} of {}: {answers:?}", queries.len());
 }
 
-/// Spots of every width over a white wall, lit along and off the axis: those of full intensity have
-/// that of a point light.
+/// Spots of every width over a white wall, sampled on and off the axis. Inside the inner cone they
+/// are as bright as a point light.
 #[test]
 fn narrow_spots_are_as_bright_as_points_inside_their_inner_cone() {
     const DISTANCE_M: f32 = 100.0;

@@ -31,8 +31,8 @@ fn the_median_errors_are_those_that_methodology_states_for_each_angle() {
     let polynomial = Polynomial::ggx();
     let medians = MEDIANS.map(|(degrees, ..)| {
         let cases = accuracy_cases(1500, 1, degrees);
-        let fitted = Accuracy::of(&cases, |roughness, cos| table.look_up(roughness, cos));
-        let smooth = Accuracy::of(&cases, |roughness, cos| polynomial.entry(roughness, cos));
+        let fitted = Accuracy::measure(&cases, |roughness, cos| table.look_up(roughness, cos));
+        let smooth = Accuracy::measure(&cases, |roughness, cos| polynomial.entry(roughness, cos));
         println!("{degrees} degrees, table: {fitted:.4?}");
         println!("{degrees} degrees, polynomials: {smooth:.4?}");
         (degrees, fitted.median, smooth.median)
@@ -54,7 +54,7 @@ fn lobes_of_a_neighbouring_roughness_or_view_are_told_from_the_fit() {
     let cases = accuracy_cases(1500, 1, ACCURACY_DEGREES);
     let table = Table::ggx().unwrap();
     let median = |roughness: f64, cos_view: f64| {
-        Accuracy::of(&cases, |r, cos| table.look_up(r + roughness, cos + cos_view)).median
+        Accuracy::measure(&cases, |r, cos| table.look_up(r + roughness, cos + cos_view)).median
     };
     let fitted = median(0.0, 0.0);
     let (rougher, turned) = (median(0.02, 0.0), median(0.0, 0.05));
@@ -67,8 +67,8 @@ fn lobes_of_a_neighbouring_roughness_or_view_are_told_from_the_fit() {
 fn the_table_of_the_approximate_masking_is_another_and_farther_off() {
     let cases = accuracy_cases(1500, 1, ACCURACY_DEGREES);
     let of = |masking| {
-        let table = Table::of(masking).unwrap();
-        Accuracy::of(&cases, |roughness, cos| table.look_up(roughness, cos))
+        let table = Table::load(masking).unwrap();
+        Accuracy::measure(&cases, |roughness, cos| table.look_up(roughness, cos))
     };
     let (exact, hammon) = (of(Masking::Correlated), of(Masking::Hammon));
     println!("correlated {exact:.4?}, Hammon {hammon:.4?}");

@@ -1,4 +1,4 @@
-//! Reflectances of dielectrics, colours of vertices and unlit materials: in both modes, and against
+//! Tests reflectances of dielectrics, vertex colours and unlit materials, in both modes and against
 //! the reference on the CPU.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
@@ -16,7 +16,7 @@ use shading::{
 
 const SIZE: [u32; 2] = [64, 48];
 
-/// The showcase with a floor of its own reflectance, an unlit wall and a coloured sheet.
+/// The showcase with a floor of another reflectance, an unlit wall and a coloured sheet.
 fn scene() -> Scene {
     let mut scene = common::showcase();
     let floor = &mut scene.materials[0];
@@ -31,7 +31,7 @@ fn scene() -> Scene {
     for (mesh, color) in [(1, [1.0, 0.5, 0.25, 1.0]), (3, [0.25, 0.5, 1.0, 1.0])] {
         scene.meshes[mesh].colors = vec![color; scene.meshes[mesh].vertices.len()];
     }
-    // Half of the mask's vertices are see-through.
+    // Half of the mask's vertices are transparent.
     scene.meshes[2].colors = [1.0, 1.0, 0.0, 0.0].map(|a| [1.0, 1.0, 1.0, a]).to_vec();
     scene
 }
@@ -58,7 +58,7 @@ fn draw(gpu: &Gpu, scene: &Scene, lights: &[Light], mode: Mode) -> (HdrImage, GB
     (image, GBufferSamples::read(&renderer, &view).unwrap())
 }
 
-/// The share of an image's brightness by which it differs from another.
+/// The difference between two images, as a share of the brightness.
 fn off(image: &HdrImage, other: &HdrImage) -> f64 {
     let pairs = || image.pixels.iter().flatten().zip(other.pixels.iter().flatten());
     let sum: f64 = pairs().map(|(a, _)| f64::from(*a)).sum();
@@ -66,7 +66,7 @@ fn off(image: &HdrImage, other: &HdrImage) -> f64 {
 }
 
 #[test]
-fn images_show_what_the_reference_computes() {
+fn images_match_the_reference() {
     let gpu = common::gpu();
     let scene = scene();
     let lights = common::lights(12);
@@ -85,7 +85,7 @@ fn images_show_what_the_reference_computes() {
         sum += expected.element_sum();
         error += (Vec3::from_slice(&pixel[..3]).as_dvec3() - expected).abs().element_sum();
         seen += 1;
-        // What a ray meets has the reflectances and colours of what was drawn.
+        // The surface that a ray hits has the reflectances and colours of the drawn one.
         let [x, y] = [ix as u32 % SIZE[0], ix as u32 / SIZE[0]];
         let Some(met) = traced.primary(&common::view(SIZE), [x, y]) else { continue };
         if (met.position - sample.position).length() > 1e-3 {
@@ -98,7 +98,7 @@ fn images_show_what_the_reference_computes() {
     }
     assert!(seen > 1_000 && floors > 100, "{seen} samples, {floors} of the floor");
     assert!(error < 2e-3 * sum, "{error} off {sum}");
-    // Without the reflectances, and without the colours, the image is another.
+    // Without the reflectances or without the colours, the image differs.
     for change in [
         (|scene| scene.materials[0].dielectric = Dielectric::default()) as fn(&mut Scene),
         |scene| scene.meshes[3].colors.clear(),
@@ -111,7 +111,7 @@ fn images_show_what_the_reference_computes() {
 }
 
 #[test]
-fn unlit_surfaces_show_their_colour_whatever_lights_them() {
+fn unlit_surfaces_show_their_colour_under_any_light() {
     let gpu = common::gpu();
     let scene = scene();
     let traced = TracedScene::new(&scene);

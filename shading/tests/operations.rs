@@ -1,4 +1,5 @@
-//! Light operations of a few lights over a floor, against f64: listed, evaluated and perceptible terms.
+//! Tests the counts of light operations against f64, for a few lights over a floor: listed,
+//! evaluated and perceptible terms.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -18,10 +19,11 @@ use shading::{
 };
 
 const SIZE: [u32; 2] = [48, 32];
-/// From radiance to the display's scale: 0.005 there is a radiance of 8.7e-5, amid those of the lights.
+/// The factor from radiance to the display's scale. 0.005 on that scale is a radiance of 8.7e-5,
+/// within the range of the lights.
 const EXPOSURE: f32 = 0.1;
 const ROUGHNESS: f32 = 0.5;
-/// Nearer than this to an edge or a threshold, f32 may decide otherwise.
+/// Closer than this to an edge or a threshold, f32 may decide differently.
 const DOUBT: f64 = 1e-3;
 
 /// A floor of one material.
@@ -32,8 +34,8 @@ fn floor() -> Scene {
     scene
 }
 
-/// A lamp that faces the floor and whose diffuse light ends early, a triangle that the floor cuts, one that
-/// faces away, a point and a spot.
+/// A lamp that faces the floor and whose diffuse light ends early, a triangle that the floor cuts,
+/// a lamp that faces away, a point and a spot.
 fn lights() -> Vec<Light> {
     let down = Emitter::rectangle(0.6 * Vec3::X, 0.3 * Vec3::Z).with_diffuse_share(0.6);
     let corners =
@@ -55,10 +57,10 @@ fn lights() -> Vec<Light> {
     ]
 }
 
-/// What one strategy lists of the floor's lights, and what of it is counted on the GPU.
+/// One strategy's lists for the floor's lights, and the GPU's counts.
 struct Counted {
     operations: Operations,
-    /// Entries of each sample's list.
+    /// The entries of each sample's list.
     lists: Vec<Vec<u32>>,
     samples: Samples,
     image: HdrImage,
@@ -113,12 +115,12 @@ fn white_terms(
         let surface = Surface { base_color, metallic, normal, roughness, dielectric };
         ltc_contribution(table, &white, position, &surface, (eye - position).normalize()).x
     };
-    // A metal that reflects as much as a dielectric has the specular term alone.
+    // A metal with a dielectric's reflectance has only the specular term.
     let specular = radiance(0.04, 1.0);
     [radiance(1.0, 0.0) - specular, specular]
 }
 
-/// What appendix I of the paper makes of two terms, of which only the named ones are there.
+/// The number of perceptible terms by appendix I of the paper, if only the named terms exist.
 fn perceptible([diffuse, specular]: [f64; 2]) -> u64 {
     match (shown(diffuse) > 0.005, shown(specular) > 0.005) {
         (true, true) if shown(diffuse + specular) > 0.01 => 2,
@@ -127,18 +129,18 @@ fn perceptible([diffuse, specular]: [f64; 2]) -> u64 {
     }
 }
 
-/// How many terms are too close to call.
+/// The numbers of terms that are too close to call.
 #[derive(Clone, Copy, Debug, Default)]
 struct Doubts {
-    /// By where light ends.
+    /// Because of where light ends.
     reach: u64,
-    /// By that, or by what is seen of a light.
+    /// Because of that, or of the visibility of a light.
     seen: u64,
-    /// The same of entries that name one term only.
+    /// The same for entries that name only one term.
     cut: u64,
 }
 
-/// The same counts in f64, and how many terms are too close to call.
+/// The same counts in f64, and the numbers of terms that are too close to call.
 fn expected(lights: &[Light], counted: &Counted, view: &View, exits: bool) -> (Operations, Doubts) {
     let table = ltc::Table::ggx().unwrap();
     let (mut sum, mut doubts) = (Operations::default(), Doubts::default());
@@ -188,16 +190,16 @@ fn expected(lights: &[Light], counted: &Counted, view: &View, exits: bool) -> (O
     (sum, doubts)
 }
 
-/// Perceptible terms that lists do not name.
+/// Perceptible terms that no list names.
 fn lost(all: &Operations) -> i64 {
     all.perceptible_of_lights as i64 - all.perceptible as i64
 }
 
-/// All figures of some operations, by name, each with how many of it are too close to call.
+/// All counts by name, each with the number of terms that are too close to call.
 fn figures(all: &Operations, doubts: Doubts) -> [(&'static str, i64, u64); 9] {
     let figure = |name, count: u64, doubt| (name, count as i64, doubt);
     [
-        // Lists are the same for both.
+        // Lists are the same in both.
         figure("listed diffuse", all.listed.diffuse, 0),
         figure("listed specular", all.listed.specular, 0),
         figure("listed outer specular", all.listed.outer_specular, doubts.reach),
@@ -210,7 +212,7 @@ fn figures(all: &Operations, doubts: Doubts) -> [(&'static str, i64, u64); 9] {
     ]
 }
 
-/// Asserts that the GPU counted what f64 says, within what is too close to call.
+/// Asserts that the GPU's counts equal those of f64, up to the terms that are too close to call.
 fn check(name: &str, counted: &Counted, exits: bool) -> (Operations, Doubts) {
     let (truth, doubts) = expected(&lights(), counted, &common::view(SIZE), exits);
     println!("{name}: {:?}, f64 {truth:?}, {doubts:?}", counted.operations);
@@ -230,20 +232,20 @@ fn clusters(gpu: &Gpu, cut: SpecularCut) -> Clustered {
 }
 
 #[test]
-fn operations_are_those_of_f64() {
+fn operation_counts_match_f64() {
     let gpu = common::gpu();
     let all = lights();
     let mut none = Everything::new(&gpu).unwrap();
     let counted = count(&gpu, &all, &mut none, LightingOptions::EVALUATE_ALL);
     let (truth, doubts) = check("no culling", &counted, false);
     assert_eq!(counted.operations.listed, counted.operations.evaluated, "all are evaluated");
-    // More than is doubtful: a count of none fails.
+    // The count exceeds the doubtful terms, so a count of zero fails.
     assert!(truth.perceptible > doubts.seen, "{truth:?}, {doubts:?}");
     assert!(truth.listed.outer_specular > doubts.reach, "{truth:?}, {doubts:?}");
 
     let counted = count(&gpu, &all, &mut none, 0.0);
     let (truth, doubts) = check("no culling, early exit", &counted, true);
-    // Far fewer: a count of listed terms fails here.
+    // Far fewer are evaluated, so counting listed terms would fail here.
     assert!(2 * truth.evaluated.specular < truth.listed.specular, "{truth:?}");
     assert!(truth.evaluated.outer_specular > doubts.reach, "{truth:?}, {doubts:?}");
 
@@ -253,15 +255,15 @@ fn operations_are_those_of_f64() {
     let mut cut = clusters(&gpu, SpecularCut::Below(5.0));
     let counted = count(&gpu, &all, &mut cut, 0.0);
     let (truth, doubts) = check("clusters, cut", &counted, true);
-    // The cut takes terms that would be seen: a count that ignores the list's flags fails here.
+    // The cut removes visible terms, so a count that ignores the list's flags would fail here.
     let lost = lost(&truth);
     assert!(lost > 20 && lost > doubts.cut as i64, "{lost} are lost: {truth:?}, {doubts:?}");
 }
 
-/// What is counted as evaluated is what shading draws: one light, and the pixels that it lights. Its diffuse
-/// light goes as far as the specular, whose lobe may be exactly 0.
+/// One light must light exactly the pixels at which a term is counted as evaluated. Its diffuse
+/// light reaches as far as the specular one, whose lobe may be exactly 0.
 #[test]
-fn a_pixel_is_lit_exactly_where_a_term_is_evaluated() {
+fn a_pixel_is_lit_only_where_a_term_is_evaluated() {
     let gpu = common::gpu();
     for mut light in lights() {
         if let LightShape::Area(emitter) = &mut light.shape {

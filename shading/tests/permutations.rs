@@ -1,4 +1,4 @@
-//! Every permutation of the pipeline's shaders links and validates, without a GPU.
+//! Links and validates every permutation of the pipeline's shaders, without a GPU.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -27,7 +27,7 @@ const G_BUFFER: [u32; 6] = [0, 1, 2, 3, 5, 11];
 
 type Flags = BTreeSet<&'static str>;
 
-/// Every subset of the flags of a material and of `more`, with `pass` always on.
+/// Every subset of the flags of a material and of `more`. The flag `pass` is always on.
 fn material_flags(pass: Option<&'static str>, more: &[&'static str]) -> Vec<Flags> {
     let flags = [&TEXTURES[..], &["uv_transforms"], more].concat();
     subsets(&flags).into_iter().map(|set| set.into_iter().chain(pass).collect()).collect()
@@ -49,7 +49,8 @@ fn area_models() -> Vec<&'static [&'static str]> {
     sets
 }
 
-/// Each set as it is, and the smallest and the largest with suns: no other flag shares a line with theirs.
+/// Each set, and the smallest and the largest with suns too. No other flag shares a line with those
+/// of suns.
 fn with_suns(mut sets: Vec<Flags>) -> Vec<Flags> {
     let ends = [sets.iter().min_by_key(|set| set.len()), sets.iter().max_by_key(|set| set.len())];
     let sunny = |set: &Flags| set.iter().copied().chain(["suns"]).collect();
@@ -58,7 +59,7 @@ fn with_suns(mut sets: Vec<Flags>) -> Vec<Flags> {
     sets
 }
 
-/// Each set as it is, and with area lights of each model.
+/// Each set, without area lights and with those of each model.
 fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
     let models = area_models();
     let areas = |set: &Flags, model: &[&'static str]| {
@@ -68,11 +69,11 @@ fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
     sets.iter().flat_map(|set| with(set).into_iter().chain([set.clone()])).collect()
 }
 
-/// What a linked and validated shader has.
+/// The properties of a linked and validated shader.
 #[derive(Debug, PartialEq)]
 struct Linked {
     entry_points: BTreeSet<String>,
-    /// Group and binding of what the entry points use.
+    /// Group and binding of the resources that the entry points use.
     bindings: BTreeSet<(u32, u32)>,
     source: String,
 }
@@ -93,8 +94,8 @@ fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
     Linked { entry_points, bindings, source }
 }
 
-/// Links a pass over the triangles; checks its entry points, and that it reads the textures of
-/// `slots` that its flags name, the lists of `look_up`, and nothing else of the two groups.
+/// Links a pass over the triangles. Checks its entry points, and that it reads only the textures of
+/// `slots` that its flags name and the lists of `look_up` in the two groups.
 fn check_geometry(flags: &Flags, look_up: Option<LookUp>, fragment: Option<&str>, slots: &[u32]) {
     let linked = link("package::geometry", flags, look_up);
     let entry_points = ["vertex_depth", "vertex_surface"].into_iter().chain(fragment);
@@ -166,7 +167,7 @@ fn forward() {
     for look_up in LOOK_UPS {
         let sets =
             with_suns(material_flags(Some("forward"), &["emissive", "spots", "forward_mask"]));
-        // Area lights read no texture: one material with all of them will do.
+        // Area lights read no texture, so one material with all textures is enough.
         let areas =
             with_areas(sets.iter().max_by_key(|set| set.len()).into_iter().cloned().collect());
         for flags in sets.into_iter().chain(areas) {
@@ -176,8 +177,8 @@ fn forward() {
     }
 }
 
-/// Links a pass of one compute entry point; checks that it reads the lists of `look_up` at
-/// `lists` and `images` of group 2.
+/// Links a pass with one compute entry point. Checks that it reads `lists` of the look-up's group
+/// and `images` of group 2.
 fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], images: &[u32]) {
     let linked = link(&format!("package::{root}"), flags, Some(look_up));
     let entry_point = match root {
@@ -226,7 +227,7 @@ fn operations() {
 #[test]
 fn probe() {
     for look_up in LOOK_UPS {
-        // It asks for the group, and reads no list.
+        // It computes the group and reads no list.
         let own: Vec<u32> = look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
         check_compute("probe", &Flags::new(), look_up, &own, &[0, 2, 8, 9]);
         let model_ids = ["model_ids"].into();
@@ -248,7 +249,7 @@ fn surfaces() {
     }
 }
 
-/// The flags that bind nothing reach the module as well.
+/// Flags that bind nothing change the module as well.
 #[test]
 fn flags_change_the_shader() {
     let source = |flags: &[&'static str]| {
@@ -267,9 +268,9 @@ fn flags_change_the_shader() {
     assert!(spots.bindings.contains(&shapes) && !forward.bindings.contains(&shapes));
 }
 
-/// A scene without suns compiles nothing of them and binds nothing for them.
+/// Without suns, a scene compiles none of their code and binds nothing for them.
 #[test]
-fn without_suns_the_shader_knows_none() {
+fn without_suns_the_shader_has_no_sun_code() {
     let source = |flags: &[&'static str]| {
         let flags = flags.iter().copied().collect();
         link("package::deferred", &flags, Some(LOOK_UPS[0]))
@@ -279,7 +280,8 @@ fn without_suns_the_shader_knows_none() {
     assert!(!without.source.contains("sun") && !without.bindings.contains(&(2, 10)));
 }
 
-/// A scene without area lights compiles nothing of them and binds nothing for them, whatever the model.
+/// Without area lights, a scene compiles none of their code and binds nothing for them, whatever
+/// the model.
 #[test]
 fn without_area_lights_no_model_changes_the_shader() {
     let source = |flags: &[&'static str]| {
@@ -300,7 +302,7 @@ fn without_area_lights_no_model_changes_the_shader() {
     }
 }
 
-/// Flags of materials that few scenes have, beside each that they touch.
+/// Flags of materials that few scenes have, together with the flags that they affect.
 #[test]
 fn flags_of_rare_materials() {
     let base = ["base_color_texture", "emissive"];
@@ -311,7 +313,7 @@ fn flags_of_rare_materials() {
         check_geometry(&with(&["gbuffer", "gbuffer_ids"]), None, Some("fragment_gbuffer"), &[0]);
         check_geometry(&with(&["mask"]), None, Some("fragment_mask"), &[0]);
         check_geometry(&with(&["forward"]), Some(LOOK_UPS[0]), Some("fragment_forward"), &[0]);
-        // Members keep their names where modules are linked.
+        // Fields keep their names when modules are linked.
         let source = link("package::geometry", &with(&["gbuffer"]), None).source;
         assert_eq!(source.contains(".dielectric"), rare.contains("dielectrics"), "{rare:?}");
         assert_eq!(source.contains(".color"), rare.contains("vertex_colors"), "{rare:?}");

@@ -1,4 +1,4 @@
-//! Whole frames of a small scene, on the adapter of this machine.
+//! Tests whole frames of a small scene, on this machine's adapter.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -17,7 +17,7 @@ fn options(kinds: LightKinds) -> LightingOptions {
     LightingOptions { kinds, ..LightingOptions::default() }
 }
 
-/// A frame lit by every light, its image and its samples.
+/// A frame lit by every light: its image and its samples.
 fn draw(gpu: &Gpu, view: &View, lights: &LightBuffer, mode: Mode) -> (HdrImage, Samples) {
     let mut renderer = Renderer::new(gpu, &common::showcase(), view).unwrap();
     renderer.prepare(view, lights).unwrap();
@@ -55,16 +55,17 @@ fn deferred_and_forward_agree_up_to_the_g_buffers_precision() {
         pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / forward.pixels.len() as f64
     };
     assert!(mean(&forward) > 0.01, "the image is dark: {}", mean(&forward));
-    // Eight-bit colour and half-float normals: within 2 % of the mean.
+    // Colours have eight bits and normals are half floats: 2 % of the mean is accepted.
     let most = 0.02 * mean(&forward);
     assert!(off(&deferred) < most, "{} off a mean of {}", off(&deferred), mean(&forward));
-    // Ten of the 40 lights left out must show.
+    // Leaving out ten of the 40 lights must be visible.
     let fewer = LightBuffer::new(&gpu, &common::lights(40)[10..]).unwrap();
     let (fewer, _) = draw(&gpu, &view, &fewer, Mode::Deferred);
     assert!(off(&fewer) > most, "{} off a mean of {}", off(&fewer), mean(&forward));
 }
 
-/// The showcase has holes cut by alpha masks, which forward lighting cuts itself without a pre-pass.
+/// The showcase has holes cut by alpha masks. Without a pre-pass, forward lighting cuts them
+/// itself.
 #[test]
 fn a_pre_pass_and_ids_in_the_g_buffer_change_no_bit() {
     let gpu = common::gpu();
@@ -134,7 +135,7 @@ fn plane_distance(point: DVec3, triangle: &[Vec3; 3]) -> f64 {
 }
 
 #[test]
-fn the_truth_finds_no_fault_in_all_lights_and_one_in_too_few() {
+fn the_check_accepts_full_lists_and_finds_a_dropped_light() {
     let gpu = common::gpu();
     let view = common::view([64, 48]);
     let lights = LightBuffer::new(&gpu, &common::lights(30)).unwrap();
@@ -152,7 +153,7 @@ fn the_truth_finds_no_fault_in_all_lights_and_one_in_too_few() {
 }
 
 #[test]
-fn no_lights_give_the_emission_alone() {
+fn without_lights_only_emission_shows() {
     let gpu = common::gpu();
     let view = common::view([48, 32]);
     let lights = LightBuffer::new(&gpu, &[]).unwrap();
@@ -205,7 +206,7 @@ fn every_pipeline_passes_validation_without_a_gpu() {
     }
 }
 
-/// The image of no culling under `count` copies of a light, or why there is none.
+/// The image of no culling under `count` copies of a light, or the error.
 fn copies(gpu: &Gpu, light: Light, count: u32, area: AreaModel) -> Result<HdrImage, String> {
     let view = common::view([8, 8]);
     let lights = LightBuffer::new(gpu, &vec![light; count as usize]).unwrap();
@@ -238,13 +239,13 @@ fn more_lights_than_a_loop_can_sum_are_an_error() {
     assert!(error.contains("65536"), "{error}");
 }
 
-/// As many area lights as are accepted light a sample as often as they should.
+/// As many area lights as are accepted all light a sample.
 #[test]
 fn as_many_area_lights_as_are_accepted_are_all_summed() {
     let gpu = common::gpu();
     let lamp = Emitter::rectangle(Vec3::X * 0.2, Vec3::Y * 0.2).two_sided();
     let light = Light::area(lamp, Vec3::new(0.0, 1.5, 1.0), 20.0, Vec3::splat(0.01));
-    // These loop as the table's or the polynomials' own models do.
+    // Their loops are those of the table and of the polynomials.
     let is_own = |model: &AreaModel| {
         !matches!(
             model,

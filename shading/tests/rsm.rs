@@ -1,4 +1,4 @@
-//! Reflective shadow maps: a second view beside the first, and the triangles in world space.
+//! Tests reflective shadow maps: a second view beside the first, and the triangles in world space.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -15,7 +15,7 @@ use shading::{
     traced::TracedScene,
 };
 
-/// The control: geometry and normals, without lights.
+/// The control: geometry and normals without lights.
 fn clay(gpu: &Gpu, renderer: &mut Renderer, view: &View, lights: &LightBuffer) -> HdrImage {
     renderer.prepare(view, lights).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -27,9 +27,9 @@ fn clay(gpu: &Gpu, renderer: &mut Renderer, view: &View, lights: &LightBuffer) -
     HdrImage::read(gpu, renderer.targets(), view.viewport).unwrap()
 }
 
-/// What a renderer draws beside another is what it draws alone, and the first is not disturbed.
+/// A renderer beside another draws what it would draw alone, and does not disturb the first.
 #[test]
-fn a_second_view_beside_the_first() {
+fn a_renderer_beside_another_does_not_disturb_it() {
     let gpu = common::gpu();
     let scene = common::showcase();
     let lights = LightBuffer::new(&gpu, &[]).unwrap();
@@ -49,7 +49,7 @@ fn a_second_view_beside_the_first() {
 }
 
 #[test]
-fn world_triangles_are_the_scenes() {
+fn world_triangles_match_the_scene() {
     let gpu = common::gpu();
     let scene = town(1, TownSize::Small);
     let triangles = WorldTriangles::new(&gpu, &scene).unwrap();
@@ -59,7 +59,7 @@ fn world_triangles_are_the_scenes() {
     assert_eq!(triangles.count as usize, expected.len());
     assert!(positions == expected);
     let (low, high) = triangles.bounds_world;
-    // The box holds every corner, and is no larger than that takes.
+    // The box contains every corner and is no larger than necessary.
     let corners = || positions.iter().flatten().copied();
     let least = corners().reduce(Vec3::min).unwrap();
     let most = corners().reduce(Vec3::max).unwrap();
@@ -68,8 +68,8 @@ fn world_triangles_are_the_scenes() {
     assert!(off < 1e-4 * (most - least).length(), "{off} m too large: {low} {high}");
 }
 
-/// VPLs of a scene's own map: nearly all lie where a ray from the light meets the scene, and together
-/// they reflect the light that rays say.
+/// VPLs of a scene's own map. Nearly all lie where a ray from the light hits the scene, and
+/// together they reflect the light that rays compute.
 #[test]
 fn vpls_lie_on_the_scene_and_reflect_its_light() {
     let gpu = common::gpu();
@@ -119,7 +119,7 @@ fn vpls(gpu: &Gpu, scene: &Scene, light: &Light, view: &View) -> Vec<Light> {
     buffer.read(gpu).unwrap()
 }
 
-/// Sum of the intensities that the texels reflect, by rays.
+/// The sum of the intensities that the texels reflect, computed by rays.
 fn reflected(scene: &TracedScene<'_>, light: &Light, view: &View) -> DVec3 {
     let Projection::Perspective { min, max } = view.projection else { panic!("perspective") };
     let size = view.viewport.width;
@@ -130,23 +130,23 @@ fn reflected(scene: &TracedScene<'_>, light: &Light, view: &View) -> DVec3 {
         let across = min.x as f64 + (f64::from(pixel[0]) + 0.5) * texel.x;
         let down = max.y as f64 - (f64::from(pixel[1]) + 0.5) * texel.y;
         let solid_angle = texel.element_product() / (1.0 + across * across + down * down).powf(1.5);
-        // The map is seen from the light.
+        // The map is drawn from the light.
         let cos = surface.surface.normal.dot(surface.to_eye);
         let Surface { base_color, metallic, .. } = surface.surface;
         let albedo = lambertian_albedo(base_color.as_vec3(), metallic as f32, cos as f32);
         Some(albedo.as_dvec3() * solid_angle)
     });
-    // The cone's full intensity holds the scene, and the window dims nothing.
+    // The cone's full intensity contains the scene, and the window dims nothing.
     sum.sum::<DVec3>() * light.intensity.as_dvec3() / std::f64::consts::PI
 }
 
-/// Share of the light from a direction at a cosine to the normal that the reference's diffuse term sends
-/// out over the hemisphere.
+/// The share of light, from a direction at a cosine to the normal, that the reference's diffuse
+/// term reflects over the hemisphere.
 fn diffuse_albedo(base_color: DVec3, metallic: f64, cos: f64) -> DVec3 {
     let to_light = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let dielectric = Default::default();
     let all = Surface { base_color, metallic, normal: DVec3::Z, roughness: 1.0, dielectric };
-    // A metal that reflects as much at normal incidence has the specular term only.
+    // A metal with the same reflectance at normal incidence has only the specular term.
     let f0 = DVec3::splat(0.04).lerp(base_color, metallic);
     let specular = Surface { base_color: f0, metallic: 1.0, ..all };
     let steps = 200;
@@ -157,16 +157,16 @@ fn diffuse_albedo(base_color: DVec3, metallic: f64, cos: f64) -> DVec3 {
         let (sin, cos) = (std::f64::consts::TAU * middle(ix % steps)).sin_cos();
         let flat = (1.0 - z * z).sqrt();
         let out = DVec3::new(flat * cos, flat * sin, z);
-        // Reflection is the same both ways, and the cosine is that of the last direction.
+        // Reflection is the same in both directions. The cosine is that of the last direction.
         sum += reflect_light(&all, to_light, out) - reflect_light(&specular, to_light, out);
     }
     sum * (std::f64::consts::TAU / f64::from(steps * steps))
 }
 
-/// What a virtual point light sends out is what the renderer's BRDF reflects diffusely, by the reference
-/// and by the polynomial that shading itself uses.
+/// A virtual point light emits what the renderer's BRDF reflects diffusely, by the reference and by
+/// the polynomial that shading uses.
 #[test]
-fn a_vpls_albedo_is_that_of_the_renderers_brdf() {
+fn a_vpls_albedo_matches_the_renderers_brdf() {
     for cos in [0.1_f64, 0.4, 0.7, 1.0] {
         for (color, metallic) in
             [(Vec3::ONE, 0.0), (Vec3::new(0.8, 0.4, 0.1), 0.0), (Vec3::new(0.9, 0.5, 0.2), 0.4)]
@@ -175,7 +175,7 @@ fn a_vpls_albedo_is_that_of_the_renderers_brdf() {
             let found = lambertian_albedo(color, metallic as f32, cos as f32).as_dvec3();
             let off = (found - expected).abs().max_element();
             assert!(off < 2e-4, "{cos}, {color}, {metallic}: {found}, not {expected}");
-            // The albedo without Fresnel's term fails.
+            // The albedo without Fresnel's term must fail.
             let lambert = color.as_dvec3() * (1.0 - metallic);
             assert!((lambert - expected).max_element() > 0.02, "{cos}: {lambert}, {expected}");
         }

@@ -5,7 +5,8 @@ use bytemuck::bytes_of;
 use super::violation::Breach;
 use crate::{
     AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup, Needs,
-    Passes, Shader, StrategyModule, entry, storage_entry, uniform_entry,
+    Passes, Shader, StrategyModule,
+    kernel::{self, Slot},
 };
 
 /// A fault that is planted in a working strategy.
@@ -275,16 +276,8 @@ impl Faulty {
         ];
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&parameters));
         self.record_count = groups + 1 - first_record;
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("fault"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, lists.lists()),
-                entry(1, lists.entries()),
-                entry(2, lists.counters()),
-                entry(3, &self.uniform),
-            ],
-        }));
+        let buffers = [lists.lists(), lists.entries(), lists.counters(), &self.uniform];
+        self.bind_group = Some(kernel::bind_buffers(gpu, &self.layout, &buffers));
     }
 }
 
@@ -379,13 +372,7 @@ fn plant_pipeline(
     let module = Shader::new(0)
         .module("package::fault", include_str!("fault.wesl"))
         .create(gpu, "package::fault")?;
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let entries = [
-        storage_entry(0, stages, false),
-        storage_entry(1, stages, false),
-        storage_entry(2, stages, false),
-        uniform_entry(3, stages),
-    ];
-    let layout = gpu.bind_group_layout("fault", &entries);
-    Ok((gpu.compute_pipeline(&module, "plant", &[Some(&layout)], true), layout))
+    let slots = [Slot::Write, Slot::Write, Slot::Write, Slot::Uniform];
+    let layout = kernel::layout(gpu, "fault", wgpu::ShaderStages::COMPUTE, &slots);
+    Ok((kernel::pipeline(gpu, &module, "plant", &[&layout]), layout))
 }

@@ -236,7 +236,8 @@ mod tests {
 
     #[test]
     fn invalid_sources_are_rejected() {
-        for source in ["fn f( {}", "fn f() -> u32 {}", "enable f16;"] {
+        let f16 = "enable f16; var<private> half: f16;";
+        for source in ["fn f( {}", "fn f() -> u32 {}", f16] {
             assert!(LinkedModule::validate("test", source).is_err(), "{source}");
         }
     }

@@ -17,7 +17,7 @@ pub struct Frustum {
     /// World-space planes that face outwards: `dot(xyz, p) + w <= 0` inside. Order: left, right,
     /// bottom, top, near, far.
     pub planes: [Vec4; 6],
-    /// Unit vectors along the edges, zero where an edge has no length: x, y, four along depth.
+    /// Unit vectors along the edges, zero if an edge has no length: x, y, four along depth.
     pub edges: [Vec3; 6],
     /// Centre of a sphere around the corners.
     pub center: Vec3,

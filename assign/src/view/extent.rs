@@ -73,7 +73,10 @@ mod tests {
             for eye in [Vec3::new(1.0, 1.7, 0.5), Vec3::new(40.0, -3.0, 7.0)] {
                 let view = View::look_at(eye, target, 1.0, 0.1, [64, 48]);
                 let far_m = view.farthest_m(min, max);
-                assert!(view.deepest_m(min, max) <= far_m * (1.0 + 1e-5), "{eye} to {target}");
+                assert!(
+                    view.deepest_m(min, max) <= far_m * (1.0 + 1e-5),
+                    "from {eye} to {target}: deeper than {far_m} m"
+                );
             }
         }
         let view = View::look_at(Vec3::ZERO, Vec3::X, 1.0, 0.1, [64, 48]);

@@ -25,10 +25,10 @@ proptest! {
             let mut points = hull.0.iter().map(|corner| center + corner).chain([nearest]);
             if found.is_some() || points.any(|p| light.reach(p) > 0.0) {
                 for tests in UNIONS {
-                    prop_assert!(bounds.reaches(&light, union(tests)), "{tests}: {light:?}");
+                    prop_assert!(bounds.reaches(&light, union(tests)), "{tests} misses a light that reaches: {light:?}");
                 }
                 let (min_world, max_world) = box_of(&light);
-                prop_assert!(bounds.reaches_box(min_world, max_world), "box of {light:?}");
+                prop_assert!(bounds.reaches_box(min_world, max_world), "the box test misses a light that reaches: {light:?}");
             }
         }
     }
@@ -45,7 +45,7 @@ proptest! {
                 let rounding = f64::from(f32::EPSILON) * point.length();
                 let size = f64::from(light.radius_m()) + offset;
                 let by_m = light.reach(point) * f64::from(light.range_m);
-                prop_assert!(by_m > -1e-4 * size - rounding, "{by_m:e} m of {size} m {light:?}");
+                prop_assert!(by_m > -1e-4 * size - rounding, "the point is {by_m:e} m inside a light of {size} m: {light:?}");
             }
         }
     }

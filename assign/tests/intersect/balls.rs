@@ -22,12 +22,12 @@ proptest! {
                 for tests in UNIONS {
                     prop_assert!(
                         bounds.reaches(&light, union(tests)),
-                        "tight by {:e} m of {range:e} m, {tests}: {light:?}",
+                        "{tests} is too tight by {:e} m, at a range of {range:e} m: {light:?}",
                         range - distance,
                     );
                 }
                 let (min_world, max_world) = box_of(&light);
-                prop_assert!(bounds.reaches_box(min_world, max_world), "box of {light:?}");
+                prop_assert!(bounds.reaches_box(min_world, max_world), "the box test misses a light that reaches: {light:?}");
             }
         }
     }

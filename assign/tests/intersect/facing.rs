@@ -51,7 +51,7 @@ fn rates(
         for ix in 0..60 {
             let sample = pair.sample(&mut rng);
             let rise = sample.normal.dot(sample.point - sample.position);
-            assert!(!away || rise <= 0.0, "it rises by {rise:e} m: {:?}", pair.light);
+            assert!(!away || rise <= 0.0, "a rejected light rises by {rise:e} m: {:?}", pair.light);
             lost_by_narrower += u32::from(narrower && rise > 0.0);
             // An integral takes longer.
             if ix % 6 != 0 {
@@ -60,7 +60,11 @@ fn rates(
             let [low, high] = pair.gloss.roughness.map(f64::from);
             let roughness = low + (high - low) * rng.random::<f64>();
             let radiance = pair.specular(&sample, roughness, cells);
-            assert!(radiance <= bound, "{radiance:e} above {bound:e}: {:?}", pair.light);
+            assert!(
+                radiance <= bound,
+                "radiance {radiance:e} exceeds its bound {bound:e}: {:?}",
+                pair.light
+            );
             closest = closest.max(radiance / bound);
         }
     }
@@ -80,10 +84,16 @@ fn horizon_and_specular_bound_are_never_tight_and_reject_as_documented() {
         measured.push((half_angle, documented, found));
     }
     println!("{measured:?}, lost by narrower {lost_by_narrower}, closest {closest:.2}");
-    assert!(lost_by_narrower > 0 && closest > 0.2, "{lost_by_narrower}, {closest}");
+    assert!(
+        lost_by_narrower > 0 && closest > 0.2,
+        "a narrower cone loses {lost_by_narrower}, the largest ratio is {closest}"
+    );
     for (half_angle, documented, found) in measured {
         for (documented, found) in documented.into_iter().zip(found) {
-            assert!((found - documented).abs() < 0.5, "{half_angle}: {found}");
+            assert!(
+                (found - documented).abs() < 0.5,
+                "half angle {half_angle}: documented {documented}, measured {found}"
+            );
         }
     }
 }
@@ -99,10 +109,13 @@ fn long_emitters_are_cut_and_their_bound_is_never_tight() {
         measured.push((half_angle, documented, found));
     }
     println!("{measured:?}, closest {closest:.2}");
-    assert!(closest > 0.1, "{closest}");
+    assert!(closest > 0.1, "the largest ratio to the bound is {closest}");
     for (half_angle, documented, found) in measured {
         for (documented, found) in documented.into_iter().zip(found) {
-            assert!((found - documented).abs() < 1.0, "{half_angle}: {found}");
+            assert!(
+                (found - documented).abs() < 1.0,
+                "half angle {half_angle}: documented {documented}, measured {found}"
+            );
         }
     }
 }
@@ -124,12 +137,15 @@ fn a_cone_contains_the_unit_normals_of_its_box() {
             let (cos, sin) = (cone.axis.dot(normal), cone.axis.cross(normal).length());
             // The angle to the axis is at most the half angle.
             let past = sin.atan2(cos) - cone.sin_half.atan2(cone.cos_half);
-            assert!(past <= 0.0, "{past} beyond {cone:?}");
+            assert!(past <= 0.0, "the normal is {past} radians outside {cone:?}");
             lost_by_narrower += usize::from(spread < 0.5 && past > -0.1);
         }
         narrow += usize::from(spread < 0.5 && cone.cos_half > 0.5);
     }
-    assert!(narrow > 400 && lost_by_narrower > 500, "{narrow}, {lost_by_narrower}");
+    assert!(
+        narrow > 400 && lost_by_narrower > 500,
+        "{narrow} narrow cones, which lose {lost_by_narrower} if narrower"
+    );
     // The single normal of a plane gives a cone without width.
     let flat = NormalCone::of_box(Vec3::Y, Vec3::Y);
     assert_eq!((flat.cos_half, flat.sin_half), (1.0, 0.0));
@@ -260,7 +276,11 @@ fn wesl_agrees_with_rust() {
         mirrored += usize::from(is_mirrored);
         let seen = SeenGroup::new(&view, pair.bounds, &pair.cone, pair.gloss);
         let ratio = bound / seen.specular_bound(&pair.light);
-        assert!((0.8..1.25).contains(&ratio), "{ratio}: {:?}", pair.light);
+        assert!(
+            (0.8..1.25).contains(&ratio),
+            "WESL bound / Rust bound is {ratio}: {:?}",
+            pair.light
+        );
         unlike += usize::from(!(0.99..1.01).contains(&ratio));
     }
     assert!(

@@ -31,7 +31,7 @@ fn lights_of_every_kind_touch_groups_of_every_shape_or_miss_them() {
         for kind in [Kind::Point, Kind::Spot, Kind::Area] {
             let share = share(kind, &groups);
             println!("{name}, {kind:?}: {share:.3} touch");
-            assert!((0.2..0.9).contains(&share), "{name}, {kind:?}: {share}");
+            assert!((0.2..0.9).contains(&share), "{name}, {kind:?}: a share of {share} touches");
         }
     }
 }

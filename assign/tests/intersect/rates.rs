@@ -167,7 +167,7 @@ fn rates_are_as_documented() {
         }
         for row in 0..ROWS {
             // This many hits give a standard error of 1 percentage point.
-            assert!(hits[row] > 2_000, "{hits:?}");
+            assert!(hits[row] > 2_000, "too few hits in row {row}: {hits:?}");
             measured[row][column] = 100.0 * wrong[row] as f64 / hits[row] as f64;
         }
     }

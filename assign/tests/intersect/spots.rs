@@ -52,10 +52,10 @@ proptest! {
                 || points.map(DVec3::as_vec3).chain(seen).any(|p| is_lit(&light, p));
             if must {
                 for tests in UNIONS {
-                    prop_assert!(bounds.reaches(&light, union(tests)), "{tests}: {light:?}");
+                    prop_assert!(bounds.reaches(&light, union(tests)), "{tests} misses a light that reaches: {light:?}");
                 }
                 let (min_world, max_world) = box_of(&light);
-                prop_assert!(bounds.reaches_box(min_world, max_world), "box of {light:?}");
+                prop_assert!(bounds.reaches_box(min_world, max_world), "the box test misses a light that reaches: {light:?}");
             }
         }
     }
@@ -92,7 +92,7 @@ proptest! {
             Shape::Oriented { center_world: sample, axes: [Vec3::X, Vec3::Y, Vec3::Z], half_extents_m: Vec3::ZERO },
         ] {
             let reaches = Group { view, shape }.bounds().reaches(&light, FrustumTests::default());
-            prop_assert!(reaches || !is_lit(&light, sample), "{light:?}");
+            prop_assert!(reaches || !is_lit(&light, sample), "the test misses a lit sample: {light:?}");
         }
     }
 }
@@ -127,8 +127,9 @@ fn a_half_ball_turned_away_dips_its_rim_into_a_plate() {
             let away = Vec3::new(dip.sin(), 0.0, dip.cos());
             // The plate's slack is 4 m: 16 units in the last place of its size.
             let light = spot(Vec3::new(0.0, 0.0, 10.0), 12.0 / dip.sin(), away, FRAC_PI_2);
-            assert!(witness(&group, &light).is_some(), "{dip:e}");
-            assert!(group.bounds().reaches(&light, FrustumTests::default()), "{dip:e}: {shape:?}");
+            assert!(witness(&group, &light).is_some(), "dip {dip:e}: the light touches the plate");
+            let reaches = group.bounds().reaches(&light, FrustumTests::default());
+            assert!(reaches, "dip {dip:e}: the test misses the light: {shape:?}");
         }
     }
 }

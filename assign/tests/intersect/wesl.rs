@@ -199,12 +199,18 @@ fn compare(
                 tally.beyond_rounding += usize::from(!is_rounding);
                 assert!(
                     tests.sat_e || is_area || is_rounding,
-                    "beyond rounding, WESL says {wesl:?}: {group:?} {light:?}"
+                    "WESL and Rust differ by more than rounding; WESL has {wesl:?}: {group:?} {light:?}"
                 );
             }
             let reached = witness(&group, light).is_some();
-            assert!(wesl.0 || !reached, "WESL is tight: {group:?} {light:?}");
-            assert!(wesl.1 || !reached, "WESL is tight of a box: {group:?} {light:?}");
+            assert!(
+                wesl.0 || !reached,
+                "the WESL test misses a light that reaches: {group:?} {light:?}"
+            );
+            assert!(
+                wesl.1 || !reached,
+                "the WESL test misses a box with a light that reaches: {group:?} {light:?}"
+            );
         }
     }
     tally
@@ -243,9 +249,9 @@ fn check(bounds: &str, strategy: &str, groups: &BoxedStrategy<Group>, unions: &[
             // Both answers are common. Two lights in five lie on the edge, where rounding decides.
             // On llvmpipe up to 16 % of all pairs differ.
             let share = |count: usize| count as f64 / tally.pairs as f64;
-            assert!((0.3..0.95).contains(&share(tally.hits)), "{tally:?}");
-            assert!(share(tally.disagreements) < 0.25, "{tally:?}");
-            assert!(share(tally.beyond_rounding) < BEYOND_ROUNDING, "{tally:?}");
+            assert!((0.3..0.95).contains(&share(tally.hits)), "share of hits: {tally:?}");
+            assert!(share(tally.disagreements) < 0.25, "share of disagreements: {tally:?}");
+            assert!(share(tally.beyond_rounding) < BEYOND_ROUNDING, "beyond rounding: {tally:?}");
         }
     }
 }

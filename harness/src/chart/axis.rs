@@ -9,7 +9,7 @@ use super::ticks::Tick;
 
 const VERTICAL_TICKS: usize = 6;
 const HORIZONTAL_TICKS: usize = 7;
-/// From a tick's label to what is beside it.
+/// The gap beside a tick's label.
 const GAP: f64 = 8.0;
 /// The length of the marks between the ticks of a logarithmic axis.
 const MINOR: f64 = 4.0;
@@ -21,8 +21,8 @@ pub(super) fn room_beside(domain: &Domain) -> f64 {
     (widest + GAP).max(24.0)
 }
 
-/// The ticks whose labels have room beside each other and that of the zero lane: the major ones
-/// first, then all of the others or none.
+/// The ticks whose labels do not overlap each other or the label of the zero lane. Major ticks go first. The
+/// minor ones follow if there is room for all of them.
 fn apart(ticks: Vec<Tick>, track: &Track, size: impl Fn(&str) -> f64) -> Vec<(f64, String)> {
     let (major, minor): (Vec<Tick>, Vec<Tick>) = ticks.into_iter().partition(|tick| tick.major);
     let zero = track.zero().map(|at| (at, size("0") * 0.5, "0".to_owned()));
@@ -65,7 +65,7 @@ pub(super) fn draw_vertical(canvas: &mut Canvas, track: &Track, domain: &Domain,
     }
 }
 
-/// Draws a horizontal axis below the plot; without grid lines only its labels.
+/// Draws a horizontal axis below the plot, with grid lines.
 pub(super) fn draw_horizontal(canvas: &mut Canvas, track: &Track, domain: &Domain, plot: &Area) {
     if let Some(zero) = track.zero() {
         canvas.area("lane", &Area { right: track.floor(), ..*plot });

@@ -1,4 +1,5 @@
-//! Bars of stacked segments; dots where the axis is logarithmic.
+//! Bars of stacked segments. On a logarithmic axis lengths do not add up, so a bar becomes a dot per segment
+//! and a mark at the sum.
 
 use super::axis;
 use super::canvas::{Anchor, Canvas, LINE, Target, WIDTH};
@@ -13,35 +14,35 @@ use super::text::{bold_width, count_of, shorten_bold, width};
 /// A part of a bar.
 #[derive(Clone, Debug, Default)]
 pub struct Segment {
-    /// What takes this part: a pass.
+    /// What it stands for: a pass.
     pub name: String,
     /// The class that gives `--colour`: `pass-shade-0`.
     pub class: String,
-    /// How much of it there is.
+    /// Its length, in the unit of the axis.
     pub value: f64,
 }
 
 /// A bar.
 #[derive(Clone, Debug, Default)]
 pub struct BarRow {
-    /// What the bar is of: a strategy.
+    /// What it stands for: a strategy.
     pub name: String,
     /// The class of the dot before the name; empty draws none.
     pub class: String,
     /// Its parts, from left to right.
     pub segments: Vec<Segment>,
-    /// What stands at its end.
+    /// The text at its end.
     pub value_text: String,
     /// The text of the hover tip of the row; may be empty.
     pub tip: String,
 }
 
-/// Horizontal bars, one a row.
+/// Horizontal bars, one per row.
 #[derive(Clone, Debug, Default)]
 pub struct BarChart {
     /// What the chart shows, in a few words.
     pub title: String,
-    /// What the bars measure; its linear scales both start at zero.
+    /// What the bars measure. Both linear scales start at zero here.
     pub axis: Axis,
     /// The bars, from top to bottom.
     pub rows: Vec<BarRow>,
@@ -51,7 +52,7 @@ pub struct BarChart {
 
 const ROW: f64 = 34.0;
 const BAR: f64 = 22.0;
-const NAMES: f64 = 185.0;
+const NAMES: f64 = 215.0;
 const VALUES: f64 = 110.0;
 /// From the start of a segment to its label.
 const LABEL_MARGIN: f64 = 5.0;
@@ -98,7 +99,7 @@ impl BarChart {
         }
     }
 
-    /// The segments in the order of the bar that has most of them.
+    /// The segments, in the order of the bar with the most segments.
     fn legend(&self) -> Vec<Entry<'_>> {
         let sample = if self.logarithmic() { Sample::Dot } else { Sample::Fill };
         let mut entries: Vec<Entry<'_>> = Vec::new();

@@ -23,7 +23,7 @@ pub(super) enum Target {
     File,
 }
 
-/// Which end of a text its place is.
+/// Which point of a text is at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -117,14 +117,14 @@ impl Canvas {
         self.body.push_str(&format!(">{}</text>", escape(text)));
     }
 
-    /// A text whose colour a page's style sheet gives; a file has none.
+    /// A text in a colour that only the style sheet of a page gives. Files leave it out.
     pub(super) fn page_text(&mut self, class: &str, at: [f64; 2], anchor: Anchor, text: &str) {
         if self.target == Target::Page {
             self.text(class, at, anchor, text);
         }
     }
 
-    /// A text that may have been cut: the whole is its tip then.
+    /// A text that may have been cut. If so, its tip shows the whole text.
     pub(super) fn cut_text(
         &mut self,
         class: &str,
@@ -142,7 +142,7 @@ impl Canvas {
         }
     }
 
-    /// Writes notes below everything else; where they end.
+    /// Writes notes below everything else. Returns where they end.
     pub(super) fn notes(&mut self, notes: &[String], top: f64) -> f64 {
         let mut y = top;
         for note in notes {
@@ -154,7 +154,7 @@ impl Canvas {
         y
     }
 
-    /// The whole drawing, with a title that readers of the screen hear.
+    /// The whole drawing, with a title for screen readers.
     pub(super) fn finish(self, title: &str, height: f64) -> String {
         match self.target {
             Target::Page => format!(

@@ -8,7 +8,7 @@ use super::occupancy::{Area, Occupancy};
 use super::reduce::Place;
 use super::text::{bold_width, shorten, shorten_bold, width};
 
-/// More lines than this have a legend.
+/// Charts with more lines than this use a legend.
 const MOST_LINES: usize = 10;
 /// The widest name beside a line.
 const ROOM: f64 = 200.0;
@@ -74,7 +74,7 @@ pub(super) fn margin_room<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
     names.map(|name| bold_width(&cut(name)) + 18.0).fold(14.0, f64::max)
 }
 
-/// Places nearest to those wanted that keep the spacing and the limits.
+/// The places closest to the wanted ones that keep the spacing and the limits.
 fn spread(wanted: &[f64], spacing: f64, [low, high]: [f64; 2]) -> Vec<f64> {
     let mut blocks: Vec<(f64, usize)> = Vec::new();
     for (ix, place) in wanted.iter().enumerate() {
@@ -119,7 +119,7 @@ fn cut(name: &str) -> String {
     shorten_bold(name, ROOM)
 }
 
-/// Writes a line's name beside one of its points; whether there was room.
+/// Writes a line's name beside one of its points. Returns whether there was room.
 pub(super) fn draw_in_plot(
     canvas: &mut Canvas,
     line: &Placed<'_>,

@@ -3,12 +3,12 @@
 use super::model::Scale;
 use super::ticks::{self, Tick};
 
-/// Greater values are treated as infinite: differences of them could be.
+/// Greater values count as infinite, because their differences could be.
 const MOST: f64 = 1e200;
-/// The room that the lane for exact zeros takes of its own accord.
+/// The default width of the lane for exact zeros.
 const LANE: f64 = 30.0;
 
-/// What keeps a value off an axis.
+/// Why an axis cannot show a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Misfit {
     NotFinite,
@@ -38,7 +38,7 @@ pub(super) fn check(scale: Scale, value: f64) -> Result<(), Misfit> {
 }
 
 impl Domain {
-    /// Spans the values, and as much of their ranges as does not squeeze them.
+    /// Spans the values, and their ranges as far as the values keep enough room.
     pub(super) fn of(
         scale: Scale,
         values: impl Iterator<Item = f64>,
@@ -84,7 +84,7 @@ impl Domain {
         Self { scale: Scale::LinearFromZero, low: 0.0, high, zeros: false, spans: true }
     }
 
-    /// The ticks, at most about as many as asked for; not the one of the zero lane.
+    /// The ticks without that of the zero lane, about `count` at most.
     pub(super) fn ticks(&self, count: usize) -> Vec<Tick> {
         match self.scale {
             _ if !self.spans => Vec::new(),

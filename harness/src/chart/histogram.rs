@@ -1,4 +1,4 @@
-//! Histograms, several side by side over one scale.
+//! Histograms, several side by side on one scale.
 
 use super::canvas::{Anchor, Canvas, LINE, Target, WIDTH};
 use super::domain::{Domain, Track};
@@ -6,14 +6,14 @@ use super::number::{grouped, plain, significant};
 use super::occupancy::Area;
 use super::text::{shorten, shorten_bold, width, wrap};
 
-/// How many things fall in each bin.
+/// Counts per bin.
 #[derive(Clone, Debug, Default)]
 pub struct Histogram {
-    /// What is counted, or of what.
+    /// What is counted.
     pub title: String,
-    /// What the bins are ranges of.
+    /// The quantity that the bins divide.
     pub x_label: String,
-    /// Each bin's name, and how many fall in it.
+    /// The name and the count of each bin.
     pub bins: Vec<(String, u64)>,
     /// The class that gives `--colour`.
     pub class: String,
@@ -81,7 +81,7 @@ fn render(title: &str, histograms: &[Histogram], target: Target) -> String {
     canvas.finish(title, end + 4.0)
 }
 
-/// Draws one; where it ends.
+/// Draws one. Returns where it ends.
 fn draw(canvas: &mut Canvas, of: &Histogram, domain: &Domain, plot: &Area, first: bool) -> f64 {
     let track = Track::new(*domain, plot.bottom, plot.top);
     for tick in domain.ticks(TICKS) {

@@ -23,7 +23,7 @@ pub(super) enum Sample {
     Dot,
 }
 
-/// Draws a legend from `top` on; where it ends.
+/// Draws a legend from `top` down. Returns where it ends.
 pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry<'_>], top: f64) -> f64 {
     const ROOM: f64 = 230.0;
     let wide = entries

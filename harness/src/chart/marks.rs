@@ -10,7 +10,7 @@ use super::reduce::{Place, by_column};
 pub(super) const RADIUS: f64 = 4.6;
 /// The radius within which a point is hit.
 const HIT: f64 = 9.0;
-/// Lines of more points are drawn thinner.
+/// Lines with more points than this are drawn thinner.
 const DENSE: usize = 150;
 /// The width of the columns within which a long line has one tip.
 const TIP_COLUMN: f64 = 14.0;
@@ -200,7 +200,7 @@ fn draw_point(canvas: &mut Canvas, index: Option<usize>, place: Place, point: &P
     }
 }
 
-/// Places on a line that explain themselves: on long lines, the highest of each column.
+/// Draws the points of a line that have tips: on long lines, the highest of each column.
 fn draw_hits(canvas: &mut Canvas, placed: &Placed<'_>) {
     let column = |place: &Place| (place[0] / TIP_COLUMN).floor() as i64;
     let reacting: Vec<_> = placed

@@ -73,7 +73,7 @@ pub struct Point {
     pub y_range: Option<[f64; 2]>,
     /// A short text beside the point, drawn where there is room; may be empty.
     pub label: String,
-    /// What the page's scripts know the point by (`data-key`); may be empty.
+    /// The name of the point for the page's script (`data-key`); may be empty.
     pub key: String,
     /// The text of the hover tip, its lines separated by `\n`; may be empty.
     pub tip: String,
@@ -88,10 +88,10 @@ pub struct Series {
     pub class: String,
     /// How it is drawn.
     pub marks: Marks,
-    /// Whether it steps back behind the others.
+    /// Whether it is drawn faded, behind the others.
     pub faded: bool,
-    /// Which of the shapes its points have, where not the next that is free. Series of one shape
-    /// and class belong together: they share a row in the lane of exact zeros.
+    /// The shape of its points; `None` takes the next free one. Series of the same shape and class belong
+    /// together and share a row in the lane of exact zeros.
     pub shape: Option<usize>,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,

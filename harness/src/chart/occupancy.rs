@@ -1,4 +1,4 @@
-//! What room a drawing has left for labels.
+//! The room for labels that is left in a drawing.
 
 /// A box in the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Area {
 #[derive(Clone, Copy, PartialEq)]
 enum Cell {
     Free,
-    /// A line: better not, but a label may lie over it.
+    /// A line: a label may cross it, but another place is better.
     Crossed,
     Taken,
 }
@@ -42,7 +42,7 @@ const CELL: f64 = 3.0;
 /// The share of a label's area that lines may cross.
 const MOST_CROSSED: f64 = 0.3;
 
-/// A raster over the plot that knows which places are taken.
+/// A raster over the plot that marks which places are taken.
 pub(super) struct Occupancy {
     bounds: Area,
     columns: usize,
@@ -68,7 +68,7 @@ impl Occupancy {
         down.flat_map(move |row| across.clone().map(move |column| row * columns + column))
     }
 
-    /// Nothing may be written here any more.
+    /// Keeps labels out of an area.
     pub(super) fn take(&mut self, area: &Area) {
         for ix in self.indices(area) {
             if let Some(cell) = self.cells.get_mut(ix) {

@@ -1,4 +1,4 @@
-//! Long lines with fewer points that look the same.
+//! Reduces the points of long lines without changing their look.
 
 /// A place in the drawing.
 pub(super) type Place = [f64; 2];

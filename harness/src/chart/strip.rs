@@ -10,13 +10,13 @@ pub struct Strip {
     pub name: String,
     /// The class that gives `--colour`.
     pub class: String,
-    /// What readers of the screen hear and the pointer shows.
+    /// The text for screen readers and the tip.
     pub title: String,
     /// The samples, of which only finite ones are drawn.
     pub samples: Vec<f64>,
-    /// Their median, which lies in the middle.
+    /// Their median: the middle of the strip.
     pub median: f64,
-    /// From the middle to either end, as a share of the median.
+    /// The distance from the middle to either end, as a share of the median.
     pub half_width: f64,
 }
 

@@ -98,6 +98,29 @@ fn awkward_bars_and_bins_give_sound_drawings() {
 }
 
 #[test]
+fn strips_place_samples_by_their_distance_from_the_median() {
+    let strip = |samples: &[f64]| Strip {
+        title: "<a> & b".into(),
+        samples: samples.to_vec(),
+        median: 10.0,
+        half_width: 0.1,
+        ..Strip::default()
+    };
+    let all = strip(&[9.0, 10.0, 10.000_1, 10.5, 20.0, f64::NAN, f64::INFINITY]);
+    let svg = all.to_svg();
+    assert_well_formed(&svg);
+    // The ends are 490 units from the middle; ticks less than a unit apart are drawn once.
+    assert!(svg.contains("d=\"M10 4V20M500 4V20M745 4V20\""), "{svg}");
+    assert_eq!(all.beyond(), 1);
+    assert_eq!(half_width([&strip(&[9.0, 10.5])]), 0.1);
+    assert_eq!(half_width([&strip(&[10.0]), &strip(&[10.21])]), 0.03);
+    assert_eq!(half_width([&all]), 1.0);
+    let empty = Strip::default();
+    assert_well_formed(&empty.to_svg());
+    assert_eq!((empty.beyond(), half_width([&empty])), (0, 0.01));
+}
+
+#[test]
 fn names_are_text_and_whole_in_their_tips() {
     let name = "a <b> & \"c\" 'd' ".repeat(12);
     for marks in MARKS {

@@ -7,7 +7,7 @@ use crate::results::{PassKind, Results};
 /// Colours that the style sheet has for the passes of one kind.
 const PASS_COLOURS: usize = 4;
 
-/// The classes of a page's passes.
+/// The classes of a page's passes. A strategy's class comes from its row: `StrategyId::class`.
 pub(crate) struct Colours<'a> {
     passes: BTreeMap<&'a str, String>,
 }

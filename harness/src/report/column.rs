@@ -11,7 +11,7 @@ use super::markup::Html;
 
 /// Which way a figure is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Better {
+pub(crate) enum Better {
     Less,
     More,
     /// Anything but 0 is a fault.
@@ -32,21 +32,21 @@ enum Cells<'a, T> {
 }
 
 /// One column of a table whose rows are of type `T`.
-pub(super) struct Column<'a, T> {
+pub(crate) struct Column<'a, T> {
     /// Names the column in the page's markup; empty where nothing asks for it.
-    pub(super) id: &'static str,
+    pub(crate) id: &'static str,
     /// Its heading, without the unit.
-    pub(super) head: String,
+    pub(crate) head: String,
     /// Its unit, may be empty. The terminal's table puts it on a line of its own.
-    pub(super) unit: String,
+    pub(crate) unit: String,
     /// Its heading in the terminal's table, which leaves out a column without one.
-    pub(super) terminal: Option<&'static str>,
+    pub(crate) terminal: Option<&'static str>,
     /// What it means, one or a few sentences; may be empty.
-    pub(super) about: String,
+    pub(crate) about: String,
     /// Which way its figures are better.
-    pub(super) better: Better,
+    pub(crate) better: Better,
     /// Whether a table leaves it out where no row has a figure.
-    pub(super) is_optional: bool,
+    pub(crate) is_optional: bool,
     cells: Cells<'a, T>,
     note: Option<Note<'a, T>>,
     best: Option<Test<'a, T>>,
@@ -54,7 +54,7 @@ pub(super) struct Column<'a, T> {
 
 impl<'a, T> Column<'a, T> {
     /// A column of figures.
-    pub(super) fn figure(
+    pub(crate) fn figure(
         head: impl Into<String>,
         unit: impl Into<String>,
         better: Better,
@@ -66,7 +66,7 @@ impl<'a, T> Column<'a, T> {
     }
 
     /// A column of words.
-    pub(super) fn words(
+    pub(crate) fn words(
         head: impl Into<String>,
         unit: impl Into<String>,
         text: impl Fn(&T) -> String + 'a,
@@ -75,7 +75,7 @@ impl<'a, T> Column<'a, T> {
     }
 
     /// A column of markup, which only pages show.
-    pub(super) fn markup(
+    pub(crate) fn markup(
         head: impl Into<String>,
         unit: impl Into<String>,
         cell: impl Fn(&T) -> Html + 'a,
@@ -99,37 +99,37 @@ impl<'a, T> Column<'a, T> {
     }
 
     /// Names the column in the page's markup.
-    pub(super) fn id(self, id: &'static str) -> Self {
+    pub(crate) fn id(self, id: &'static str) -> Self {
         Self { id, ..self }
     }
 
     /// Shows the column in the terminal too, under this heading.
-    pub(super) fn terminal(self, head: &'static str) -> Self {
+    pub(crate) fn terminal(self, head: &'static str) -> Self {
         Self { terminal: Some(head), ..self }
     }
 
     /// Says what the column means.
-    pub(super) fn about(self, about: impl Into<String>) -> Self {
+    pub(crate) fn about(self, about: impl Into<String>) -> Self {
         Self { about: about.into(), ..self }
     }
 
     /// Leaves the column out where no row has a figure.
-    pub(super) fn optional(self) -> Self {
+    pub(crate) fn optional(self) -> Self {
         Self { is_optional: true, ..self }
     }
 
     /// Adds markup after the text of each cell, on pages only: an interval in small, a mark.
-    pub(super) fn note(self, note: impl Fn(&T) -> Html + 'a) -> Self {
+    pub(crate) fn note(self, note: impl Fn(&T) -> Html + 'a) -> Self {
         Self { note: Some(Box::new(note)), ..self }
     }
 
     /// Decides which cells are best, instead of comparing their figures.
-    pub(super) fn best(self, is_best: impl Fn(&T) -> bool + 'a) -> Self {
+    pub(crate) fn best(self, is_best: impl Fn(&T) -> bool + 'a) -> Self {
         Self { best: Some(Box::new(is_best)), ..self }
     }
 
     /// A row's figure; `None` where it was not measured or the column holds words.
-    pub(super) fn value(&self, row: &T) -> Option<f64> {
+    pub(crate) fn value(&self, row: &T) -> Option<f64> {
         match &self.cells {
             Cells::Figure(value, _) => value(row),
             Cells::Words(_) => None,
@@ -137,7 +137,7 @@ impl<'a, T> Column<'a, T> {
     }
 
     /// A row's cell as text; a dash where its figure was not measured.
-    pub(super) fn text(&self, row: &T) -> String {
+    pub(crate) fn text(&self, row: &T) -> String {
         match &self.cells {
             Cells::Figure(value, show) => value(row).map_or_else(|| ABSENT.to_owned(), show),
             Cells::Words(text) => text(row),
@@ -145,19 +145,19 @@ impl<'a, T> Column<'a, T> {
     }
 
     /// A row's cell on a page: its text, then its note.
-    pub(super) fn html(&self, row: &T) -> Html {
+    pub(crate) fn html(&self, row: &T) -> Html {
         let text = Html::from(self.text(row));
         self.note.as_ref().map_or_else(|| text.clone(), |note| text.clone() + note(row))
     }
 
     /// Whether a row's figure is a fault.
-    pub(super) fn is_fault(&self, row: &T) -> bool {
+    pub(crate) fn is_fault(&self, row: &T) -> bool {
         self.better == Better::Zero && self.value(row).is_some_and(|value| value != 0.0)
     }
 
     /// Whether a row's figure is the best: no competitor's is better and at least one is worse. Figures
     /// count as equal up to a factor of `1 + alike`.
-    pub(super) fn is_best(&self, row: &T, competitors: &[&T], alike: f64) -> bool {
+    pub(crate) fn is_best(&self, row: &T, competitors: &[&T], alike: f64) -> bool {
         if !competitors.iter().any(|other| std::ptr::eq(*other, row)) {
             return false;
         }

@@ -5,7 +5,7 @@ use super::raster;
 use crate::results::{Machine, Record, Results};
 use crate::strategy::EARLY_EXIT;
 
-/// The records of one scene, camera path, camera size, set of lights and mode: only strategies differ.
+/// The records of one scene, camera path, image size, set of lights and mode. Only strategies differ.
 pub(crate) struct Comparison<'a> {
     /// The records with their indices in [`Results::records`], in the order of the run.
     pub(crate) records: Vec<(usize, &'a Record)>,
@@ -54,27 +54,22 @@ impl<'a> Comparison<'a> {
         self.records.iter().map(|(_, record)| *record)
     }
 
-    /// A record's name, marked where its times are bound by rasterisation on a chip weak at it.
+    /// A record's name, with a mark if rasterisation limits its times on a chip that is weak at it.
     pub(crate) fn name(&self, record: &Record) -> String {
         format!("{}{}", record.strategy, raster::mark(self.machine, record))
     }
 
-    /// The record of no culling.
+    /// The record without culling.
     pub(crate) fn baseline(&self) -> Option<&'a Record> {
-        self.baseline_index().map(|ix| self.records[ix].1)
+        self.all().find(|record| record.is_baseline())
     }
 
-    /// Where in [`records`](Self::records) the record of no culling is.
-    pub(crate) fn baseline_index(&self) -> Option<usize> {
-        self.records.iter().position(|(_, record)| record.is_baseline())
-    }
-
-    /// How many times as fast as no culling, assigning and shading together.
+    /// How many times as fast as no culling, by assign + shade.
     pub(crate) fn speedup(&self, record: &Record) -> Option<f64> {
         self.speedup_over(self.baseline()?, record)
     }
 
-    /// How many times as fast as another record, assigning and shading together.
+    /// How many times as fast as another record, by assign + shade.
     pub(crate) fn speedup_over(&self, other: &Record, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
@@ -83,7 +78,7 @@ impl<'a> Comparison<'a> {
         ratio.is_finite().then_some(ratio)
     }
 
-    /// How many times as fast as no culling with an early exit, for methods with lists.
+    /// How many times as fast as no culling with an early exit; only of strategies with lists.
     pub(crate) fn speedup_over_exit(&self, record: &Record) -> Option<f64> {
         if !record.culls() || record.lists.listed_per_sample.is_none() {
             return None;
@@ -91,7 +86,7 @@ impl<'a> Comparison<'a> {
         self.speedup_over(self.record_of(EARLY_EXIT)?, record)
     }
 
-    /// The place of a record by assigning and shading together: see [`ranks`].
+    /// The rank of a record by assign + shade: see [`ranks`].
     pub(crate) fn rank(&self, record: &Record) -> Option<f64> {
         let ranked = self.ranks();
         let place = ranked.iter().find(|ranked| std::ptr::eq(ranked.record, record));
@@ -108,25 +103,25 @@ impl<'a> Comparison<'a> {
         self.all().find(|record| record.strategy == strategy)
     }
 
-    /// The time in which no culling, at its own rate, would evaluate only the lights that reach
-    /// the samples, ms.
-    pub(crate) fn floor_ms(&self, record: &Record) -> Option<f64> {
+    /// The ideal time, ms: what no culling would need, at its own rate, if it evaluated only the lights
+    /// that reach each sample.
+    pub(crate) fn ideal_ms(&self, record: &Record) -> Option<f64> {
         let baseline = self.baseline()?;
-        let floor = baseline.times.shade_ms * record.lists.contributing_per_sample?
+        let ideal = baseline.times.shade_ms * record.lists.contributing_per_sample?
             / baseline.setting.lights as f64;
-        floor.is_finite().then_some(floor)
+        ideal.is_finite().then_some(ideal)
     }
 
-    /// The floor over assigning and shading.
+    /// Efficiency = ideal time / (assign + shade).
     pub(crate) fn efficiency(&self, record: &Record) -> Option<f64> {
         if record.is_control() {
             return None;
         }
-        let share = self.floor_ms(record)? / record.assign_and_shade_ms();
+        let share = self.ideal_ms(record)? / record.assign_and_shade_ms();
         share.is_finite().then_some(share)
     }
 
-    /// The fastest strategy that culls: among those without a loss where there is one.
+    /// The fastest strategy that culls, lossless ones first.
     pub(crate) fn fastest(&self) -> Option<&'a Record> {
         let candidates = |lossless: bool| {
             self.all()

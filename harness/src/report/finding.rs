@@ -8,30 +8,45 @@ use super::rank::{is_timed, tie};
 use super::raster;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel, Untested};
 
-/// Ratios nearer to 1 are called equal: no more is known from a handful of samples.
+/// Times whose ratio is closer to 1 than this are called equal: a few samples do not show more.
 const EQUAL: f64 = 0.03;
 
-/// What a run found, one sentence per comparison; the first is the headline.
+/// What a comparison found.
+pub(crate) struct Finding {
+    /// The result and its limits, one sentence.
+    pub(crate) headline: String,
+    /// What explains it, a sentence each.
+    pub(crate) details: Vec<String>,
+}
+
+/// What a run found, a paragraph per comparison: the result, then what explains it.
 pub fn finding(results: &Results) -> Vec<String> {
+    let paragraph = |found: Finding| [vec![found.headline], found.details].concat().join(" ");
+    findings(results).into_iter().map(paragraph).collect()
+}
+
+/// What a run found, one per comparison. The first headline is that of the run.
+pub(crate) fn findings(results: &Results) -> Vec<Finding> {
     let all = comparisons(results);
     let adapter = short_adapter(&results.machine.adapter);
     if all.is_empty() {
-        return vec![format!("On {adapter}, nothing was measured.")];
+        let headline = format!("On {adapter}, nothing was measured.");
+        return vec![Finding { headline, details: Vec::new() }];
     }
-    all.iter()
-        .map(|comparison| {
-            let setting = setting(&all, comparison);
-            format!("On {adapter}{setting}, {}.", sentence(comparison))
-        })
-        .collect()
+    let found = |comparison: &Comparison<'_>| {
+        let (sentence, details) = sentence(comparison);
+        let headline = format!("On {adapter}{}, {sentence}.", setting(&all, comparison));
+        Finding { headline, details }
+    };
+    all.iter().map(found).collect()
 }
 
-/// What tells a comparison from the others of its run.
+/// The settings in which a comparison differs from the others of its run: `, in atrium, deferred`.
 fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
     let first = comparison.first();
     let varies = |key: fn(&Record) -> String| {
-        let own = key(first);
-        all.iter().any(|other| key(other.first()) != own).then_some(own)
+        let value = key(first);
+        all.iter().any(|other| key(other.first()) != value).then_some(value)
     };
     [
         varies(|r| format!("in {}", r.setting.scene)),
@@ -47,31 +62,34 @@ fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
     .collect()
 }
 
-fn sentence(comparison: &Comparison<'_>) -> String {
+/// The result of a comparison, without a full stop, and the sentences that explain it.
+fn sentence(comparison: &Comparison<'_>) -> (String, Vec<String>) {
     let first = comparison.first();
     if let Some(why) = first.untested_words().filter(|_| !is_dark(first)) {
-        return format!("nothing can be said: {why}, so no method was put to a test");
+        return (format!("nothing was tested: {why}"), Vec::new());
     }
     let Some(fastest) = comparison.fastest().filter(|record| is_timed(record)) else {
-        if !is_timed(first) {
-            return match first.is_baseline() {
-                true => "no time was recorded without culling".to_owned(),
-                false => format!("no time was recorded of {}", comparison.name(first)),
-            };
-        }
-        return format!(
-            "{} takes {} ms to shade {}",
-            if first.is_baseline() { "no culling".to_owned() } else { comparison.name(first) },
-            significant(first.assign_and_shade_ms()),
-            lights(first.setting.lights),
-        );
+        let name = match first.is_baseline() {
+            true => "no culling".to_owned(),
+            false => comparison.name(first),
+        };
+        let words = match is_timed(first) {
+            true => format!(
+                "{name} takes {} ms to shade {}",
+                significant(first.assign_and_shade_ms()),
+                lights(first.setting.lights)
+            ),
+            false => format!("no time was recorded for {name}"),
+        };
+        return (words, Vec::new());
     };
     let Some(lead) = Lead::of_comparison(comparison) else {
         // All that cull lost something: the fastest says what.
-        let subject = Subject::of(fastest, comparison.name(fastest));
-        return speed(comparison, &subject) + &image(fastest);
+        let subject = Subject::one(comparison, fastest);
+        let details = over_exit(comparison, &subject).into_iter().collect();
+        return (speed(comparison, &subject) + &image(fastest), details);
     };
-    let subject = Subject::lead(&lead);
+    let subject = Subject::lead(comparison, &lead);
     let image = match lead.is_tie() {
         true if lead.records.iter().all(|record| image(record) == SAME_IMAGE) => {
             " and show the same image, bit for bit".to_owned()
@@ -79,32 +97,34 @@ fn sentence(comparison: &Comparison<'_>) -> String {
         true => String::new(),
         false => image(fastest),
     };
-    speed(comparison, &subject) + &image + &lead.doubt()
+    let details = [plain_names(&lead), over_exit(comparison, &subject), lead.hierarchy()];
+    (speed(comparison, &subject) + &image + &lead.doubt(), details.into_iter().flatten().collect())
 }
 
-/// Whether surfaces are there, and no light at all: the times are then those of an empty frame.
+/// Whether surfaces are there but no light at all. The times are then those of an empty frame.
 fn is_dark(record: &Record) -> bool {
     record.setting.lights == 0 && record.lists.untested == Some(Untested::NoLight)
 }
 
-/// Who a sentence speaks of: one method, or several that tie.
+/// The subject of a sentence: one strategy, or several that tie.
 struct Subject<'a> {
     records: Vec<&'a Record>,
-    /// `A`, or `A and B tie for fastest: they`.
+    /// `A (its plain name)`, or `A and B tie for fastest: they`.
     words: String,
     /// Follows a speed: for which lights it holds.
-    still_lights: String,
+    still_lights: &'static str,
 }
 
 impl<'a> Subject<'a> {
-    fn of(record: &'a Record, words: String) -> Self {
-        Self { records: vec![record], words, still_lights: String::new() }
+    fn one(comparison: &Comparison<'_>, record: &'a Record) -> Self {
+        let words = comparison.name(record) + &plain_name(record);
+        Self { records: vec![record], words, still_lights: "" }
     }
 
-    fn lead(lead: &Lead<'a>) -> Self {
+    fn lead(comparison: &Comparison<'_>, lead: &Lead<'a>) -> Self {
         let words = match lead.is_tie() {
             true => format!("{}: they", lead.is_fastest()),
-            false => lead.names(),
+            false => comparison.name(lead.leader()) + &plain_name(lead.leader()),
         };
         Self { records: lead.records.clone(), words, still_lights: lead.still_lights() }
     }
@@ -120,12 +140,30 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// How fast the best is, beside no culling where that was measured.
+/// ` (sparse clusters, explicit bounds)`; empty for a family that the registry does not know.
+fn plain_name(record: &Record) -> String {
+    record.strategy.row().map_or_else(String::new, |row| format!(" ({})", row.name))
+}
+
+/// What the families of a tie are: `DC-I: dense clusters, implicit bounds.`; `None` where one leads, whose
+/// name its sentence explains.
+fn plain_names(lead: &Lead<'_>) -> Option<String> {
+    let mut names: Vec<String> = Vec::new();
+    for row in lead.records.iter().filter_map(|record| record.strategy.row()) {
+        let name = format!("{}: {}", row.family, row.name);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    (lead.is_tie() && !names.is_empty()).then(|| format!("{}.", names.join("; ")))
+}
+
+/// How fast the best is, compared with no culling where that was measured.
 fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let leader = subject.records[0];
     let words = &subject.words;
     let lights = lights(leader.setting.lights);
-    let still = &subject.still_lights;
+    let still = subject.still_lights;
     let takes = subject.verb("takes", "take");
     let time = |record: &Record| Some(record.assign_and_shade_ms());
     let took = subject.span(time).unwrap_or_default();
@@ -149,8 +187,7 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
         }
         (Some(speedup), Some(factors)) if speedup > 1.0 => {
             let verb = subject.verb("shades", "shade");
-            let exit = over_exit(comparison, subject);
-            format!("{words} {verb} {lights} {factors}\u{d7} as fast as no culling{exit}{still}")
+            format!("{words} {verb} {lights} {factors}\u{d7} as fast as no culling{still}")
         }
         (Some(speedup), _) => {
             let factor = factor(1.0 / speedup);
@@ -160,23 +197,23 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     }
 }
 
-/// How they stand against no culling with the same early exit, where that was measured.
-fn over_exit(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
-    subject
-        .span(|record| comparison.speedup_over_exit(record))
-        .map_or_else(String::new, |factors| {
-            format!(" ({factors}\u{d7} if that has the same early exit)")
-        })
+/// How fast they are against no culling with the same early exit, where that was measured and they are
+/// faster.
+fn over_exit(comparison: &Comparison<'_>, subject: &Subject<'_>) -> Option<String> {
+    let leader = comparison.speedup(subject.records[0])?;
+    let factors = subject.span(|record| comparison.speedup_over_exit(record))?;
+    (leader > 1.0 + EQUAL)
+        .then(|| format!("No culling with the same early exit takes {factors} times as long."))
 }
 
-/// What is said of an image that is that of no culling.
+/// Follows the speed of a strategy whose image is that of no culling.
 const SAME_IMAGE: &str = " and shows the same image, bit for bit";
 
 /// What is known of a record's image, to follow the sentence on its speed.
 fn image(record: &Record) -> String {
     match loss(record) {
         Some(loss) => format!(", but {loss}"),
-        None if record.lists.untested.is_some() => ", which puts no method to a test".to_owned(),
+        None if record.lists.untested.is_some() => ", but the scene did not test it".to_owned(),
         None if record.image.differing_channels == Some(0)
             && record.lists.checked_pairs != Some(0) =>
         {
@@ -194,8 +231,7 @@ pub fn lights(count: u64) -> String {
     }
 }
 
-/// Whatever a reader has to know before trusting a figure: one paragraph each, most important
-/// first.
+/// What a reader has to know before trusting a figure: one paragraph each, the most important first.
 pub fn notices(results: &Results) -> Vec<String> {
     let mut notices = Vec::new();
     notices.extend(clock_notice(results));
@@ -223,7 +259,7 @@ pub fn notices(results: &Results) -> Vec<String> {
             && record.lists.untested.is_none()
         {
             notices.push(format!(
-                "{}, {}, {}: no light reaches any of the {} samples, so nothing was checked.",
+                "{}, {}, {}: no light reaches any of the {} samples, so the lists were not tested.",
                 record.setting.scene,
                 record.setting.mode.name(),
                 record.strategy,
@@ -233,7 +269,7 @@ pub fn notices(results: &Results) -> Vec<String> {
     }
     for record in results.records.iter().filter(|record| record.lists.overflowed_groups > 0) {
         notices.push(format!(
-            "{}, {}, {}: {} of {} groups fell back to all lights, because a list did not fit.",
+            "{}, {}, {}: {} of {} groups evaluated all lights because a list did not fit.",
             record.setting.scene,
             record.setting.mode.name(),
             record.strategy,
@@ -244,13 +280,13 @@ pub fn notices(results: &Results) -> Vec<String> {
     if results.truth.level == TruthLevel::None && !results.records.is_empty() {
         notices.push("The lists were not checked for missed lights (--truth none).".to_owned());
     }
-    // Methods that lose nothing else say the same: the first of each scene and mode stands for all.
-    let mut told = Vec::new();
+    // The range loses the same with every strategy, so the first of each scene and mode stands for all.
+    let mut stated = Vec::new();
     for record in &results.records {
         let case = (&record.setting.scene, record.setting.mode);
-        if let Some(loss) = range_loss(record).filter(|_| !told.contains(&case)) {
+        if let Some(loss) = range_loss(record).filter(|_| !stated.contains(&case)) {
             notices.push(loss);
-            told.push(case);
+            stated.push(case);
         }
     }
     if let Some(first) = results.rejected_lights.first() {
@@ -276,13 +312,13 @@ pub(crate) fn clock_notice(results: &Results) -> Option<String> {
     if results.machine.device_type == DeviceType::Cpu {
         Some(format!(
             "These are not GPU figures. {adapter} is a software adapter: the CPU did all the work, \
-             and each pass was submitted alone and timed by wall clock. Lists, errors and images \
-             are as on a GPU; times and their ratios are not."
+             and each pass was submitted separately and timed by wall clock. Lists, errors and images \
+             are the same as on a GPU. Times and their ratios are not."
         ))
     } else if wall_clock {
         Some(
-            "Times are wall-clock times of the host, each pass submitted alone: they include the \
-             cost of submitting and waiting."
+            "Times are wall-clock times of the host, and each pass was submitted separately. They include the \
+             time to submit and to wait."
                 .to_owned(),
         )
     } else {

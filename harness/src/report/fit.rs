@@ -3,28 +3,27 @@
 /// A line through points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fit {
-    /// By how much `y` grows where `x` grows by one.
+    /// Growth of `y` per unit of `x`.
     pub(crate) slope: f64,
-    /// `y` where `x` is zero.
+    /// `y` at `x = 0`.
     pub(crate) offset: f64,
-    /// The share of the variance of `y` that the line explains; 1 where all points lie on it.
+    /// The share of the variance of `y` that the line explains; 1 if all points lie on it.
     pub(crate) r2: f64,
-    /// Root of the mean squared distance of the points from the line, along `y`.
+    /// Root mean square of the distances of the points from the line, along `y`.
     pub(crate) residual: f64,
-    /// Points that it was laid through.
+    /// How many points it was fitted to.
     pub(crate) points: usize,
 }
 
 impl Fit {
-    /// The line through points with the least sum of squared distances along `y`. Points that are
-    /// not finite are left out. `None` where fewer than two differ in `x`.
+    /// The line with the least sum of squared distances along `y`. Points that are not finite are left out.
+    /// `None` if fewer than two points differ in `x`.
     pub(crate) fn through(points: &[(f64, f64)]) -> Option<Self> {
         Self::weighted(points, |_| 1.0)
     }
 
-    /// The line with the least sum of squared *relative* distances: each point's distance counts over
-    /// its own `y`, so that small values weigh as much as large ones. Points whose `y` is not above zero
-    /// are left out.
+    /// The line with the least sum of squared *relative* distances. The distance of a point is divided by its
+    /// `y`, so small values weigh as much as large ones. Points with `y <= 0` are left out.
     pub(crate) fn relative(points: &[(f64, f64)]) -> Option<Self> {
         let points: Vec<(f64, f64)> = points.iter().copied().filter(|(_, y)| *y > 0.0).collect();
         Self::weighted(&points, |y| y.powi(-2))
@@ -47,19 +46,19 @@ impl Fit {
         }
         let slope = xy / xx;
         let squares = sum(&|x, y| (y - slope * x).powi(2));
-        // Points on a level line are explained by it, whatever rounding left of their variance.
+        // A level line explains points on it, whatever variance rounding left.
         let r2 = if squares <= 1e-18 * count * mean_y.powi(2) { 1.0 } else { 1.0 - squares / yy };
         let residual = (squares / count).sqrt();
         Some(Self { slope, offset: mean_y - slope * mean_x, r2, residual, points: points.len() })
     }
 
-    /// The largest relative distance of a point from the line, with the point's `x`. NaN without points.
+    /// The largest relative distance of a point from the line, and the `x` of that point. NaN without points.
     pub(crate) fn worst(&self, points: &[(f64, f64)]) -> (f64, f64) {
         let off = |(x, y): &(f64, f64)| ((self.at(*x) / y - 1.0).abs(), *x);
         points.iter().map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::NAN, f64::NAN))
     }
 
-    /// The line's `y`.
+    /// The `y` of the line at an `x`.
     pub(crate) fn at(&self, x: f64) -> f64 {
         self.offset + self.slope * x
     }
@@ -70,7 +69,7 @@ mod tests {
     use super::Fit;
 
     #[test]
-    fn a_line_is_found_again() {
+    fn points_on_a_line_give_that_line() {
         let points: Vec<(f64, f64)> =
             (0..9).map(|x| (f64::from(x) * 100.0, 3.0 + 0.25 * f64::from(x) * 100.0)).collect();
         let fit = Fit::through(&points).unwrap();
@@ -119,14 +118,14 @@ mod tests {
     }
 
     #[test]
-    fn a_square_is_no_line() {
+    fn a_line_does_not_explain_a_parabola() {
         let points: Vec<(f64, f64)> =
             (0..20).map(f64::from).map(|x| (x, (x - 9.5).powi(2))).collect();
         assert!(Fit::through(&points).unwrap().r2 < 0.01);
     }
 
     #[test]
-    fn too_little_or_not_finite_is_no_line() {
+    fn too_few_or_infinite_points_give_no_line() {
         assert_eq!(Fit::through(&[]), None);
         assert_eq!(Fit::through(&[(1.0, 2.0)]), None);
         assert_eq!(Fit::through(&[(1.0, 2.0), (1.0, 3.0)]), None);

@@ -2,7 +2,7 @@
 
 use crate::digits::grouped;
 
-/// What stands for a metric that was not measured.
+/// Shown where a metric was not measured.
 pub(crate) const ABSENT: &str = "\u{2013}";
 
 const MIB: f64 = 1_048_576.0;
@@ -53,7 +53,7 @@ pub(crate) fn percent(share: f64) -> String {
     significant(share * 100.0)
 }
 
-/// An adapter's name without what stands in brackets behind it.
+/// An adapter's name without the part in brackets after it.
 pub(crate) fn short_adapter(adapter: &str) -> &str {
     let short = adapter.split(" (").next().unwrap_or(adapter).trim();
     if short.is_empty() { "an unnamed adapter" } else { short }

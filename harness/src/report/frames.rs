@@ -1,5 +1,5 @@
-//! The same methods in each kind of frame that a renderer may draw: forward shading without a depth
-//! pre-pass and with one, and deferred shading without and with models in the G-buffer.
+//! The same strategies in each kind of frame that a renderer may draw: forward shading without a depth
+//! pre-pass and with one, and deferred shading without and with model ids in the G-buffer.
 
 use super::column::Column;
 use super::format::{number, significant};
@@ -8,25 +8,25 @@ use super::raster::{self, MARK};
 use super::table::{Look, Row, Table};
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
 
-/// Heading of a kind of frame, and what it bills.
+/// The heading of a kind of frame, and what strategies pay for in it.
 fn words(kind: FrameKind) -> (&'static str, &'static str) {
     match kind {
         FrameKind::NoPrepass => (
             "forward, no pre-pass",
-            "Methods that read depth pay for a depth pre-pass and then light visible surfaces only. The \
-             others draw once and also light surfaces that later ones hide; draws are not sorted by depth.",
+            "A strategy that reads depth pays for a depth pre-pass and then lights visible surfaces only. The \
+             others draw once and also light surfaces that later draws hide. Draws are not sorted by depth.",
         ),
         FrameKind::Prepass => (
             "forward, pre-pass",
-            "Every method finds the depth pre-pass drawn, and nobody pays for it.",
+            "The renderer draws a depth pre-pass anyway, so no strategy pays for it.",
         ),
         FrameKind::Deferred => (
             "deferred",
-            "Every method finds depth and G-buffer drawn; M pays for a pass that draws the models of pixels.",
+            "The renderer draws depth and a G-buffer anyway. M pays for a pass that draws the model id of each pixel.",
         ),
         FrameKind::DeferredIds => (
             "deferred, ids",
-            "The G-buffer also holds the model of each pixel, so M pays for no pass of its own.",
+            "The G-buffer also holds the model id of each pixel, so M pays for no extra pass.",
         ),
     }
 }
@@ -43,13 +43,13 @@ fn methods<'a>(records: &[&'a Record]) -> Vec<(&'a str, Vec<&'a Record>)> {
     methods
 }
 
-/// The kinds of frame of which anything is known.
+/// The kinds of frame that were measured or can be derived.
 fn kinds(methods: &[(&str, Vec<&Record>)]) -> Vec<FrameKind> {
     let is_known = |kind: &FrameKind| methods.iter().any(|(_, own)| Bill::of(*kind, own).is_some());
     FrameKind::ALL.into_iter().filter(is_known).collect()
 }
 
-/// Modes that were measured.
+/// How many modes were measured.
 fn modes(records: &[&Record]) -> usize {
     let modes: std::collections::BTreeSet<_> =
         records.iter().map(|record| record.setting.mode).collect();
@@ -78,8 +78,8 @@ fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
     )
 }
 
-/// A table of methods and kinds of frame; empty where nothing is known of two kinds.
-pub(crate) fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
+/// A table of strategies and kinds of frame; empty where fewer than two kinds are known.
+fn table(caption: &str, records: &[&Record], machine: &Machine) -> Html {
     let methods = methods(records);
     let kinds = kinds(&methods);
     if kinds.len() < 2 {
@@ -101,12 +101,12 @@ pub(crate) fn table(caption: &str, records: &[&Record], machine: &Machine) -> Ht
 }
 
 /// What a cell holds.
-pub(crate) const READING: &str = "In each kind of frame: assign + shade; below it the two, all passes of the frame, and \
-    the span with gaps between passes where it is known. A figure is derived where another kind of frame was \
-    measured instead: the depth pre-pass is moved onto the bill of a method that reads depth, or the pass of \
-    M\u{2019}s ids is left out.";
+const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
+    passes of the frame, and the span from the first pass to the last with the gaps between them, where it is \
+    known. A figure is derived if another kind of frame was measured instead. Then the depth pre-pass is moved \
+    onto the bill of a strategy that reads depth, or the pass of M\u{2019}s model ids is left out.";
 
-/// A section for each set of lights that was measured in several modes; empty where there is none.
+/// A section per set of lights that was measured in several modes; empty where there is none.
 pub(crate) fn sections(results: &Results) -> Html {
     let key = |record: &Record| {
         let size = (

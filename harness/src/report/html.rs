@@ -1,4 +1,4 @@
-//! The page: one file with everything in it, opened from anywhere.
+//! The page of a comparison: one file that holds everything and opens from anywhere.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -7,11 +7,12 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
+use super::finding::findings;
 use super::format::{number, short_adapter};
 use super::markup::{Html, with_names_whole};
 use super::section::sections;
 use super::terms::terms;
-use super::{finding, frames, notices, page};
+use super::{frames, notices, page};
 use crate::chart::{CHART_CSS, page_colours};
 use crate::results::{Results, ResultsError, write_atomically};
 
@@ -21,13 +22,12 @@ pub(crate) const STYLE: &str = include_str!("report.css");
 /// The page's script.
 pub(crate) const SCRIPT: &str = include_str!("report.js");
 
-/// Writes `out_dir/index.html` and returns its path. `images` holds the pictures that records
-/// name, as PNG files with their names; a record's picture that is not among them is said to be
-/// missing.
+/// Writes `out_dir/index.html` and returns its path. `images` holds the pictures that records name: the names
+/// and the contents of PNG files. The page says which pictures are missing.
 ///
 /// # Errors
 ///
-/// [`ResultsError::Write`] names the path that refused.
+/// [`ResultsError::Write`] names the path that cannot be written.
 pub fn write_html(
     results: &Results,
     images: &[(String, Vec<u8>)],
@@ -40,19 +40,20 @@ pub fn write_html(
 
 /// The page as text: see [`write_html`].
 pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
-    let findings = finding(results);
+    let mut found = findings(results).into_iter();
+    let (headline, mut others) = found.next().map_or_else(Default::default, |first| {
+        (with_names_whole(&first.headline), vec![first.details.join(" ")])
+    });
+    others.extend(found.map(|other| [vec![other.headline], other.details].concat().join(" ")));
+    others.retain(|text| !text.is_empty());
     let kept: BTreeSet<&str> = images.iter().map(|(name, _)| name.as_str()).collect();
-    let (headline, others) =
-        findings.split_first().map_or_else(Default::default, |(first, others)| {
-            (with_names_whole(first), page::paragraphs("finding", others))
-        });
     fill(
         PAGE,
         &[
             ("title", title(results).into()),
-            ("style", Html::trusted([STYLE, &page_colours(), CHART_CSS].join("\n"))),
+            ("style", Html::trusted([STYLE, CHART_CSS, &page_colours()].join("\n"))),
             ("headline", headline),
-            ("findings", others),
+            ("findings", page::paragraphs("finding", &others)),
             ("notices", page::notices(&notices(results))),
             ("comparisons", sections(results, &kept) + frames::sections(results)),
             ("columns", page::columns()),
@@ -98,12 +99,12 @@ fn view(images: &[(String, Vec<u8>)]) -> serde_json::Value {
     json!({ "pictures": pictures, "uris": uris })
 }
 
-/// JSON that no HTML parser takes for the end of its script element. `<` stands only in strings.
+/// JSON in which no HTML parser sees the end of the script element: `<` occurs only in strings.
 pub(crate) fn in_script(json: &str) -> Html {
     Html::trusted(json.replace('<', "\\u003c"))
 }
 
-/// Replaces each `{{name}}` of a template; what is put in is not looked at again.
+/// Replaces each `{{name}}` of a template. Values are not searched for further names.
 pub(crate) fn fill(template: &str, values: &[(&str, Html)]) -> String {
     let mut filled = String::new();
     let mut parts = template.split("{{");
@@ -123,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_put_in_is_not_looked_at_again() {
+    fn values_are_not_searched_for_names() {
         let values = [("x", Html::from("{{y}}")), ("y", "1".into())];
         assert_eq!(fill("a {{x}} {{y}} b", &values), "a {{y}} 1 b");
     }
@@ -138,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_loaded_from_elsewhere() {
+    fn a_page_loads_no_other_file() {
         for part in [PAGE, STYLE, SCRIPT] {
             for loader in ["http://", "https://", "@import", "url(", "fetch("] {
                 let allowed = part.replace("http://www.w3.org/2000/svg", "");

@@ -1,37 +1,28 @@
-//! Who leads a comparison, said with its limits: a tie is called a tie, and a lead that too few
-//! rounds show is called that.
+//! Who leads a comparison, with the limits of that lead: ties, too few rounds, lights that must stand still.
 
 use super::comparison::Comparison;
 use super::format::significant;
-use super::rank::{Ranked, Ratio, SURE, first, listed};
+use super::rank::{Ranked, Ratio, SURE, few_listed, first};
 use crate::results::Record;
 
-/// The segment of an id that says that lights come through the hierarchy.
-const HIERARCHY: &str = "bvh";
-
-/// The most names in a sentence; of more, all but [`NAMED`] are counted.
-const ALL_NAMED: usize = 4;
-/// The names that stand before `and 5 others`.
-const NAMED: usize = 3;
-
-/// What keeps a rank from being sure.
+/// What makes a rank unsure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Doubt {
-    /// Nothing: there are rounds enough, or there is one method.
+    /// Nothing: there are enough rounds, or there is only one strategy.
     None,
-    /// So many rounds or laps are too few.
+    /// This number of rounds or laps is too small.
     FewRounds(usize, &'static str),
-    /// There are no rounds to pair: only times rank.
+    /// There are no rounds to pair, so the times alone decide.
     NoRounds,
 }
 
-/// The methods that share the first rank.
+/// The strategies that share the first rank.
 pub(crate) struct Lead<'a> {
-    /// Those methods, fastest first.
+    /// Their records, fastest first.
     pub(crate) records: Vec<&'a Record>,
     /// Their names, with marks.
     names: Vec<String>,
-    /// How many methods were ranked.
+    /// How many strategies were ranked.
     ranked: usize,
     doubt: Doubt,
 }
@@ -42,7 +33,7 @@ impl<'a> Lead<'a> {
         let mut records = first(ranked);
         let leader = *records.first()?;
         let other = ranked.iter().map(|ranked| ranked.record).find(|r| !std::ptr::eq(*r, leader));
-        let doubt = match other.map(|other| Ratio::of(other, leader)) {
+        let doubt = match other.map(|other| Ratio::between(other, leader)) {
             None => Doubt::None,
             Some(None) => Doubt::NoRounds,
             Some(Some(ratio)) if ratio.coverage < SURE => {
@@ -78,13 +69,7 @@ impl<'a> Lead<'a> {
 
     /// `A`, `A and B`, `A, B, C and 5 others`.
     pub(crate) fn names(&self) -> String {
-        let mut names = self.names.clone();
-        if names.len() > ALL_NAMED {
-            let others = names.len() - NAMED;
-            names.truncate(NAMED);
-            names.push(format!("{others} others"));
-        }
-        listed(&names)
+        few_listed(self.names.clone())
     }
 
     /// `A is fastest`, or `A and B tie for fastest`.
@@ -93,60 +78,57 @@ impl<'a> Lead<'a> {
         format!("{} {verb}", self.names())
     }
 
-    /// As [`is_fastest`](Self::is_fastest), with all that limits it but figures: for a headline.
+    /// As [`is_fastest`](Self::is_fastest), with all limits that are not figures: for a headline.
     pub(crate) fn headline(&self) -> String {
-        let built = self.records.iter().filter(|record| needs_built_hierarchy(record)).count();
-        let still = match built {
-            0 => "",
-            _ if built == self.records.len() => " (still lights only)",
-            _ => " (those with /bvh for still lights only)",
-        };
-        format!("{}{still}{}", self.is_fastest(), self.doubt())
+        format!("{}{}{}", self.is_fastest(), self.still_lights(), self.doubt())
     }
 
-    /// Why the lead is not sure, to follow its sentence; empty where it is.
+    /// Why the lead is not sure, to follow its sentence; empty where it is sure.
     pub(crate) fn doubt(&self) -> String {
         match self.doubt {
             Doubt::None => String::new(),
             Doubt::FewRounds(count, word) => {
-                format!(" ({count} {word} are too few to rank {} methods)", self.ranked)
+                format!(" ({count} {word} are too few to rank {} strategies)", self.ranked)
             }
-            Doubt::NoRounds => " (ranked by time only; too few rounds to test ties)".to_owned(),
+            Doubt::NoRounds => " (ranked by time only: too few rounds to test ties)".to_owned(),
         }
     }
 
     /// Which of them need lights that stand still, to follow the names; empty where none does.
-    pub(crate) fn still_lights(&self) -> String {
-        let built: Vec<&Record> =
-            self.records.iter().copied().filter(|r| needs_built_hierarchy(r)).collect();
-        let Some(one) = built.first() else { return String::new() };
-        let time = one
-            .times
-            .light_build_ms
-            .map_or_else(String::new, |build| format!(" built in {} ms", significant(build)));
-        match built.len() == self.records.len() {
-            true if built.len() == 1 => {
-                format!(" (still lights only: uses a hierarchy{time}, not counted in this time)")
-            }
-            true => format!(
-                " (still lights only: they use a hierarchy{time}, not counted in these times)"
-            ),
-            false => format!(
-                " (those with /{HIERARCHY} for still lights only: they use a hierarchy{time}, not \
-                 counted in these times)"
-            ),
+    pub(crate) fn still_lights(&self) -> &'static str {
+        match self.built().count() {
+            0 => "",
+            count if count == self.records.len() => " (still lights only)",
+            _ => " (ids with /bvh: still lights only)",
         }
+    }
+
+    /// A sentence on the hierarchy that some of them read; `None` where none does.
+    pub(crate) fn hierarchy(&self) -> Option<String> {
+        let time = match self.built().next()?.times.light_build_ms {
+            Some(build) => format!(" in {} ms", significant(build)),
+            None => String::new(),
+        };
+        Some(format!(
+            "The hierarchy over the lights is built once{time} before the first frame, and no time here \
+             includes this."
+        ))
+    }
+
+    /// Those that read a hierarchy which was built before the first frame.
+    fn built(&self) -> impl Iterator<Item = &'a Record> {
+        self.records.iter().copied().filter(|record| needs_built_hierarchy(record))
     }
 }
 
-/// Whether a method reads a hierarchy over the lights that was built beforehand: its time holds for
-/// lights that stand still.
+/// Whether a strategy reads a hierarchy over the lights that was built before the first frame. Its time then
+/// holds for still lights only.
 pub fn needs_built_hierarchy(record: &Record) -> bool {
     record.strategy.is_bvh()
 }
 
-/// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` where
-/// one lacks it.
+/// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` if the figure is
+/// missing from a record.
 pub(crate) fn span(records: &[&Record], figure: impl Fn(&Record) -> Option<f64>) -> Option<String> {
     let figures: Option<Vec<f64>> = records.iter().map(|record| figure(record)).collect();
     let figures = figures?;

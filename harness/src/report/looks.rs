@@ -10,8 +10,11 @@ use super::picture_pair::{PicturePair, picture, verdict};
 use crate::chart::{Histogram, histograms_svg};
 use crate::results::Record;
 
+/// More histograms than this are folded.
+const MOST_OPEN: usize = 6;
+
 /// The viewer of a comparison's pictures, of those that were kept.
-pub(super) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Html {
+pub(crate) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Html {
     let known =
         |name: &Option<String>| name.as_deref().filter(|name| kept.contains(name)).is_some();
     let has_one =
@@ -88,7 +91,7 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
 }
 
 /// The lengths of the lists that pixels read, a histogram per strategy; empty where none was counted.
-pub(super) fn list_lengths(comparison: &Comparison<'_>) -> Html {
+pub(crate) fn list_lengths(comparison: &Comparison<'_>) -> Html {
     let records = comparison.records.iter().map(|(_, record)| *record);
     let all: Vec<Histogram> = records
         .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))
@@ -105,17 +108,19 @@ pub(super) fn list_lengths(comparison: &Comparison<'_>) -> Html {
     }
     // Charts escape their text themselves.
     let drawing = Html::trusted(histograms_svg("Lists by length", &all));
+    let open = if all.len() > MOST_OPEN { "" } else { " open" };
     html!(
-        "<figure class=\"lengths\"><figcaption><h3>Lists by length</h3></figcaption>\n\
+        "<details class=\"lengths\"{}><summary><h3>Lists by length</h3></summary>\n\
          <p class=\"note\">Groups that at least one pixel reads, counted by the number of lights in their list.\
          </p>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Lists by length\">{}</div>\
-         </figure>\n",
+         </details>\n",
+        open,
         drawing
     )
 }
 
 /// A histogram of lists with its bins' names: 0, 1, 2 to 3, 4 to 7 and so on.
-pub(super) fn bins(lengths: &[u64]) -> Vec<(String, u64)> {
+pub(crate) fn bins(lengths: &[u64]) -> Vec<(String, u64)> {
     let name = |ix: usize| match ix {
         0 | 1 => ix.to_string(),
         _ => {

@@ -1,5 +1,5 @@
-//! What a method lost: in words, in the columns that a comparison with lossy methods gains, and in
-//! the terminal's table of losses.
+//! What a strategy lost: in words, in the columns that a comparison with lossy strategies gains, and in the
+//! terminal's table of losses.
 
 use super::column::{Better, Column};
 use super::comparison::Comparison;
@@ -8,7 +8,7 @@ use super::metrics::{Metric, figure, metrics, table};
 use crate::results::Record;
 
 /// The columns of errors against no culling.
-pub(super) fn error_columns<'a>() -> Vec<Metric<'a>> {
+pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
     [
         figure(
             "missing_energy",
@@ -46,23 +46,22 @@ fn error(record: &Record, id: &str) -> Option<f64> {
     record.image.errors.get(id).copied().flatten().or(same.then_some(0.0))
 }
 
-/// Whether a method may lose light, or is known to have lost some.
+/// Whether a strategy may lose light, or has lost some.
 fn is_lossy(record: &Record) -> bool {
     !record.is_control() && !record.shows_no_loss()
 }
 
 /// The columns of a comparison: those of all, and errors where a strategy may lose light.
-pub(super) fn columns<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
+pub(crate) fn columns<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
     metrics().into_iter().chain(errors_of(comparison)).collect()
 }
 
 /// The columns of errors where a strategy of the comparison may lose light; else none.
-pub(super) fn errors_of<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
+pub(crate) fn errors_of<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
     if comparison.all().any(is_lossy) { error_columns() } else { Vec::new() }
 }
 
-/// The errors of a record: `30.1 % missing energy, relMSE 0.210, FLIP 0.104`; empty where none is
-/// known.
+/// The errors of a record: `30.1 % missing energy, relMSE 0.210, FLIP 0.104`; empty where none is known.
 pub fn error_words(record: &Record) -> String {
     let of = |id| error(record, id);
     let words = [
@@ -73,8 +72,8 @@ pub fn error_words(record: &Record) -> String {
     words.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// What a record lost, in words; `None` where nothing is known to be lost.
-pub(super) fn loss(record: &Record) -> Option<String> {
+/// What a record lost, in words; `None` where it shows no loss.
+pub(crate) fn loss(record: &Record) -> Option<String> {
     let missed = record.lists.missed_pairs.filter(|missed| *missed > 0).map(|missed| {
         format!("misses {} of {} (light, sample) pairs", number(missed as f64), checked(record))
     });
@@ -85,7 +84,7 @@ pub(super) fn loss(record: &Record) -> Option<String> {
             difference(most)
         )),
         (Some(channels @ 1..), None) => Some(format!(
-            "differs from no culling in {} channels, by more than a number can say",
+            "differs from no culling in {} channels, by an amount that is not finite",
             number(channels as f64)
         )),
         (_, Some(most)) if most != 0.0 => {
@@ -102,11 +101,11 @@ pub(super) fn loss(record: &Record) -> Option<String> {
     Some(parts.join(" and ") + &errors)
 }
 
-/// What the ends of lights lose in a record, whatever its method; `None` where it was not measured.
-pub(super) fn range_loss(record: &Record) -> Option<String> {
+/// What the range of the lights loses in a record, whatever its strategy; `None` where it was not measured.
+pub(crate) fn range_loss(record: &Record) -> Option<String> {
     let error = |id| record.image.unbounded_errors.get(id).copied().flatten();
     Some(format!(
-        "{}, {}: against lights without an end the image of {} has {} % missing energy and relMSE {}.",
+        "{}, {}: against lights without a range, the image of {} has {} % missing energy and relMSE {}.",
         record.setting.scene,
         record.setting.mode.name(),
         record.strategy,
@@ -123,7 +122,7 @@ fn checked(record: &Record) -> String {
 }
 
 /// The terminal's table of what each lossy strategy lost; empty where there is none.
-pub(super) fn loss_table(comparison: &Comparison<'_>) -> String {
+pub(crate) fn loss_table(comparison: &Comparison<'_>) -> String {
     if !comparison.all().any(is_lossy) {
         return String::new();
     }
@@ -137,7 +136,7 @@ mod tests {
     use crate::results::Results;
 
     #[test]
-    fn errors_are_stated_where_they_are_known_and_none_is_made_up() {
+    fn only_known_errors_are_stated() {
         let example: Results =
             serde_json::from_str(include_str!("../results/example.json")).expect("the example");
         let mut record = example.records[0].clone();

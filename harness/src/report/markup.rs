@@ -1,17 +1,19 @@
 //! HTML as a type of its own.
 //!
-//! Results may come from anywhere, and so may every name in them. [`Html`] is made in three ways only: from
-//! text, which is escaped; by [`html!`], whose template is written in this program and whose values are
-//! escaped unless they are [`Html`]; and from what this program draws or embeds
-//! ([`trusted`](Html::trusted)). Tables and pages take nothing else, so that a forgotten escape does not
-//! compile.
+//! Results may come from anywhere, and so may every name in them. There are three ways to make [`Html`]:
+//!
+//! - from text, which is escaped;
+//! - by [`html!`], whose template is written in this program; values are escaped unless they are [`Html`];
+//! - from what this program draws or embeds ([`trusted`](Html::trusted)).
+//!
+//! Tables and pages take nothing else, so a forgotten escape does not compile.
 
 use std::fmt::{self, Display, Write};
 use std::ops::{Add, AddAssign};
 
 use crate::visible::visible_lines;
 
-/// Markup that a browser may take as it is.
+/// Markup that is safe to hand to a browser.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Html(String);
 
@@ -21,7 +23,7 @@ impl Html {
         Self(Escaped(text).to_string())
     }
 
-    /// What this program itself draws, embeds or took out of its own HTML: never text of a file.
+    /// Markup that this program draws or embeds: never text of a file.
     pub(crate) fn trusted(markup: impl Into<String>) -> Self {
         Self(markup.into())
     }
@@ -40,8 +42,8 @@ impl Html {
     }
 }
 
-/// HTML from a template that is written here: `html!("<b>{}</b>", name)`. Values are escaped unless they
-/// are HTML. A template takes its values by position only, so that none slips in unescaped.
+/// HTML from a template: `html!("<b>{}</b>", name)`. Values are escaped unless they are HTML. A template takes
+/// values by position only, so no value gets in unescaped.
 macro_rules! html {
     ($template:literal $(, $value:expr)* $(,)?) => {{
         const _: () = $crate::report::markup::check_positions($template);
@@ -52,7 +54,7 @@ macro_rules! html {
 }
 pub(crate) use html;
 
-/// Fails to compile where a template takes a value by name: `{name}` would be put in as it is.
+/// Fails to compile if a template takes a value by name, because `{name}` would not be escaped.
 pub(crate) const fn check_positions(template: &str) {
     let bytes = template.as_bytes();
     let mut ix = 0;

@@ -11,13 +11,13 @@ use crate::results::Record;
 
 /// A record among those that it is compared with.
 #[derive(Clone, Copy)]
-pub(super) struct Measured<'a> {
-    pub(super) comparison: &'a Comparison<'a>,
-    pub(super) record: &'a Record,
+pub(crate) struct Measured<'a> {
+    pub(crate) comparison: &'a Comparison<'a>,
+    pub(crate) record: &'a Record,
 }
 
 /// A column of a comparison's table.
-pub(super) type Metric<'a> = Column<'a, Measured<'a>>;
+pub(crate) type Metric<'a> = Column<'a, Measured<'a>>;
 
 impl Measured<'_> {
     /// Whether it shares the first rank, and some strategy is slower.
@@ -33,7 +33,7 @@ impl Measured<'_> {
 }
 
 /// A table of records of a comparison, under their names.
-pub(super) fn table<'a>(
+pub(crate) fn table<'a>(
     head: &'static str,
     comparison: &'a Comparison<'a>,
     records: impl Iterator<Item = &'a Record>,
@@ -44,7 +44,7 @@ pub(super) fn table<'a>(
 }
 
 /// A column of figures; see [`Column::figure`].
-pub(super) fn figure<'a>(
+pub(crate) fn figure<'a>(
     id: &'static str,
     head: &str,
     unit: &str,
@@ -56,7 +56,7 @@ pub(super) fn figure<'a>(
 }
 
 /// All columns, in order: times, lists, losses, memory.
-pub(super) fn metrics<'a>() -> Vec<Metric<'a>> {
+pub(crate) fn metrics<'a>() -> Vec<Metric<'a>> {
     [times(), ratios_and_parts(), lists(), losses(), memory()].into_iter().flatten().collect()
 }
 

@@ -1,4 +1,4 @@
-//! The parts of the page that are text: tables, notices, provenance.
+//! The parts of a page that are text: paragraphs, notices, settings, the meaning of columns, provenance.
 
 use super::format::number;
 use super::loss::error_columns;
@@ -20,7 +20,7 @@ pub(crate) fn notices(texts: &[String]) -> Html {
     html!("<ul class=\"notices\" aria-label=\"Before you trust a figure\">{}</ul>", items)
 }
 
-/// The kind of light that stands in no list.
+/// The kind of light that is in no list.
 const SUN: &str = "sun";
 
 pub(crate) fn setting(record: &Record) -> String {
@@ -121,24 +121,24 @@ fn device(kind: DeviceType) -> &'static str {
         DeviceType::IntegratedGpu => "integrated GPU",
         DeviceType::VirtualGpu => "virtual GPU",
         DeviceType::Cpu => "software adapter (CPU)",
-        DeviceType::Other => "another kind of device",
+        DeviceType::Other => "other device",
     }
 }
 
 fn clock(clock: Clock) -> &'static str {
     match clock {
         Clock::GpuTimestamps => "GPU timestamps around each pass",
-        Clock::WallClock => "wall clock, each pass submitted alone",
+        Clock::WallClock => "wall clock, each pass submitted separately",
     }
 }
 
 fn truth(results: &Results) -> String {
     match results.truth.level {
         TruthLevel::Full => format!(
-            "every (light, sample) pair on the CPU in f64, but those within {:e} of the range's edge",
+            "every (light, sample) pair, on the CPU in f64, except pairs closer to the edge of the range than {:e} of it",
             results.truth.edge_tolerance
         ),
-        TruthLevel::None => "images only; the lists were not checked".to_owned(),
+        TruthLevel::None => "images only: the lists were not checked".to_owned(),
     }
 }
 

@@ -108,7 +108,7 @@ pub(crate) fn verdict(record: &Record) -> String {
         (Some(0), _) => format!("The same in every bit: none of {channels} channels differs."),
         (Some(differing), most) => {
             let most = most.map_or_else(
-                || "by more than a number can say".to_owned(),
+                || "by an amount that is not finite".to_owned(),
                 |most| format!("by at most {}", difference(most)),
             );
             let differing = number(differing as f64);

@@ -1,17 +1,17 @@
-//! Which of the records of a comparison are faster than which, as far as their rounds tell.
+//! Ranks the records of a comparison by what their rounds show.
 //!
-//! Every round draws frames of all methods in turn, so what drifts hits all alike: the ratio of the
-//! times of two methods *of one round* is free of it. Along a path a round is a lap, and its time the
-//! mean over the poses. Two records tie unless the interval of the median of these ratios leaves out 1
-//! and its middle is not within half a per cent of it.
+//! Every round draws frames of all strategies in turn, so drift hits all of them alike, and the ratio of two
+//! strategies' times *in one round* is free of it. Along a path a round is a lap, and its time is the mean
+//! over the poses. Two records tie if the interval of the median ratio contains 1, or if the median ratio is
+//! within half a per cent of 1.
 
 use super::format::significant;
 use crate::results::{Record, median, median_interval};
 
-/// Nearer to 1, a ratio is of no interest, however sure it is.
+/// A ratio closer to 1 than this is a tie, however sure it is.
 pub(crate) const ALIKE: f64 = 0.005;
 
-/// The least coverage of an interval that shows a difference: that of six rounds.
+/// The least coverage of an interval that shows a difference: six rounds reach it.
 pub(crate) const SURE: f64 = 0.95;
 
 /// The times of one record over those of another, paired by round.
@@ -19,17 +19,17 @@ pub(crate) const SURE: f64 = 0.95;
 pub(crate) struct Ratio {
     /// The median over rounds.
     pub(crate) median: f64,
-    /// Where the median lies.
+    /// The lower end of the interval of the median.
     pub(crate) low: f64,
-    /// Where the median lies.
+    /// The upper end of the interval of the median.
     pub(crate) high: f64,
-    /// The probability that it lies there.
+    /// The probability that the interval contains the median.
     pub(crate) coverage: f64,
 }
 
 impl Ratio {
-    /// Of `record` over `other`. `None` where they have fewer than two rounds in common. Along a path
-    /// a round is a lap, so both need two laps of as many poses.
+    /// The times of `record` over those of `other`. `None` where they have fewer than two rounds in common.
+    /// Along a path a round is a lap, so both need at least two laps, with equally many poses.
     pub(crate) fn of(record: &Record, other: &Record) -> Option<Self> {
         let laps =
             |record: &Record| (record.setting.along_path, record.laps(), record.times.frames);
@@ -56,7 +56,7 @@ impl Ratio {
 
     /// Whether the two tie.
     pub(crate) fn is_tie(&self) -> bool {
-        // Few rounds tell nothing: their range leaves out 1 by chance.
+        // The range of a few rounds excludes 1 by chance.
         let is_sure = self.coverage >= SURE;
         !is_sure || (self.low..=self.high).contains(&1.0) || (self.median - 1.0).abs() <= ALIKE
     }
@@ -64,37 +64,37 @@ impl Ratio {
 
 /// Whether two records tie. `None` where they were not timed in the same rounds.
 pub fn indistinguishable(record: &Record, other: &Record) -> Option<bool> {
-    Ratio::of(record, other).map(|ratio| ratio.is_tie())
+    Ratio::between(record, other).map(|ratio| ratio.is_tie())
 }
 
 /// Whether a record is faster than another, beyond chance. `None` where they were not timed in the same
 /// rounds.
 pub fn is_surely_faster(record: &Record, other: &Record) -> Option<bool> {
-    Ratio::of(record, other).map(|ratio| ratio.is_faster())
+    Ratio::between(record, other).map(|ratio| ratio.is_faster())
 }
 
-/// A record with its place among others.
+/// A record with its rank.
 pub(crate) struct Ranked<'a> {
     /// The record.
     pub(crate) record: &'a Record,
-    /// 1 for the fastest and for all that tie with it.
+    /// 1 for the fastest and for all records that tie with it.
     pub(crate) rank: u32,
 }
 
-/// Whether a time was recorded: a record without a pass adds up to 0 ms, which no frame takes.
+/// Whether a time was recorded. A record without passes adds up to 0 ms, which no frame takes.
 pub(crate) fn is_timed(record: &Record) -> bool {
     let ms = record.assign_and_shade_ms();
     ms.is_finite() && (ms > 0.0 || record.times.passes.iter().next().is_some())
 }
 
-/// Whether a record may be called the best: it culls, and nothing is known to be lost.
+/// Whether a record may be called the best: it culls, and it shows no loss.
 pub(crate) fn competes(record: &Record) -> bool {
     record.culls() && record.is_exact()
 }
 
-/// Ranks the records that cull without a loss, by assigning and shading together: the fastest leads
-/// the first rank, and all that tie with it share that; the fastest of the others leads the next.
-/// Where there are no rounds to pair, only the time decides.
+/// Ranks the records that cull without a loss, by assign + shade. The fastest leads the first rank, and all
+/// that tie with it share that rank. The fastest of the others leads the next. Where there are no rounds to
+/// pair, only the time decides.
 pub(crate) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ranked<'a>> {
     let mut left: Vec<&Record> =
         records.into_iter().filter(|record| competes(record) && is_timed(record)).collect();
@@ -104,7 +104,7 @@ pub(crate) fn ranks<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Ra
         let Some(&leader) = left.first() else { break };
         let shares = |record: &Record| {
             std::ptr::eq(record, leader)
-                || Ratio::of(record, leader).is_some_and(|ratio| ratio.is_tie())
+                || Ratio::between(record, leader).is_some_and(|ratio| ratio.is_tie())
         };
         let (same, others) = left.into_iter().partition::<Vec<&Record>, _>(|r| shares(r));
         ranked.extend(same.into_iter().map(|record| Ranked { record, rank }));
@@ -118,46 +118,59 @@ pub(crate) fn first<'a>(ranked: &[Ranked<'a>]) -> Vec<&'a Record> {
     ranked.iter().filter(|ranked| ranked.rank == 1).map(|ranked| ranked.record).collect()
 }
 
-/// Says that several share the first rank, `A and B tie: ...`, or that there are too few laps to test
-/// ties. `None` where neither is so.
+/// States a tie for the first rank, `A and B tie: ...`, or that there are too few laps to test ties. `None`
+/// where neither holds.
 pub(crate) fn tie(ranked: &[Ranked<'_>]) -> Option<String> {
     let first = first(ranked);
     let (leader, others) = first.split_first()?;
     if leader.setting.along_path && leader.laps() < 2 && ranked.len() > 1 {
         return Some(
-            "one lap says nothing about noise, so ranks use the means only; use --laps 6 to test \
-             ties"
+            "one lap does not show the noise, so ranks use means only; use --laps 6 to test ties"
                 .to_owned(),
         );
     }
     let widest = others
         .iter()
-        .filter_map(|record| Ratio::of(record, leader))
+        .filter_map(|record| Ratio::between(record, leader))
         .reduce(|a, b| if b.high - b.low > a.high - a.low { b } else { a })?;
+    let names = few_listed(first.iter().map(|record| record.strategy.to_string()).collect());
     if widest.coverage < SURE {
         let (rounds, option) =
             if leader.setting.along_path { ("laps", "--laps") } else { ("rounds", "--frames") };
         return Some(format!(
-            "{} {rounds} are too few; use {option} 6: until then {} share rank 1",
+            "{} {rounds} are too few to test ties, so {names} share rank 1; use {option} 6",
             leader.round_times_ms().len(),
-            listed(&first.iter().map(|record| record.strategy.as_str()).collect::<Vec<_>>())
         ));
     }
-    let names: Vec<&str> = first.iter().map(|record| record.strategy.as_str()).collect();
-    let times: Vec<String> =
-        first.iter().map(|record| significant(record.assign_and_shade_ms())).collect();
-    let ratio = match others.len() {
-        1 => "their ratio, round by round, lies".to_owned(),
-        _ => format!("their ratios to {}, round by round, lie at most", leader.strategy),
+    let times =
+        few_listed(first.iter().map(|record| significant(record.assign_and_shade_ms())).collect());
+    let interval = match others.len() {
+        1 => "the interval of their ratio, round by round, is".to_owned(),
+        _ => {
+            format!("the widest interval of a ratio to {}, round by round, is", leader.strategy)
+        }
     };
     Some(format!(
-        "{} tie: {} ms, and {ratio} from {} to {} (coverage {} %)",
-        listed(&names),
-        listed(&times),
+        "{names} tie: {times} ms, and {interval} {} to {} (coverage {} %)",
         significant(widest.low),
         significant(widest.high),
         significant(widest.coverage * 100.0),
     ))
+}
+
+/// The most items of a short list. Of more, [`NAMED`] are named and the others counted.
+const ALL_NAMED: usize = 4;
+/// The items before `and 5 others`.
+const NAMED: usize = 3;
+
+/// `A`, `A and B`, `A, B, C and 5 others`.
+pub(crate) fn few_listed(mut items: Vec<String>) -> String {
+    if items.len() > ALL_NAMED {
+        let others = items.len() - NAMED;
+        items.truncate(NAMED);
+        items.push(format!("{others} others"));
+    }
+    listed(&items)
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -219,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn drift_that_both_share_cancels() {
+    fn shared_drift_cancels() {
         // 2 % apart, while the clock drifts by 50 %.
         let drift = |round: u32| 1.0 + f64::from(round) / 32.0;
         let (a, b) = (of("A", |r| 10.0 * drift(r)), of("B", |r| 10.2 * drift(r)));
@@ -235,7 +248,7 @@ mod tests {
         let records = [a, b, c];
         let ranked = ranks(&records);
         let ranks: Vec<u32> = ranked.iter().map(|r| r.rank).collect();
-        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::of(&records[1], &records[0]));
+        assert_eq!(ranks, [1, 1, 2], "{:?}", Ratio::between(&records[1], &records[0]));
         let text = tie(&ranked).expect("two share the first rank");
         assert!(text.contains(" and ") && text.contains(" tie: "), "{text}");
         assert!(!text.contains('C'), "{text}");
@@ -251,21 +264,24 @@ mod tests {
     }
 
     #[test]
-    fn without_rounds_the_time_alone_decides_and_nothing_is_said() {
+    fn without_rounds_only_the_time_decides() {
         let records = [record("A", &[10.0]), record("B", &[10.0001]), record("C", &[9.0])];
         assert_eq!(places(&records), [place("C", 1), place("A", 2), place("B", 3)]);
         assert_eq!(tie(&ranks(&records)), None);
-        assert_eq!(Ratio::of(&records[0], &records[1]), None);
+        assert_eq!(Ratio::between(&records[0], &records[1]), None);
     }
 
     #[test]
-    fn few_rounds_tell_nothing_apart_and_say_so() {
+    fn few_rounds_make_a_tie_and_a_note() {
         let records =
             |rounds: usize| [record("A", &vec![1.0; rounds]), record("B", &vec![2.0; rounds])];
         assert_eq!(places(&records(6)), [place("A", 1), place("B", 2)]);
         let few = records(5);
         assert_eq!(places(&few), [place("A", 1), place("B", 1)]);
-        assert!(tie(&ranks(&few)).is_some_and(|said| said.contains("5 rounds are too few")));
+        assert!(
+            tie(&ranks(&few))
+                .is_some_and(|said| said.contains("5 rounds are too few to test ties"))
+        );
     }
 
     /// A record of laps along a path: a time for each lap and pose.
@@ -282,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn laps_along_a_path_tell_methods_apart_however_much_poses_differ() {
+    fn laps_along_a_path_separate_strategies_however_much_poses_differ() {
         // Poses differ by a factor of ten, laps drift by a fifth, the methods by 2 %.
         let (x, y) = (noise(1), noise(2));
         let time =
@@ -300,26 +316,31 @@ mod tests {
     }
 
     #[test]
-    fn one_lap_tells_nothing_apart_and_laps_of_other_poses_do_not_pair() {
+    fn one_lap_makes_a_note_and_laps_of_other_poses_do_not_pair() {
         let one = along_path("A", 1, 40, |_, pose| f64::from(pose));
         let mut old = one.clone();
         old.setting.poses = None;
         old.times.rounds = 40;
         for record in [&one, &old] {
             assert_eq!((record.laps(), record.interval_ms()), (1, None));
-            assert_eq!(Ratio::of(record, record), None);
+            assert_eq!(Ratio::between(record, record), None);
         }
         let said = tie(&ranks(&[one.clone(), old])).expect("one lap");
         assert!(said.starts_with("one lap") && said.contains("--laps 6"), "{said}");
         let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
-        assert_eq!(Ratio::of(&a, &b), None);
+        assert_eq!(Ratio::between(&a, &b), None);
         let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];
         let said = tie(&ranks(&few)).expect("five laps");
-        assert!(said.starts_with("5 laps are too few; use --laps 6: until then A and B"), "{said}");
+        assert!(
+            said.starts_with(
+                "5 laps are too few to test ties, so A and B share rank 1; use --laps 6"
+            ),
+            "{said}"
+        );
     }
 
     #[test]
-    fn what_loses_or_does_not_cull_has_no_rank() {
+    fn lossy_strategies_and_those_without_culling_have_no_rank() {
         let mut lossy = of("A", |_| 1.0);
         lossy.lists.missed_pairs = Some(3);
         let nan = of("E", |_| f64::NAN);

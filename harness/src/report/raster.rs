@@ -1,16 +1,16 @@
-//! Rows whose times are bound by rasterisation, on chips that are weak at it.
+//! Marks rows whose times are limited by rasterisation, on chips that are weak at it.
 //!
-//! Data-centre GPUs run fragment shaders on a few of their processors. A row is marked where a pass on
-//! its own bill draws triangles: lighting in forward shading, light volumes, and the models of pixels.
-//! The mark is computed when a report is made, so stored results carry it too.
+//! Data-centre GPUs run fragment shaders on only a few of their processors. A row is marked if a pass on its
+//! bill draws triangles: lighting in forward shading, light volumes, and model ids. The report computes the
+//! mark, so stored results get it too.
 
 use super::rank::listed;
 use crate::results::{Machine, Record};
 
-/// What stands behind the name of a marked row.
+/// Follows the name of a marked row.
 pub(crate) const MARK: &str = "\u{2020}";
 
-/// More methods of one mode than this are counted instead of named.
+/// Strategies of one mode beyond this number are counted, not named.
 const NAMED: usize = 6;
 
 /// What older programs wrote into the note of each forward record.
@@ -22,18 +22,18 @@ pub(crate) fn is_marked(machine: &Machine, record: &Record) -> bool {
     machine.weak_raster().is_some() && !record.raster_passes().is_empty()
 }
 
-/// ` \u{2020}` behind the name of a marked row, else nothing.
+/// ` \u{2020}` for a marked row, else nothing.
 pub(crate) fn mark(machine: &Machine, record: &Record) -> String {
     if is_marked(machine, record) { format!(" {MARK}") } else { String::new() }
 }
 
-/// What the mark means, with the rows that carry it; `None` where none does.
+/// What the mark means and which rows carry it; `None` where no row does.
 pub(crate) fn notice<'a>(
     machine: &Machine,
     records: impl IntoIterator<Item = &'a Record>,
 ) -> Option<String> {
     let chip = machine.weak_raster()?;
-    // Methods by mode and passes, in the order of the records.
+    // Strategies by mode and passes, in the order of the records.
     let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
     for record in records {
         let passes = record.raster_passes();
@@ -52,20 +52,20 @@ pub(crate) fn notice<'a>(
     let parts: Vec<String> = groups
         .iter()
         .map(|(key, names)| match names.len() {
-            count if count > NAMED => format!("{key} of {count} methods"),
+            count if count > NAMED => format!("{key} of {count} strategies"),
             _ => format!("{key} of {}", listed(names)),
         })
         .collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "{MARK} {chip} runs fragment shaders on a few of its processors. Do not compare marked figures \
-             across chips: {}.",
+            "{MARK} {chip} runs fragment shaders on only a few of its processors. Do not compare marked figures \
+             across chips. Marked are: {}.",
             parts.join("; ")
         )
     })
 }
 
-/// A record's note without what the mark says.
+/// A record's note without the words that the mark replaces.
 pub(crate) fn unmarked_note(record: &Record) -> Option<String> {
     let note = record.note.as_ref()?.replace(OLD_NOTE, "");
     let note = note.trim_matches(|c: char| c == ';' || c.is_whitespace());

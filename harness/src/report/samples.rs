@@ -7,7 +7,7 @@ use crate::chart::{Strip, half_width};
 use crate::results::{PassTimes, Record};
 
 /// The samples of all records of a comparison, a group of rows per strategy; empty where there is no pass.
-pub(super) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
+pub(crate) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
     let mut strips: Vec<(&Record, &PassTimes, Strip)> = Vec::new();
     for record in records {
         for (name, times) in record.times.passes.iter() {

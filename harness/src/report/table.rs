@@ -11,7 +11,7 @@ use super::rank::ALIKE;
 pub const TABLE_WIDTH: usize = 100;
 
 /// A row: its name, and what its cells are computed from.
-pub(super) struct Row<T> {
+pub(crate) struct Row<T> {
     name: String,
     /// The class that gives `--colour` to the dot before the name; empty draws no dot.
     class: String,
@@ -19,14 +19,14 @@ pub(super) struct Row<T> {
 }
 
 impl<T> Row<T> {
-    pub(super) fn new(name: impl Into<String>, data: T) -> Self {
+    pub(crate) fn new(name: impl Into<String>, data: T) -> Self {
         Self { name: name.into(), class: String::new(), data }
     }
 }
 
 /// How a page shows a table.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Look {
+pub(crate) enum Look {
     /// Over the whole width; a heading sorts by its column.
     Sortable,
     /// As wide as its figures.
@@ -34,7 +34,7 @@ pub(super) enum Look {
 }
 
 /// A table of rows under columns.
-pub(super) struct Table<'a, T> {
+pub(crate) struct Table<'a, T> {
     /// What the rows are: `strategy`.
     head: &'static str,
     columns: Vec<Column<'a, T>>,
@@ -45,7 +45,7 @@ pub(super) struct Table<'a, T> {
 
 impl<'a, T> Table<'a, T> {
     /// A table without the optional columns in which no row has a figure. All rows compete.
-    pub(super) fn new(
+    pub(crate) fn new(
         head: &'static str,
         columns: impl IntoIterator<Item = Column<'a, T>>,
         rows: Vec<Row<T>>,
@@ -60,12 +60,12 @@ impl<'a, T> Table<'a, T> {
     }
 
     /// Marks the best figures among these rows only.
-    pub(super) fn competing(self, competes: fn(&T) -> bool) -> Self {
+    pub(crate) fn competing(self, competes: fn(&T) -> bool) -> Self {
         Self { competes, ..self }
     }
 
     /// Draws a dot before each name, in the colour that the class of its row gives.
-    pub(super) fn dotted(mut self, class: impl Fn(&T) -> String) -> Self {
+    pub(crate) fn dotted(mut self, class: impl Fn(&T) -> String) -> Self {
         for row in &mut self.rows {
             row.class = class(&row.data);
         }
@@ -73,7 +73,7 @@ impl<'a, T> Table<'a, T> {
     }
 
     /// The table for a page.
-    pub(super) fn html(&self, label: &str, look: Look) -> Html {
+    pub(crate) fn html(&self, label: &str, look: Look) -> Html {
         let is_sortable = look == Look::Sortable;
         let head = |text: Html| match is_sortable {
             true => html!("<button type=\"button\">{}</button>", text),
@@ -126,7 +126,7 @@ impl<'a, T> Table<'a, T> {
     }
 
     /// The table for the terminal: the columns with a heading there, two lines of headings.
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let columns: Vec<Vec<String>> =
             self.columns.iter().filter_map(|column| self.cells_for_terminal(column)).collect();
         let widths: Vec<usize> = columns.iter().map(|cells| widest(cells)).collect();
@@ -161,7 +161,7 @@ impl<'a, T> Table<'a, T> {
     }
 
     /// The table as GitHub-flavoured Markdown.
-    pub(super) fn markdown(&self) -> String {
+    pub(crate) fn markdown(&self) -> String {
         let head = |column: &Column<'a, T>| format!(" {} {} |", column.head, column.unit);
         let heads: String = self.columns.iter().map(head).collect();
         let mut text =

@@ -1,24 +1,25 @@
-//! Who pays for a pass, what draws it, and what a method costs in each kind of frame.
+//! Decides which methods pay for a pass, and computes the cost of a method in each kind of frame.
 //!
-//! All of it follows from the name of a pass, the mode and the method, so that results that were
-//! stored before are billed alike.
+//! The bill depends only on the name of a pass, the mode and the method, so stored results get the same bill
+//! as new ones.
 //!
 //! A renderer draws one of these frames:
 //!
 //! | frame | a method that reads depth | other methods |
 //! |---|---|---|
-//! | forward, no pre-pass | pays for a depth pre-pass | light hidden surfaces too, where those are drawn first |
-//! | forward | finds the depth pre-pass drawn | likewise |
-//! | deferred | finds depth and G-buffer drawn; M pays for `model-ids` | likewise |
-//! | deferred, ids in the G-buffer | finds everything drawn | likewise |
+//! | forward, no pre-pass | pays for a depth pre-pass | also light hidden surfaces that are drawn first |
+//! | forward | the frame has a depth pre-pass | the same |
+//! | deferred | the frame has depth and G-buffer; M pays for `model-ids` | the same |
+//! | deferred, ids in the G-buffer | the frame has everything | the same |
 
 use shading::Mode;
 
 use super::{PassKind, Record};
 use crate::strategy::{RASTER_SPHERE, StrategyId};
 
-/// Which bill a pass is on: what the pipeline does not know is a strategy's own. In forward shading
-/// the G-buffer is drawn only for a strategy that reads normals, and without a pre-pass so is depth.
+/// The kind of a pass, which decides its bill. A pass that the pipeline does not know belongs to the strategy.
+/// In forward shading, the G-buffer is drawn only for a strategy that reads normals. Without a pre-pass, depth
+/// is drawn only for a strategy that reads it.
 pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
     match (name, mode) {
         ("gbuffer", mode) if mode.is_forward() => PassKind::Assign,
@@ -29,7 +30,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
     }
 }
 
-/// Whether a pass rasterises triangles and runs fragment shaders, of a method in a mode.
+/// Whether a pass of a method in a mode rasterises triangles and runs fragment shaders.
 pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
         "depth" | "gbuffer" | "model-ids" | "clay" => true,
@@ -43,7 +44,7 @@ pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
 pub enum FrameKind {
     /// Forward shading without a depth pre-pass.
     NoPrepass,
-    /// Forward shading behind a depth pre-pass.
+    /// Forward shading after a depth pre-pass.
     Prepass,
     /// Deferred shading whose G-buffer has no models.
     Deferred,
@@ -66,16 +67,16 @@ impl FrameKind {
     }
 }
 
-/// What a method costs in a kind of frame, ms.
+/// The cost of a method in a kind of frame, ms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bill {
-    /// Assigning lights, with whatever the frame does not draw anyway.
+    /// Assigning lights, with all passes that the frame draws only for this method.
     pub assign_ms: f64,
     /// Lighting pixels.
     pub shade_ms: f64,
     /// All passes.
     pub frame_ms: f64,
-    /// Assigning and lighting, gaps included; `None` where it is not known.
+    /// Assigning and lighting, including gaps; `None` if unknown.
     pub span_ms: Option<f64>,
     /// Whether it was computed from another kind of frame.
     pub is_derived: bool,
@@ -87,12 +88,12 @@ impl Bill {
         self.assign_ms + self.shade_ms
     }
 
-    /// What a method costs in a kind of frame, from its records in any mode under the same lights:
-    /// measured where it was, else derived.
+    /// The cost of a method in a kind of frame, from its records in any mode under the same lights: measured
+    /// if such a record exists, else derived.
     ///
-    /// Without a pre-pass, a method that reads depth draws the same passes as behind one, and pays for
-    /// one more. With ids in the G-buffer, a method does without `model-ids`; what the ids cost the
-    /// G-buffer is then not known. Nothing else can be derived.
+    /// Without a pre-pass, a method that reads depth draws the same passes as with one, and pays for one more.
+    /// With ids in the G-buffer, a method needs no `model-ids`; the cost of the ids in the G-buffer is then
+    /// unknown. Nothing else can be derived.
     pub fn of(kind: FrameKind, records: &[&Record]) -> Option<Self> {
         let in_mode = |mode: Mode| records.iter().find(|record| record.setting.mode == mode);
         if let Some(record) = in_mode(kind.mode()) {
@@ -129,8 +130,8 @@ impl Bill {
 }
 
 impl Record {
-    /// The passes of its bill that rasterise triangles: `shade` in forward shading and of light
-    /// volumes, `model-ids`, and what is drawn for the method alone.
+    /// The passes of its bill that rasterise triangles: `shade` in forward shading and for light volumes,
+    /// `model-ids`, and passes that are drawn only for this method.
     pub fn raster_passes(&self) -> Vec<&str> {
         let is_billed = |kind| matches!(kind, PassKind::Assign | PassKind::Shade);
         self.times
@@ -159,8 +160,8 @@ impl Record {
         self.assign_with_depth_ms() + self.times.shade_ms
     }
 
-    /// Bills passes as this program does: older programs billed nobody for the G-buffer that forward
-    /// shading draws for normals.
+    /// Bills the passes by today's rules. Older versions billed no method for the G-buffer that forward shading
+    /// draws for normals.
     pub(super) fn bill_again(&mut self) {
         let mode = self.setting.mode;
         let changed = |name: &str| name == "gbuffer" && mode.is_forward();
@@ -223,7 +224,7 @@ mod tests {
         let measured = record("SC-E/48x48x40/bvh", Mode::ForwardNoPrepass, &explicit);
         let bill = Bill::of(FrameKind::NoPrepass, &[&forward, &measured]).expect("measured");
         assert!(!bill.is_derived && (bill.assign_ms - 0.8).abs() < 1e-12, "{bill:?}");
-        // What it takes to light hidden surfaces cannot be derived.
+        // The cost of lighting hidden surfaces cannot be derived.
         let implicit = record("T-I/28x28", Mode::Forward, &explicit);
         assert_eq!(Bill::of(FrameKind::NoPrepass, &[&implicit]), None);
         assert!((implicit.with_depth_ms() - 1.3).abs() < 1e-12);

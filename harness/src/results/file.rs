@@ -13,7 +13,7 @@ use super::{
     seal::{sealed, unsealed},
 };
 
-/// Why results cannot be written or read; one line each.
+/// Errors of reading and writing results, one line each.
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// A file or folder cannot be written.
@@ -64,12 +64,11 @@ impl Results {
         serde_json::to_string_pretty(self).expect("keys are strings and values are plain data")
     }
 
-    /// Writes `results.json` with its checksum, whole or not at all; the folder is made where it is
-    /// missing.
+    /// Writes `results.json` with its checksum, completely or not at all. Creates a missing folder.
     ///
     /// # Errors
     ///
-    /// [`ResultsError::Write`] names the path that refused.
+    /// [`ResultsError::Write`] names the path.
     pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
         let text = sealed(self).map_err(|error| ResultsError::Parse {
             path: path.to_owned(),
@@ -87,7 +86,7 @@ impl Results {
         Self::read_checked(path).map(|(results, _)| results)
     }
 
-    /// The same, and what the results lack of what their command asks for.
+    /// Reads results, and checks that they hold all records of their command: returns the first fault.
     ///
     /// # Errors
     ///
@@ -100,7 +99,7 @@ impl Results {
         Ok((results, lack))
     }
 
-    /// Reads what a file holds, under the ids of today, and its checksum.
+    /// Reads a file, with the ids of this version, and its checksum.
     pub(super) fn read_raw(path: &Path) -> Result<(Self, String), ResultsError> {
         let fail = |reason| ResultsError::Parse { path: path.to_owned(), reason };
         let bytes = fs::read(path)
@@ -124,12 +123,12 @@ impl Results {
     }
 }
 
-/// Writes a file whole or not at all: into a temporary file beside it, then renamed. Folders
-/// above it are made where they are missing.
+/// Writes a file completely or not at all: writes a temporary file beside it, then renames it. Creates missing
+/// folders.
 ///
 /// # Errors
 ///
-/// [`ResultsError::Write`] names the path that refused; the temporary file is removed.
+/// [`ResultsError::Write`] names the path. The temporary file is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     let fail = |path: &Path, source| ResultsError::Write { path: path.to_owned(), source };
     if let Some(folder) = path.parent() {
@@ -145,33 +144,33 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
         })
         .and_then(|()| fs::rename(&temporary, path));
     written.map_err(|source| {
-        // Nothing to do where the temporary file was never made.
+        // The temporary file may not exist.
         let _ = fs::remove_file(&temporary);
         fail(path, source)
     })
 }
 
-/// How names of temporary files end, behind the number of their process.
+/// The end of the names of temporary files, after the process id.
 const TEMPORARY: &str = ".tmp";
 
 /// Removes the temporary files that killed runs left in an output folder, among its charts and its jobs.
-/// The folder must be held: files of a run that is still writing would go too.
+/// The caller must hold the folder, or this would remove files of a run that is still writing.
 pub(crate) fn remove_temporaries(folder: &Path) {
     let jobs = folder.join("jobs");
     let each_job = entries(&jobs).filter(|(kind, _)| kind.is_dir()).map(|(_, path)| path);
     let folders = [folder.to_owned(), folder.join("charts"), jobs.clone()];
     for folder in folders.into_iter().chain(each_job) {
-        // Links are neither followed nor removed.
+        // Links are not followed and not removed.
         for (_, path) in entries(&folder).filter(|(kind, _)| kind.is_file()) {
             if path.file_name().is_some_and(|name| is_temporary(&name.to_string_lossy())) {
-                // One that cannot be removed stands in nobody's way.
+                // A file that cannot be removed does no harm.
                 let _ = fs::remove_file(path);
             }
         }
     }
 }
 
-/// What lies in a folder; nothing where it cannot be read.
+/// The entries of a folder; none if it cannot be read.
 fn entries(folder: &Path) -> impl Iterator<Item = (fs::FileType, PathBuf)> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| Some((entry.file_type().ok()?, entry.path())))

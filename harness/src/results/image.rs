@@ -4,32 +4,32 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// How far its image is from what it should be.
+/// The differences and errors of an image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageFigures {
-    /// Largest difference of a channel to the image of no culling, linear HDR; `null` where
-    /// there was no such image, or the difference is not finite.
+    /// Largest difference of a channel to the image of no culling, linear HDR; `null` without such an image
+    /// and for a difference that is not finite.
     #[serde(default)]
     pub max_abs_diff: Option<f64>,
-    /// Largest difference of a channel over that channel's value without culling.
+    /// Largest ratio of a channel's difference to its value without culling.
     #[serde(default)]
     pub max_rel_diff: Option<f64>,
-    /// Channels (three per pixel) of which any bit differs from the image of no culling.
+    /// Channels (three per pixel) that differ in any bit from the image of no culling.
     #[serde(default)]
     pub differing_channels: Option<u64>,
-    /// The largest relative difference that the method states of itself; none where it states
-    /// that no bit differs.
+    /// The largest relative difference that the method allows itself; `null` for a method that promises
+    /// identical bits.
     #[serde(default)]
     pub tolerance: Option<f64>,
-    /// Errors against no culling with the same shader, by metric; means over the compared frames
-    /// along a path.
+    /// Errors against no culling with the same shader, by metric; along a path, means over the compared
+    /// frames.
     #[serde(default)]
     pub errors: Errors,
     /// Errors against lights without a range, by metric.
     #[serde(default)]
     pub unbounded_errors: Errors,
-    /// Errors against the truth image of a study, by metric: those of the model of area lights, never
-    /// of culling.
+    /// Errors against the truth image of a study, by metric. They come from the model of area lights, never
+    /// from culling.
     #[serde(default)]
     pub truth_errors: Errors,
     /// Pictures, beside `results.json`.
@@ -37,7 +37,7 @@ pub struct ImageFigures {
     pub files: Images,
 }
 
-/// Errors by metric; `null` where one is not finite.
+/// Errors by metric; `null` for one that is not finite.
 pub type Errors = BTreeMap<String, Option<f64>>;
 
 /// The pictures of a record: names of files beside `results.json`.
@@ -58,13 +58,13 @@ pub struct Images {
     /// The factor before the tone curve that the pictures share.
     #[serde(default)]
     pub exposure: Option<f64>,
-    /// The tone-mapped image of no culling; needed where the run has no record of it.
+    /// The tone-mapped image of no culling, for runs without a record of it.
     #[serde(default)]
     pub baseline: Option<String>,
     /// The absolute difference to no culling, linear, times the amplification.
     #[serde(default)]
     pub difference: Option<String>,
-    /// Lights per pixel over the scene: blue at none, red at 150, green above.
+    /// Lights per pixel, drawn over the scene: blue for 0, red for 150, green above.
     #[serde(default)]
     pub heat_map: Option<String>,
     /// The factor on the difference; 1 where absent.

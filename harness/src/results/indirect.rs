@@ -1,34 +1,34 @@
-//! What is stored of indirect light: virtual point lights, deep images, and rays through them.
+//! Results of indirect light: virtual point lights, deep images, and rays through them.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Errors, Passes, median, passes::nan_from_null};
 use crate::drift::unsteady;
 
-/// The virtual point lights of a record, and what it took to make them.
+/// The virtual point lights of a record, and the times of making them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vpls {
     /// Side of the reflective shadow map, pixels.
     pub rsm_px: u32,
-    /// Where ranges come from: `average`, `maximum`, `random`, `random-discard`, `constant-discard` or
+    /// The rule for ranges: `average`, `maximum`, `random`, `random-discard`, `constant-discard` or
     /// `infinite`.
     pub ranges: String,
-    /// Rays of each light; 0 where none was cast.
+    /// Rays per light; 0 if none were cast.
     pub rays: u32,
-    /// Whether the first ray went where a mirror reflects the primary light, not along the normal.
+    /// Whether the first ray follows the mirrored primary light instead of the normal.
     #[serde(default)]
     pub is_reflected: bool,
     /// Whether each ray was corrected by a second look-up.
     #[serde(default)]
     pub is_corrected: bool,
-    /// Factor on the ranges that were found.
+    /// Factor on the measured ranges.
     pub range_scale: f64,
-    /// Bounds of ranges that are no lengths of rays, metres: equal where all are the same.
+    /// Bounds of ranges that do not come from rays, metres. Both are equal for a constant range.
     #[serde(default)]
     pub random_m: Option<[f64; 2]>,
-    /// Pixels were gathered into blocks no wider than this, metres; 0 where none were.
+    /// The largest width of blocks of merged pixels, metres; 0 without merging.
     pub spacing_m: f64,
-    /// Distance within which light grows no further, metres.
+    /// Distance below which a light gets no brighter, metres.
     pub clamp_m: f64,
     /// Lights before any was left out for its range.
     pub candidates: u64,
@@ -36,19 +36,19 @@ pub struct Vpls {
     pub too_small: u64,
     /// Lights left out because their range was too long, or because no ray met a surface.
     pub too_large: u64,
-    /// Lights that are left.
+    /// Lights that remain.
     pub kept: u64,
-    /// Mean range of the lights that are left, metres.
+    /// Mean range of the remaining lights, metres.
     pub mean_range_m: f64,
-    /// The deep images, where rays were cast.
+    /// The deep images, if rays were cast.
     #[serde(default)]
     pub deep: Option<DeepImages>,
-    /// Whether lights emit what Fresnel's term leaves of diffuse reflection. Results without this field
-    /// have lights 4 to 7 % too bright.
+    /// Whether Fresnel's term reduces the diffuse light that the lights emit. In results without this field
+    /// the lights are 4 to 7 % too bright.
     #[serde(default)]
     pub has_fresnel: bool,
-    /// Errors of the image against that of the same lights with ranges through deep images that were
-    /// built in one pass, by metric, where the deep images were built otherwise.
+    /// For deep images that were not built in one pass: errors, by metric, of the image against that of the
+    /// same lights with ranges from deep images built in one pass.
     #[serde(default)]
     pub build_errors: Errors,
     /// The passes and their times: the shadow map, the lights, and the deep images.
@@ -56,7 +56,7 @@ pub struct Vpls {
 }
 
 impl Vpls {
-    /// What they are: `1,042 of 2,515 lights, ranges average, 3.15 m on average, made in 1.15 ms`.
+    /// A summary: `1,042 of 2,515 lights, ranges average, 3.15 m on average, made in 1.15 ms`.
     pub fn summary(&self) -> String {
         format!(
             "{} of {} lights, ranges {}, {:.2} m on average, made in {:.3} ms",
@@ -68,7 +68,7 @@ impl Vpls {
         )
     }
 
-    /// Why their times are no measurement ([`unsteady`]); `None` where nothing speaks against them.
+    /// Why their times are unsteady ([`unsteady`]); `None` for steady times.
     pub fn unsteady(&self) -> Option<String> {
         unsteady(&self.passes.per_frame_ms(None))
     }
@@ -79,14 +79,14 @@ impl Vpls {
     }
 }
 
-/// Deep images: what they were asked to be, and what they came to.
+/// Deep images: their settings and their size.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DeepImages {
     /// Rings of directions over the hemisphere.
     pub stacks: u32,
     /// Directions of a ring.
     pub slices: u32,
-    /// How they are spread: `stacks` or `squares`.
+    /// How the directions are spread: `stacks` or `squares`.
     #[serde(default)]
     pub spread: String,
     /// Side of an image, pixels.
@@ -97,9 +97,9 @@ pub struct DeepImages {
     pub build: String,
     /// Side of a pixel, metres.
     pub footprint_m: f64,
-    /// Points of surfaces that were sampled; 0 where a build has none.
+    /// Surface samples; 0 for builds without any.
     pub samples: u64,
-    /// Depths in all lists together.
+    /// Depths in all lists.
     pub fragments: u64,
     /// Depths in the longest list.
     pub longest_list: u64,
@@ -114,14 +114,14 @@ impl DeepImages {
     }
 }
 
-/// What `lightbench cdi` measured.
+/// The results of `lightbench cdi`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeepImageRun {
     /// The scene's id, or its file's name.
     pub scene: String,
     /// Hash of everything in the scene that reaches the GPU, hexadecimal.
     pub scene_hash: String,
-    /// Triangles drawn, instances counted each.
+    /// Drawn triangles; every instance counts.
     pub triangles: u64,
     /// The deep images.
     pub deep: DeepImages,
@@ -144,14 +144,14 @@ impl DeepImageRun {
         median(&self.passes.per_frame_ms(None))
     }
 
-    /// Why the times of its builds are no measurement; `None` where nothing speaks against them.
+    /// Why the times of its builds are unsteady; `None` for steady times.
     pub fn unsteady(&self) -> Option<String> {
         unsteady(&self.passes.per_frame_ms(None))
     }
 }
 
 impl CastTimes {
-    /// Why its times are no measurement; `None` where nothing speaks against them.
+    /// Why its times are unsteady; `None` for steady times.
     pub fn unsteady(&self) -> Option<String> {
         [&self.cast_ms, &self.corrected_ms, &self.random_ms].into_iter().find_map(|ms| unsteady(ms))
     }
@@ -162,14 +162,14 @@ impl CastTimes {
 pub struct CastTimes {
     /// Side of the reflective shadow map, pixels.
     pub rsm_px: u32,
-    /// Whether the map is of the middle of the scene, where about every pixel shows a surface.
+    /// Whether the map shows the middle of the scene, where almost every pixel shows a surface.
     #[serde(default)]
     pub is_middle: bool,
     /// Virtual point lights: pixels that show a surface.
     pub lights: u64,
-    /// Rays of each.
+    /// Rays per light.
     pub rays: u32,
-    /// Times of casting them, ms, one a frame.
+    /// Times of casting them, ms, one per frame.
     pub cast_ms: Vec<f64>,
     /// Times of casting them with a second look-up each, ms.
     #[serde(default)]

@@ -1,7 +1,7 @@
-//! What results lack of what their command asks for.
+//! Checks that results hold the records that their command asks for.
 //!
-//! A file that was cut by hand, or put together from others, may hold half of the records of its command,
-//! or one twice. It must not count as done.
+//! A file that was edited by hand, or merged from others, may lack records of its command or hold one twice.
+//! A study must not count it as done.
 
 use super::{Record, Results, renamed::named_then};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     strategy::StrategyId,
 };
 
-/// What is missing from results, or too many in them; `None` where they are what was asked for.
+/// The first record that is missing or superfluous; `None` if the results match their command.
 pub(super) fn lack(results: &Results) -> Option<String> {
     for (ix, record) in results.records.iter().enumerate() {
         let same = |known: &&Record| {
@@ -19,7 +19,7 @@ pub(super) fn lack(results: &Results) -> Option<String> {
             return Some(format!("it holds {} twice", name(record)));
         }
     }
-    // Commands of earlier versions may have options that are refused today.
+    // Commands of earlier versions may have options without effect, which are errors today.
     match cli::parse_stored(&results.command) {
         Ok(Invocation::Compare(args)) => lack_of_comparison(&args, &results.records),
         Ok(Invocation::Truth(_)) => {
@@ -38,7 +38,7 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
         return Some("it has no records".to_owned());
     }
     let Ok(asked) = args.choices() else { return None };
-    // Strategies of another version cannot be told apart here.
+    // Unknown strategies come from another version, and cannot be compared.
     if records.iter().any(|record| StrategyId::parse(&record.strategy).is_err()) {
         return None;
     }
@@ -51,10 +51,10 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
                 };
                 records.iter().position(same)
             };
-            // Commands of earlier versions ask by the ids of their time.
+            // Commands of earlier versions use the ids of their version.
             match find(StrategyId::clone).or_else(|| find(named_then)) {
                 Some(ix) => is_asked[ix] = true,
-                // Of all strategies, those that cannot serve a scene are left out. No culling serves all.
+                // `all` leaves out strategies that cannot serve the scene. No culling serves every scene.
                 None if !choice.is_named && !choice.is_reference() => {}
                 None => return Some(format!("{} in {} is missing", choice.id(), mode.name())),
             }
@@ -108,7 +108,7 @@ mod tests {
             (results.truth_image, results.deep_images) = (None, None);
             assert!(lack(&results).is_some_and(|lack| lack.contains("missing")));
         }
-        // A command of another version is not understood: what is there counts.
+        // A command of another version cannot be parsed, so its records count as complete.
         assert_eq!(lack(&results("lightbench compare --gone 1", &["None"])), None);
     }
 }

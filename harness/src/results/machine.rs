@@ -1,8 +1,8 @@
-//! Where a run took place.
+//! The machine of a run.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a run took place.
+/// The machine and the program of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The adapter's name, as the driver gives it.
@@ -17,7 +17,7 @@ pub struct Machine {
     pub cpu: String,
     /// The operating system and its version.
     pub os: String,
-    /// The commit of this workspace, with `-dirty` where files had been changed; empty if unknown.
+    /// The commit of this workspace, with `-dirty` after it if files were changed; empty if unknown.
     pub commit: String,
     /// When the run began, UTC, RFC 3339: `2026-11-22T04:00:00Z`.
     pub date: String,
@@ -27,15 +27,14 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// The GPU's short name where it runs fragment shaders on a few of its processors, as NVIDIA's
-    /// data-centre GPUs of the Hopper generation do: figures of raster passes are then not those of
-    /// another chip.
+    /// The GPU's short name if it runs fragment shaders on only a few of its processors, as NVIDIA's
+    /// data-centre GPUs of the Hopper generation do. Times of raster passes are then not valid for other GPUs.
     pub fn weak_raster(&self) -> Option<&str> {
         const CHIPS: [&str; 5] = ["H100", "H200", "GH200", "H800", "H20"];
         self.adapter.split_whitespace().find(|word| CHIPS.contains(word))
     }
 
-    /// What must be the same where times are put side by side: fields and their values.
+    /// The fields, with their values, that must agree before times are compared.
     pub fn identity(&self) -> [(&'static str, &str); 4] {
         [
             ("adapter", &self.adapter),
@@ -56,7 +55,7 @@ pub enum DeviceType {
     IntegratedGpu,
     /// A GPU handed to a virtual machine.
     VirtualGpu,
-    /// A software adapter: its figures are not a GPU's.
+    /// A software adapter; its times are not those of a GPU.
     Cpu,
     /// Anything else.
     Other,

@@ -1,7 +1,8 @@
-//! `metrics.json`: errors that were computed again from stored images, beside the raw results.
+//! `metrics.json`: errors that a report computed again from stored images.
 //!
-//! `results.json` is what a run measured and is never written again. What a report computes from it and
-//! from the images beside it goes into this file, which can be removed and made anew.
+//! `results.json` holds the measurements of a run and is never written again. A report computes errors from
+//! it and from the images beside it, and writes them to this file. The file can be removed: the next report
+//! creates it again.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,7 @@ use super::{
     seal::{sealed, unsealed},
 };
 
-/// The file, and that of the results that it belongs to.
+/// The names of this file and of the results file that it belongs to.
 const FILE: &str = "metrics.json";
 const RESULTS: &str = "results.json";
 
@@ -49,7 +50,7 @@ impl Results {
         Metrics { of, records: self.records.iter().map(one).collect() }
     }
 
-    /// Takes the errors from the file beside a `results.json` with the checksum `of`, where there is one.
+    /// Reads the errors from the file beside a `results.json` with the checksum `of`, if the file exists.
     pub(super) fn take_metrics(&mut self, results: &Path, of: &str) {
         let known = beside(results)
             .and_then(|path| std::fs::read(path).ok())
@@ -69,8 +70,8 @@ impl Results {
         }
     }
 
-    /// Writes the errors beside the `results.json` that these results were read from, where they differ
-    /// from those in it.
+    /// Writes the errors beside the `results.json` that these results come from, if they differ from those in
+    /// it.
     ///
     /// # Errors
     ///
@@ -95,7 +96,7 @@ impl Results {
     }
 }
 
-/// The file of errors; `None` beside files of results under other names, of which a folder holds many.
+/// The file of errors. `None` for results files under other names, because a folder may hold many of these.
 fn beside(results: &Path) -> Option<PathBuf> {
     (results.file_name()? == RESULTS).then(|| results.with_file_name(FILE))
 }
@@ -118,7 +119,7 @@ mod tests {
         computed.write_metrics(&path).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         assert_eq!(Results::read(&path).unwrap(), computed);
-        // Those of other results are not taken.
+        // Errors of other results are ignored.
         let mut other = raw;
         other.machine.date = "another day".into();
         other.write(&path).unwrap();

@@ -2,24 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Light operations, summed over an image: one term of one light at one sample each (Swarbrick 2025,
-/// appendix I). Without another word they are *listed* terms: the list of the sample's group names them.
+/// Light operations, summed over an image. One operation is one term of one light at one sample (Swarbrick
+/// 2025, appendix I). *Listed* operations stand in the list of the sample's group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Operations {
-    /// Diffuse terms that were listed.
+    /// Listed diffuse terms.
     pub diffuse: u64,
-    /// Specular terms that were listed.
+    /// Listed specular terms.
     pub specular: u64,
-    /// Of those, the ones at samples beyond the reach of the light's diffuse term.
+    /// The specular terms among them at samples beyond the range of the light's diffuse term.
     pub outer_specular: u64,
-    /// Terms of either kind whose light would be seen, 0 to 2 of each pair of a sample and a listed light,
-    /// *whichever terms its list names*.
+    /// Terms of both kinds that change the image: 0 to 2 per pair of a sample and a listed light, *even if the
+    /// list names only one term*.
     pub perceptible: u64,
-    /// Of those, the ones that the lists name; `null` in files older than this field.
+    /// The listed terms among them; `null` in files older than this field.
     #[serde(default)]
     pub perceptible_listed: Option<u64>,
-    /// Listed terms that shading evaluated: it leaves out, sample by sample, what adds nothing there.
-    /// `null` in files older than this field.
+    /// Listed terms that shading evaluated; at each sample it skips terms that add nothing. `null` in files
+    /// older than this field.
     #[serde(default)]
     pub evaluated: Option<EvaluatedTerms>,
 }
@@ -31,7 +31,7 @@ pub struct EvaluatedTerms {
     pub diffuse: u64,
     /// Specular terms.
     pub specular: u64,
-    /// Of those, the ones at samples beyond the reach of the light's diffuse term.
+    /// The specular terms among them at samples beyond the range of the light's diffuse term.
     pub outer_specular: u64,
 }
 

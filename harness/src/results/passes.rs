@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::stats::{median, percentile};
 
-/// What a pass is for, and so which bill it is on.
+/// The purpose of a pass, which decides its bill.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PassKind {
@@ -26,7 +26,7 @@ pub enum PassKind {
 /// The times of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassTimes {
-    /// What the pass is for.
+    /// The purpose of the pass.
     #[serde(default)]
     pub kind: PassKind,
     /// Median of the samples, ms.
@@ -47,7 +47,7 @@ impl PassTimes {
     }
 }
 
-/// The times from the first of some passes to the last, gaps between them included, one per frame.
+/// The times from the first of some passes to the last, including gaps, one per frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spans {
     /// Of the passes that assign lights and light pixels, ms.
@@ -63,7 +63,7 @@ pub struct Spans {
 pub struct Passes(Vec<(String, PassTimes)>);
 
 impl Passes {
-    /// Appends a pass; a pass of the same name is replaced in its place.
+    /// Appends a pass, or replaces the pass of the same name.
     pub fn insert(&mut self, name: impl Into<String>, times: PassTimes) {
         let name = name.into();
         match self.0.iter_mut().find(|(known, _)| *known == name) {
@@ -82,8 +82,8 @@ impl Passes {
         self.0.iter().map(|(name, times)| (name.as_str(), times))
     }
 
-    /// The time per frame of all passes of a kind (of all passes: `None`), ms. As long as the
-    /// shortest of their samples.
+    /// The time per frame of all passes of a kind (`None`: of all passes), ms. It has as many frames as the
+    /// pass with the fewest samples.
     pub fn per_frame_ms(&self, kind: Option<PassKind>) -> Vec<f64> {
         self.per_frame_where(|_, pass| kind.is_none_or(|kind| pass == kind))
     }
@@ -114,7 +114,7 @@ impl Passes {
         self.0.iter().any(|(_, times)| kind.is_none_or(|kind| times.kind == kind))
     }
 
-    /// Median over frames of [`per_frame_ms`](Self::per_frame_ms); 0 where there is no such pass.
+    /// Median over frames of [`per_frame_ms`](Self::per_frame_ms); 0 without such a pass.
     pub fn median_ms(&self, kind: Option<PassKind>) -> f64 {
         if self.has(kind) { median(&self.per_frame_ms(kind)) } else { 0.0 }
     }
@@ -164,7 +164,7 @@ impl<'de> Deserialize<'de> for Passes {
     }
 }
 
-/// JSON has no NaN: it is written as `null`, and read back here.
+/// JSON has no NaN. It is written as `null`, and this function reads it back.
 pub(super) fn nan_from_null<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }

@@ -2,21 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Near and far plane of the view that the record's `eye` and `forward` tell.
+/// Near and far plane of the view that the record's `eye` and `forward` describe.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planes {
     /// View depth of the near plane, metres.
     pub near_m: f64,
-    /// What says where it is.
+    /// The source of this depth.
     pub near_from: PlaneSource,
     /// View depth of the far plane, metres; `null`: infinitely far.
     #[serde(default)]
     pub far_m: Option<f64>,
-    /// What says where it is.
+    /// The source of this depth.
     pub far_from: PlaneSource,
 }
 
-/// What says where a plane is.
+/// The source of a plane's depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlaneSource {
@@ -24,7 +24,7 @@ pub enum PlaneSource {
     Option,
     /// The camera of the scene's file.
     File,
-    /// The size of the scene, or the nearest surface in view where that is nearer; of the far plane, the
-    /// scene's bounds as seen from the eye.
+    /// The scene. Its size, or the nearest visible surface, sets the near plane. Its bounds, seen from the eye,
+    /// set the far plane.
     Scene,
 }

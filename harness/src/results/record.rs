@@ -1,4 +1,4 @@
-//! One measured method: what was asked, and what came of it.
+//! One measured method: its setting, times, lists and image.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,20 +8,20 @@ use crate::strategy::StrategyId;
 /// One strategy on one scene in one mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// The strategy's id: `DC-I/64x64x24`. Files hold its family and parameters beside it.
+    /// The strategy's id: `DC-I/64x64x24`. Files also hold its family and parameters.
     pub strategy: StrategyId,
-    /// Whether a knob of the method loses light on purpose.
+    /// Whether a setting of the method loses light on purpose.
     #[serde(default)]
     pub is_lossy: bool,
-    /// What is drawn, with which lights, from where: the same for all methods of a run.
+    /// The scene, the lights and the camera, equal for all methods of a run.
     pub setting: Setting,
-    /// How long it took.
+    /// Its times.
     pub times: Times,
-    /// What its lists hold, and whether they hold enough.
+    /// Figures of its lists, and missed lights.
     pub lists: ListFigures,
-    /// How far its image is from what it should be.
+    /// The differences and errors of its image.
     pub image: ImageFigures,
-    /// What a reader of this record has to know.
+    /// A note for readers of this record.
     #[serde(default)]
     pub note: Option<String>,
 }

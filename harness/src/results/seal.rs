@@ -1,7 +1,7 @@
-//! A checksum in a file of JSON, so that damage after a run shows.
+//! Puts a checksum into JSON files, to detect later damage.
 //!
-//! The last field of the file is the checksum of all bytes before it. Files of earlier versions have none,
-//! and are read as they are.
+//! The last field of a file is the checksum of all bytes before it. Files of earlier versions have no checksum
+//! and are read without a check.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -12,7 +12,7 @@ const FIELD: &str = "checksum";
 /// Digits of a checksum.
 const DIGITS: usize = 32;
 
-/// A value as the text of a file, its checksum in it.
+/// The JSON text of a value, with its checksum.
 pub(crate) fn sealed(value: &impl Serialize) -> Result<String, serde_json::Error> {
     let text = serde_json::to_string_pretty(value)?;
     Ok(match text.strip_suffix("\n}") {
@@ -21,16 +21,16 @@ pub(crate) fn sealed(value: &impl Serialize) -> Result<String, serde_json::Error
     })
 }
 
-/// How a file ends behind what its checksum is of.
+/// The end of a file, after the bytes that the checksum covers.
 fn seal(checksum: &str) -> String {
     format!(",\n  \"{FIELD}\": \"{checksum}\"\n}}")
 }
 
-/// What a file holds, and a checksum of it.
+/// The value in a file, and its checksum.
 ///
 /// # Errors
 ///
-/// Says what is wrong: where the text ends too early, is no JSON, or is not what was sealed.
+/// The text is cut short, is not JSON, or does not match its checksum.
 pub(crate) fn unsealed(bytes: &[u8]) -> Result<(Value, String), String> {
     let value: Value = serde_json::from_slice(bytes).map_err(|error| {
         if error.is_eof() { format!("it is cut short ({error})") } else { error.to_string() }
@@ -68,7 +68,7 @@ mod tests {
             let error = unsealed(changed.as_bytes()).expect_err(was);
             assert!(error.contains("changed after it was written"), "{error}");
         }
-        // Every text that is cut short is refused.
+        // Every truncated text is an error.
         for end in 1..text.trim_end().len() {
             assert!(unsealed(&text.as_bytes()[..end]).is_err(), "{end}");
         }

@@ -1,12 +1,12 @@
-//! Names in results that hide nothing.
+//! Escapes control characters in the text of results.
 
 use crate::visible::visible;
 
 use super::Results;
 
 impl Results {
-    /// Escapes what a terminal would obey in all text that reports show. The command stays as it is: it is
-    /// to be run again.
+    /// Escapes control characters in all text that reports show. The command keeps them, because it can be run
+    /// again.
     pub(super) fn show_hidden(&mut self) {
         let machine = &mut self.machine;
         let mut all: Vec<&mut String> = vec![

@@ -1,6 +1,6 @@
-//! Statistics over the samples of a pass. No best-of: a lucky sample is no result.
+//! Statistics over the samples of a pass. There is no best-of, because it reports a lucky sample.
 
-/// The middle sample, or the mean of the two in the middle. NaN without samples.
+/// The median: the middle sample, or the mean of the two middle samples. NaN without samples.
 ///
 /// ```
 /// assert_eq!(harness::results::median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
@@ -15,8 +15,8 @@ pub fn median(samples: &[f64]) -> f64 {
     }
 }
 
-/// The `share` quantile by nearest rank: the smallest sample that at least that share of all
-/// samples does not exceed. NaN without samples. `share` is clamped to 0..=1.
+/// The `share` quantile by nearest rank: the smallest sample x so that at least this share of all samples is
+/// at most x. NaN without samples. `share` is clamped to 0..=1.
 ///
 /// ```
 /// let times_ms: Vec<f64> = (1..=20).map(f64::from).collect();
@@ -40,25 +40,25 @@ pub fn standard_deviation(samples: &[f64]) -> f64 {
         .sqrt()
 }
 
-/// Where a median lies.
+/// A confidence interval of a median.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The lower end.
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// The probability that the interval holds the median, whatever the samples' distribution:
-    /// 0.95 at least where there are enough samples, else less.
+    /// The probability that the interval contains the median, for any distribution of the samples: at least
+    /// 0.95 with enough samples, else less.
     pub coverage: f64,
 }
 
-/// The least probability with which an interval is to hold the median.
+/// The wanted probability that an interval contains the median.
 const COVERAGE: f64 = 0.95;
 
-/// A confidence interval of the median of whatever independent samples come from, from order
-/// statistics: the k-th smallest and k-th largest sample hold it unless fewer than k of n fair coins
-/// fall on one side, so the coverage is `1 - 2 P(B(n, 1/2) < k)`. The largest k with a coverage of
-/// 0.95 is taken; below six samples that is none, and the range of all stands in. `None` below two.
+/// A confidence interval of the median of independent samples, from order statistics. The k-th smallest and
+/// k-th largest sample enclose the median unless fewer than k of n fair coins fall on one side, so the coverage
+/// is `1 - 2 P(B(n, 1/2) < k)`. The function takes the largest k with a coverage of at least 0.95. Below six
+/// samples there is no such k, and the interval is the range of all samples. `None` for fewer than two.
 ///
 /// ```
 /// let times_ms: Vec<f64> = (1..=16).map(f64::from).collect();

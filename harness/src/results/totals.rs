@@ -1,10 +1,10 @@
-//! What a record's figures come to.
+//! Totals and properties of a record.
 
 use super::{Interval, PassKind, Record, Spans, mean, median, median_interval};
 use crate::{schedule::frames_of_round, strategy::Role};
 
 impl Record {
-    /// Assigning and lighting together, ms: what strategies are compared by.
+    /// Time of assigning and lighting together, ms: the time that strategies are compared by.
     pub fn assign_and_shade_ms(&self) -> f64 {
         self.times.assign_ms + self.times.shade_ms
     }
@@ -22,8 +22,8 @@ impl Record {
             [of(|spans| &spans.assign_and_shade_ms), of(|spans| &spans.frame_ms)];
     }
 
-    /// The time of the passes that are counted by name and kind, summed per frame, ms: median, or mean
-    /// along a path. 0 where there is no such pass.
+    /// The time of the selected passes, summed per frame, ms: median, or mean along a path. 0 without such a
+    /// pass.
     pub fn time_of(&self, is_counted: impl Fn(&str, PassKind) -> bool) -> f64 {
         let samples = self.times.passes.per_frame_where(&is_counted);
         match self.times.passes.iter().any(|(name, times)| is_counted(name, times.kind)) {
@@ -32,7 +32,7 @@ impl Record {
         }
     }
 
-    /// The mean along a path, whose frames are a population; else the median.
+    /// The mean along a path, because its frames differ in their work; else the median.
     fn middle_ms(&self, samples: &[f64]) -> f64 {
         if self.setting.along_path { mean(samples) } else { median(samples) }
     }
@@ -45,7 +45,7 @@ impl Record {
         (0..assign.len().max(shade.len())).map(|f| at(&assign, f) + at(&shade, f)).collect()
     }
 
-    /// How often the camera went along its path: 0 from a still camera.
+    /// Laps of the camera along its path; 0 for a still camera.
     pub fn laps(&self) -> u32 {
         match (self.setting.along_path, self.setting.poses) {
             (false, _) => 0,
@@ -54,10 +54,10 @@ impl Record {
         }
     }
 
-    /// The time of each round, assigning and lighting together, ms. From a still camera a round's
-    /// time is the median of its frames; along a path a round is a lap, and its time is the mean over
-    /// the poses. Intervals and comparisons of methods use these, because frames of one round are not
-    /// independent, and poses are not repetitions of each other.
+    /// The time of each round, assigning and lighting together, ms. For a still camera, the time of a round is
+    /// the median of its frames. Along a path, a round is a lap, and its time is the mean over the poses.
+    /// Intervals and comparisons of methods use these times, because frames of one round are not independent
+    /// and poses are not repetitions.
     pub fn round_times_ms(&self) -> Vec<f64> {
         let frames = self.frames_ms();
         let count = u32::try_from(frames.len()).unwrap_or(u32::MAX);
@@ -72,8 +72,8 @@ impl Record {
             .collect()
     }
 
-    /// The time at each pose of the path, its mean over the laps, ms; frame by frame from a still
-    /// camera.
+    /// The time at each pose of the path, as a mean over the laps, ms. For a still camera, the time of each
+    /// frame.
     pub fn pose_times_ms(&self) -> Vec<f64> {
         let frames = self.frames_ms();
         let poses = frames.len() / self.laps().max(1) as usize;
@@ -84,9 +84,9 @@ impl Record {
         (0..poses).map(|pose| mean(&at(pose))).collect()
     }
 
-    /// Where [`assign_and_shade_ms`](Self::assign_and_shade_ms) lies, from its rounds. Along a path
-    /// the poses are the same in every lap, so what varies between laps is the noise of measuring,
-    /// and the interval speaks of these poses only. `None` where there is one round or lap.
+    /// The confidence interval of [`assign_and_shade_ms`](Self::assign_and_shade_ms), from its rounds. Along a
+    /// path, every lap has the same poses, so laps differ only by noise, and the interval is valid for these
+    /// poses only. `None` for one round or lap.
     pub fn interval_ms(&self) -> Option<Interval> {
         median_interval(&self.round_times_ms())
     }
@@ -101,25 +101,24 @@ impl Record {
         self.strategy.role() == Some(Role::Control)
     }
 
-    /// Whether it leaves out lights before a sample is lit: neither no culling, with or without an
-    /// early exit, nor the control.
+    /// Whether it culls lights before shading: true for all methods except no culling (with or without the
+    /// early exit) and the control.
     pub fn culls(&self) -> bool {
         !self.is_baseline() && !self.is_control() && self.strategy.role() != Some(Role::EarlyExit)
     }
 
-    /// Whether it may be called exact: no knob loses light, nothing is known to be lost, and the run
-    /// put it to a test.
+    /// Whether it is exact: no setting loses light, no loss is known, and the run tested it.
     pub fn is_exact(&self) -> bool {
         self.shows_no_loss() && self.lists.untested.is_none()
     }
 
-    /// Whether no knob loses light and nothing is known to be lost, tested or not.
+    /// Whether no setting loses light and no loss is known, tested or not.
     pub fn shows_no_loss(&self) -> bool {
         !self.is_lossy && self.is_lossless()
     }
 
-    /// Whether nothing that was measured shows a loss: no missed pair, no channel that differs by
-    /// more than the method states of itself.
+    /// Whether no measurement shows a loss: no missed pair, and no channel that differs by more than the method
+    /// allows itself.
     pub fn is_lossless(&self) -> bool {
         let same = self.image.differing_channels.unwrap_or(0) == 0
             && self.image.max_abs_diff.unwrap_or(0.0) == 0.0;

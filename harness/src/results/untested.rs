@@ -1,38 +1,41 @@
-//! Why a record certifies nothing.
+//! Why a run tested nothing.
 
 use serde::{Deserialize, Serialize};
 
 use super::Record;
 
-/// Why a run put no list and no image to a test.
+/// Why a run tested no list and no image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Untested {
     /// No pixel shows a surface.
     NoSurface,
-    /// No light reaches a surface that a pixel shows.
+    /// No light reaches a visible surface.
     NoLight,
-    /// Only suns light what is seen: they stand beside the lists, which hold nothing here.
+    /// Only suns light the visible surfaces. Suns stand in no list, so all lists are empty here.
     OnlySuns,
 }
 
 impl Untested {
-    /// Why, as a sentence without its full stop.
+    /// The reason as a sentence without its full stop.
     pub fn words(self, lights: u64, along_path: bool) -> &'static str {
         match (self, along_path) {
             (Self::NoSurface, false) => "the view shows no surface",
             (Self::NoSurface, true) => "no compared view along the path shows a surface",
             (Self::NoLight, _) if lights == 0 => "there is no light",
-            (Self::NoLight, false) => "no light reaches what the view shows",
-            (Self::NoLight, true) => "no light reaches what the compared views along the path show",
-            (Self::OnlySuns, _) => "only suns light what is seen, and they stand in no list",
+            (Self::NoLight, false) => "no light reaches a surface in the view",
+            (Self::NoLight, true) => {
+                "no light reaches a surface in the compared views along the path"
+            }
+            (Self::OnlySuns, _) => {
+                "only suns light the visible surfaces, and suns stand in no list"
+            }
         }
     }
 }
 
 impl Record {
-    /// Why nothing can be said of the methods of its run; `None` where they were tested, or where the
-    /// record is older than this question.
+    /// Why its run tested no method; `None` if it tested them, and for records older than this field.
     pub fn untested_words(&self) -> Option<&'static str> {
         self.lists.untested.map(|why| why.words(self.setting.lights, self.setting.along_path))
     }

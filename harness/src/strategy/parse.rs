@@ -137,7 +137,7 @@ impl Reader<'_> {
         } else {
             format!("segments that are {}", accepted.join(", or "))
         };
-        let reason = format!("{segment:?} is not understood: {} takes {accepted}", row.family);
+        let reason = format!("{segment:?} is unknown: {} takes {accepted}", row.family);
         IdError::Segment { id: self.id.to_owned(), reason }
     }
 }

@@ -8,16 +8,14 @@ use std::time::{Duration, Instant};
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// Does what a reader can do: every button twice, every slider, pointer and focus everywhere.
+/// Does what a reader can do: clicks every button twice, moves every slider, focuses every element.
 pub(crate) const USE_EVERYTHING: &str = "<script>
 for (let round = 0; round < 2; round += 1) {
   document.querySelectorAll('button').forEach((button) => button.click());
   document.querySelectorAll('input').forEach((input) => { input.value = '20'; input.dispatchEvent(new Event('input')); });
-  document.querySelectorAll('[tabindex], .segment, .point').forEach((element) => {
-    element.dispatchEvent(new PointerEvent('pointerover', { bubbles: true }));
-    element.dispatchEvent(new PointerEvent('pointermove', { bubbles: true }));
+  document.querySelectorAll('[tabindex]').forEach((element) => {
     element.focus?.();
-    element.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }));
+    element.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }));
   });
 }
 document.documentElement.dataset.used = '1';

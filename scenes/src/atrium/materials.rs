@@ -32,7 +32,7 @@ pub(super) enum Surface {
     Water,
     /// Lantern glass.
     Glow,
-    /// Four cloths, side by side.
+    /// Four cloths of different colours.
     Crimson,
     Blue,
     Green,

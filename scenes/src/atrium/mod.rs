@@ -1,8 +1,8 @@
 //! The default scene: two storeys of arcades around a rectangular court under an open sky.
 //!
-//! The outer walls enclose 30 by 20 metres; the court within measures 22 by 12 and is lined by 24
-//! columns on each storey. Everything is made from profiles, surfaces and boxes; repeated parts
-//! are instances of one mesh. X runs along the court, the floor is y = 0.
+//! The outer walls enclose 30 by 20 metres. The court within measures 22 by 12 metres, and 24
+//! columns line it on each storey. Everything is made of profiles, surfaces and boxes; repeated
+//! parts are instances of one mesh. X runs along the court, and the floor is y = 0.
 
 mod materials;
 mod parts;
@@ -24,11 +24,11 @@ use crate::{
     extent,
 };
 
-/// Half the court, and half of all inside the outer walls, along x and z, metres.
+/// Half the size of the court, and half the size inside the outer walls, along x and z, metres.
 const COURT: Vec2 = Vec2::new(11.0, 6.0);
 const OUTER: Vec2 = Vec2::new(15.0, 10.0);
 
-/// Bays along the long and short sides, and their widths, metres.
+/// Number of bays along the long and short sides, and their widths, metres.
 const BAYS: [u32; 2] = [8, 4];
 const BAY_M: [f32; 2] = [2.75, 3.0];
 
@@ -38,7 +38,7 @@ const STOREYS: [[f32; 3]; 2] = [[0.0, 3.5, 5.7], [6.1, 2.7, 4.9]];
 /// Upper edge of the roof, metres.
 const ROOF_M: f32 = 11.3;
 
-/// The procedural default scene. `seed` moves the folds and colours of the cloths, the vases and
+/// The procedural default scene. `seed` decides the folds and colours of the cloths, the vases, and
 /// the veins of the stones.
 pub fn atrium(seed: u64) -> Scene {
     let mut hall = Hall {
@@ -47,7 +47,7 @@ pub fn atrium(seed: u64) -> Scene {
         models: Vec::new(),
         instances: Vec::new(),
     };
-    // Room for the offsets that tell the noises apart.
+    // Leave room for the offsets that separate the noises.
     let texture_seed = hall.rng.random::<u32>() >> 8;
     hall.shell();
     hall.floors();
@@ -88,7 +88,7 @@ struct Hall {
     instances: Vec<Instance>,
 }
 
-/// One side of the court: its bays' width and count, and the way to its middle.
+/// One side of the court: the kind of its bays, and its place.
 struct Side {
     kind: usize,
     to_world: Mat4,
@@ -96,8 +96,8 @@ struct Side {
     reach: f32,
 }
 
-/// The four sides. In a side's own space, x runs along it and z points into the court; its
-/// columns stand at z = 0.
+/// The four sides. In a side's own space, x runs along it, z points into the court, and its columns
+/// stand at z = 0.
 fn sides() -> [Side; 4] {
     [(0, 0.0), (1, FRAC_PI_2), (0, PI), (1, -FRAC_PI_2)].map(|(kind, turn)| {
         let reach = if kind == 0 { COURT.y } else { COURT.x };
@@ -235,7 +235,7 @@ impl Hall {
                 if storey == 1 {
                     self.place("balustrade", &[rails[side.kind]], at);
                 }
-                // The column on each bay's left: corners are shared between sides.
+                // Place only the column on each bay's left, because sides share their corners.
                 let left = Mat4::from_translation(Vec3::X * (-0.5 * width));
                 self.place(&format!("{name} column"), &[column], at * left);
             }

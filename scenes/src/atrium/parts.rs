@@ -22,7 +22,7 @@ pub(super) fn column(height: f32, radius: f32) -> Builder {
     let last = profile.len() - 1;
     profile.push(profile[last]);
     let shaft = |i: u32| {
-        // Tapers by a sixth, bulging by the classical curve: full until a third, then a quarter
+        // The shaft tapers by a sixth along the classical curve: full up to a third, then a quarter
         // sine.
         let t = i as f32 / 10.0;
         let taper = (((t - 0.3) / 0.7).max(0.0) * 0.5 * PI).sin().powi(2);
@@ -110,8 +110,8 @@ fn archivolt(b: &mut Builder, radius: f32, spring: f32, side: f32, steps: u32) {
     profile.extend(arc([0.155, 0.065], [0.035, 0.035], 180.0, 0.0, 6));
     profile.push(Vec2::new(0.19, 0.065));
     profile.extend(sharp(&[[0.19, 0.065], [0.22, 0.05], [0.22, 0.0]]));
-    // The profile's a runs outwards from the arch, b off the wall; seen so, the outside is on its
-    // left, and the sweep's on its right.
+    // The profile's a runs outwards from the arch, and b off the wall. Seen that way, the outside
+    // is on its left, and on the sweep's right.
     profile.reverse();
     let frames: Vec<_> = (0..=steps)
         .map(|i| {
@@ -185,8 +185,8 @@ pub(super) fn coffer(width: f32, depth: f32) -> Builder {
     b
 }
 
-/// A cloth that hangs from y = 0 between x = +-width / 2, `drop` metres long, with folds that
-/// grow downwards. `phase` tells banners apart.
+/// A cloth that hangs from y = 0 between x = +-width / 2, `drop` metres long, with folds that grow
+/// downwards. Each banner has its own `phase`.
 pub(super) fn banner(width: f32, drop: f32, phase: f32) -> Builder {
     let mut b = Builder::default();
     b.surface(32, 36, |u, v| {
@@ -303,7 +303,8 @@ pub(super) fn paver(b: &mut Builder, top: Vec3, size: f32, bevel: f32) {
         (Vec3::Z, Vec3::X),
         (Vec3::NEG_Z, Vec3::NEG_X),
     ] {
-        // The ends meet at the corners: half a side for each metre of the profile's reach.
+        // The ends meet at the corners, so each is shorter by half a side per metre of the
+        // profile's reach.
         b.moulding(top, top + along * 1e-4, out, 1.0, &profile);
     }
     let inner = half - bevel;

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::{CameraPath, Pose};
 
-/// Through the court, up to the gallery's parapet and down again, out between columns at its east
-/// end, along the north walkway and back in at the west end. Each knot is (x, y, z) of the eye and of
-/// the point looked at.
+/// Leads through the court, up to the gallery's parapet and down again, out between columns at its
+/// east end, along the north walkway and back in at the west end. Each knot is (x, y, z) of the eye
+/// and of the point looked at.
 pub(super) fn path() -> CameraPath {
     let knots = [
         ([-9.2, 1.9, 4.4], [3.0, 2.9, -2.6]),

@@ -4,11 +4,11 @@ use super::*;
 use crate::{Vertex, bvh::TriangleBvh};
 
 #[test]
-fn it_is_made_quickly_and_has_enough_triangles() {
+fn it_is_built_fast_and_has_enough_triangles() {
     let start = Instant::now();
     let scene = atrium(1);
     let seconds = start.elapsed().as_secs_f64();
-    // A second on an idle machine; tests share theirs.
+    // It takes a second on an idle machine; tests run in parallel.
     assert!(seconds < 3.0, "{seconds} s");
     let triangles = scene.triangle_count();
     assert!((200_000..600_000).contains(&triangles), "{triangles} triangles");
@@ -52,7 +52,7 @@ fn winding_agrees_with_normals() {
     }
 }
 
-/// Closed solids face outwards: walking the path, no ray first meets the back of a single-sided
+/// Closed solids face outwards: along the path, no ray first meets the back of a single-sided
 /// triangle.
 #[test]
 fn the_camera_keeps_clear_and_sees_no_back_faces() {
@@ -75,7 +75,7 @@ fn the_camera_keeps_clear_and_sees_no_back_faces() {
             }
         }
     }
-    // The cloths are double-sided sheets and fill a part of what is seen.
+    // The cloths are double-sided sheets and fill part of the view.
     assert!(backs * 50 < rays, "{backs} of {rays}");
 }
 

@@ -1,6 +1,6 @@
-//! Accessors read into plain vectors: any component type, stride and sparse overlay, with every
-//! range checked before it is read. (The readers of the gltf crate assert and overflow on
-//! malformed files.)
+//! Reads accessors into plain vectors: any component type, stride and sparse overlay. Every range
+//! is checked before it is read. (The readers of the gltf crate assert and overflow on malformed
+//! files.)
 
 use gltf::json::{
     Index,
@@ -11,7 +11,7 @@ use gltf::json::{
 use super::file::File;
 use crate::SceneError;
 
-/// The most elements of an accessor that has no buffer view, and so costs its file nothing.
+/// The most elements of an accessor without a buffer view. Such an accessor costs its file nothing.
 const MAX_ZEROED: u64 = 1 << 22;
 
 /// A run of equally spaced elements inside a buffer view.
@@ -28,7 +28,7 @@ impl Run<'_> {
 }
 
 impl File {
-    /// Reads `N` floats per element; integers are normalised where the accessor says so.
+    /// Reads `N` floats per element. Integers are normalised where the accessor asks for it.
     pub(super) fn floats<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -59,7 +59,8 @@ impl File {
         self.elements(index, accessor, component.size(), 0, decode)
     }
 
-    /// The accessor and its component type, once known to have `components` per element.
+    /// The accessor and its component type, after checking that each element has `components`
+    /// components.
     fn accessor(
         &self,
         index: Index<Accessor>,
@@ -145,7 +146,8 @@ impl File {
         Ok(())
     }
 
-    /// `count` elements of `size` bytes from `offset` of a view, known to lie inside it.
+    /// `count` elements of `size` bytes from `offset` of a view, after checking that they lie
+    /// inside it.
     fn run(
         &self,
         field: &str,
@@ -179,7 +181,7 @@ impl File {
     }
 }
 
-/// The first bytes as a little-endian array; the caller has checked the range.
+/// The first bytes as a little-endian array. The caller has checked the range.
 fn head<const N: usize>(bytes: &[u8]) -> [u8; N] {
     std::array::from_fn(|i| bytes[i])
 }
@@ -192,7 +194,7 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> u32 {
     }
 }
 
-/// What stands for 1 in normalised integers of a type; `None` for floats.
+/// The integer that stands for 1 in a normalised type; `None` for floats.
 pub(super) fn largest(component: ComponentType) -> Option<f32> {
     match component {
         ComponentType::F32 => None,
@@ -204,7 +206,7 @@ pub(super) fn largest(component: ComponentType) -> Option<f32> {
     }
 }
 
-/// One component as a float; normalised integers by glTF's equations (3.11).
+/// One component as a float. Normalised integers follow glTF's equations (section 3.11).
 fn float(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
     let value = match component {
         ComponentType::F32 => f32::from_le_bytes(head(bytes)),

@@ -1,11 +1,11 @@
-//! What glTF allows and gltf-json refuses, rewritten in the JSON before it is read.
+//! Rewrites JSON that glTF allows and gltf-json refuses, before gltf-json reads it.
 
 use gltf::json::validation::Error as Fault;
 use serde_json::{Value, json};
 
 use super::Warnings;
 
-/// Where textures may hold their image instead of in `source`: extensions whose format is decoded.
+/// Extensions that give a texture an image of another format, and whose format is decoded.
 const TEXTURE_SOURCES: &[&str] = &["EXT_texture_webp"];
 
 /// The properties of nodes that an animation channel may move.
@@ -18,11 +18,12 @@ pub(super) fn adapt(json: &mut Value, warnings: &mut Warnings) {
     add_texture_sources(json);
 }
 
-/// Whether a fault that gltf-json finds is none: what is missing may be missing.
+/// Whether a fault that gltf-json finds is none, because glTF allows the field to be missing.
 pub(super) fn is_tolerated(field: &str, fault: Fault) -> bool {
     let inside = |list: &str, end: &str| field.starts_with(list) && field.ends_with(end);
-    // Accessors without bufferView are zeros, textures without source have an extension's, and
-    // primitives without POSITION show nothing. Nobody here reads the bounds of POSITION.
+    // Accessors without a bufferView are zeros, textures without a source get one from an
+    // extension, and primitives without POSITION show nothing. The importer does not read the
+    // bounds of POSITION.
     fault == Fault::Missing
         && (inside("accessors[", ".bufferView")
             || inside("textures[", ".source")
@@ -31,7 +32,7 @@ pub(super) fn is_tolerated(field: &str, fault: Fault) -> bool {
             || inside("meshes[", ".attributes[\"POSITION\"].max"))
 }
 
-/// The objects of a list at the top of the file.
+/// The objects of a list at the root of the file.
 fn objects<'a>(
     json: &'a mut Value,
     list: &str,
@@ -40,14 +41,15 @@ fn objects<'a>(
     list.into_iter().flatten().filter_map(Value::as_object_mut)
 }
 
-/// A scene may be empty; Blender writes such.
+/// Adds empty node lists: a scene may be empty, and Blender writes such scenes.
 fn add_scene_nodes(json: &mut Value) {
     for scene in objects(json, "scenes") {
         scene.entry("nodes").or_insert(json!([]));
     }
 }
 
-/// A channel without a node moves what an extension names (KHR_animation_pointer), or nothing.
+/// Drops channels without a node. They move what an extension names (KHR_animation_pointer), or
+/// nothing.
 fn drop_channels_without_node(json: &mut Value, warnings: &mut Warnings) {
     let mut dropped = 0;
     for animation in objects(json, "animations") {
@@ -56,7 +58,7 @@ fn drop_channels_without_node(json: &mut Value, warnings: &mut Warnings) {
         };
         let before = channels.len();
         channels.retain(|channel| {
-            // What is no channel at all is left for gltf-json to refuse.
+            // gltf-json refuses channels that are malformed.
             let Some(target) = channel.get("target").and_then(Value::as_object) else {
                 return true;
             };
@@ -68,12 +70,12 @@ fn drop_channels_without_node(json: &mut Value, warnings: &mut Warnings) {
     if dropped > 0 {
         warnings.add(format!(
             "animations: {dropped} channels that move no node are not played \
-             (KHR_animation_pointer is not read)"
+             (KHR_animation_pointer is not supported)"
         ));
     }
 }
 
-/// Where a texture has no `source`, the one that a readable extension gives.
+/// Gives textures without a `source` the image of an extension that is read.
 fn add_texture_sources(json: &mut Value) {
     for texture in objects(json, "textures").filter(|texture| !texture.contains_key("source")) {
         let extension = |name: &&str| texture.get("extensions")?.get(name)?.get("source").cloned();

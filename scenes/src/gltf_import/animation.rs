@@ -25,7 +25,7 @@ pub(super) fn targets(file: &File) -> HashSet<usize> {
 }
 
 /// The animation of the camera at the end of `chain`; `None` where nothing moves it. Only the
-/// file's first animation that does is read.
+/// file's first animation that moves it is read.
 pub(super) fn load(
     file: &File,
     chain: &[usize],
@@ -42,10 +42,10 @@ pub(super) fn load(
         return Ok(None);
     };
     if moving.next().is_some() {
-        warnings.add("the camera has several animations: the first is used".into());
+        warnings.add("the camera has several animations: only the first is used".into());
     }
     let part = |ix: &usize| Part {
-        local: Local::of(&file.root.nodes[*ix]),
+        local: Local::from_node(&file.root.nodes[*ix]),
         translation: None,
         rotation: None,
         scale: None,
@@ -81,12 +81,12 @@ pub(super) fn load(
     Ok(Some(AnimatedNode { chain: parts, origin, start_s, end_s }))
 }
 
-/// Says which animations are not played: those that move meshes, lights or joints.
+/// Warns about animations that are not played: those that move meshes, lights or joints.
 pub(super) fn note_unplayed(file: &File, walk: &Walk, warnings: &mut Warnings) {
     let nodes = &file.root.nodes;
     let joints = file.root.skins.iter().flat_map(|skin| &skin.joints);
     let joints: HashSet<usize> = joints.map(gltf::json::Index::value).collect();
-    // Whether a node, or one below it, would take something drawn along.
+    // Whether something drawn is attached to a node or to a node below it.
     let mut carries = vec![false; nodes.len()];
     for visit in walk.visits.iter().rev() {
         let node = &nodes[visit.ix];

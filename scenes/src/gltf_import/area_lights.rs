@@ -1,7 +1,6 @@
-//! Area lights: the `extras` of a node.
+//! Area lights, from the `extras` of a node or from EXT_lights_area.
 //!
-//! glTF has no area lights. A node carries one as
-//!
+//! Core glTF has no area lights. A node carries one in its `extras`:
 //! ```json
 //! "extras": { "lightbench_area_light": {
 //!   "shape": "rectangle", "width": 1.2, "height": 0.6,
@@ -9,22 +8,22 @@
 //! } }
 //! ```
 //!
-//! | field | what | without it |
+//! | field | meaning | default |
 //! |---|---|---|
-//! | `shape` | `rectangle` or `polygon` | refused |
-//! | `width`, `height` | of a rectangle around the node's origin, along its X and Y, metres | refused |
-//! | `vertices` | of a polygon, `[x, y, z]` in node space, metres: 3 to 10, plane, convex, counter-clockwise seen from the front | refused |
+//! | `shape` | `rectangle` or `polygon` | none: required |
+//! | `width`, `height` | size of a rectangle around the node's origin, along its X and Y axes, metres | none: required |
+//! | `vertices` | vertices of a polygon, `[x, y, z]` in node space, metres: 3 to 10, plane, convex, counter-clockwise seen from the front | none: required |
 //! | `color` | linear RGB | white |
-//! | `intensity` | along the normal, as of a punctual light: radiance times area | 1 |
-//! | `range` | metres from the closest point of the emitter | as of a punctual light without one ([`close_ranges`](crate::close_ranges)) |
+//! | `intensity` | intensity along the normal, in the unit of a punctual light: radiance times area | 1 |
+//! | `range` | metres from the closest point of the emitter | as for a punctual light without a range ([`close_ranges`](crate::close_ranges)) |
 //! | `two_sided` | whether it emits from its back too | `false` |
 //! | `diffuse_share` | where diffuse light ends, as a share of the range, above 0 and at most 1 | 1 |
 //!
-//! A rectangle emits along the node's -Z, as cameras look and spots shine. Scale acts on its size,
-//! not on its intensity.
+//! A rectangle emits along the node's -Z axis, like a camera or a spot. The node's scale changes
+//! its size but not its intensity.
 //!
-//! The other form is EXT_lights_area. Its rectangles and discs emit along -Z too, and their
-//! `intensity` is the luminance: scale acts on their size, and so on the light they give.
+//! Rectangles and discs of EXT_lights_area emit along -Z too, but their `intensity` is the
+//! luminance. So the node's scale changes their size and the light that they give.
 
 use std::f32::consts::TAU;
 
@@ -72,8 +71,7 @@ fn one() -> f32 {
     1.0
 }
 
-/// The area lights that node `ix` carries. Faulty ones are converted too, to be reported where
-/// lights are uploaded.
+/// The area lights that node `ix` carries. Faulty ones are kept, so that uploading reports them.
 pub(super) fn of_node(
     file: &File,
     ix: usize,
@@ -104,8 +102,8 @@ fn of_extras(
     let text = value.to_string();
     let refuse = |accepted: String| file.invalid(field(), text.clone(), accepted);
     let json: Json = serde_json::from_value(value)
-        .map_err(|error| refuse(format!("an area light, but: {error}")))?;
-    // A mirroring transform turns outlines round.
+        .map_err(|error| refuse(format!("a valid area light, but {error}")))?;
+    // A mirroring transform reverses the outline.
     let mirrored = to_world.determinant() < 0.0;
     let (emitter, position) = match (json.shape, json.width, json.height, json.vertices) {
         (Shape::Rectangle, Some(width), Some(height), None) if !(width > 0.0 && height > 0.0) => {
@@ -190,15 +188,16 @@ fn of_extension(
         file.invalid(field, number, format!("below {}, the number of its lights", lights.len()))
     })?;
     let field = || format!("extensions.{EXTENSION}.lights[{number}]");
-    // Borrowed: many nodes may name one light with a long name.
-    let json = ExtensionJson::deserialize(value)
-        .map_err(|error| file.invalid(field(), value, format!("an area light, but: {error}")))?;
+    // The JSON is borrowed because many nodes may name one light with a long name.
+    let json = ExtensionJson::deserialize(value).map_err(|error| {
+        file.invalid(field(), value, format!("a valid area light, but {error}"))
+    })?;
     let (width, height) = (json.size * json.rect.aspect, json.size);
     if !(width > 0.0 && height > 0.0 && width.is_finite()) {
         return Err(file.invalid(field(), value, "a light with size and aspect above 0"));
     }
     let name = json.name.map_or_else(|| format!("area light {number}"), kept_name);
-    // A mirroring transform turns outlines round.
+    // A mirroring transform reverses the outline.
     let side = if to_world.determinant() < 0.0 { -1.0 } else { 1.0 };
     let place = |x: f32, y: f32| to_world.transform_vector3(Vec3::new(x, y * side, 0.0));
     let position = to_world.transform_point3(Vec3::ZERO);
@@ -212,7 +211,7 @@ fn of_extension(
                 "light {name:?}: a disc is drawn as a polygon of {MAX_VERTICES} vertices and the \
                  same area"
             ));
-            // A regular polygon's area is n / 2 r^2 sin(2 pi / n).
+            // The area of a regular polygon is n / 2 r^2 sin(2 pi / n).
             let step = TAU / MAX_VERTICES as f32;
             let radius = 0.5 * height * (step / step.sin()).sqrt();
             let vertex = |ix: usize| {
@@ -229,11 +228,13 @@ fn of_extension(
             }
         }
         other => {
-            warnings.add(format!("light {name:?}: {EXTENSION} type {other:?} is left out"));
+            warnings.add(format!(
+                "light {name:?} is left out: {EXTENSION} type {other:?} is not supported"
+            ));
             return Ok(None);
         }
     };
-    // Radiance times area.
+    // Intensity is radiance times area.
     let intensity = Vec3::from(json.color) * json.intensity * emitter.area();
     Ok(Some(Light::area(emitter, position, f32::INFINITY, intensity)))
 }

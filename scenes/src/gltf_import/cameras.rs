@@ -1,7 +1,7 @@
-//! Cameras: where a node puts them, and what the file says of their lens and planes.
+//! Reads cameras: where a node puts them, their lens and their planes.
 //!
-//! A camera that the scene places must hold what glTF 2.0 asks of it: an error names the field. A
-//! camera that no node places is not looked at.
+//! A camera that the scene places must hold what glTF 2.0 requires; an error names the faulty
+//! field. Cameras that no node places are not read.
 
 use std::f32::consts::PI;
 
@@ -14,18 +14,18 @@ use gltf::json::{
 use super::{file::File, warnings::kept_name};
 use crate::{Camera, Lens, Pose, SceneError};
 
-/// Fields of view are above this, radians: an image of 16,384 pixels would see less than f32 can tell
-/// apart.
+/// Fields of view are larger than this, radians. In a smaller one, f32 could not separate the
+/// 16,384 pixels of an image.
 const LEAST_FOV_Y: f32 = 1e-6;
-/// And below this, just short of half a turn.
+/// Fields of view are smaller than this, just short of half a turn.
 const MOST_FOV_Y: f32 = 0.999 * PI;
 
-/// Planes that f32 still tells apart after a scene is scaled, metres.
+/// The range of plane distances that f32 can still separate after a scene is scaled, metres.
 const LEAST_NEAR_M: f32 = 1e-12;
 const MOST_NEAR_M: f32 = 1e12;
 const MOST_FAR_M: f32 = 1e30;
 
-/// Camera `ix` of the file, placed by a node.
+/// Camera `ix` of the file, where a node places it.
 pub(super) fn placed(
     file: &File,
     ix: usize,
@@ -79,8 +79,9 @@ impl Check<'_> {
         let near_ok = (LEAST_NEAR_M..=MOST_NEAR_M).contains(&near);
         self.is("perspective.znear", near, near_ok, "from 1e-12 to 1e12 metres")?;
         if let Some(far) = lens.zfar {
-            let accepted =
-                format!("above znear, {near} m, and at most 1e30 m, or absent: infinitely far");
+            let accepted = format!(
+                "above znear, {near} m, and at most 1e30 m, or absent for an infinite far plane"
+            );
             self.is("perspective.zfar", far, far > near && far <= MOST_FAR_M, accepted)?;
         }
         Ok((Lens::Perspective { fov_y }, near, lens.zfar))

@@ -1,4 +1,4 @@
-//! Buffer views that an extension compresses: found, decoded in parallel, and named where they fail.
+//! Decodes buffer views that an extension compresses, in parallel. Errors name the view.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::SceneError;
 
-/// The decoded bytes of all compressed buffer views, by their numbers.
+/// The decoded bytes of all compressed buffer views, keyed by their index.
 pub(super) fn decode(file: &File) -> Result<HashMap<usize, Vec<u8>>, SceneError> {
     let views = file.root.buffer_views.iter().enumerate();
     let compressed = views.filter_map(|(ix, view)| {
@@ -23,7 +23,7 @@ pub(super) fn decode(file: &File) -> Result<HashMap<usize, Vec<u8>>, SceneError>
         match serde_json::from_value::<Compressed>(json.clone()) {
             Ok(view) => Ok((ix, field, view)),
             Err(error) => {
-                Err(file.invalid(field, json, format!("a compressed view, but: {error}")))
+                Err(file.invalid(field, json, format!("a valid compressed view, but {error}")))
             }
         }
     };

@@ -1,4 +1,4 @@
-//! Primitives of KHR_draco_mesh_compression.
+//! Reads primitives of KHR_draco_mesh_compression.
 
 use std::{
     collections::HashMap,
@@ -19,7 +19,7 @@ const NAME: &str = "KHR_draco_mesh_compression";
 #[serde(rename_all = "camelCase")]
 struct Json {
     buffer_view: usize,
-    /// The unique ids of attributes, by their semantic.
+    /// The unique id of each attribute, by its semantic.
     attributes: HashMap<String, u32>,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct DracoMesh {
 }
 
 impl DracoMesh {
-    /// The mesh that a primitive holds compressed, if it does. `vertices` is the number that its
+    /// The compressed mesh of a primitive, if it has one. `vertices` is the number that its
     /// accessors promise.
     pub(super) fn decode(
         file: &File,
@@ -45,15 +45,15 @@ impl DracoMesh {
         let field = format!("{field}.extensions.{NAME}");
         let Json { buffer_view, attributes } =
             serde_json::from_value(json.clone()).map_err(|error| {
-                file.invalid(&field, json, format!("a compressed primitive, but: {error}"))
+                file.invalid(&field, json, format!("a valid compressed primitive, but {error}"))
             })?;
         let bytes = file.view(buffer_view)?;
         let refuse = |reason: String| file.invalid(&field, "not decodable", reason);
-        // A panic of the decoder is a fault of the file too.
+        // A panic of the decoder counts as a fault of the file.
         let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes, vertices)));
-        let decoded = decoded.map_err(|_| refuse("a sound Draco mesh".into()))?;
+        let decoded = decoded.map_err(|_| refuse("a valid Draco mesh".into()))?;
         let decoded =
-            decoded.map_err(|error| refuse(format!("a sound Draco mesh, but: {error}")))?;
+            decoded.map_err(|error| refuse(format!("a valid Draco mesh, but {error}")))?;
         for (name, id) in &attributes {
             if decoded.attribute_by_unique_id(*id).is_none() {
                 let field = format!("{field}.attributes.{name}");
@@ -63,13 +63,13 @@ impl DracoMesh {
         Ok(Some(Self { decoded, ids: attributes }))
     }
 
-    /// Corners of its triangles.
+    /// The three vertices of each triangle.
     pub(super) fn indices(&self) -> Vec<u32> {
         self.decoded.faces().iter().flat_map(|face| face.map(|point| point.0)).collect()
     }
 
-    /// An attribute's values, if they are compressed; integers normalised where the accessor
-    /// says so.
+    /// The values of an attribute, if they are compressed. Integers are normalised where the
+    /// accessor asks for it.
     pub(super) fn floats<const N: usize>(
         &self,
         semantic: &str,
@@ -87,7 +87,7 @@ impl DracoMesh {
 }
 
 fn decode(bytes: &[u8], vertices: u64) -> Result<Decoded, DracoError> {
-    // Some encoders split more vertices than they promise.
+    // Some encoders write more vertices than the accessors promise.
     let mut limits = DecodeLimits::default();
     limits.max_points = vertices.saturating_mul(2).saturating_add(1024);
     limits.max_faces = limits.max_points.saturating_mul(4);

@@ -1,4 +1,5 @@
-//! Which extensions are read, which may be left out, and what is said of the others.
+//! Which extensions are supported, which a file may require anyway, and the warnings about the
+//! others.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -7,7 +8,7 @@ use serde_json::Value;
 use super::Warnings;
 use crate::SceneError;
 
-/// Extensions that are read.
+/// Extensions that are supported.
 const READ: &[&str] = &[
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
@@ -26,9 +27,9 @@ const READ: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that a file may require although they are not read: without them geometry stands
-/// where it should, and only looks, sounds or behaviour differ. So it is with every extension of
-/// materials.
+/// Extensions that a file may require although they are not supported. Without them, geometry still
+/// stands in its place; only appearance, sound or behaviour differ. The same holds for every
+/// extension of materials.
 const HARMLESS: &[&str] = &[
     "CESIUM_primitive_outline",
     "EXT_instance_features",
@@ -54,8 +55,8 @@ fn is_harmless(name: &str) -> bool {
     HARMLESS.contains(&name) || name.contains("_materials_")
 }
 
-/// Refuses files that require what is neither read nor harmless, and names every extension that
-/// is not read: those that the file declares, and those that it uses without saying so.
+/// Refuses files that require an extension that is neither supported nor harmless. Warns about
+/// every other extension that is not supported, whether the file declares it or only uses it.
 pub(super) fn check(path: &Path, json: &Value, warnings: &mut Warnings) -> Result<(), SceneError> {
     let names = |list: &str| {
         let list = json.get(list).and_then(Value::as_array);
@@ -80,13 +81,13 @@ pub(super) fn check(path: &Path, json: &Value, warnings: &mut Warnings) -> Resul
             1 => " (used once)".into(),
             _ => format!(" (used {uses} times)"),
         };
-        warnings.add(format!("extension {name} is not read: what it adds is left out{uses}"));
+        warnings.add(format!("extension {name} is not supported: what it adds is left out{uses}"));
     }
     Ok(())
 }
 
-/// Takes the extensions that are not read out of the JSON, so that nothing in them can be a fault. Those of
-/// textures stay: a warning names them where a texture has no other image.
+/// Removes unsupported extensions from the JSON, so that nothing inside them counts as a fault.
+/// Those of textures stay, because a warning names them where a texture has no other image.
 pub(super) fn strip(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(strip),

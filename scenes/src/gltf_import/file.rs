@@ -1,4 +1,4 @@
-//! The container: JSON, binary chunk, buffers and URIs, every range checked.
+//! Opens the container: JSON, binary chunk, buffers and URIs. Every range is checked.
 
 use std::{
     collections::HashMap,
@@ -33,13 +33,13 @@ pub(super) struct File {
     buffers: Vec<Vec<u8>>,
     /// The bytes of compressed buffer views.
     decoded: HashMap<usize, Vec<u8>>,
-    /// What was left out while the JSON was read, and noted while parts were, which images do in
-    /// parallel.
+    /// Warnings from reading the JSON and the parts. Images are read in parallel.
     notes: Mutex<Warnings>,
 }
 
 impl File {
-    /// Reads a `.gltf` or `.glb` (told apart by content) and all its buffers.
+    /// Reads a `.gltf` or `.glb` file and all its buffers. The content decides which of the two it
+    /// is.
     pub(super) fn open(path: &Path) -> Result<Self, SceneError> {
         let bytes = read(path)?;
         let (json, binary) = split(path, &bytes)?;
@@ -60,7 +60,7 @@ impl File {
                 (None, Some(binary)) if ix == 0 => binary
                     [..binary.len().min(usize::try_from(wanted).unwrap_or(usize::MAX))]
                     .to_vec(),
-                // Nothing reads it but views that are compressed elsewhere.
+                // Only views that are compressed in another buffer refer to it.
                 (None, _) if is_fallback(buffer) => {
                     file.buffers.push(Vec::new());
                     continue;
@@ -71,11 +71,11 @@ impl File {
             };
             together = together.saturating_add(data.len() as u64);
             if together > most {
-                let accepted = format!("at most {most} bytes together with those before");
+                let accepted = format!("at most {most} bytes together with the buffers before it");
                 return Err(file.invalid(format!("{field}.byteLength"), wanted, accepted));
             }
             if (data.len() as u64) < wanted {
-                let accepted = format!("at most {}, the bytes there are", data.len());
+                let accepted = format!("at most {}, the number of bytes present", data.len());
                 return Err(file.invalid(format!("{field}.byteLength"), wanted, accepted));
             }
             data.truncate(wanted as usize);
@@ -84,24 +84,24 @@ impl File {
         Ok(file)
     }
 
-    /// Keeps the decoded bytes of compressed buffer views: [`view`](Self::view) returns them.
+    /// Keeps the decoded bytes of compressed buffer views; [`view`](Self::view) returns them.
     pub(super) fn set_decoded(&mut self, decoded: HashMap<usize, Vec<u8>>) {
         self.decoded = decoded;
     }
 
-    /// Notes a warning while parts are read.
+    /// Adds a warning while parts are read.
     pub(super) fn note(&self, warning: String) {
         if let Ok(mut notes) = self.notes.lock() {
             notes.add(warning);
         }
     }
 
-    /// Takes what was noted while parts were read.
+    /// Takes the warnings that were added while parts were read.
     pub(super) fn take_notes(&self) -> Warnings {
         self.notes.lock().map(|mut notes| std::mem::take(&mut *notes)).unwrap_or_default()
     }
 
-    /// The error for a field that does not hold what it must.
+    /// The error for a field with a value that is not accepted.
     pub(super) fn invalid(
         &self,
         field: impl Into<String>,
@@ -145,7 +145,8 @@ impl File {
             })
     }
 
-    /// The bytes a URI names: a data URI, or the first `most` of a file beside the scene.
+    /// The bytes that a URI names: those of a data URI, or the first `most` of a file beside the
+    /// scene.
     pub(super) fn fetch(&self, uri: &str, field: &str, most: u64) -> Result<Vec<u8>, SceneError> {
         let shown: String = uri.chars().take(60).collect();
         if let Some(data) = uri.strip_prefix("data:") {
@@ -188,7 +189,7 @@ impl File {
     }
 }
 
-/// Data URIs may leave out the padding at their end, and break their lines.
+/// Data URIs may omit the padding at their end, and may contain line breaks.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     GeneralPurposeConfig::new()
@@ -201,7 +202,7 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
         .map_err(|source| SceneError::Read { file: path.into(), source })
 }
 
-/// The JSON, and the binary chunk of a GLB.
+/// Splits a file into its JSON and the binary chunk of a GLB.
 fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
     let Some(rest) = bytes.strip_prefix(b"glTF") else {
         return Ok((bytes, None));
@@ -210,7 +211,7 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
         let four = bytes.get(at..at + 4)?;
         Some(u32::from_le_bytes(four.try_into().ok()?))
     };
-    let truncated = |field: &str| invalid(path, field, "cut short", "whole");
+    let truncated = |field: &str| invalid(path, field, "truncated", "complete");
     let version = number(rest, 0).ok_or_else(|| truncated("GLB header"))?;
     if version != 2 {
         return Err(invalid(path, "GLB version", version, "2"));
@@ -237,7 +238,7 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
         let kind = format!("{:?}", String::from_utf8_lossy(&kind));
         return Err(invalid(path, "GLB chunk 0 type", kind, "JSON"));
     }
-    // Chunks of other types are an extension's: glTF wants them passed over.
+    // Chunks of other types belong to extensions, and glTF requires readers to ignore them.
     let (mut at, mut binary) = (20 + json.len(), None);
     for ix in 1_u64.. {
         if at >= length {
@@ -262,7 +263,8 @@ fn parse(path: &Path, json: &[u8], warnings: &mut Warnings) -> Result<Root, Scen
     let known = extensions::check(path, &json, warnings);
     extensions::strip(&mut json);
     let root: Root = serde_json::from_value(json).map_err(|e| {
-        // Other versions look different: better to name the version than what differs.
+        // JSON of another version may differ anywhere. Naming the version helps more than naming a
+        // field.
         let wrong = asset.and_then(|asset| check_version_of(path, &asset).err());
         wrong.unwrap_or_else(|| malformed(e))
     })?;
@@ -271,7 +273,7 @@ fn parse(path: &Path, json: &[u8], warnings: &mut Warnings) -> Result<Root, Scen
     check_positions(path, &root)?;
     let mut fault = None;
     root.validate(&root, gltf::json::Path::new, &mut |at, error| {
-        // Required extensions are checked above, against a longer list.
+        // `extensions::check` has checked required extensions, against a longer list.
         if error != Fault::Unsupported && fault.is_none() {
             let field = as_in_file(&at().to_string());
             fault = (!adapt::is_tolerated(&field, error)).then_some((field, error));
@@ -284,14 +286,14 @@ fn parse(path: &Path, json: &[u8], warnings: &mut Warnings) -> Result<Root, Scen
                 Fault::IndexOutOfBounds => ("an index out of range", "the index of an element"),
                 Fault::Missing => ("missing", "present"),
                 Fault::Oversize => ("too large", "addressable"),
-                _ => ("not valid", "as glTF 2.0 says"),
+                _ => ("not valid", "as glTF 2.0 specifies"),
             };
             Err(invalid(path, field, value, accepted))
         }
     }
 }
 
-/// The versions of a file whose JSON is not glTF 2.0's.
+/// Checks the versions of a file whose JSON is not that of glTF 2.0.
 fn check_version_of(path: &Path, asset: &serde_json::Value) -> Result<(), SceneError> {
     let text = |field: &str| match asset.get(field) {
         None => Ok(None),
@@ -303,7 +305,7 @@ fn check_version_of(path: &Path, asset: &serde_json::Value) -> Result<(), SceneE
     check_version(path, text("version")?.unwrap_or("2.0"), text("minVersion")?)
 }
 
-/// Files of any glTF 2 may be read, unless they say that 2.0 is not enough.
+/// Accepts every file of glTF 2, unless it requires a later minor version.
 fn check_version(path: &Path, version: &str, least: Option<&str>) -> Result<(), SceneError> {
     let parts = |text: &str| -> Option<(u32, u32)> {
         let (major, minor) = text.split_once('.')?;
@@ -329,7 +331,8 @@ fn check_version(path: &Path, version: &str, least: Option<&str>) -> Result<(), 
     }
 }
 
-/// gltf-json indexes accessors by POSITION before it has validated that index.
+/// Checks the accessors of POSITION, because gltf-json uses them before it has validated their
+/// indices.
 fn check_positions(path: &Path, root: &Root) -> Result<(), SceneError> {
     for (mesh_ix, mesh) in root.meshes.iter().enumerate() {
         for (ix, primitive) in mesh.primitives.iter().enumerate() {

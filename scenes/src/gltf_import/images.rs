@@ -1,5 +1,6 @@
-//! Images: their pixels counted by their headers, then decoded in parallel, one entry per encoding
-//! in use. Entries of the file that name the same bytes share one image.
+//! Reads images. Headers tell the number of pixels before anything is decoded; decoding runs in
+//! parallel. Each image gets one entry per encoding in use. Entries of the file that name the same
+//! bytes share one image.
 
 use std::{
     borrow::Cow,
@@ -13,37 +14,37 @@ use rayon::prelude::*;
 use super::{file::File, limits, warnings::kept_name};
 use crate::{Encoding, Image, SceneError};
 
-/// The longest side accepted, pixels: what GPUs offer.
+/// The longest side that is accepted, pixels. GPUs offer as much.
 const MAX_SIDE: u32 = 16_384;
 
-/// What a decoder may allocate beside its pixels, bytes.
+/// How much a decoder may allocate beside its pixels, bytes.
 const DECODER_BYTES: u64 = 64 << 20;
 
 /// The images in use, numbered in order of first use.
 pub(super) struct ImageTable {
-    /// By image of the file, the first one that names the same bytes.
+    /// For each image of the file, the first image that names the same bytes.
     firsts: Vec<usize>,
     numbers: HashMap<(usize, Encoding), u32>,
     uses: Vec<(usize, Encoding)>,
-    /// The file's own entries in use, also those that share their bytes.
+    /// The file's own entries in use, those that share their bytes included.
     entries: HashSet<(usize, Encoding)>,
 }
 
 /// An image of the file, still encoded.
 struct Source<'a> {
-    /// For errors.
+    /// Its name in errors.
     label: String,
     bytes: Cow<'a, [u8]>,
     size: [u32; 2],
 }
 
 impl ImageTable {
-    /// No image is in use yet.
+    /// Starts with no image in use.
     pub(super) fn new(file: &File) -> Self {
         let mut first_of = HashMap::new();
         let images = file.root.images.iter().enumerate();
         let firsts = images.map(|(ix, image)| {
-            // Buffer views that start at the same byte and are as long are the same.
+            // Buffer views of equal start and length are the same.
             let view = image.buffer_view.and_then(|view| file.root.get(view));
             let place =
                 view.map(|v| (v.buffer.value(), v.byte_offset.map_or(0, |o| o.0), v.byte_length.0));
@@ -74,7 +75,7 @@ impl ImageTable {
         self.firsts.get(ix).copied().unwrap_or(ix)
     }
 
-    /// Decodes all of them, each source once.
+    /// Decodes all images in use. Each source is decoded once.
     pub(super) fn decode(self, file: &File) -> Result<Vec<Image>, SceneError> {
         let mut sources = Vec::new();
         let mut place_of = HashMap::new();
@@ -91,7 +92,10 @@ impl ImageTable {
                 return Err(file.invalid("bytes of all images in use", encoded, accepted));
             }
             if is_cut_short(&source.bytes) {
-                file.note(format!("{:?} is a JPEG cut short: its end is grey", source.label));
+                file.note(format!(
+                    "{:?} is a truncated JPEG: the missing part is grey",
+                    source.label
+                ));
             }
             place_of.insert(*ix, sources.len());
             sources.push(source);
@@ -99,7 +103,7 @@ impl ImageTable {
         self.check_pixels(file, |ix| place_of.get(&ix).map(|place| sources[*place].size))?;
         let decoded: Vec<_> = sources.par_iter().map(|source| decode(file, source)).collect();
         let mut pixels = decoded.into_iter().collect::<Result<Vec<_>, _>>()?;
-        // By source, how many more images want its pixels.
+        // How many further images need the pixels of each source.
         let mut wanted = vec![0; sources.len()];
         for (ix, _) in &self.uses {
             wanted[place_of[ix]] += 1;
@@ -118,7 +122,7 @@ impl ImageTable {
         Ok(images.collect())
     }
 
-    /// Every entry of the file counts, also those that share their bytes.
+    /// The number of pixels counts every entry of the file, those that share their bytes included.
     fn check_pixels(
         &self,
         file: &File,
@@ -146,7 +150,7 @@ fn name(file: &File, ix: usize) -> String {
     given.map_or_else(|| format!("images[{ix}]"), kept_name)
 }
 
-/// The file's image, its header read.
+/// The file's image, with its header read.
 fn open(file: &File, ix: usize) -> Result<Source<'_>, SceneError> {
     let field = format!("images[{ix}]");
     let images = &file.root.images;
@@ -178,8 +182,8 @@ fn open(file: &File, ix: usize) -> Result<Source<'_>, SceneError> {
     Ok(source)
 }
 
-/// Whether the pixels of a JPEG end before its end marker: the decoder fills up what is missing.
-/// Headers may hold a small JPEG with an end marker of its own.
+/// Whether the pixels of a JPEG end before its end marker; the decoder fills the rest with grey. A
+/// header may contain a small JPEG with an end marker of its own.
 fn is_cut_short(bytes: &[u8]) -> bool {
     if !bytes.starts_with(&[0xff, 0xd8]) {
         return false;
@@ -198,7 +202,7 @@ fn decode(file: &File, source: &Source<'_>) -> Result<Vec<u8>, SceneError> {
     reader.limits(limits);
     let pixels = reader.decode().map_err(|e| fail(file, source, e.to_string()))?.into_rgba8();
     if [pixels.width(), pixels.height()] != source.size {
-        return Err(fail(file, source, "its size differs from its header's".into()));
+        return Err(fail(file, source, "its size differs from that in its header".into()));
     }
     Ok(pixels.into_raw())
 }
@@ -211,7 +215,7 @@ fn reader<'a>(
         .with_guessed_format()
         .map_err(|e| fail(file, source, e.to_string()))?;
     if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) {
-        return Err(fail(file, source, "its first bytes are those of none of them".into()));
+        return Err(fail(file, source, "its first bytes match none of them".into()));
     }
     Ok(reader)
 }

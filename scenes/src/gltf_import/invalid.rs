@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::SceneError;
 
-/// The error for a field that does not hold what it must.
+/// The error for a field with a value that is not accepted.
 pub(super) fn invalid(
     path: &Path,
     field: impl Into<String>,

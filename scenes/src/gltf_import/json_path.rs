@@ -1,11 +1,10 @@
-//! JSON paths as the file has them.
+//! JSON paths in the file's own names.
 //!
-//! The parser names fields after its own: `extensions.khrLightsPunctual.lights[3]`. Whoever looks for that
-//! in the file finds nothing.
+//! The parser uses names of its own: `extensions.khrLightsPunctual.lights[3]`. A reader who
+//! searches the file for that name finds nothing.
 
-/// Fields of extensions as the parser names them, and as files do. A name of the parser stands for one
-/// extension only, but `specular`, `volume` and others are also fields of materials: they are extensions
-/// only right behind `extensions`.
+/// Extensions by the parser's name and by the file's. `specular`, `volume` and others are also
+/// fields of materials, so a name means an extension only directly after `extensions`.
 const NAMES: &[(&str, &str)] = &[
     ("khrLightsPunctual", "KHR_lights_punctual"),
     ("khrMaterialsVariants", "KHR_materials_variants"),
@@ -19,7 +18,7 @@ const NAMES: &[(&str, &str)] = &[
     ("textureTransform", "KHR_texture_transform"),
 ];
 
-/// The path with extensions under their names in the file.
+/// The path with the file's names of extensions.
 pub(super) fn as_in_file(path: &str) -> String {
     let mut parts: Vec<&str> = Vec::new();
     for part in path.split('.') {

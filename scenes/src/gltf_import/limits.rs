@@ -1,8 +1,8 @@
-//! How much a file may make of itself, checked before memory is asked for.
+//! Limits on what a file can expand to, checked before memory is allocated.
 //!
-//! A few bytes can stand for a lot: `{},` is a node, an image's header names its pixels, an accessor
-//! without data is as long as it says, and many primitives may share one accessor. Each such
-//! kind has a fixed limit, and what takes memory is held against the machine's.
+//! A few bytes can ask for a lot: `{},` is a node, an image's header names its pixels, an accessor
+//! without data may have any length, and many primitives may share one accessor. Each of these has
+//! a fixed limit. Data that takes memory must also fit into a share of the machine's memory.
 
 use std::fmt;
 
@@ -14,20 +14,20 @@ use serde::{
 use super::invalid::invalid;
 use crate::{SceneError, memory::machine_bytes};
 
-/// The share of the machine's memory that any one kind of data may take: buffers, meshes, images.
-/// What is made of them (hierarchies, copies on their way to the GPU) takes more.
+/// One over the share of the machine's memory that each kind of data may take: buffers, meshes,
+/// images. Hierarchies and copies for the GPU take further memory.
 const SHARE: u64 = 4;
 
-/// The most bytes of a scene's file: what the length in a GLB's header can say.
+/// The most bytes of a scene's file, because the length in a GLB's header has 32 bits.
 pub(super) const MAX_FILE_BYTES: u64 = u32::MAX as u64;
 
 /// The most bytes of an encoded image.
 pub(super) const MAX_IMAGE_BYTES: u64 = 1 << 30;
 
-/// The most pixels of all images in use together: 8 GiB once decoded.
+/// The most pixels of all images in use together; decoded they take 8 GiB.
 const MAX_PIXELS: u64 = 1 << 31;
 
-/// The most elements of the lists at a file's root.
+/// The most elements of each list at the root of a file.
 const MAX_COUNTS: [(&str, u64); 12] = [
     ("nodes", 1 << 21),
     ("meshes", 1 << 20),
@@ -53,8 +53,8 @@ pub(super) fn max_pixels() -> u64 {
     MAX_PIXELS.min(budget_bytes() / 4)
 }
 
-/// Checks the lengths of the lists in a file's JSON without building them. JSON that is malformed
-/// passes: the parser says more about it.
+/// Checks the lengths of the lists in a file's JSON without building the lists. Malformed JSON
+/// passes, because the parser describes its fault better.
 pub(super) fn check_counts(path: &std::path::Path, json: &[u8]) -> Result<(), SceneError> {
     let Ok(Lengths(lengths)) = serde_json::from_slice(json) else {
         return Ok(());

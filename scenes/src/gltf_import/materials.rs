@@ -1,4 +1,4 @@
-//! Materials and their textures.
+//! Reads materials and their textures.
 
 use glam::{Affine2, Mat2, Vec2, Vec3, Vec4};
 use gltf::json::{
@@ -14,19 +14,19 @@ use serde::Deserialize;
 use super::{Warnings, file::File, images::ImageTable, warnings::kept_name};
 use crate::{Dielectric, Encoding, Filter, Image, Material, Sampler, SceneError, TextureRef, Wrap};
 
-/// The cutoff of masks that name none, and of blended materials.
+/// The cutoff of masks without one, and of blended materials.
 const DEFAULT_CUTOFF: f32 = 0.5;
 
-/// The index of refraction of a material that names none.
+/// The index of refraction of a material without one.
 const DEFAULT_IOR: f32 = 1.5;
 
-/// The extension that older exporters describe materials by.
+/// The extension by which older exporters describe materials.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// The roughness of its materials whose glossiness is in a texture.
+/// The roughness of materials of that extension whose glossiness is in a texture.
 const GLOSSY_ROUGHNESS: f32 = 0.5;
 
-/// What that extension says.
+/// The content of that extension.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 struct Glossy {
@@ -49,7 +49,7 @@ impl Default for Glossy {
     }
 }
 
-/// The file's materials, the default one after them, and what each needs from its meshes.
+/// The file's materials, followed by the default one, and the texture coordinates that each needs.
 pub(super) struct Materials {
     pub(super) materials: Vec<Material>,
     pub(super) images: Vec<Image>,
@@ -137,7 +137,7 @@ impl Reader<'_> {
         Ok(material)
     }
 
-    /// KHR_materials_ior and KHR_materials_specular, whose textures are left out.
+    /// Reads KHR_materials_ior and KHR_materials_specular, without their textures.
     fn dielectric(&mut self, ix: usize, json: &Json) -> Result<Dielectric, SceneError> {
         let extensions = json.extensions.as_ref();
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(DEFAULT_IOR, |ior| ior.ior.0);
@@ -167,7 +167,7 @@ impl Reader<'_> {
         });
         for (texture, _) in textures.into_iter().flatten().filter(|(_, is_used)| *is_used) {
             self.warnings.add(format!(
-                "material {:?}: KHR_materials_specular's {texture} is left out, its factors count",
+                "material {:?}: {texture} of KHR_materials_specular is ignored; its factors are used",
                 self.name
             ));
         }
@@ -181,8 +181,8 @@ impl Reader<'_> {
         Ok(Dielectric { f0: (normal * color).min(Vec3::ONE) * factor, f90: factor })
     }
 
-    /// The older model: a diffuse and a specular colour. A dielectric of that reflectance is the
-    /// same, but for its texture of specular colour and glossiness, which is left out.
+    /// Reads the older model: a diffuse and a specular colour. A dielectric of that reflectance
+    /// looks the same, except for the texture of specular colour and glossiness, which is ignored.
     fn make_glossy(
         &mut self,
         ix: usize,
@@ -194,7 +194,7 @@ impl Reader<'_> {
             self.file.invalid(field, value, accepted)
         };
         let glossy: Glossy = serde_json::from_value(value.clone())
-            .map_err(|error| fail(format!("diffuse, specular and glossiness, but: {error}")))?;
+            .map_err(|error| fail(format!("diffuse, specular and glossiness, but {error}")))?;
         let factors = [&glossy.diffuse_factor[..], &glossy.specular_factor].concat();
         if !factors.iter().chain([&glossy.glossiness_factor]).all(|x| (0.0..=1.0).contains(x)) {
             return Err(fail("factors between 0 and 1".into()));
@@ -209,7 +209,7 @@ impl Reader<'_> {
         material.roughness = 1.0 - glossy.glossiness_factor;
         material.dielectric.f0 = Vec3::from(glossy.specular_factor);
         if glossy.specular_glossiness_texture.is_some() {
-            // Factors alone would make a mirror of it.
+            // The factors without their texture would make it a mirror.
             material.dielectric = Dielectric::default();
             material.roughness = GLOSSY_ROUGHNESS;
             self.warnings.add(format!(
@@ -251,7 +251,7 @@ impl Reader<'_> {
         transform: Option<&TextureTransform>,
         encoding: Encoding,
     ) -> Option<TextureRef> {
-        // Indices are validated with the JSON; see `file::parse`.
+        // `file::parse` has validated the indices.
         let texture = &self.file.root.textures[index.value()];
         if texture.source.value() == u32::MAX as usize {
             let extensions = texture.extensions.iter().flat_map(|e| e.others.keys());
@@ -260,7 +260,7 @@ impl Reader<'_> {
                 extensions.push("none");
             }
             self.warnings.add(format!(
-                "texture {index} has no image that is read ({}): materials lose it",
+                "texture {index} has no image of a supported format ({}): materials are drawn without it",
                 extensions.join(", ")
             ));
             return None;
@@ -268,7 +268,7 @@ impl Reader<'_> {
         let set = transform.and_then(|t| t.tex_coord).unwrap_or(tex_coord);
         if *self.uv_set.get_or_insert(set) != set {
             self.warnings.add(format!(
-                "material {:?}: its textures use several TEXCOORD sets, the first is used for all",
+                "material {:?}: its textures use several TEXCOORD sets; the first set is used for all",
                 self.name
             ));
         }
@@ -281,7 +281,7 @@ impl Reader<'_> {
     }
 }
 
-/// Turns a material's colour into emission that nothing adds to. Holes of its mask stay.
+/// Turns a material's colour into emission, and makes it reflect nothing. Holes of its mask stay.
 fn make_unlit(material: &mut Material) {
     material.emissive = material.base_color.truncate();
     material.emissive_texture = material.base_color_texture;
@@ -292,8 +292,8 @@ fn make_unlit(material: &mut Material) {
     material.unlit = true;
 }
 
-/// Translation * rotation * scale, the rotation counter-clockwise in an image whose v points
-/// down (KHR_texture_transform).
+/// Translation * rotation * scale. The rotation is counter-clockwise in an image whose v axis
+/// points down (KHR_texture_transform).
 fn uv_transform(transform: &TextureTransform) -> Affine2 {
     let (sin, cos) = transform.rotation.0.sin_cos();
     let rotation = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));

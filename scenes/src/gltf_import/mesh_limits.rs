@@ -1,4 +1,4 @@
-//! How much the meshes of a file may make of themselves, checked before memory is asked for.
+//! Limits on what the meshes of a file can expand to, checked before memory is allocated.
 
 use gltf::json::{
     Index,
@@ -10,15 +10,15 @@ use gltf::json::{
 use super::{file::File, limits::budget_bytes};
 use crate::{SceneError, Vertex};
 
-/// The most vertices and indices, every primitive counting its own: many primitives of a small
-/// file can share one large accessor, and each becomes a mesh of its own.
+/// The most vertices and indices. Each primitive counts its own, because many primitives of a small
+/// file can share one large accessor and each becomes a mesh of its own.
 const MAX_ELEMENTS: u64 = 1 << 27;
 
-/// The most elements of all accessors that have no buffer view, every primitive counting its own.
-/// They cost a file nothing.
+/// The most elements of all accessors without a buffer view. Each primitive counts its own. They
+/// cost a file nothing.
 const MAX_ZEROED: u64 = 1 << 22;
 
-/// Checks what the file's meshes will take.
+/// Checks how much the file's meshes will take.
 pub(super) fn check_meshes(file: &File) -> Result<(), SceneError> {
     let mut need = Need::default();
     for primitive in file.root.meshes.iter().flat_map(|mesh| &mesh.primitives) {
@@ -39,7 +39,7 @@ pub(super) fn check_meshes(file: &File) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// What meshes take.
+/// How much meshes take.
 #[derive(Default)]
 struct Need {
     elements: u64,
@@ -59,7 +59,7 @@ impl Need {
         let mut bytes = positions.saturating_mul(VERTEX + 12);
         bytes = bytes.saturating_add(indices.saturating_mul(4));
         if attribute(Semantic::Normals).is_none() {
-            // Every corner becomes a vertex.
+            // Flat normals give every corner a vertex of its own.
             bytes = bytes.saturating_add(indices.saturating_mul(VERTEX + 4));
         }
         self.bytes = self.bytes.saturating_add(bytes);
@@ -75,7 +75,7 @@ impl Need {
     }
 }
 
-/// An accessor's count; 0 where it is beyond 32 bits, which the reader of accessors refuses.
+/// An accessor's count, or 0 where it exceeds 32 bits: the reader of accessors refuses those.
 fn count(file: &File, accessor: Index<Accessor>) -> u64 {
     let count = file.root.get(accessor).map_or(0, |accessor| accessor.count.0);
     if count <= u64::from(u32::MAX) { count } else { 0 }

@@ -1,4 +1,4 @@
-//! Primitives: attributes read, checked and completed.
+//! Converts primitives to meshes: reads, checks and completes their attributes.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,8 @@ use rayon::prelude::*;
 
 use super::{
     Warnings, draco::DracoMesh, file::File, influence::Influence, materials::Materials,
-    mesh_limits::check_meshes, repeats, tangents, warnings::kept_name,
+    mesh_limits::check_meshes, repeats, tangents, triangle_list::triangle_list,
+    warnings::kept_name,
 };
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
@@ -21,11 +22,11 @@ use crate::{Aabb, Mesh, SceneError, Vertex};
 pub(super) struct Meshes {
     pub(super) meshes: Vec<Mesh>,
     pub(super) ranges: Vec<std::ops::Range<u32>>,
-    /// For each mesh that a skin can pose, what moves its vertices.
+    /// For each mesh that a skin can pose, the joints that move its vertices.
     pub(super) influences: HashMap<usize, Vec<Influence>>,
 }
 
-/// Converts every mesh of the file, primitives in parallel.
+/// Converts every mesh of the file, with primitives in parallel.
 pub(super) fn load(
     file: &File,
     materials: &Materials,
@@ -62,7 +63,7 @@ pub(super) fn load(
     Ok(Meshes { meshes, ranges, influences })
 }
 
-/// One primitive on its way.
+/// The conversion of one primitive.
 struct Job<'a> {
     file: &'a File,
     primitive: &'a Primitive,
@@ -72,7 +73,7 @@ struct Job<'a> {
     uv_set: u32,
     has_textures: bool,
     needs_tangents: bool,
-    /// What it holds compressed.
+    /// Its compressed form, if it has one.
     draco: Option<DracoMesh>,
 }
 
@@ -96,7 +97,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The mesh and what moves its vertices; `None` where there is nothing to draw.
+    /// The mesh and the joints that move its vertices; `None` where there is nothing to draw.
     fn convert(
         &mut self,
         warnings: &mut Warnings,
@@ -106,11 +107,12 @@ impl<'a> Job<'a> {
         };
         use Mode::{LineLoop, LineStrip, Lines, Points};
         if matches!(mode, Points | Lines | LineLoop | LineStrip) {
-            warnings.add(format!("mesh {:?}: {mode:?} are not drawn", self.name));
+            warnings
+                .add(format!("mesh {:?}: primitives of type {mode:?} are not drawn", self.name));
             return Ok(None);
         }
         if self.attribute(Semantic::Positions).is_none() {
-            warnings.add(format!("mesh {:?}: has no POSITION, not drawn", self.name));
+            warnings.add(format!("mesh {:?} has no POSITION and is not drawn", self.name));
             return Ok(None);
         }
         self.note_ignored(warnings);
@@ -120,7 +122,7 @@ impl<'a> Job<'a> {
         let positions = self.positions()?;
         let indices = self.indices(mode, positions.len())?;
         if indices.is_empty() {
-            warnings.add(format!("mesh {:?}: has no triangles", self.name));
+            warnings.add(format!("mesh {:?} has no triangles and is not drawn", self.name));
             return Ok(None);
         }
         let mut mesh = self.assemble(positions, indices, warnings)?;
@@ -145,10 +147,10 @@ impl<'a> Job<'a> {
             warnings.add("morph targets are ignored".into());
         }
         if self.attribute(Semantic::Joints(1)).is_some() {
-            warnings.add("skins: JOINTS_1 is ignored, four joints move a vertex".into());
+            warnings.add("skins: JOINTS_1 is ignored; at most four joints move a vertex".into());
         }
         if self.attribute(Semantic::Colors(1)).is_some() {
-            warnings.add("vertex colours: COLOR_1 is ignored".into());
+            warnings.add("vertex colours: COLOR_1 is ignored; only COLOR_0 is used".into());
         }
     }
 
@@ -156,7 +158,7 @@ impl<'a> Job<'a> {
         self.primitive.attributes.get(&Checked::Valid(semantic)).copied()
     }
 
-    /// An attribute's values, from the compressed mesh where they are there.
+    /// The values of an attribute, from the compressed mesh if they are in it.
     fn floats<const N: usize>(
         &self,
         semantic: &Semantic,
@@ -196,29 +198,12 @@ impl<'a> Job<'a> {
             let accepted = format!("below {vertices}, the number of vertices");
             return Err(self.file.invalid(format!("{}.indices", self.field), index, accepted));
         }
-        // A compressed strip is stored as its triangles.
+        // A compressed strip is stored as triangles.
         let mode = if self.draco.is_some() { Mode::Triangles } else { mode };
-        Ok(match mode {
-            Mode::TriangleStrip => indices
-                .windows(3)
-                .enumerate()
-                .flat_map(|(ix, w)| {
-                    let odd = ix % 2;
-                    [w[0], w[1 + odd], w[2 - odd]]
-                })
-                .collect(),
-            Mode::TriangleFan => {
-                indices.windows(2).skip(1).flat_map(|w| [w[0], w[1], indices[0]]).collect()
-            }
-            _ => {
-                let mut indices = indices;
-                indices.truncate(indices.len() / 3 * 3);
-                indices
-            }
-        })
+        Ok(triangle_list(mode, indices))
     }
 
-    /// Vertices as far as the file has them; what is missing stays zero.
+    /// The vertices with the attributes that the file has. The others stay zero.
     fn assemble(
         &self,
         positions: Vec<[f32; 3]>,
@@ -234,7 +219,7 @@ impl<'a> Job<'a> {
         self.fill(Semantic::TexCoords(self.uv_set), &mut vertices, |v, uv| v.uv = uv)?;
         if self.has_textures && self.attribute(Semantic::TexCoords(self.uv_set)).is_none() {
             warnings.add(format!(
-                "mesh {:?}: has no TEXCOORD_{}, which its material's textures need: they show one colour",
+                "mesh {:?} has no TEXCOORD_{}, which its textures need: each texture shows one colour",
                 self.name, self.uv_set
             ));
         }
@@ -246,7 +231,10 @@ impl<'a> Job<'a> {
             }
         }
         if bad > 0 {
-            warnings.add(format!("mesh {:?}: {bad} NaN or infinite uvs set to 0", self.name));
+            warnings.add(format!(
+                "mesh {:?}: {bad} NaN or infinite texture coordinates were set to 0",
+                self.name
+            ));
         }
         Ok(Mesh {
             name: self.name.clone(),
@@ -272,7 +260,7 @@ impl<'a> Job<'a> {
             return Err(self.file.invalid(
                 format!("{}.attributes ({semantic:?}) count", self.field),
                 values.len(),
-                format!("{}, as POSITION has", vertices.len()),
+                format!("{}, the count of POSITION", vertices.len()),
             ));
         }
         for (vertex, value) in vertices.iter_mut().zip(values) {
@@ -281,7 +269,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// COLOR_0, one per vertex; empty where the primitive has none or all are white.
+    /// The values of COLOR_0, one per vertex; empty where the primitive has none or all are white.
     fn colors(&self, vertices: usize) -> Result<Vec<[f32; 4]>, SceneError> {
         let Some(accessor) = self.attribute(Semantic::Colors(0)) else {
             return Ok(Vec::new());
@@ -295,14 +283,14 @@ impl<'a> Job<'a> {
         };
         self.check_count("COLOR_0", colors.len(), vertices)?;
         for channel in colors.as_flattened_mut() {
-            // glTF 2.0, 3.7.2.1; what is no number counts as 1.
+            // glTF 2.0, section 3.7.2.1, clamps colours. NaN counts as 1.
             *channel = if channel.is_nan() { 1.0 } else { channel.clamp(0.0, 1.0) };
         }
         let is_white = colors.iter().all(|color| *color == [1.0; 4]);
         Ok(if is_white { Vec::new() } else { colors })
     }
 
-    /// What moves each vertex under a skin; empty where no skin can.
+    /// The joints that move each vertex under a skin; empty where no skin can move it.
     fn influences(&self, vertices: usize) -> Result<Vec<Influence>, SceneError> {
         let attributes =
             (self.attribute(Semantic::Joints(0)), self.attribute(Semantic::Weights(0)));
@@ -325,11 +313,11 @@ impl<'a> Job<'a> {
             return Ok(());
         }
         let field = format!("{}.attributes.{name} count", self.field);
-        Err(self.file.invalid(field, count, format!("{vertices}, as POSITION has")))
+        Err(self.file.invalid(field, count, format!("{vertices}, the count of POSITION")))
     }
 
-    /// Adds or repairs normals and tangents. Where that gives vertices new places, tells each time
-    /// which vertex every one comes from.
+    /// Adds or repairs normals and tangents. Each step that adds vertices returns, for every new
+    /// vertex, the index of the old one.
     fn complete(
         &self,
         mesh: &mut Mesh,
@@ -348,9 +336,9 @@ impl<'a> Job<'a> {
         let repaired = tangents::repair_normals(mesh);
         if repaired > 0 && has_normals {
             let name = &self.name;
-            warnings.add(format!("mesh {name:?}: {repaired} normals of length 0 replaced"));
+            warnings.add(format!("mesh {name:?}: {repaired} normals of length 0 were replaced"));
         }
-        // glTF: tangents are ignored where normals are missing.
+        // glTF ignores tangents where normals are missing.
         let has_tangents = has_normals && self.attribute(Semantic::Tangents).is_some();
         if self.needs_tangents && !has_tangents {
             sources.push(tangents::generate(mesh));
@@ -360,7 +348,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The elements that new vertices come from; none where there were none.
+/// The values of new vertices, copied from the old ones; empty if there were none.
 fn gather<T: Copy>(values: &[T], sources: &[u32]) -> Vec<T> {
     if values.is_empty() {
         return Vec::new();

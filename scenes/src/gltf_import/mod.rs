@@ -1,7 +1,8 @@
-//! Import of glTF 2.0: `.gltf` and `.glb`, buffers and images embedded or beside the file.
+//! Imports glTF 2.0: `.gltf` and `.glb` files, with buffers and images embedded or in files beside
+//! them.
 //!
-//! The file is parsed and validated by gltf-json; everything read after that is range-checked
-//! here, so that no file makes the importer panic.
+//! gltf-json parses and validates the file. The importer checks the range of everything that it
+//! reads afterwards, so no file makes it panic.
 
 mod accessor;
 mod adapt;
@@ -32,6 +33,7 @@ mod skins;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod triangle_list;
 mod walk;
 mod warnings;
 
@@ -47,33 +49,40 @@ use crate::{CameraPath, Scene, SceneError, close_ranges, extent, fit};
 
 /// Loads a glTF 2.0 file.
 ///
-/// Meshes used by several nodes are shared, each node becoming a model, and each instance of
-/// EXT_mesh_gpu_instancing. Skinned meshes are posed where their joints rest. Missing normals are
-/// computed flat, missing tangents by MikkTSpace where the material has a normal map. Morph
-/// targets, lines, points and animations of anything but cameras are left
-/// out, and blended materials become masks; [`Scene::warnings`] says so, and names every
-/// extension that is not read. [`close_ranges`] gives lights without a range their end. Those that
-/// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`], for
-/// [`LightBuffer`](assign::LightBuffer) to quarantine and report.
+/// # What is read
 ///
-/// At most 200 million triangles are accepted, every node counting its mesh's, and at most 2^27
-/// vertices and indices, every primitive counting its own. Images in use have at most 2^31 pixels
-/// together, and 16,384 per side. Buffers, meshes and decoded images may take a quarter of the
-/// machine's memory each. The boxes and the path of scenes of more than 2 million triangles are
-/// found from a sample of them.
+/// Each node with a mesh becomes a model, and so does each instance of EXT_mesh_gpu_instancing.
+/// Nodes that use the same mesh share it. Skinned meshes are posed by the resting place of their
+/// joints. Missing normals are computed flat. Missing tangents are computed by MikkTSpace where the
+/// material has a normal map.
 ///
-/// Parts are read from regular files beside the scene, never by absolute paths. A part outside the
-/// scene's folder is read with a warning that names it.
+/// The importer leaves out morph targets, lines, points, and animations of anything but cameras. It
+/// turns blended materials into masks. [`Scene::warnings`] lists all of this, and every extension
+/// that is not supported.
 ///
-/// The path is the animation of the first animated camera; else it is fitted to the scene and
-/// starts at the first camera where there is one. A scene that stands far from its file's origin is
-/// moved to its own ([`Scene::origin`]).
+/// [`close_ranges`] chooses a range for lights without one. Lights that
+/// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`]:
+/// [`LightBuffer`](assign::LightBuffer) quarantines and reports them.
+///
+/// The path is the animation of the first animated camera. Without one, it is fitted to the scene
+/// and starts at the first camera if there is any. A scene that stands far from its file's origin
+/// gets an origin of its own ([`Scene::origin`]).
+///
+/// # Limits
+///
+/// A scene has at most 200 million triangles (each node counts the triangles of its mesh) and 2^27
+/// vertices and indices (each primitive counts its own). The images in use have at most 2^31 pixels
+/// together, and 16,384 per side. Buffers, meshes and decoded images may each take a quarter of the
+/// machine's memory. In scenes of more than 2 million triangles, the boxes and the path are
+/// computed from a sample of the triangles.
+///
+/// Parts are read only from regular files, and only by relative paths. A part outside the scene's
+/// folder is read, and a warning names it.
 ///
 /// # Errors
 ///
-/// [`SceneError`] for a file that cannot be read, that is malformed or cut short, that is not of
-/// glTF 2, whose images do not decode, that requires an unknown extension, or that has no
-/// triangles or too many.
+/// [`SceneError`] for a file that cannot be read, is malformed or truncated, is not glTF 2, has
+/// images that do not decode, requires an unknown extension, or has no triangles or too many.
 pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     let file = open(path)?;
     let mut warnings = file.take_notes();
@@ -95,8 +104,9 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         }
         if animated.is_some() {
             let name = &placed.cameras[ix].name;
-            warnings
-                .add(format!("camera {name:?}: its animation is not played, only the first is"));
+            warnings.add(format!(
+                "camera {name:?}: its animation is not played; only the first animated camera moves"
+            ));
             continue;
         }
         animated = animation::load(&file, chain, origin, &mut warnings)?;
@@ -136,15 +146,15 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// Loads the lights of a glTF 2.0 file and nothing else, so that it may hold nothing else.
+/// Loads only the lights of a glTF 2.0 file, so the file need not hold anything else.
 ///
-/// They come as a [`Scene`] without triangles, to be scaled and to carry their warnings. World space
-/// begins at `origin` of the file. Lights without a range reach infinitely far: the scene that they light
-/// decides where they end.
+/// The lights come in a [`Scene`] without triangles, so that they can be scaled and keep their
+/// warnings. World space begins at `origin` of the file. Lights without a range keep an infinite
+/// one, because the scene that they light decides where they end.
 ///
 /// # Errors
 ///
-/// [`SceneError`] as [`load_gltf`] has them of the file's JSON, buffers, nodes and lights.
+/// The [`SceneError`]s of [`load_gltf`] that concern the file's JSON, buffers, nodes and lights.
 pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, SceneError> {
     let file = open(path)?;
     let mut warnings = file.take_notes();
@@ -188,7 +198,7 @@ fn check_suns(file: &File, suns: &[Sun]) -> Result<(), SceneError> {
     Err(file.invalid(field, suns.len(), format!("at most {MAX_SUNS}")))
 }
 
-/// The file's stem, or its folder's name where that is just "scene".
+/// The file's stem, or its folder's name where the stem is just "scene".
 fn name(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or_default();
     let folder = path.parent().and_then(Path::file_name);
@@ -196,7 +206,8 @@ fn name(path: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// The default material comes last; it stays only where a mesh uses it or there is no other.
+/// Removes the default material, which is the last one, unless a mesh uses it or it is the only
+/// one.
 fn drop_unused_default(scene: &mut Scene) {
     let default = scene.materials.len() - 1;
     let used = scene.meshes.iter().any(|mesh| mesh.material as usize == default);

@@ -1,4 +1,4 @@
-//! Models: meshes placed by nodes, once or by EXT_mesh_gpu_instancing, or by the joints of a skin.
+//! Places meshes as models: once per node, by EXT_mesh_gpu_instancing, or by the joints of a skin.
 
 use glam::{DMat3, Mat4, Quat, Vec3, Vec4};
 use gltf::json::{Index, accessor::Accessor, scene::Node};
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{Aabb, Instance, Model, SceneError};
 
-/// The most models that EXT_mesh_gpu_instancing may make: a few bytes of a file can ask for many.
+/// The most models that EXT_mesh_gpu_instancing may make. A few bytes of a file can ask for many.
 const MAX_MODELS: usize = 1 << 22;
 
 /// The extension that draws a node's mesh many times.
@@ -43,7 +43,9 @@ impl Placed {
                 skins.pose(skin.value(), &visit.to_world, range.clone(), meshes, warnings)?
         {
             if instances(file, visit.ix, node)?.is_some() {
-                warnings.add(format!("node {name:?}: {INSTANCING} is left out on a skinned mesh"));
+                warnings.add(format!(
+                    "node {name:?}: {INSTANCING} is ignored because the mesh is skinned"
+                ));
             }
             // The joints place a skinned mesh, not the node that holds it.
             self.add_model(name, range, Mat4::IDENTITY, meshes, warnings);
@@ -78,7 +80,7 @@ impl Placed {
         warnings: &mut Warnings,
     ) {
         if is_line(&object_to_world) {
-            warnings.add(format!("node {name:?}: scaled to a line or a point, not drawn"));
+            warnings.add(format!("node {name:?} is scaled to a line or a point and is not drawn"));
             return;
         }
         let parts = &meshes.meshes[range.start as usize..range.end as usize];
@@ -94,7 +96,7 @@ impl Placed {
     }
 }
 
-/// Whether a transform leaves no triangle any area. One that flattens leaves some.
+/// Whether a transform leaves every triangle without area. A transform that only flattens does not.
 fn is_line(transform: &Mat4) -> bool {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = DMat3::from_mat4(transform.as_dmat4());
     [x.cross(y), y.cross(z), z.cross(x)].iter().all(|c| *c == glam::DVec3::ZERO)
@@ -127,10 +129,10 @@ fn instances(file: &File, ix: usize, node: &Node) -> Result<Option<Vec<Mat4>>, S
         ("SCALE", scales.as_ref().map(Vec::len)),
     ];
     let mut counts = counts.into_iter().filter_map(|(name, count)| Some((name, count?)));
-    // Attributes of an application's own do not move instances apart: one stands for all.
+    // An application's own attributes do not move instances, so one instance stands for all.
     let (_, count) = counts.next().unwrap_or(("", 1));
     if let Some((name, other)) = counts.find(|(_, other)| *other != count) {
-        let accepted = format!("{count}, as the attribute before it has");
+        let accepted = format!("{count}, the count of the attribute before it");
         return Err(file.invalid(format!("{} count", field(name)), other, accepted));
     }
     let transform = |ix: usize| {

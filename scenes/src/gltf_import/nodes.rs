@@ -13,11 +13,11 @@ use super::{
 };
 use crate::SceneError;
 
-/// The most nodes between cameras and their roots, all cameras together: a deep tree can hold a
-/// camera at every node. The animation of further cameras is not looked for.
+/// The most nodes between cameras and their roots, for all cameras together. A deep tree can hold a
+/// camera at every node. The animations of further cameras are not read.
 const MAX_CHAIN_NODES: usize = 1 << 16;
 
-/// Places what the visited nodes hold.
+/// Places the meshes, lights and cameras of the visited nodes.
 pub(super) fn place(
     file: &File,
     walk: &Walk,
@@ -57,7 +57,7 @@ pub(super) fn place(
     Ok(placed)
 }
 
-/// The lights and suns of the visited nodes alone.
+/// Only the lights and suns of the visited nodes.
 pub(super) fn lights(
     file: &File,
     walk: &Walk,
@@ -71,7 +71,7 @@ pub(super) fn lights(
 }
 
 impl Placed {
-    /// The nodes from the root to a camera's; none beyond [`MAX_CHAIN_NODES`].
+    /// The nodes from the root to a camera's node; empty after [`MAX_CHAIN_NODES`].
     fn chain_within_limits(
         &mut self,
         parents: &[Option<usize>],
@@ -83,7 +83,10 @@ impl Placed {
         let mut chain: Vec<_> = upwards.take(left + 1).collect();
         if chain.len() > left {
             self.chain_nodes = MAX_CHAIN_NODES;
-            warnings.add("too many cameras in too deep a tree: not all animations are read".into());
+            warnings.add(
+                "too many nodes lie above cameras: the animations of further cameras are not read"
+                    .into(),
+            );
             return Vec::new();
         }
         self.chain_nodes += chain.len();

@@ -1,9 +1,10 @@
-//! Where world space begins: a scene far from its file's origin gets one of its own.
+//! Chooses where world space begins. A scene far from its file's origin gets an origin of its own.
 //!
-//! Positions on the GPU are f32. At 1,000 km they are 6 cm apart, so a room there would have no straight
-//! wall. Transforms are therefore multiplied in f64, and where the scene stands far off, the middle of
-//! its models is taken off before anything becomes f32. [`Scene::origin`](crate::Scene::origin) holds
-//! what was taken off, so that the file's coordinates still hold on the command line.
+//! Positions on the GPU are f32. At 1,000 km from the origin they are 6 cm apart, so a room there
+//! would have no straight wall. Transforms are therefore multiplied in f64. If the scene stands far
+//! off, the middle of its models is subtracted before anything becomes f32.
+//! [`Scene::origin`](crate::Scene::origin) holds what was subtracted, so the command line can use
+//! the file's coordinates.
 
 use glam::{DVec3, Vec3};
 
@@ -17,13 +18,15 @@ use super::{
 };
 use crate::{Aabb, SceneError};
 
-/// Farther from the origin than this, f32 positions are 2 mm apart or more.
+/// Beyond this distance from the origin, f32 positions are 2 mm apart or more.
 const FAR_M: f32 = 16_384.0;
 
-/// A scene is also far off at this many times its own size, where f32 leaves it 19 bits of 24.
+/// A scene is also far off at this many times its own size. f32 then leaves 19 of its 24 bits for
+/// positions.
 const FAR_SIZES: f32 = 32.0;
 
-/// Walks the nodes and places what they hold, and tells where world space begins in the file's.
+/// Walks the nodes, places what they hold, and returns the origin of world space in the file's
+/// coordinates.
 pub(super) fn place(
     file: &File,
     meshes: &mut Meshes,
@@ -35,14 +38,14 @@ pub(super) fn place(
     let Some(origin) = far_off(&placed, meshes) else {
         return Ok((walk, placed, DVec3::ZERO));
     };
-    // Skins pose copies anew. The warnings are the same again.
+    // Skins pose new copies. The warnings would be the same as before.
     meshes.meshes.truncate(count);
     let walk = walk::walk(file, origin)?;
     let placed = nodes::place(file, &walk, meshes, &mut Warnings::default())?;
     Ok((walk, placed, origin))
 }
 
-/// The middle of the models, where that is far from the origin.
+/// The middle of the models, if it is far from the origin.
 fn far_off(placed: &Placed, meshes: &Meshes) -> Option<DVec3> {
     let boxes = placed.instances.iter().map(|instance| {
         let mesh = &meshes.meshes[instance.mesh as usize];
@@ -50,7 +53,7 @@ fn far_off(placed: &Placed, meshes: &Meshes) -> Option<DVec3> {
     });
     let boxes: Vec<Aabb> = boxes.filter(|place| place.size().is_finite()).collect();
     let whole = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
-    // The median is where most of them are, whatever else lies about.
+    // The median is where most models are, wherever the others lie.
     let median = |axis: usize| {
         let mut along: Vec<f32> = boxes.iter().map(|place| place.center()[axis]).collect();
         let middle = along.len() / 2;

@@ -1,4 +1,5 @@
-//! The files that a scene's file names: regular files only, and no more of them than is wanted.
+//! Reads the files that a scene's file names: only regular files, and only as many bytes as are
+//! needed.
 
 use std::{
     fs,
@@ -6,7 +7,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// A part's bytes, and where it lies if that is outside the scene's folder.
+/// The bytes of a part, and its place if that is outside the scene's folder.
 pub(super) struct Part {
     pub(super) bytes: Vec<u8>,
     pub(super) outside: Option<PathBuf>,
@@ -31,11 +32,11 @@ pub(super) fn is_absolute(name: &Path) -> bool {
 }
 
 /// At most `most` bytes of a regular file. Devices and pipes may have no end, and opening a pipe
-/// may wait forever, so the file is asked what it is before it is opened.
+/// may wait forever. So the type is checked before the file is opened.
 pub(super) fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
     let about = fs::metadata(path)?;
     if !about.is_file() {
-        return Err(Error::other("it is no regular file"));
+        return Err(Error::other("it is not a regular file"));
     }
     let most = most.min(about.len());
     let mut bytes = Vec::new();
@@ -50,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn absolute_names_of_every_system_are_told() {
+    fn absolute_names_of_every_system_are_recognised() {
         for name in ["/etc/passwd", "\\\\server\\x", "\\x", "C:\\x.bin", "c:x.bin"] {
             assert!(is_absolute(Path::new(name)), "{name}");
         }
@@ -60,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn only_regular_files_are_read_and_only_what_is_wanted() {
+    fn only_regular_files_are_read_and_only_as_many_bytes_as_asked() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         fs::write(folder.path().join("x.bin"), [7; 100]).expect("writes");
         let part = read_part(folder.path(), Path::new("x.bin"), 10).expect("there");
@@ -68,7 +69,7 @@ mod tests {
         assert!(read_part(folder.path(), Path::new("."), 10).is_err());
         if cfg!(unix) {
             let error = read_regular(Path::new("/dev/zero"), 10).expect_err("a device");
-            assert_eq!(error.to_string(), "it is no regular file");
+            assert_eq!(error.to_string(), "it is not a regular file");
         }
     }
 }

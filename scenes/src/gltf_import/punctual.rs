@@ -1,4 +1,4 @@
-//! Lights of KHR_lights_punctual: points, spots and suns.
+//! Reads lights of KHR_lights_punctual: points, spots and suns.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -14,8 +14,8 @@ use super::{Warnings, file::File, placed::Placed, warnings::kept_name};
 use crate::{Pose, SceneError};
 
 impl Placed {
-    /// Adds the light that a node carries. A faulty sun is left out with a warning; other faulty
-    /// lights are kept, to be reported where lights are uploaded.
+    /// Adds the light that a node carries. A faulty sun is left out with a warning. Other faulty
+    /// lights are kept, so that uploading reports them.
     pub(super) fn add_light(
         &mut self,
         file: &File,
@@ -43,18 +43,18 @@ impl Placed {
                 let sun = Sun { direction, irradiance: intensity };
                 match sun.check() {
                     Ok(()) => self.suns.push(sun),
-                    Err(fault) => warnings.add(format!("{}: left out: {fault}", name(json, ix))),
+                    Err(fault) => warnings.add(format!("{} is left out: {fault}", name(json, ix))),
                 }
                 return Ok(());
             }
             Checked::Invalid => {
-                warnings.add(format!("{}: left out: its type is unknown", name(json, ix)));
+                warnings.add(format!("{} is left out: its type is unknown", name(json, ix)));
                 return Ok(());
             }
         };
         self.lights.push(Light {
             position: pose.eye,
-            // The scene's size decides where an open light ends: `close_ranges`.
+            // `close_ranges` chooses this range later, from the size of the scene.
             range_m: json.range.unwrap_or(f32::INFINITY),
             intensity,
             shape,
@@ -63,7 +63,7 @@ impl Placed {
     }
 }
 
-/// The cone of a spot, with the specification's angles where it has none.
+/// The cone of a spot. Missing angles get the specification's defaults.
 fn spot(json: &JsonLight, direction: Vec3) -> LightShape {
     let [inner, outer] = json
         .spot

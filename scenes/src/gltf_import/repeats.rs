@@ -1,7 +1,8 @@
-//! Triangles that never show: without area, or exactly the same as one before.
+//! Removes triangles that never show: those without area, and those that repeat an earlier one
+//! exactly.
 //!
-//! A few bytes of a file can stand for hundreds of thousands of them, which cost every pass that
-//! rasterises and every hierarchy. A mesh with few of them stays as it is.
+//! A few bytes of a file can stand for hundreds of thousands of them. They cost time in every pass
+//! over triangles and in every hierarchy. A mesh with only a few of them stays as it is.
 
 use std::{
     collections::HashMap,
@@ -14,11 +15,11 @@ use glam::{DVec3, Vec3};
 use super::Warnings;
 use crate::Mesh;
 
-/// A mesh keeps up to this many of either.
+/// A mesh keeps up to this many of each kind.
 const MOST: usize = 4096;
 
-/// Leaves them out where there are many. Not for meshes that a skin poses: it moves apart what lies in
-/// one place.
+/// Removes both kinds where there are many. Skinned meshes must not be passed in, because a skin
+/// moves vertices of the same place apart.
 pub(super) fn drop_repeats(mesh: &mut Mesh, warnings: &mut Warnings) {
     if mesh.triangle_count() <= MOST {
         return;
@@ -36,7 +37,7 @@ pub(super) fn drop_repeats(mesh: &mut Mesh, warnings: &mut Warnings) {
     let mut firsts = HashMap::new();
     drop_where(
         mesh,
-        "repeat another one",
+        "repeat another triangle",
         |mesh, ix| {
             let vertices = |ix: usize| corners(mesh, ix).map(|v| mesh.vertices[v]);
             let colors = |ix: usize| corners(mesh, ix).map(|v| mesh.colors.get(v).copied());

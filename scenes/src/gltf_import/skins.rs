@@ -1,7 +1,7 @@
-//! Skinned meshes, posed by their joints where the nodes rest.
+//! Poses skinned meshes by their joints, at the place where the nodes rest.
 //!
-//! Each vertex is moved by the weighted sum of its joints' matrices, `joint_to_world *
-//! inverse_bind`. The node that holds the mesh moves nothing (glTF 2.0, 3.7.3.3).
+//! The weighted sum of the matrices of its joints, `joint_to_world * inverse_bind`, moves each
+//! vertex. The node that holds the mesh moves nothing (glTF 2.0, section 3.7.3.3).
 
 use std::{collections::HashMap, ops::Range, rc::Rc};
 
@@ -10,15 +10,15 @@ use glam::{Mat3, Mat4, Vec3, Vec4};
 use super::{Warnings, file::File, influence::Influence, meshes::Meshes, walk::Walk};
 use crate::{Aabb, Mesh, SceneError, Vertex};
 
-/// The most vertices and indices of all posed copies together: many nodes can share one large mesh.
+/// The most vertices and indices of all posed copies together. Many nodes can share one large mesh.
 const MAX_ELEMENTS: usize = 1 << 26;
 
-/// The skins of a file, and where their joints are.
+/// The skins of a file, and the places of their joints.
 pub(super) struct Skins<'a> {
     file: &'a File,
-    /// For each node of the scene, where it is.
+    /// The place of each node of the scene.
     to_world: Vec<Option<Mat4>>,
-    /// What each joint of the skins used so far does to a vertex.
+    /// For each skin used so far, the matrix by which each joint moves a vertex.
     matrices: HashMap<usize, Option<Rc<[Mat4]>>>,
     /// Vertices and indices of the copies made so far.
     elements: usize,
@@ -33,9 +33,9 @@ impl<'a> Skins<'a> {
         Self { file, to_world, matrices: HashMap::new(), elements: 0 }
     }
 
-    /// Adds posed copies of meshes and returns their range. `None` where one of them has no
-    /// joints, or where a joint stands outside the scene: then the node places them. The node's
-    /// transform decides one thing only: where it mirrors, triangles turn round.
+    /// Adds posed copies of meshes and returns their range. Returns `None` where one of the meshes
+    /// has no joints, or where a joint stands outside the scene; the node then places them. The
+    /// node's transform only decides whether triangles turn round: they do where it mirrors.
     pub(super) fn pose(
         &mut self,
         skin: usize,
@@ -45,12 +45,14 @@ impl<'a> Skins<'a> {
         warnings: &mut Warnings,
     ) -> Result<Option<Range<u32>>, SceneError> {
         let Some(matrices) = self.matrices(skin)? else {
-            warnings.add(format!("skin {skin}: joints outside the scene, its meshes stay unposed"));
+            warnings.add(format!(
+                "skin {skin}: joints lie outside the scene, so its meshes are drawn without a pose"
+            ));
             return Ok(None);
         };
         let parts = range.start as usize..range.end as usize;
         if parts.clone().any(|ix| !meshes.influences.contains_key(&ix)) {
-            warnings.add(format!("skin {skin}: meshes without JOINTS_0 stay unposed"));
+            warnings.add(format!("skin {skin}: meshes without JOINTS_0 are drawn without a pose"));
             return Ok(None);
         }
         let first = meshes.meshes.len() as u32;
@@ -79,7 +81,8 @@ impl<'a> Skins<'a> {
         Ok(Some(first..meshes.meshes.len() as u32))
     }
 
-    /// What each joint does to a vertex; `None` where one is not in the scene. Read once per skin.
+    /// The matrix by which each joint moves a vertex; `None` where a joint is not in the scene.
+    /// Read once per skin.
     fn matrices(&mut self, skin: usize) -> Result<Option<Rc<[Mat4]>>, SceneError> {
         if let Some(known) = self.matrices.get(&skin) {
             return Ok(known.clone());
@@ -112,7 +115,7 @@ impl<'a> Skins<'a> {
     }
 }
 
-/// A mesh as its joints place it, in world space; `None` where a joint's number is out of range.
+/// A mesh posed by its joints, in world space; `None` where the index of a joint is out of range.
 fn pose(mesh: &Mesh, influences: &[Influence], matrices: &[Mat4]) -> Option<Mesh> {
     let mut posed = mesh.clone();
     for (vertex, influence) in posed.vertices.iter_mut().zip(influences) {
@@ -128,7 +131,7 @@ fn pose(mesh: &Mesh, influences: &[Influence], matrices: &[Mat4]) -> Option<Mesh
     Some(posed)
 }
 
-/// A vertex under a transform: normals turn by the cofactors, which stay finite where the
+/// A transformed vertex. Normals are transformed by the cofactors, which stay finite where the
 /// transform flattens.
 fn moved(vertex: &Vertex, transform: &Mat4) -> Vertex {
     let linear = Mat3::from_mat4(*transform);

@@ -1,4 +1,4 @@
-//! Normals and tangents that a file leaves out.
+//! Computes normals and tangents that a file leaves out.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3, Vec4};
 
 use crate::{Mesh, Vertex};
 
-/// Gives every triangle its own vertices and flat normals. Returns which vertex each comes from.
+/// Gives every triangle its own vertices and flat normals. Returns the old index of each vertex.
 pub(super) fn flatten(mesh: &mut Mesh) -> Vec<u32> {
     let corner = |ix: &u32| mesh.vertices[*ix as usize];
     let mut vertices: Vec<Vertex> = mesh.indices.iter().map(corner).collect();
@@ -22,15 +22,15 @@ pub(super) fn flatten(mesh: &mut Mesh) -> Vec<u32> {
     std::mem::replace(&mut mesh.indices, own)
 }
 
-/// The unit normal of a triangle, zero where it has no area. In f64: areas of tiny triangles
-/// underflow in f32.
+/// The unit normal of a triangle, or zero where it has no area. It is computed in f64, because the
+/// areas of tiny triangles underflow in f32.
 fn face_normal(corners: [[f32; 3]; 3]) -> Vec3 {
     let [a, b, c] = corners.map(|p| Vec3::from(p).as_dvec3());
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }
 
-/// Makes all normals unit vectors and returns how many had no direction: those get their
-/// triangle's normal, or +Y.
+/// Makes all normals unit vectors. Normals without a direction become the normal of their triangle,
+/// or +Y. Returns the number of those.
 pub(super) fn repair_normals(mesh: &mut Mesh) -> usize {
     let mut broken = vec![false; mesh.vertices.len()];
     let mut count = 0;
@@ -55,8 +55,8 @@ pub(super) fn repair_normals(mesh: &mut Mesh) -> usize {
     count
 }
 
-/// Makes all tangents unit vectors perpendicular to their normals, with a sign of 1 or -1; those
-/// without a direction get any.
+/// Makes all tangents unit vectors perpendicular to their normals, with a sign of 1 or -1. Tangents
+/// without a direction become an arbitrary one.
 pub(super) fn repair_tangents(mesh: &mut Mesh) {
     for vertex in &mut mesh.vertices {
         let normal = Vec3::from(vertex.normal);
@@ -73,11 +73,12 @@ pub(super) fn repair_tangents(mesh: &mut Mesh) {
     }
 }
 
-/// Computes tangents by MikkTSpace, splitting vertices whose corners disagree. Returns which
-/// vertex each comes from.
+/// Computes tangents by MikkTSpace and splits vertices whose corners disagree. Returns the old
+/// index of each vertex.
 pub(super) fn generate(mesh: &mut Mesh) -> Vec<u32> {
     let mut corners = Corners { tangents: vec![[0.0, 0.0, 0.0, 1.0]; mesh.indices.len()], mesh };
-    // Fails only for meshes without a usable triangle, whose tangents are then repaired.
+    // This fails only for meshes without a usable triangle. `repair_tangents` repairs their
+    // tangents.
     let _ = generate_tangents(&mut corners);
     let tangents = corners.tangents;
     let mut split: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
@@ -96,7 +97,7 @@ pub(super) fn generate(mesh: &mut Mesh) -> Vec<u32> {
     sources
 }
 
-/// A mesh as MikkTSpace sees it: by triangle and corner.
+/// A mesh as MikkTSpace reads it: by triangle and corner.
 struct Corners<'a> {
     mesh: &'a Mesh,
     tangents: Vec<[f32; 4]>,
@@ -125,7 +126,7 @@ impl Geometry for Corners<'_> {
         self.vertex(face, corner).normal
     }
 
-    /// MikkTSpace's v points up, glTF's down.
+    /// The v axis points up in MikkTSpace and down in glTF.
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
         let [u, v] = self.vertex(face, corner).uv;
         [u, 1.0 - v]

@@ -188,7 +188,7 @@ fn missing_normals_indices_and_materials_are_filled_in() {
     assert!(normals.into_iter().all(|n| n == [0.0, 0.0, 1.0]));
     let material = &scene.materials[scene.meshes[0].material as usize];
     assert_eq!((material.metallic, material.roughness), (1.0, 1.0));
-    assert!(scene.warnings.iter().any(|w| w.contains("Lines are not drawn")));
+    assert!(scene.warnings.iter().any(|w| w.contains("primitives of type Lines are not drawn")));
 }
 
 #[test]
@@ -239,7 +239,11 @@ fn errors_name_field_value_and_what_is_accepted() {
         ("/asset/version", json!("2.0\n"), "asset.version is \"2.0\\n\": it must be"),
         ("/asset", json!({"version": "2.1", "minVersion": "2.1"}), "asset.minVersion is \"2.1\""),
         ("/asset", json!({"version": "2.0", "minVersion": "x"}), "asset.minVersion is \"x\""),
-        ("/extensionsRequired", json!(["EXT\nodd"]), "names EXT\\nodd: supported"),
+        (
+            "/extensionsRequired",
+            json!(["EXT\nodd"]),
+            "extensionsRequired is EXT\\nodd: it must be one of",
+        ),
         ("/buffers/0", json!({"byteLength": 4, "uri": ""}), "buffers[0].uri is \"\": it must"),
         ("/buffers/0", json!({"byteLength": 4, "uri": "gone%0A.bin"}), "buffers[0].uri names"),
         ("/images/0", json!({"uri": ""}), "images[0].uri is \"\": it must be a data URI"),
@@ -268,7 +272,7 @@ fn bad_indices_and_positions_are_named() {
 }
 
 #[test]
-fn files_of_other_versions_are_told_by_their_version() {
+fn errors_name_the_version_of_other_versions() {
     let old = json!({"asset": {"version": "1.0"}, "meshes": {"mesh": {"primitives": []}}});
     let error = load_bytes("old.gltf", old.to_string().as_bytes()).expect_err("glTF 1.0");
     assert!(error.to_string().contains("asset.version is \"1.0\""), "{error}");
@@ -295,11 +299,11 @@ fn faults_in_extensions_are_named_as_in_the_file() {
     assert!(error.contains("extensions.KHR_lights_punctual.lights[0].type"), "{error}");
 }
 
-/// A mesh of 100,000 triangles, placed by that many nodes.
+/// A mesh of 100,000 triangles that as many nodes place.
 fn heavy(nodes: usize) -> Sample {
     let mut sample = sample();
     let offset = sample.binary.len();
-    // All different: repeats are left out.
+    // All triangles differ, because repeats are left out.
     let corners = (0..300_000).flat_map(|ix| [ix as f32, (ix % 3) as f32, (ix % 2) as f32]);
     sample.binary.extend(corners.flat_map(f32::to_le_bytes));
     sample.json["buffers"][0]["byteLength"] = sample.binary.len().into();
@@ -328,12 +332,12 @@ fn too_many_triangles_are_refused() {
     assert!(error.ends_with("is 300000000: it must be at most 134217728"), "{error}");
 }
 
-/// Truncations, flipped bytes and replaced JSON values: an error or a scene, never a panic.
+/// Truncations, flipped bytes and replaced JSON values give an error or a scene, never a panic.
 #[test]
-fn no_damage_makes_it_panic() {
+fn damaged_files_never_panic() {
     let whole = sample();
     let bytes = glb(&whole);
-    // Damage is deep enough to be read past the header, and light enough to be noticed late.
+    // Damage reaches past the header, but is light enough that some of it is noticed late.
     let (mut loaded, mut refused) = (0, 0);
     let mut count = |result: Result<Scene, SceneError>| match result {
         Ok(_) => loaded += 1,

@@ -6,26 +6,27 @@ use gltf::json::{Index, scene::Node};
 use super::file::File;
 use crate::{SceneError, animated_node::Local};
 
-/// A node of the scene that is drawn, and where.
+/// A node of the scene, and where it is.
 pub(super) struct Visit {
     pub(super) ix: usize,
     pub(super) to_world: Mat4,
-    /// Where the node is and which way it looks: scales of 0 are taken for 1, so that it turns directions
-    /// where `to_world` loses them.
+    /// Place and direction of the node. Scales of 0 count as 1, so it keeps directions that
+    /// `to_world` loses.
     pub(super) placed: DMat4,
     /// Whether neither it nor a node above it is hidden (KHR_node_visibility).
     pub(super) is_visible: bool,
 }
 
-/// The nodes of a scene, parents before their children.
+/// The nodes of a scene. Parents come before their children.
 pub(super) struct Walk {
     pub(super) visits: Vec<Visit>,
-    /// The parent of every node that is reached.
+    /// The parent of every node that the walk reaches.
     pub(super) parents: Vec<Option<usize>>,
 }
 
-/// Walks the default scene (or the first, or all nodes without a parent). World space begins at
-/// `origin` of the file: transforms are multiplied in f64, so that nothing is lost far away.
+/// Walks the default scene, or the first one, or all nodes without a parent. World space begins at
+/// `origin` of the file. Transforms are multiplied in f64, so that places far away keep their
+/// digits.
 pub(super) fn walk(file: &File, origin: DVec3) -> Result<Walk, SceneError> {
     let nodes = &file.root.nodes;
     let mut parents = vec![None; nodes.len()];
@@ -43,7 +44,7 @@ pub(super) fn walk(file: &File, origin: DVec3) -> Result<Walk, SceneError> {
             ));
         }
         let node = &nodes[ix];
-        let local = Local::of(node);
+        let local = Local::from_node(node);
         if let Some(row) = node.matrix.map(|m| [m[3], m[7], m[11], m[15]])
             && row != [0.0, 0.0, 0.0, 1.0]
         {
@@ -71,7 +72,7 @@ pub(super) fn walk(file: &File, origin: DVec3) -> Result<Walk, SceneError> {
     Ok(Walk { visits, parents })
 }
 
-/// KHR_node_visibility: a hidden node hides all nodes below it.
+/// KHR_node_visibility: a hidden node also hides all nodes below it.
 fn is_visible(node: &Node) -> bool {
     let extensions = node.extensions.as_ref().map(|e| &e.others);
     let visibility = extensions.and_then(|all| all.get("KHR_node_visibility"));

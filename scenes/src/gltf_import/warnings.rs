@@ -1,4 +1,5 @@
-//! What the importer left out or changed, one line each, bounded whatever the file holds.
+//! Warnings about what the importer left out or changed. Their number and length are bounded,
+//! whatever the file contains.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -7,30 +8,30 @@ use std::{
 
 use crate::error::one_line;
 
-/// Lines of one kind that are kept; the others are counted.
+/// The most lines kept of one kind. Further ones are counted.
 const MOST_OF_A_KIND: usize = 20;
 
-/// Lines of all kinds that are kept.
+/// The most lines kept of all kinds.
 const MOST_LINES: usize = 400;
 
-/// Characters of a quoted name that are shown.
+/// The most characters shown of a quoted name.
 const MOST_OF_A_NAME: usize = 60;
 
-/// Characters of a line that are shown.
+/// The most characters shown of a line.
 const MOST_OF_A_LINE: usize = 400;
 
-/// Characters of a name that are kept in a scene.
+/// The most characters of a name that a scene keeps.
 const MOST_KEPT: usize = 120;
 
-/// One line for each thing left out or changed, without repeats. Two lines are of one kind when
-/// they differ in names and numbers only.
+/// One line for each thing left out or changed, without repeats. Two lines are of one kind if they
+/// differ only in names and numbers.
 #[derive(Default)]
 pub(super) struct Warnings {
     lines: Vec<Line>,
-    /// Hashes of all lines, those not kept included.
+    /// Hashes of all lines, including those not kept.
     seen: HashSet<u64>,
     kinds: HashMap<u64, Kind>,
-    /// Lines of new kinds that came after [`MOST_LINES`].
+    /// The number of lines of new kinds that came after [`MOST_LINES`].
     others: usize,
 }
 
@@ -46,7 +47,7 @@ struct Kind {
 }
 
 impl Warnings {
-    /// Notes a line, unless it was noted before.
+    /// Adds a line, unless it is there already.
     pub(super) fn add(&mut self, line: String) {
         self.add_short(shortened(&line));
     }
@@ -70,7 +71,7 @@ impl Warnings {
         }
     }
 
-    /// Adds another list's lines, and what it left out.
+    /// Adds another list's lines and counts.
     pub(super) fn append(&mut self, other: Self) {
         for line in other.lines {
             self.add_short(line.text);
@@ -84,7 +85,8 @@ impl Warnings {
         }
     }
 
-    /// The lines in the order of their first one, each kind's count of further ones after its last.
+    /// The lines in the order in which they were added. The count of further lines of a kind
+    /// follows its last line.
     pub(super) fn into_lines(self) -> Vec<String> {
         let mut last = HashMap::new();
         for (ix, line) in self.lines.iter().enumerate() {
@@ -105,8 +107,8 @@ impl Warnings {
     }
 }
 
-/// A name as scenes keep it: cut after [`MOST_KEPT`] characters, so that a long one that many
-/// objects share costs little.
+/// A name as a scene keeps it: cut after [`MOST_KEPT`] characters, so that a long name shared by
+/// many objects costs little memory.
 pub(super) fn kept_name(name: &str) -> String {
     cut(name, MOST_KEPT)
 }
@@ -124,10 +126,10 @@ fn hash(text: &str) -> u64 {
     hasher.finish()
 }
 
-/// A line without control characters, its quoted names cut.
+/// A line without control characters, with its quoted names cut.
 fn shortened(line: &str) -> String {
     let mut short = String::new();
-    // Characters since the quote that is open.
+    // The number of characters since the open quote.
     let mut quoted: Option<usize> = None;
     let mut chars = line.chars();
     while let Some(c) = chars.next() {
@@ -151,7 +153,7 @@ fn shortened(line: &str) -> String {
     cut(&one_line(short), MOST_OF_A_LINE)
 }
 
-/// What lines of one kind have in common.
+/// The text that all lines of one kind share.
 fn without_names_and_numbers(line: &str) -> String {
     let mut kind = String::new();
     let mut in_name = false;
@@ -189,8 +191,10 @@ mod tests {
         let mut warnings = Warnings::default();
         for ix in 0..80_000 {
             let mut of_a_job = Warnings::default();
-            of_a_job
-                .add(format!("mesh {:?}: {ix} normals of length 0 replaced", format!("m\"{ix}")));
+            of_a_job.add(format!(
+                "mesh {:?}: {ix} normals of length 0 were replaced",
+                format!("m\"{ix}")
+            ));
             of_a_job.add("vertex colours (COLOR_0) are ignored".into());
             warnings.append(of_a_job);
         }
@@ -198,7 +202,7 @@ mod tests {
         warnings.add("x".repeat(1_000_000));
         let lines = warnings.into_lines();
         assert_eq!(lines.len(), 20 + 1 + 1 + 2, "{lines:#?}");
-        assert_eq!(lines[0], "mesh \"m\\\"0\": 0 normals of length 0 replaced");
+        assert_eq!(lines[0], "mesh \"m\\\"0\": 0 normals of length 0 were replaced");
         assert_eq!(lines[1], "vertex colours (COLOR_0) are ignored");
         assert_eq!(lines[21], "and 79,980 more like the last one");
         assert!(

@@ -1,28 +1,28 @@
-//! Paths climb, keep clear, and see both smooth and broken depth.
+//! Tests that paths climb, keep clear of surfaces, and see both smooth and broken depth.
 
 use std::{io::Write, path::PathBuf};
 
 use super::*;
 use crate::{CameraPath, Scene, atrium, load_gltf};
 
-/// Poses of a path that are looked at.
+/// The number of poses tested per path.
 const POSES: u32 = 60;
 
-/// Rays of a picture of each pose.
+/// The number of rays per picture.
 const RAYS: [u32; 2] = [64, 36];
 
-/// What a path shows.
+/// Measures of a path.
 struct Shown {
     /// Range of heights over the height of the core.
     heights: f32,
     /// The least distance to a triangle, metres.
     clearance_m: f32,
-    /// Share of neighbouring rays whose depths are a tenth apart, pose by pose.
+    /// For each pose, the share of neighbouring rays whose depths differ by more than a tenth.
     broken: Vec<f32>,
 }
 
 impl Shown {
-    fn of(scene: &Scene) -> Self {
+    fn measure(scene: &Scene) -> Self {
         let bvh = TriangleBvh::new(scene, scene.core_bounds.grown(1.0));
         let eyes: Vec<Vec3> = (0..1200).map(|frame| scene.path.pose(frame, 1200).eye).collect();
         let low = eyes.iter().map(|eye| eye.y).fold(f32::INFINITY, f32::min);
@@ -90,7 +90,7 @@ fn check(name: &str, shown: &Shown) {
     assert!(lacks(shown).is_empty(), "{:?}: {said}", lacks(shown));
 }
 
-/// What a path lacks of a tour.
+/// The properties of a tour that a path does not have.
 fn lacks(shown: &Shown) -> Vec<&'static str> {
     let demands = [
         ("heights", shown.heights > 0.2),
@@ -102,12 +102,12 @@ fn lacks(shown: &Shown) -> Vec<&'static str> {
 
 #[test]
 fn the_atriums_path_climbs_and_crosses_edges() {
-    check("atrium", &Shown::of(&atrium(1)));
+    check("atrium", &Shown::measure(&atrium(1)));
 }
 
-/// The same path at one height is no tour, and a camera that stands still shows one kind of view.
+/// A path at one height is no tour, and a camera that stands still shows only one kind of view.
 #[test]
-fn level_and_still_paths_are_no_tours() {
+fn level_and_still_paths_are_not_tours() {
     let mut scene = atrium(1);
     let first = scene.path.pose(0, 48);
     let level = |ix| {
@@ -116,14 +116,14 @@ fn level_and_still_paths_are_no_tours() {
     };
     let knots = (0..48).map(level).collect();
     scene.path = CameraPath::closed_loop(knots, first);
-    assert!(lacks(&Shown::of(&scene)).contains(&"heights"));
+    assert!(lacks(&Shown::measure(&scene)).contains(&"heights"));
     scene.path = CameraPath::still(first);
-    let lacking = lacks(&Shown::of(&scene));
+    let lacking = lacks(&Shown::measure(&scene));
     assert!(lacking.contains(&"heights"), "{lacking:?}");
     assert!(lacking.contains(&"smooth and broken views"), "{lacking:?}");
 }
 
-/// Sponza's path is fitted. Its first pose is that of earlier versions, which pictures show.
+/// Sponza's path is fitted. Its first pose is that of earlier versions, because pictures show it.
 #[test]
 fn a_fitted_path_climbs_and_crosses_edges() {
     let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes");
@@ -135,7 +135,7 @@ fn a_fitted_path_climbs_and_crosses_edges() {
         return;
     }
     let scene = load_gltf(&path).expect("a valid scene");
-    check("Sponza", &Shown::of(&scene));
+    check("Sponza", &Shown::measure(&scene));
 }
 
 /// A level loop in the atrium's court.
@@ -148,7 +148,7 @@ fn ring() -> Vec<Vec3> {
         .collect()
 }
 
-/// In a hall with a row of posts the loop leaves its ellipse and touches nothing.
+/// In a hall with a row of posts, the loop leaves its ellipse and touches nothing.
 #[test]
 fn a_bent_loop_keeps_its_first_knot_and_its_margin() {
     let scene = atrium(1);
@@ -167,22 +167,22 @@ fn a_bent_loop_keeps_its_first_knot_and_its_margin() {
     assert!((0..48).all(|ix| room.is_clear(&eyes, ix)));
 }
 
-/// A camera without room for a loop turns where it stands.
+/// A camera without room for a loop turns on the spot.
 #[test]
 fn a_loop_of_one_point_stays_there() {
     let scene = atrium(1);
     let bvh = TriangleBvh::new(&scene, scene.bounds);
     let room = Room { bvh: &bvh, core: scene.core_bounds, margin_m: 0.3 };
-    // The mean of 48 equal numbers is not always the number.
+    // The mean of 48 equal numbers is not always that number.
     for eye in [Vec3::new(0.1, 2.5, 0.3), Vec3::new(-3.3, 1.7, 2.9)] {
         let level = vec![eye; 48];
         assert_eq!(room.bend(&level), level);
     }
 }
 
-/// No stretch of a bent loop is clear that cannot be looked at closely enough.
+/// A stretch of a bent loop never counts as clear if it cannot be sampled closely enough.
 #[test]
-fn a_loop_whose_margin_is_too_small_to_look_for_stays_level() {
+fn a_loop_with_too_small_a_margin_to_sample_stays_level() {
     let scene = atrium(1);
     let bvh = TriangleBvh::new(&scene, scene.bounds);
     let level = ring();

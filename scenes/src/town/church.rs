@@ -109,10 +109,10 @@ fn tower(parts: &mut Parts, trim: Trim) {
         spire(&mut own, &turn, high, 0.5 * side + 0.35, trim.fine);
     }
     let ball = arc([0.0, high + 13.3], [0.35, 0.35], -88.0, 88.0, 8);
-    own.of(Surface::Gold).lathe(Vec3::ZERO, 16, &ball);
+    own.mesh(Surface::Gold).lathe(Vec3::ZERO, 16, &ball);
     let mast = [Vec2::new(0.06, high + 12.8), Vec2::new(0.06, high + 15.6)];
-    own.of(Surface::Iron).lathe(Vec3::ZERO, 8, &mast);
-    own.of(Surface::Gold).block_on(Vec3::Y * (high + 14.6), Vec3::new(1.0, 0.12, 0.1));
+    own.mesh(Surface::Iron).lathe(Vec3::ZERO, 8, &mast);
+    own.mesh(Surface::Gold).block_on(Vec3::Y * (high + 14.6), Vec3::new(1.0, 0.12, 0.1));
     parts.append(&own, &middle);
 }
 

@@ -13,10 +13,10 @@ use super::{
     window::{Opening, Trim, storey},
 };
 
-/// What a house is built like. Its front faces +z, its middle stands on the origin.
+/// The parameters of a house. Its front faces +z, and its middle stands on the origin.
 #[derive(Clone, Copy)]
 pub(super) struct Design {
-    /// Along x and z, metres.
+    /// Size along x and z, metres.
     pub(super) size_m: [f32; 2],
     pub(super) storeys: u32,
     pub(super) trim: Trim,
@@ -26,7 +26,7 @@ pub(super) struct Design {
     /// Gable over the front, not over the sides.
     pub(super) gable_front: bool,
     pub(super) dormers: bool,
-    /// Windows on the side +x as well: it stands at a corner.
+    /// Whether it has windows on the side +x as well, because it stands at a corner.
     pub(super) corner: bool,
 }
 
@@ -36,7 +36,7 @@ const GROUND_FLOOR_M: f32 = 3.1;
 const STOREY_M: f32 = 2.75;
 
 impl Design {
-    /// A house drawn at random.
+    /// A random house.
     pub(super) fn random(rng: &mut Pcg64Mcg, size_m: [f32; 2], corner: bool, fine: bool) -> Self {
         use Surface::{Blue, Brick, Cream, Green, Grey, Ochre, Oxblood, Rose};
         let pick = |rng: &mut Pcg64Mcg, from: &[Surface]| from[rng.random_range(0..from.len())];
@@ -80,7 +80,7 @@ impl Design {
             low = high;
         }
         let plinth = Vec3::new(width + 0.1, PLINTH_M + 1.6, depth + 0.1);
-        parts.of(Surface::Stone).block_on(Vec3::Y * -1.6, plinth);
+        parts.mesh(Surface::Stone).block_on(Vec3::Y * -1.6, plinth);
         self.cap(&mut parts, rng, low);
         parts
     }

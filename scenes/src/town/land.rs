@@ -1,8 +1,8 @@
 //! The plan of the town: streets and blocks on a slope.
 //!
-//! Blocks of 24 m lie between streets of 8 m. The ground's height is a sum of two functions, one
-//! of x and one of z, both linear across each block and each street; so the ground above every
-//! block, street or crossing is one plane, and pieces sheared onto it meet without gaps.
+//! Blocks of 24 m lie between streets of 8 m. The ground's height is the sum of a function of x and
+//! a function of z, both linear across each block and each street. So the ground of every block,
+//! street or crossing is one plane, and pieces sheared onto it meet without gaps.
 
 use glam::{Mat4, Vec3};
 
@@ -10,9 +10,9 @@ use glam::{Mat4, Vec3};
 pub(super) const BLOCK_M: f32 = 24.0;
 /// Width of a street between its kerbs, metres.
 pub(super) const STREET_M: f32 = 8.0;
-/// From one street to the next, metres.
+/// Distance between the middles of neighbouring streets, metres.
 pub(super) const PITCH_M: f32 = BLOCK_M + STREET_M;
-/// Meadow around the town, metres.
+/// Width of the meadow around the town, metres.
 pub(super) const MEADOW_M: f32 = 24.0;
 
 /// The plan: `blocks` by `blocks` blocks around the origin, and the ground under them.
@@ -41,7 +41,7 @@ impl Lot {
 }
 
 impl Land {
-    /// A plan whose ground rises towards -z and falls off to both sides; level at the square.
+    /// A plan whose ground rises towards -z, falls off to both sides, and is level at the square.
     pub(super) fn new(blocks: u32) -> Self {
         let mut land = Self { blocks, knots: [Vec::new(), Vec::new()] };
         let half = 0.5 * land.side_m();
@@ -51,7 +51,7 @@ impl Land {
         let mut at = vec![-half - MEADOW_M];
         at.extend((0..=blocks).flat_map(|s| [land.street(s) - 4.0, land.street(s) + 4.0]));
         at.push(half + MEADOW_M);
-        // Distance from the level part, with its sign.
+        // Signed distance from the level part.
         let off = |x: f32| if x < low { x - low } else { (x - high).max(0.0) };
         let side = |x: &f32| [*x, -0.018 * off(*x).abs() + 1e-4 * off(*x).powi(2)];
         let climb = |z: &f32| [*z, -0.035 * off(*z)];
@@ -75,7 +75,7 @@ impl Land {
         (start, start + BLOCK_M)
     }
 
-    /// The first of the square's blocks, along x and z alike, and how many.
+    /// The index of the square's first block, along x and z alike, and the number of its blocks.
     pub(super) fn square(&self) -> (u32, u32) {
         ((self.blocks.saturating_sub(1)) / 2, if self.blocks >= 6 { 2 } else { 1 })
     }
@@ -96,12 +96,13 @@ impl Land {
         self.knots[axis].iter().map(|[at, _]| *at)
     }
 
-    /// Upright at a point of the ground.
+    /// Places a thing upright at a point of the ground.
     pub(super) fn at(&self, x: f32, z: f32) -> Mat4 {
         Mat4::from_translation(Vec3::new(x, self.height(x, z), z))
     }
 
-    /// Onto the middle of a lot, with the lot's slope: upright lines stay upright.
+    /// Places a thing on the middle of a lot and shears it to the lot's slope; upright lines stay
+    /// upright.
     pub(super) fn on(&self, lot: Lot) -> Mat4 {
         let [x, z] = lot.center();
         let [width, depth] = lot.size();

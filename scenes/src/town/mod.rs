@@ -1,9 +1,9 @@
 //! An old town on a slope: blocks of gabled houses around yards, paved streets, gardens, a square
-//! with a church and a market, a meadow around it all.
+//! with a church and a market, and a meadow around it all.
 //!
-//! Some seventy things are made, each a mesh for each of its surfaces, and placed by thousands of
-//! models: what is drawn is some hundred times what is stored. X runs east, z south; the ground
-//! rises northwards and is level at the square.
+//! Some seventy things are made, each with one mesh per surface. Thousands of models place them, so
+//! about a hundred times as many triangles are drawn as are stored. X runs east and z south. The
+//! ground rises northwards and is level at the square.
 
 mod church;
 mod furniture;
@@ -29,7 +29,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::{Aabb, Instance, Mesh, Model, Scene, extent};
 
-/// How much of a town.
+/// The size of a town.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TownSize {
     /// 7 by 7 blocks in full detail: 280 m across, some 7 million triangles drawn.
@@ -49,7 +49,7 @@ impl TownSize {
     }
 }
 
-/// A procedural town. `seed` decides how each house is built, where each stands and every leaf.
+/// A procedural town. `seed` decides the shape and place of each house, and every leaf.
 pub fn town(seed: u64, size: TownSize) -> Scene {
     let land = Land::new(size.blocks());
     let mut town = Town {
@@ -87,7 +87,7 @@ pub fn town(seed: u64, size: TownSize) -> Scene {
     scene
 }
 
-/// A town in the making.
+/// A town under construction.
 struct Town {
     rng: Pcg64Mcg,
     fine: bool,
@@ -121,7 +121,7 @@ impl Town {
         self.instances.extend(thing.meshes.iter().map(|mesh| Instance { mesh: *mesh, model }));
     }
 
-    /// Places one of `things`, drawn at random.
+    /// Places one of `things`, chosen at random.
     fn place_any(&mut self, things: &[Thing], object_to_world: Mat4) {
         let ix = self.rng.random_range(0..things.len());
         self.place(&things[ix], object_to_world);

@@ -10,8 +10,8 @@ use crate::builder::Builder;
 /// Side of a patch of setts, metres.
 pub(super) const PATCH_M: f32 = 4.0;
 
-/// A patch of setts around the origin, `count` along each side, every other row moved by half a
-/// sett; their tops are up to 3 cm apart. One is a slab.
+/// A patch of setts around the origin, `count` along each side, with every other row moved by half
+/// a sett. Their tops differ by up to 3 cm. A count of one gives a slab.
 pub(super) fn patch(rng: &mut Pcg64Mcg, count: u32) -> Parts {
     let mut parts = Parts::default();
     let size = PATCH_M / count as f32;
@@ -27,7 +27,7 @@ pub(super) fn patch(rng: &mut Pcg64Mcg, count: u32) -> Parts {
             let top = 0.05 + 0.03 * rng.random::<f32>();
             let dark = count > 1 && rng.random::<f32>() < 0.4;
             let surface = if dark { Surface::SettDark } else { Surface::Sett };
-            stone(parts.of(surface), low, high, top, 0.035_f32.min(0.2 * size));
+            stone(parts.mesh(surface), low, high, top, 0.035_f32.min(0.2 * size));
         }
     }
     parts
@@ -49,8 +49,9 @@ fn stone(b: &mut Builder, low: Vec2, high: Vec2, top: f32, bevel: f32) {
     }
 }
 
-/// Flagstones over a lot of that size around the origin, but for a hole of `hole` (0 is none) in
-/// its middle: slabs about `slab` metres wide whose tops are `top` above the ground.
+/// Flagstones over a lot of that size around the origin, with a hole of size `hole` in its middle
+/// (0 means none). The slabs are about `slab` metres wide and their tops are `top` above the
+/// ground.
 pub(super) fn flags(rng: &mut Pcg64Mcg, lot: Lot, hole: f32, slab: f32, top: f32) -> Builder {
     let mut b = Builder::default();
     let [width, depth] = lot.size();

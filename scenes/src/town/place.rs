@@ -1,4 +1,4 @@
-//! What stands where.
+//! Places everything in the town.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -27,7 +27,7 @@ const DEPTH_M: f32 = 6.4;
 /// Side of a patch of grass blades, metres.
 const TUFTS_M: f32 = 8.0;
 
-/// All that is placed more than once.
+/// Everything that is placed more than once.
 struct Stock {
     houses: Vec<Thing>,
     corners: Vec<Thing>,
@@ -70,7 +70,7 @@ impl Town {
                 let lot = Lot { min: [x0, z0], max: [x1, z1] };
                 self.place(&stock.pavement, land.on(lot));
                 self.lamps(land, lot, &stock);
-                // A garden here and there, never at the main street's end or the town's edge.
+                // A few blocks are gardens, but never at the main street's end or the town's edge.
                 let inner = |ix: u32| ix > 0 && ix + 1 < land.blocks;
                 if inner(x) && inner(z) && (x + 2 * z) % 5 == 2 {
                     self.garden(land, lot, &stock);
@@ -137,13 +137,13 @@ impl Town {
             for (j, z) in zs.windows(2).enumerate() {
                 let at = |x: f32, z: f32| Vec3::new(x, land.height(x, z), z);
                 let corner = at(x[0], z[0]);
-                // Odd intervals of the knots are streets; the first and last are meadow.
+                // Odd intervals of the knots are streets. The first and the last are meadow.
                 let street = |ix: usize, last: usize| ix % 2 == 1 && ix < last;
                 let meadow = i == 0 || j == 0 || i + 2 == xs.len() || j + 2 == zs.len();
                 let paved = street(i, xs.len() - 2) || street(j, zs.len() - 2);
                 let surface = if paved && !meadow { Surface::Earth } else { Surface::Grass };
                 let (u, v) = (at(x[0], z[1]) - corner, at(x[1], z[0]) - corner);
-                parts.of(surface).quad(corner, u, v);
+                parts.mesh(surface).quad(corner, u, v);
             }
         }
         let ground = self.thing("ground", parts);
@@ -158,7 +158,7 @@ impl Town {
         let high = land.block(first + count - 1).1;
         let steps = (land.side_m() / paving::PATCH_M).round() as u32;
         let along = |ix: u32| ix as f32 * paving::PATCH_M - half;
-        // Two patches of every eight are street.
+        // Two of every eight patches are street.
         let is_street = |ix: u32| ix % 8 < 2;
         for x in 0..steps {
             for z in 0..steps {
@@ -306,7 +306,7 @@ impl Town {
                     continue;
                 }
                 self.place(&stock.tufts, land.on(lot));
-                // Off the main street's end, where the camera starts.
+                // Keep clear of the main street's end, where the camera starts.
                 let open = cz > 0.0 && cx.abs() < inner;
                 if self.rng.random::<f32>() < if open { 0.06 } else { 0.4 } {
                     let [dx, dz] = [(); 2].map(|()| 4.0 * self.rng.random::<f32>() - 2.0);

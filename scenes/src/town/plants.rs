@@ -9,14 +9,14 @@ use rand_pcg::Pcg64Mcg;
 use super::{kit::Parts, materials::Surface};
 use crate::builder::Builder;
 
-/// A direction, evenly spread over the sphere.
+/// A random direction, uniform over the sphere.
 fn direction(rng: &mut Pcg64Mcg) -> Vec3 {
     let y = 2.0 * rng.random::<f32>() - 1.0;
     let (sin, cos) = (TAU * rng.random::<f32>()).sin_cos();
     Vec3::new(cos, 0.0, sin) * (1.0 - y * y).sqrt() + Vec3::Y * y
 }
 
-/// A leaf, or a spray of leaves, that faces about outwards.
+/// A leaf, or a spray of leaves, that faces roughly outwards.
 fn leaf(b: &mut Builder, rng: &mut Pcg64Mcg, center: Vec3, out: Vec3, size: f32) {
     let face = (out + 0.9 * direction(rng)).normalize_or(Vec3::Y);
     let face = if face.dot(out) < 0.1 { out } else { face };
@@ -45,20 +45,20 @@ pub(super) fn broadleaf(rng: &mut Pcg64Mcg, surface: Surface, fine: bool) -> Par
     let mut parts = Parts::default();
     let fork = Vec3::new(0.2 * rng.random::<f32>(), 2.6, 0.2 * rng.random::<f32>());
     let segments = if fine { 10 } else { 5 };
-    limb(parts.of(Surface::Bark), Vec3::Y * -0.3, fork, 0.26, segments);
+    limb(parts.mesh(Surface::Bark), Vec3::Y * -0.3, fork, 0.26, segments);
     let clusters = if fine { 11 } else { 4 };
     for i in 0..clusters {
         let turn = i as f32 * 2.4 + rng.random::<f32>();
         let lift = i as f32 / (clusters - 1) as f32;
         let spread = 1.9 * (1.0 - 0.75 * lift * lift);
         let tip = fork + Vec3::new(spread * turn.cos(), 0.9 + 3.4 * lift, spread * turn.sin());
-        limb(parts.of(Surface::Bark), fork - Vec3::Y * 0.1, tip, 0.1, 5);
+        limb(parts.mesh(Surface::Bark), fork - Vec3::Y * 0.1, tip, 0.1, 5);
         let size = Vec3::new(1.5, 1.15, 1.5) * (0.85 + 0.3 * rng.random::<f32>());
         let (leaves, length) = if fine { (160, 0.4) } else { (18, 1.1) };
         for _ in 0..leaves {
             let out = direction(rng);
             let depth = rng.random::<f32>().powf(0.4);
-            leaf(parts.of(surface), rng, tip + out * size * depth, out, length);
+            leaf(parts.mesh(surface), rng, tip + out * size * depth, out, length);
         }
     }
     parts
@@ -67,7 +67,7 @@ pub(super) fn broadleaf(rng: &mut Pcg64Mcg, surface: Surface, fine: bool) -> Par
 /// A conifer some 10 m tall.
 pub(super) fn conifer(rng: &mut Pcg64Mcg, fine: bool) -> Parts {
     let mut parts = Parts::default();
-    limb(parts.of(Surface::Bark), Vec3::Y * -0.3, Vec3::Y * 9.6, 0.2, if fine { 8 } else { 4 });
+    limb(parts.mesh(Surface::Bark), Vec3::Y * -0.3, Vec3::Y * 9.6, 0.2, if fine { 8 } else { 4 });
     let whorls = if fine { 18 } else { 5 };
     for whorl in 0..whorls {
         let t = whorl as f32 / whorls as f32;
@@ -83,11 +83,11 @@ pub(super) fn conifer(rng: &mut Pcg64Mcg, fine: bool) -> Parts {
                 let at = |s: f32| Vec3::Y * (foot - 0.45 * reach * s * s) + out * (reach * s);
                 let width = wide * reach * (1.0 - 0.75 * from);
                 let along = at(to) - at(from);
-                // Seen from above: side x along points up.
+                // Seen from above, the side x along points up.
                 let up = along.cross(side).normalize_or(Vec3::Y);
                 let normal = (up + 0.7 * out).normalize();
                 let corner = at(from) - 0.5 * width * side;
-                parts.of(Surface::LeafDark).card(corner, along, side * width, normal);
+                parts.mesh(Surface::LeafDark).card(corner, along, side * width, normal);
             }
         }
     }
@@ -103,12 +103,12 @@ pub(super) fn bush(rng: &mut Pcg64Mcg, fine: bool) -> Parts {
         let out = Vec3::new(out.x, out.y.abs(), out.z);
         let center = out * Vec3::new(0.7, 0.9, 0.7) * rng.random::<f32>().powf(0.3);
         let surface = if fine && i % 9 == 0 { Surface::Petal } else { Surface::Leaf };
-        leaf(parts.of(surface), rng, center, out, length);
+        leaf(parts.mesh(surface), rng, center, out, length);
     }
     parts
 }
 
-/// Grass over a square of that side around the origin: blades in tufts.
+/// Grass over a square of that side around the origin, as blades in tufts.
 pub(super) fn tufts(rng: &mut Pcg64Mcg, side: f32, count: u32) -> Builder {
     let mut b = Builder::default();
     for _ in 0..count {

@@ -1,4 +1,4 @@
-//! Gabled roofs of tiles or slates, and what stands on them.
+//! Gabled roofs of tiles or slates, with dormers and chimneys.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -47,12 +47,12 @@ impl Roof {
             Vec3::new(x, self.ridge_m(), 0.0),
         ];
         for turn in [Mat4::IDENTITY, half] {
-            parts.of(wall).gable(gable.map(|p| turn.transform_point3(p)));
+            parts.mesh(wall).gable(gable.map(|p| turn.transform_point3(p)));
         }
         let ridge = self.ridge_m() + 0.02;
         let reach = x + self.over_m[1];
         let steps = if self.fine { 24 } else { 1 };
-        parts.of(self.surface).surface(steps, if self.fine { 6 } else { 2 }, |u, v| {
+        parts.mesh(self.surface).surface(steps, if self.fine { 6 } else { 2 }, |u, v| {
             let (sin, cos) = (PI * v).sin_cos();
             let swell = if self.fine { 0.02 * (u * steps as f32 * PI).sin().abs() } else { 0.0 };
             let r = 0.16 + swell;
@@ -113,7 +113,7 @@ impl Roof {
         };
         let trim = Trim { shutters: false, ..trim };
         storey(&mut own, &Mat4::IDENTITY, width, [-0.4, height], &[window], trim);
-        let cheeks = own.of(trim.wall);
+        let cheeks = own.mesh(trim.wall);
         let half = 0.5 * width;
         let sides = Vec3::Y * (height + 0.4);
         cheeks.quad(Vec3::new(half, -0.4, 0.0), Vec3::NEG_Z * depth, sides);
@@ -134,8 +134,8 @@ impl Roof {
     }
 }
 
-/// Courses of tiles in the plane z = 0, from y = 0 to `length`, between x = +-`reach`; each lies
-/// over the one below.
+/// Courses of tiles in the plane z = 0, from y = 0 to `length`, between x = +-`reach`. Each
+/// overlaps the one below.
 fn courses(b: &mut Builder, slates: bool, reach: f32, length: f32) {
     let (tile, course) = if slates { (0.34, 0.3) } else { (0.36, 0.42) };
     let count = (length / course).ceil().max(1.0);
@@ -161,15 +161,15 @@ fn courses(b: &mut Builder, slates: bool, reach: f32, length: f32) {
 /// A chimney of `height`, standing on y = 0 with some more below.
 pub(super) fn chimney(height: f32, fine: bool) -> Parts {
     let mut parts = Parts::default();
-    let brick = parts.of(Surface::Brick);
+    let brick = parts.mesh(Surface::Brick);
     brick.block_on(Vec3::Y * -1.5, Vec3::new(0.7, height + 1.5, 0.55));
     brick.block_on(Vec3::Y * (height - 0.25), Vec3::new(0.84, 0.14, 0.69));
-    parts.of(Surface::Stone).block_on(Vec3::Y * height, Vec3::new(0.8, 0.08, 0.65));
+    parts.mesh(Surface::Stone).block_on(Vec3::Y * height, Vec3::new(0.8, 0.08, 0.65));
     if fine {
         let pot = [[0.1, 0.0], [0.13, 0.1], [0.1, 0.4], [0.12, 0.45], [0.07, 0.45], [0.07, 0.2]];
         for x in [-0.17, 0.17] {
             let foot = Vec3::new(x, height + 0.08, 0.0);
-            parts.of(Surface::TileRed).lathe(foot, 12, &pot.map(Vec2::from));
+            parts.mesh(Surface::TileRed).lathe(foot, 12, &pot.map(Vec2::from));
         }
     }
     parts

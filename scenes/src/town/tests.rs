@@ -7,14 +7,14 @@ use glam::Vec3;
 const SMALL: TownSize = TownSize::Small;
 
 #[test]
-fn it_is_made_quickly_of_little_and_draws_much() {
+fn it_is_built_fast_from_few_meshes_and_draws_many() {
     let start = Instant::now();
     let scene = town(1, TownSize::Full);
     let seconds = start.elapsed().as_secs_f64();
     let triangles = scene.triangle_count();
     let bytes: usize =
         scene.meshes.iter().map(|m| 48 * m.vertices.len() + 4 * m.indices.len()).sum();
-    // A second on an idle machine; tests share theirs.
+    // It takes a second on an idle machine; tests run in parallel.
     assert!(seconds < 4.0, "{seconds} s");
     assert!((6_500_000..7_500_000).contains(&triangles), "{triangles} triangles");
     assert!(bytes < 60_000_000, "{bytes} bytes");
@@ -30,7 +30,7 @@ fn the_seed_decides_everything() {
 }
 
 #[test]
-fn bounds_are_finite_and_hold_every_triangle() {
+fn bounds_are_finite_and_contain_every_triangle() {
     let scene = town(1, SMALL);
     assert!(scene.bounds.min.is_finite() && scene.bounds.max.is_finite());
     let held = scene.bounds.grown(1e-3);
@@ -69,7 +69,7 @@ fn winding_agrees_with_normals() {
     }
 }
 
-/// Closed solids face outwards: walking the path, hardly a ray first meets the back of a
+/// Closed solids face outwards: along the path, hardly any ray first meets the back of a
 /// single-sided triangle.
 #[test]
 fn the_camera_keeps_clear_and_sees_no_back_faces() {
@@ -96,7 +96,7 @@ fn the_camera_keeps_clear_and_sees_no_back_faces() {
     assert!(backs * 40 < rays, "{backs} of {rays}");
 }
 
-/// The first frame's picture is full of what is up to 120 m away, not of sky or a near wall.
+/// Surfaces up to 120 m away fill the first frame's picture, not sky or a near wall.
 #[test]
 fn the_first_frame_looks_down_a_street() {
     for size in [SMALL, TownSize::Full] {
@@ -108,7 +108,7 @@ fn the_first_frame_looks_down_a_street() {
         let to_world = pose.world_to_view().inverse();
         let seen = (0..20 * 12).filter(|ix| {
             let share = Vec3::new((ix % 20) as f32 / 19.0, (ix / 20) as f32 / 11.0, 0.0);
-            // 60 degrees high, 16 to 9.
+            // A picture 60 degrees high, 16 to 9.
             let ray = Vec3::new(2.05 * share.x - 1.025, 1.154 * share.y - 0.577, -1.0).normalize();
             let hit = bvh.cast(pose.eye, to_world.transform_vector3(ray), 120.0);
             hit.is_some_and(|hit| hit.distance_m > 3.0)

@@ -1,17 +1,18 @@
-//! The camera's way through the streets.
+//! The camera's path through the streets.
 
 use glam::{Vec2, Vec3};
 
 use super::land::Land;
 use crate::{CameraPath, Pose};
 
-/// Between knots, metres.
+/// Distance between knots, metres.
 const STEP_M: f32 = 12.0;
 
 /// How far ahead the camera looks, metres.
 const AHEAD_M: f32 = 18.0;
 
-/// From the south end of the main street to the square, and back through other streets: at eye height, but 8 m higher at the start, over the heads of the street.
+/// Leads from the south end of the main street to the square, and back through other streets. The
+/// camera is at eye height, but 8 m higher at the start, above the heads of the people.
 pub(super) fn path(land: &Land) -> CameraPath {
     let (first, count) = land.square();
     let (main, last) = (first + count.div_ceil(2), land.blocks);
@@ -64,7 +65,7 @@ impl Way {
         self.sides().map(|(a, b)| a.distance(b)).sum()
     }
 
-    /// The point that far along from the first corner.
+    /// The point at that distance along it from the first corner.
     fn point(&self, along: f32) -> Vec2 {
         let mut left = along.rem_euclid(self.length());
         for (a, b) in self.sides() {

@@ -35,8 +35,9 @@ pub(super) struct Opening {
     pub(super) has_flowers: bool,
 }
 
-/// One storey of a wall in the plane z = 0 that faces +z, from x = -`width_m` / 2 and `low_m` to
-/// `high_m`, with openings from left to right that do not overlap. `face` takes it to its place.
+/// One storey of a wall in the plane z = 0 that faces +z. It reaches from x = -`width_m` / 2 to
+/// `width_m` / 2 and from `low_m` to `high_m`. Its openings are given from left to right and do not
+/// overlap. `face` moves it to its place.
 pub(super) fn storey(
     parts: &mut Parts,
     face: &Mat4,
@@ -46,7 +47,7 @@ pub(super) fn storey(
     trim: Trim,
 ) {
     let mut own = Parts::default();
-    let wall = own.of(trim.wall);
+    let wall = own.mesh(trim.wall);
     let mut quad = |x0: f32, x1: f32, y0: f32, y1: f32| {
         if x1 > x0 + 1e-3 && y1 > y0 + 1e-3 {
             wall.quad(Vec3::new(x0, y0, 0.0), Vec3::X * (x1 - x0), Vec3::Y * (y1 - y0));
@@ -94,12 +95,12 @@ fn window(opening: Opening, trim: Trim) -> Parts {
     let (width, height) = (opening.width_m, opening.height_m);
     let half = 0.5 * width;
     let mut parts = Parts::default();
-    reveal(parts.of(trim.wall), width, height);
+    reveal(parts.mesh(trim.wall), width, height);
     let pane = Vec3::new(-half, 0.0, -REVEAL_M);
-    parts.of(Surface::Glass).quad(pane, Vec3::X * width, Vec3::Y * height);
+    parts.mesh(Surface::Glass).quad(pane, Vec3::X * width, Vec3::Y * height);
     let sill = Vec3::new(half + 0.1, 0.0, 0.12);
-    parts.of(Surface::Stone).block(Vec3::new(-half - 0.1, -0.1, -0.02), sill);
-    let white = parts.of(Surface::White);
+    parts.mesh(Surface::Stone).block(Vec3::new(-half - 0.1, -0.1, -0.02), sill);
+    let white = parts.mesh(Surface::White);
     let depth = [-REVEAL_M, -REVEAL_M + 0.08];
     if trim.fine {
         frame(white, width, height, 0.06, depth);
@@ -113,7 +114,7 @@ fn window(opening: Opening, trim: Trim) -> Parts {
             white.block(low, Vec3::new(half - 0.06, y + bar, front - 0.01));
         }
         let lintel = Vec3::new(half + 0.14, height + 0.2, 0.05);
-        parts.of(trim.lintel).block(Vec3::new(-half - 0.14, height, -0.02), lintel);
+        parts.mesh(trim.lintel).block(Vec3::new(-half - 0.14, height, -0.02), lintel);
     } else {
         let low = Vec3::new(-0.03, 0.0, depth[0]);
         white.quad(low + Vec3::Z * 0.05, Vec3::X * 0.06, Vec3::Y * height);
@@ -159,7 +160,7 @@ fn shutter(width: f32, height: f32, trim: Trim) -> Builder {
 fn flower_box(parts: &mut Parts, width: f32) {
     let half = 0.42 * width;
     let corner = Vec3::new(half, 0.18, 0.26);
-    parts.of(Surface::Timber).block(Vec3::new(-half, 0.0, 0.04), corner);
+    parts.mesh(Surface::Timber).block(Vec3::new(-half, 0.0, 0.04), corner);
     for i in 0..26 {
         let t = (i as f32 + 0.5) / 26.0;
         let turn = i as f32 * 2.4;
@@ -170,7 +171,7 @@ fn flower_box(parts: &mut Parts, width: f32) {
         let out = Vec3::new(0.4 * cos, 0.5, 0.7 + 0.3 * sin).normalize();
         let u = out.any_orthonormal_vector() * size;
         let v = out.cross(u);
-        parts.of(surface).card(center - 0.5 * (u + v), u, v, out);
+        parts.mesh(surface).card(center - 0.5 * (u + v), u, v, out);
     }
 }
 
@@ -179,8 +180,8 @@ fn door(opening: Opening, trim: Trim) -> Parts {
     let (width, height) = (opening.width_m, opening.height_m);
     let half = 0.5 * width;
     let mut parts = Parts::default();
-    reveal(parts.of(trim.wall), width, height);
-    let leaf = parts.of(trim.paint);
+    reveal(parts.mesh(trim.wall), width, height);
+    let leaf = parts.mesh(trim.paint);
     leaf.quad(Vec3::new(-half, 0.0, -REVEAL_M), Vec3::X * width, Vec3::Y * height);
     let (low, mid) = (0.5 * height - 0.25, 0.5 * height - 0.1);
     for (x, y, top) in
@@ -190,15 +191,15 @@ fn door(opening: Opening, trim: Trim) -> Parts {
         leaf.block(Vec3::new(x + 0.08, y, -REVEAL_M - 0.02), corner);
     }
     let light = Vec3::new(0.08 - half, height - 0.4, -REVEAL_M + 0.01);
-    parts.of(Surface::Glass).quad(light, Vec3::X * (width - 0.16), Vec3::Y * 0.3);
-    let stone = parts.of(Surface::Stone);
+    parts.mesh(Surface::Glass).quad(light, Vec3::X * (width - 0.16), Vec3::Y * 0.3);
+    let stone = parts.mesh(Surface::Stone);
     for side in [-1.0, 1.0] {
         let (near, far) = (half * side, (half + 0.16) * side);
         let corner = Vec3::new(near.max(far), height + 0.2, 0.06);
         stone.block(Vec3::new(near.min(far), -0.3, -0.02), corner);
     }
     stone.block(Vec3::new(-half, height, -0.02), Vec3::new(half, height + 0.2, 0.06));
-    // Two steps that reach below the ground where it falls away.
+    // Two steps that reach below the ground, in case it falls away.
     stone.block(Vec3::new(-half - 0.2, -1.2, -0.1), Vec3::new(half + 0.2, -0.02, 0.35));
     stone.block(Vec3::new(-half - 0.35, -1.2, 0.3), Vec3::new(half + 0.35, -0.2, 0.65));
     if trim.fine {

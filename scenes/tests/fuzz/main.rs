@@ -1,20 +1,20 @@
-//! Damaged glTF files of every kind: each is read or refused, without a panic, in time and memory.
+//! Fuzzes the importer with damaged glTF files of every kind. Each file is read or refused, without
+//! a panic, within limits of time and memory.
 //!
-//! Inputs come from seeds (small files made here, or those of a folder), changed where a reader
-//! looks: values, keys and branches of the JSON, numbers in buffers, headers of images, chunks of a
-//! GLB, parts beside the file. Input `n` depends on `n` and the seed only, so any can be made
-//! again. The environment sets how much is run:
-//!
+//! Inputs come from seeds: small files made here, or those of a folder. They are changed in places
+//! that a reader uses: values, keys and branches of the JSON, numbers in buffers, headers of
+//! images, chunks of a GLB, and parts beside the file. Input `n` depends only on `n` and the seed,
+//! so every input can be made again. Environment variables set how much is run:
 //! | variable | what | without it |
-//! |---|---|---|
-//! | `LIGHTBENCH_FUZZ_INPUTS` | how many inputs | 300 |
-//! | `LIGHTBENCH_FUZZ_FIRST` | number of the first | 0 |
+//! | variable | meaning | default |
+//! | `LIGHTBENCH_FUZZ_INPUTS` | number of inputs | 300 |
+//! | `LIGHTBENCH_FUZZ_FIRST` | index of the first input | 0 |
 //! | `LIGHTBENCH_FUZZ_SEED` | another series of inputs | 1 |
 //! | `LIGHTBENCH_FUZZ_FILES` | a folder whose `.gltf` and `.glb` files are seeds too | none |
 //!
 //! A long run: `LIGHTBENCH_FUZZ_INPUTS=10000 cargo test -p scenes --release --test fuzz -- --nocapture`.
-//! The input in work lies in `fuzz-PROCESS/` in cargo's folder for test files. It stays there after a
-//! failure or an abort.
+//! The present input lies in `fuzz-PROCESS/` in cargo's folder for test files. It stays there after
+//! a failure or an abort.
 
 #[path = "../made_up/mod.rs"]
 mod made_up;
@@ -33,13 +33,13 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use scenes::{SceneError, load_gltf};
 
-/// The longest that an input may take.
+/// The longest time that an input may take.
 const MOST_TIME: Duration = Duration::from_secs(10);
 
-/// The most memory that the process may take for an input, bytes.
+/// The most memory that the process may use for an input, bytes.
 const MOST_BYTES: u64 = 4_000_000_000;
 
-/// What is known after a run.
+/// The figures of a run.
 #[derive(Default)]
 struct Figures {
     loaded: u32,
@@ -81,12 +81,13 @@ fn damaged_files_are_read_or_refused() {
         figures.peak.0 as f64 / 1e6,
         figures.peak.1,
     );
-    // Damage is light enough to be read past the header, and deep enough to be noticed.
+    // Damage is light enough that files are read past the header, and deep enough that it is
+    // noticed.
     let least = inputs.min(300) as u32 / 10;
     assert!(figures.loaded >= least && figures.refused >= least);
 }
 
-/// What is refused whole tests nothing when damaged.
+/// A seed that is refused undamaged would test nothing.
 #[test]
 fn seeds_are_read_as_they_are() {
     for (ix, seed) in seeds::all(None).iter().enumerate() {
@@ -114,7 +115,7 @@ fn run(n: u64, path: PathBuf, figures: &mut Figures) {
     figures.peak = figures.peak.max((peak, n));
 }
 
-/// Whether the file is read; what is read and what is said about it are sound either way.
+/// Whether the file is read. The scene and its warnings must be sound in any case.
 fn look_at(path: &Path) -> bool {
     let scene = match load_gltf(path) {
         Ok(scene) => scene,

@@ -1,4 +1,4 @@
-//! Inputs: seeds with a few changes where readers look.
+//! Makes inputs: seeds with a few changes in places that readers use.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ use crate::{
     odd,
 };
 
-/// A file to be read, and what lies beside it.
+/// A file to be read, and the parts beside it.
 pub(crate) struct Input {
     name: &'static str,
     bytes: Vec<u8>,
@@ -22,7 +22,7 @@ pub(crate) struct Input {
 }
 
 impl Input {
-    /// Writes it and its parts; the path of the file.
+    /// Writes it and its parts. Returns the path of the file.
     pub(crate) fn write(&self, folder: &Path) -> PathBuf {
         let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writes");
         write(self.name, &self.bytes);
@@ -37,7 +37,7 @@ impl Input {
 /// A seed with a few changes, as GLB or as glTF with its buffer inside or beside it.
 pub(crate) fn input(seeds: &[MadeUp], rng: &mut Pcg64Mcg) -> Input {
     let mut file = seeds[rng.random_range(0..seeds.len())].clone();
-    // Mostly few: whatever is refused first hides the others.
+    // Mostly few changes, because the first one that is refused hides the others.
     let changes = [1, 1, 1, 1, 2, 2, 2, 3, 4, 6];
     for _ in 0..changes[rng.random_range(0..changes.len())] {
         match rng.random_range(0..20) {
@@ -104,7 +104,7 @@ fn change_json(json: &mut Value, rng: &mut Pcg64Mcg) {
     let copy = json.pointer(&other).cloned().unwrap_or_default();
     let Some(value) = json.pointer_mut(&path) else { return };
     match rng.random_range(0..8) {
-        // Another number near the one that is there.
+        // Replace a number by another one near it.
         0..2 if value.is_number() => {
             let factor = [-1.0, 0.0, 0.5, 2.0, 1000.0, 1e10][rng.random_range(0..6)];
             let number = value.as_f64().unwrap_or(1.0) * factor;
@@ -194,7 +194,7 @@ fn change_binary(bytes: &mut Vec<u8>, rng: &mut Pcg64Mcg) {
     }
 }
 
-/// Gives a PNG another size or format, with the right checksum, or a JPEG another size.
+/// Gives a PNG another size or format with the right checksum, or a JPEG another size.
 fn change_image_header(bytes: &mut [u8], rng: &mut Pcg64Mcg) {
     let size = |rng: &mut Pcg64Mcg| {
         let sizes = [0_u32, 1, 2, 3, 4096, 16_384, 16_385, 1 << 20, u32::MAX >> 1, u32::MAX];

@@ -1,15 +1,15 @@
-//! Values that readers stumble over.
+//! Values that cause trouble in readers.
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
 
-/// Any of a list.
+/// One element of a list.
 pub(crate) fn any<'a, T: ?Sized>(list: &[&'a T], rng: &mut Pcg64Mcg) -> &'a T {
     list[rng.random_range(0..list.len())]
 }
 
-/// A float that is no place, no size, or far away.
+/// A float that is not a usable place or size, or is far away.
 pub(crate) fn float(rng: &mut Pcg64Mcg) -> f32 {
     let odd = [
         f32::NAN,

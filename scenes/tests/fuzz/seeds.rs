@@ -1,4 +1,4 @@
-//! The files that inputs are made of.
+//! The files from which inputs are made.
 
 use std::{fs, path::Path};
 
@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 
 use crate::made_up::{MadeUp, floats, png};
 
-/// Files larger than this are left to people, bytes.
+/// Larger files are not used as seeds, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// The files made here, and those of a folder and the folders in it.
+/// The files made here, and those of a folder and its subfolders.
 pub(crate) fn all(folder: Option<&Path>) -> Vec<MadeUp> {
     let mut seeds = vec![MadeUp::triangle(), lit(), textured(), shaped(), moving(), extended()];
     if let Some(folder) = folder {

@@ -1,6 +1,6 @@
 //! Small glTF files made by tests.
 
-// Each test of the folder compiles this file for itself and uses a part of it.
+// Each test of the folder compiles this file and uses a part of it.
 #![allow(dead_code)]
 
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::path::Path;
 use scenes::{Scene, SceneError, load_gltf};
 use serde_json::{Value, json};
 
-/// A file in the making: its JSON and its only buffer.
+/// A file under construction: its JSON and its only buffer.
 #[derive(Clone)]
 pub(crate) struct MadeUp {
     pub(crate) json: Value,
@@ -47,14 +47,14 @@ impl MadeUp {
         json.entry(name).or_insert_with(|| json!([])).as_array_mut().expect("a list")
     }
 
-    /// Adds to the root's list; the index.
+    /// Adds to a list at the root. Returns the index.
     pub(crate) fn push(&mut self, list: &str, value: Value) -> usize {
         let list = self.list(list);
         list.push(value);
         list.len() - 1
     }
 
-    /// Adds bytes to the buffer; the index of their view.
+    /// Adds bytes to the buffer. Returns the index of their view.
     pub(crate) fn view(&mut self, bytes: &[u8]) -> usize {
         let offset = self.binary.len();
         self.binary.extend_from_slice(bytes);
@@ -64,7 +64,7 @@ impl MadeUp {
         self.push("bufferViews", view)
     }
 
-    /// Adds an accessor over bytes of its own.
+    /// Adds an accessor over its own bytes.
     pub(crate) fn accessor(
         &mut self,
         bytes: &[u8],
@@ -82,7 +82,7 @@ impl MadeUp {
         self.push("accessors", accessor)
     }
 
-    /// Adds an image with a texture and a material that shows it, on a mesh and a node of its own.
+    /// Adds an image with a texture, a material that shows it, and a mesh and node of its own.
     pub(crate) fn textured(&mut self, image: Value) {
         let image = self.push("images", image);
         let texture = self.push("textures", json!({"source": image}));
@@ -117,7 +117,7 @@ impl MadeUp {
         load_file(&folder.path().join("made-up.glb"), &self.glb())
     }
 
-    /// The message of its error.
+    /// The message of the error when it is loaded.
     pub(crate) fn error(&self) -> String {
         self.load().expect_err("refused").to_string()
     }
@@ -129,7 +129,7 @@ pub(crate) fn load_file(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> 
     load_gltf(path)
 }
 
-/// A PNG of any size whose header is right; its pixels are missing.
+/// A PNG of any size with a correct header but without pixels.
 pub(crate) fn png_header(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
     let mut header = b"IHDR".to_vec();
@@ -152,7 +152,7 @@ pub(crate) fn png() -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// The checksum of PNG's chunks.
+/// The checksum of PNG chunks.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| {

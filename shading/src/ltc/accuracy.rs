@@ -1,4 +1,5 @@
-//! How far lobes are from the BRDF: over random rectangles, against its true integral.
+//! The accuracy of lobes: their integrals over random rectangles, compared with the BRDF's true
+//! integral.
 
 use std::f64::consts::TAU;
 
@@ -11,8 +12,8 @@ use super::{polygon::ltc_integral, quadrature::integrate, table::Entry};
 
 /// Tolerance of the true integrals, relative.
 const TOLERANCE: f64 = 1e-3;
-/// How far a rectangle's centre is from the mirror direction at most, where nothing else is said.
-/// The errors depend on it: the farther off, the more rectangles lie in the lobe's tail.
+/// The largest angle between a rectangle's centre and the mirror direction, by default. The errors
+/// depend on it: with a larger angle, more rectangles lie in the lobe's tail.
 pub const ACCURACY_DEGREES: f64 = 25.0;
 
 /// A rectangle seen from a surface, and the true integral of the specular lobe over it.
@@ -39,12 +40,12 @@ pub struct Accuracy {
     pub p95: f64,
 }
 
-/// Cases drawn at random, the same for each seed.
+/// Random cases, the same for each seed.
 ///
-/// Roughness and cosine of the view are uniform in 0.1 to 1. A rectangle's centre lies at a distance
-/// of 1 to 3, within `degrees` of the mirror direction and above the horizon; half its sides are
-/// log-uniform in 0.1 to 1, and it is turned in any way but nearly edge-on. Parts of it may lie below
-/// the horizon.
+/// Roughness and cosine of the view are uniform in 0.1 to 1. A rectangle's centre lies at a
+/// distance of 1 to 3, within `degrees` of the mirror direction and above the horizon. Half its
+/// sides are log-uniform in 0.1 to 1, and it is turned at random but is not nearly edge-on. Parts
+/// of it may lie below the horizon.
 pub fn accuracy_cases(count: usize, seed: u64, degrees: f64) -> Vec<AccuracyCase> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let mut cases: Vec<AccuracyCase> = (0..count).map(|_| draw(&mut rng, degrees)).collect();
@@ -57,8 +58,9 @@ pub fn accuracy_cases(count: usize, seed: u64, degrees: f64) -> Vec<AccuracyCase
 }
 
 impl Accuracy {
-    /// Of lobes that `entry` gives for a roughness and a cosine of the view; all 0 without cases.
-    pub fn of(cases: &[AccuracyCase], entry: impl Fn(f64, f64) -> Entry) -> Self {
+    /// The errors of the lobes that `entry` returns for a roughness and a cosine of the view. All
+    /// are 0 without cases.
+    pub fn measure(cases: &[AccuracyCase], entry: impl Fn(f64, f64) -> Entry) -> Self {
         let error = |case: &AccuracyCase| {
             let entry = entry(case.roughness, case.cos_view);
             let covered = ltc_integral(&entry.inverse(), &case.rectangle);
@@ -80,7 +82,7 @@ fn to_eye(cos_view: f64) -> DVec3 {
     DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view)
 }
 
-/// A case that lacks its true integral.
+/// A case without its true integral.
 fn draw(rng: &mut Pcg64Mcg, degrees: f64) -> AccuracyCase {
     let roughness = rng.random_range(0.1..1.0);
     let cos_view = rng.random_range(0.1..1.0);
@@ -96,7 +98,7 @@ fn draw(rng: &mut Pcg64Mcg, degrees: f64) -> AccuracyCase {
     AccuracyCase { rectangle, roughness, cos_view, specular: 0.0 }
 }
 
-/// A direction, uniform on the part of the sphere that is accepted.
+/// A direction, uniform on the accepted part of the sphere.
 fn draw_until(rng: &mut Pcg64Mcg, accepted: impl Fn(DVec3) -> bool) -> DVec3 {
     loop {
         let z: f64 = rng.random_range(-1.0..1.0);
@@ -114,14 +116,14 @@ mod tests {
     use super::*;
     use crate::ltc::{Masking, Polynomial, Table, diffuse_fresnel};
 
-    /// A white furnace: what a dielectric and a metal reflect of light from everywhere.
+    /// A white furnace: the reflection of a dielectric and of a metal under light from everywhere.
     #[test]
-    fn in_a_furnace_a_surface_reflects_what_its_brdf_does() {
+    fn a_white_furnace_reflects_as_the_brdf_does() {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
-        let (table, polynomial) = (Table::of(Masking::Correlated).unwrap(), Polynomial::ggx());
+        let (table, polynomial) = (Table::load(Masking::Correlated).unwrap(), Polynomial::ggx());
         let mut worst = [0.0_f64; 3];
-        // On texels and between them, from below the least roughness on.
+        // Samples on texels and between them, from below the least roughness on.
         for roughness in [0.02, 0.05, 0.1, 0.1825, 0.2, 0.3, 0.45, 0.6, 0.7, 0.85, 1.0] {
             for cos_view in [0.03, 0.1, 0.3, 0.55, 0.8, 0.98] {
                 let truth = integrate(&sky, to_eye(cos_view), roughness, 1e-4).value;

@@ -1,12 +1,13 @@
-//! The fit of one entry of the table: a roughness and a view.
+//! Fits one entry of the table: one roughness and one view.
 //!
-//! The lobe's matrix is `M = R * [[p, 0, q], [0, s, 0], [0, 0, 1]]`, with R's z the mean direction of
-//! the light that the BRDF reflects (Heitz et al. 2016, section 3.2). Nelder and Mead look for ln p,
-//! ln s and q / p. They minimise the integral of |difference|^3 above the horizon, weighted by the sum over
-//! the same directions of the densities that these are drawn with: half from the BRDF, half from the lobe.
-//! The lobe is divided by its share above the horizon, as shading does.
-//! Samples lie on a fixed grid and move with the lobe, so that the objective is smooth and every run
-//! finds the same.
+//! The lobe's matrix is `M = R * [[p, 0, q], [0, s, 0], [0, 0, 1]]`. R's z axis is the mean
+//! direction of the light that the BRDF reflects (Heitz et al. 2016, section 3.2). Nelder and
+//! Mead's method searches for ln p, ln s and q / p.
+//!
+//! The objective is the integral of |difference|^3 above the horizon. Half of its sample directions
+//! are drawn from the BRDF and half from the lobe; each is divided by the sum of both densities.
+//! The lobe is divided by its share above the horizon, as in shading. Samples lie on a fixed grid
+//! and move with the lobe, so the objective is smooth and every run finds the same result.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,19 +19,19 @@ use super::{
     polygon::share_above_horizon,
 };
 
-/// Grid of the samples of one side of the plane of incidence; the other mirrors them.
+/// Grid of the samples on one side of the plane of incidence. The other side mirrors them.
 const AROUND: u32 = 16;
 const OUTWARDS: u32 = 32;
-/// Grid of the albedos, finer.
+/// A finer grid for the albedos.
 const ALBEDO_SIDE: u32 = 160;
-/// First step of the search, and the share of the objective at which it ends.
+/// First step of the search, and the relative change of the objective at which it ends.
 const STEP: f64 = 0.05;
 const TOLERANCE: f64 = 1e-7;
 
 /// A fitted lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// M, which moves a cosine to the lobe.
+    /// M, which transforms a cosine into the lobe.
     pub matrix: DMat3,
     /// A: the integral of D V cos.
     pub albedo: f64,
@@ -38,17 +39,18 @@ pub struct Fit {
     pub fresnel: f64,
     /// The objective at the end.
     pub residual: f64,
-    /// ln p, ln s and q / p: where a neighbour's search may start.
+    /// ln p, ln s and q / p, from which a neighbour's search may start.
     pub parameters: DVec3,
 }
 
-/// Fits a lobe to the BRDF of a perceptual roughness seen under a cosine of 0 to 1, starting from a
-/// neighbour's parameters. Where the view is the normal, the lobe is round and upright.
+/// Fits a lobe to the BRDF of a perceptual roughness, seen under a cosine of 0 to 1. The search
+/// starts from a neighbour's parameters. Where the view is the normal, the lobe is round and
+/// upright.
 pub fn fit(roughness: f64, cos_view: f64, start: Option<DVec3>) -> Fit {
     fit_masked(Masking::Correlated, roughness, cos_view, start)
 }
 
-/// The same for GGX with a masking.
+/// The same for GGX with the given masking.
 pub(super) fn fit_masked(
     masking: Masking,
     roughness: f64,
@@ -56,14 +58,14 @@ pub(super) fn fit_masked(
     start: Option<DVec3>,
 ) -> Fit {
     let lobe = Lobe::seen_under(roughness, cos_view).masked(masking);
-    let seen = Mean::of(&lobe);
+    let seen = Mean::integrate(&lobe);
     let is_round = cos_view >= 1.0;
     let start = start.unwrap_or_else(|| {
         let width = lobe.alpha().ln();
         DVec3::new(width, width, 0.0)
     });
     let samples = samples_of(&lobe);
-    // A round lobe has one parameter; the search moves the others without effect.
+    // A round lobe has only one parameter. The search changes the others without effect.
     let round = |parameters: DVec3| DVec3::new(parameters.x, parameters.x, 0.0);
     let allowed = |parameters: DVec3| if is_round { round(parameters) } else { parameters };
     let matrix = |parameters: DVec3| matrix_of(seen.direction, allowed(parameters));
@@ -86,7 +88,7 @@ fn matrix_of(z: DVec3, parameters: DVec3) -> DMat3 {
         )
 }
 
-/// The light that a BRDF reflects from all directions.
+/// The light that a BRDF reflects from all directions together.
 struct Mean {
     albedo: f64,
     fresnel: f64,
@@ -95,10 +97,11 @@ struct Mean {
 }
 
 impl Mean {
-    fn of(lobe: &Lobe) -> Self {
+    fn integrate(lobe: &Lobe) -> Self {
         let (mut albedo, mut fresnel, mut direction) = (0.0, 0.0, DVec3::ZERO);
         for (u, t) in grid(ALBEDO_SIDE / 2, ALBEDO_SIDE) {
-            // Finer towards normals at right angles to the view, where the lobe's tail is.
+            // The grid is finer towards normals at right angles to the view, where the lobe's tail
+            // is.
             let (v, spread) = (1.0 - (1.0 - t) * (1.0 - t), 2.0 * (1.0 - t));
             let to_light = lobe.sample(u, v);
             if to_light.z > 0.0 {
@@ -110,7 +113,7 @@ impl Mean {
             }
         }
         let count = f64::from(ALBEDO_SIDE * ALBEDO_SIDE / 2);
-        // The plane of incidence halves the lobe.
+        // The lobe is symmetric about the plane of incidence.
         direction.y = 0.0;
         let direction =
             if lobe.to_eye.x > 0.0 { direction.normalize_or(DVec3::Z) } else { DVec3::Z };
@@ -128,7 +131,8 @@ fn grid(around: u32, outwards: u32) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// A direction with what does not change in the search: the BRDF and the density of its samples.
+/// A direction, with the values that do not change during the search: the BRDF and the density of
+/// its samples.
 struct Sample {
     to_light: DVec3,
     value: f64,
@@ -147,7 +151,7 @@ fn samples_of(lobe: &Lobe) -> Vec<Sample> {
 /// horizon.
 fn difference(lobe: &Lobe, albedo: f64, samples: &[Sample], matrix: &DMat3) -> f64 {
     let inverse = matrix.inverse();
-    // What lies below the horizon is not seen: the part above it stands for the whole.
+    // Light below the horizon is not seen. The part above it stands for the whole.
     let share = share_above_horizon(&inverse);
     let scale = inverse.determinant().abs() / PI / share;
     let density = |to_light: DVec3| {
@@ -191,8 +195,8 @@ mod tests {
         (x as f64 / 63.0, 1.0 - y * y)
     }
 
-    /// The fit of a texel, from the normal on: at grazing views several lobes are about as good, and the
-    /// search finds the one next to its neighbour's.
+    /// The fit of a texel, starting at the normal. At grazing views, several lobes are about
+    /// equally good, and the search finds the one nearest to its neighbour's.
     fn fit_like_the_table(x: usize, y: usize) -> Entry {
         let mut last: Option<Fit> = None;
         for step in 0..=y {
@@ -203,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fit_from_scratch_is_the_committed_entry() {
+    fn a_fit_from_scratch_matches_the_committed_entry() {
         use rayon::prelude::*;
         let table = Table::ggx().unwrap();
         TEXELS.into_par_iter().for_each(|(x, y)| {
@@ -222,13 +226,13 @@ mod tests {
     }
 
     #[test]
-    fn the_albedos_are_the_integrals_over_the_hemisphere() {
+    fn the_albedos_match_the_integrals_over_the_hemisphere() {
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         for (x, y) in TEXELS {
             let (roughness, cos_view) = place(x, y);
             let lobe = Lobe::seen_under(roughness, cos_view);
-            let seen = Mean::of(&lobe);
+            let seen = Mean::integrate(&lobe);
             let truth = integrate(&sky, lobe.to_eye, roughness, 1e-5).value;
             let off = seen.albedo - truth.specular;
             assert!(off.abs() < 5e-5, "{x}, {y}: A off {off:e}");

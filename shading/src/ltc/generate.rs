@@ -1,4 +1,4 @@
-//! Makes the committed files: the table, and the polynomials of it as Rust and as WESL.
+//! Generates the committed files: the table, and its polynomials in Rust and WESL.
 
 use std::{fs, path::Path};
 
@@ -13,43 +13,43 @@ use super::{
 };
 use crate::ShadingError;
 
-/// Rectangles that the medians are taken over, and their seed.
+/// The number of rectangles for the medians, and their seed.
 const CASES: usize = 1500;
 const SEED: u64 = 1;
 
-/// What a fit came to.
+/// The accuracy of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitReport {
-    /// The table against the BRDF.
+    /// Errors of the table against the BRDF.
     pub table: Accuracy,
-    /// The table of GGX with Hammon's masking, against the same BRDF.
+    /// Errors of the table of GGX with Hammon's masking, against the same BRDF.
     pub hammon: Accuracy,
-    /// The polynomials against the BRDF.
+    /// Errors of the polynomials against the BRDF.
     pub polynomial: Accuracy,
     /// Root mean square errors of the polynomials against the table, in the order of
     /// [`POLYNOMIAL_COMPONENTS`](super::POLYNOMIAL_COMPONENTS).
     pub rms_errors: [f64; 6],
-    /// The table against the committed one, at the latter's places.
+    /// Difference between the table and the committed one, at the latter's places.
     pub difference: TableDifference,
 }
 
-/// How far two tables are apart at most.
+/// The greatest difference between two tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TableDifference {
-    /// Of A and B.
+    /// The greatest difference of A and B.
     pub integrals: f64,
-    /// Of what a lobe covers of a polygon about as large as it is.
+    /// The greatest difference of the share of a lobe that a polygon of about its size covers.
     pub covered: f64,
 }
 
-/// Fits tables of `size` texels each way for both maskings, and polynomials of the first. Writes
-/// `ggx.bin`, `ggx_hammon.bin`, `polynomial_coefficients.rs` and `ltc_polynomial.wesl` to a folder, if
-/// there is one. `progress` is called with the number of entries just done, of `2 * size * size`, from
-/// several threads.
+/// Fits tables of `size` texels each way for both maskings, and polynomials for the first. Writes
+/// `ggx.bin`, `ggx_hammon.bin`, `polynomial_coefficients.rs` and `ltc_polynomial.wesl` to a folder,
+/// if one is given. Calls `progress` with the number of entries just done, of `2 * size * size`,
+/// from several threads.
 ///
 /// # Errors
 ///
-/// [`ShadingError::LtcTable`] for a size that no table has, [`ShadingError::Write`] where a file
+/// [`ShadingError::LtcTable`] for a size that is not accepted, [`ShadingError::Write`] if a file
 /// cannot be written.
 pub fn generate(
     out_dir: Option<&Path>,
@@ -61,7 +61,7 @@ pub fn generate(
     }
     let table = Table::fit(Masking::Correlated, size, &progress)?;
     let hammon = Table::fit(Masking::Hammon, size, &progress)?;
-    let polynomial = Polynomial::of(&table);
+    let polynomial = Polynomial::fit(&table);
     if let Some(dir) = out_dir {
         write(&dir.join("ggx.bin"), |path| fs::write(path, table.to_bytes()))?;
         write(&dir.join("ggx_hammon.bin"), |path| fs::write(path, hammon.to_bytes()))?;
@@ -72,9 +72,9 @@ pub fn generate(
     }
     let cases = accuracy_cases(CASES, SEED, ACCURACY_DEGREES);
     Ok(FitReport {
-        table: Accuracy::of(&cases, |roughness, cos| table.look_up(roughness, cos)),
-        hammon: Accuracy::of(&cases, |roughness, cos| hammon.look_up(roughness, cos)),
-        polynomial: Accuracy::of(&cases, |roughness, cos| polynomial.entry(roughness, cos)),
+        table: Accuracy::measure(&cases, |roughness, cos| table.look_up(roughness, cos)),
+        hammon: Accuracy::measure(&cases, |roughness, cos| hammon.look_up(roughness, cos)),
+        polynomial: Accuracy::measure(&cases, |roughness, cos| polynomial.entry(roughness, cos)),
         rms_errors: polynomial.rms_errors(&table),
         difference: Table::ggx()?.difference(&table),
     })
@@ -88,7 +88,7 @@ fn write(path: &Path, write: impl Fn(&Path) -> std::io::Result<()>) -> Result<()
 }
 
 impl Table {
-    /// The largest differences to another table at this one's places.
+    /// The greatest differences to another table, at this table's places.
     pub fn difference(&self, other: &Self) -> TableDifference {
         let differences =
             self.entries().map(|(x, y, entry)| entry.difference(&other.look_up(x, cos_view(y))));
@@ -100,13 +100,13 @@ impl Table {
 }
 
 impl Entry {
-    /// How far another entry is from this one. Entries of the inverse are not compared one by one:
-    /// at grazing views, different ones make the same lobe.
+    /// The difference to another entry. Elements of the inverse are not compared one by one,
+    /// because different ones give the same lobe at grazing views.
     pub fn difference(&self, other: &Self) -> TableDifference {
         let pairs = self.integrals.iter().zip(other.integrals);
         let integrals = pairs.map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max);
         let lobe: DMat3 = self.inverse().inverse();
-        // Squares beside each other in the cosine's own space, moved to where this lobe has them.
+        // Adjacent squares in the cosine's own space, moved to where this lobe has them.
         let covered = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0]].map(|[x, y]| {
             let corner = |i: f64, j: f64| lobe * DVec3::new(x + i, y + j, 1.0);
             let square =
@@ -135,17 +135,17 @@ mod tests {
         assert_eq!(table.size(), 8);
         let hammon = Table::from_bytes(&fs::read(dir.join("ggx_hammon.bin")).unwrap()).unwrap();
         assert!(hammon.difference(&table).integrals > 1e-3, "both maskings give one table");
-        let polynomial = Polynomial::of(&table);
+        let polynomial = Polynomial::fit(&table);
         let text = |name| fs::read_to_string(dir.join(name)).unwrap();
         assert_eq!(text("polynomial_coefficients.rs"), polynomial.to_rust());
         assert_eq!(text("ltc_polynomial.wesl"), polynomial.to_wesl());
-        // It is coarser than the committed one.
+        // It is coarser than the committed table.
         let TableDifference { integrals, covered } = report.difference;
         assert!(report.table.median > 0.04 && integrals > 0.01 && covered > 0.01, "{report:?}");
     }
 
     #[test]
-    fn what_cannot_be_done_is_named() {
+    fn sizes_and_folders_that_fail_are_named() {
         let refusal = generate(None, 1, |_| ()).unwrap_err().to_string();
         assert_eq!(refusal, "LTC table: size is 1: it must be 2 to 1024 texels each way");
         let file = tempfile::NamedTempFile::new().unwrap();

@@ -11,14 +11,14 @@ pub(crate) fn alpha_of(roughness: f64) -> f64 {
     roughness.max(MIN_ROUGHNESS).powi(2)
 }
 
-/// How microfacets hide each other, over `4 cos cos`.
+/// How microfacets mask each other, divided by `4 cos cos`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Masking {
-    /// Height-correlated Smith (Heitz 2014, equation 99): that of the BRDF here, and of the published
-    /// tables of linearly transformed cosines.
+    /// Height-correlated Smith (Heitz 2014, equation 99). The BRDF here and the published tables of
+    /// linearly transformed cosines use it.
     #[default]
     Correlated,
-    /// Its approximation without roots (Hammon 2017), which engines use: Dobetsberger 2025, section
+    /// Its approximation without roots (Hammon 2017), which engines use. Dobetsberger 2025, section
     /// 5.4.2, fits a second table to it.
     Hammon,
 }
@@ -28,7 +28,7 @@ impl Masking {
     pub const ALL: [Self; 2] = [Self::Correlated, Self::Hammon];
 }
 
-/// GGX, seen from one direction.
+/// GGX seen from one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lobe {
     pub(crate) to_eye: DVec3,
@@ -49,7 +49,7 @@ impl Lobe {
         Self { to_eye, masking: Masking::Correlated, alpha, alpha_2, cos_view, root_view }
     }
 
-    /// Seen from the x-z plane under a cosine of 0 to 1.
+    /// The lobe seen from the x-z plane under a cosine of 0 to 1.
     pub(crate) fn seen_under(roughness: f64, cos_view: f64) -> Self {
         let cos = cos_view.clamp(MIN_COS_VIEW, 1.0);
         Self::new(roughness, DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos))
@@ -72,8 +72,8 @@ impl Lobe {
         (self.to_eye + to_light).normalize_or_zero()
     }
 
-    /// D V cos, the BRDF at a Fresnel term of 1 times the cosine of incidence, and Schlick's
-    /// `(1 - v.h)^5`.
+    /// D V cos (the BRDF at a Fresnel term of 1, times the cosine of incidence), and Schlick's `(1
+    /// - v.h)^5`.
     pub(crate) fn evaluate(&self, to_light: DVec3) -> (f64, f64) {
         let cos_light = to_light.z.max(0.0);
         let half_way = self.half_way(to_light);
@@ -92,14 +92,14 @@ impl Lobe {
         (lobe, (1.0 - self.to_eye.dot(half_way).clamp(0.0, 1.0)).powi(5))
     }
 
-    /// Density at which [`Self::sample`] finds a direction, per steradian.
+    /// The probability density per steradian with which [`Self::sample`] draws a direction.
     pub(crate) fn density(&self, to_light: DVec3) -> f64 {
         let distribution = ggx(self.alpha_2, DVec3::Z, self.half_way(to_light));
         distribution * 0.5 / (self.cos_view + self.root_view)
     }
 
-    /// A direction to a light that mirrors the eye in a normal visible from it (Heitz 2018), perhaps
-    /// below the horizon. Samples of `u` and `1 - u` mirror each other in the x-z plane.
+    /// A direction that mirrors the eye in a microfacet normal visible from it (Heitz 2018). It may
+    /// lie below the horizon. Samples of `u` and `1 - u` are mirrored in the x-z plane.
     pub(crate) fn sample(&self, u: f64, v: f64) -> DVec3 {
         let stretched = DVec3::new(self.alpha * self.to_eye.x, 0.0, self.cos_view).normalize();
         let up = DVec3::new(-stretched.z, 0.0, stretched.x);
@@ -122,9 +122,9 @@ mod tests {
     use super::*;
     use crate::reference::{Surface, reflect_light};
 
-    /// Both maskings are 1 / (4 cos cos) on a mirror, and the same where both cosines are 1.
+    /// On a mirror both maskings are 1 / (4 cos cos), and they are equal where both cosines are 1.
     #[test]
-    fn the_approximate_masking_agrees_where_it_must() {
+    fn the_approximate_masking_agrees_on_mirrors_and_at_the_normal() {
         for (roughness, cos_view, same) in [(0.0, 0.7, true), (0.6, 1.0, true), (0.6, 0.3, false)] {
             let exact = Lobe::seen_under(roughness, cos_view);
             let mirror = exact.to_eye * DVec3::new(-1.0, 1.0, 1.0);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lobe_is_the_reference_s_specular_term() {
+    fn the_lobe_matches_the_references_specular_term() {
         for roughness in [0.0, 0.2, 0.7] {
             for cos_view in [0.02, 0.5, 1.0] {
                 let lobe = Lobe::seen_under(roughness, cos_view);

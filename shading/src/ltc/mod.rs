@@ -1,40 +1,44 @@
-//! Linearly transformed cosines (Heitz et al. 2016): what polygon lights reflect, in closed form.
+//! Linearly transformed cosines (Heitz et al. 2016): the reflection of polygon lights in closed
+//! form.
 //!
 //! # The idea
 //!
 //! The integral of a cosine over a spherical polygon is a sum over its edges (Lambert 1760). A
-//! matrix M stretches the cosine into a lobe of about the shape of a BRDF's, so that the BRDF's
-//! integral over a polygon is about that of the cosine over the polygon moved by M^-1. A [`Table`]
-//! holds M^-1 for each roughness and view, and the integrals that scale the lobe.
+//! matrix M stretches the cosine into a lobe of about the shape of a BRDF. So the integral of the
+//! BRDF over a polygon is about the integral of the cosine over the polygon transformed by M^-1. A
+//! [`Table`] holds M^-1 for each roughness and view, and the integrals that scale the lobe.
 //!
 //! # The frame
 //!
-//! Everything here happens in the shading frame: the shaded point at the origin, z the shading
-//! normal, x the view direction's projection onto the surface. A polygon is a slice of its vertices
-//! there, in order around it and in either sense: integrals are those of a light that shines to both
-//! sides, and whoever has a one-sided light leaves it out where the point lies behind it. Units are
-//! the caller's: only directions count.
+//! Everything happens in the shading frame: the shaded point at the origin, z the shading normal, x
+//! the view direction's projection onto the surface. A polygon is a slice of its vertices in that
+//! frame, in order, clockwise or counter-clockwise. Integrals are those of a light that shines to
+//! both sides. For a one-sided light, the caller skips points behind it. Any unit of length will
+//! do, because only directions count.
 //!
 //! # The terms
 //!
-//! Radiance reflected to the eye from a polygon of unit radiance, with `f0` the reflectance at
-//! normal incidence, A and B the integrals of an [`Entry`], C [`diffuse_fresnel`]:
+//! The table gives the radiance reflected to the eye from a polygon of unit radiance. `f0` is the
+//! reflectance at normal incidence, A and B are the integrals of an [`Entry`], and C is
+//! [`diffuse_fresnel`].
 //!
 //! | term | value |
 //! |---|---|
 //! | specular | `ltc_integral * (f0 * (A - B) + B) / share` |
 //! | diffuse | `albedo * cosine_integral * (1 - f0) * (1 - C)` |
 //!
-//! A fitted lobe reaches below the surface's horizon, where [`ltc_integral`] counts nothing. So its light
-//! is divided by the share of it above the horizon ([`Entry::share_above_horizon`]): under a light all
-//! around, a surface reflects what its BRDF reflects.
+//! A fitted lobe extends below the surface's horizon, where [`ltc_integral`] counts nothing. So its
+//! light is divided by its share above the horizon ([`Entry::share_above_horizon`]). Under light
+//! from all directions, a surface then reflects what its BRDF reflects.
 //!
-//! The BRDF is that of `brdf.wesl`. [`integrate`] is its integral without any of this, to compare.
+//! The BRDF is that of `brdf.wesl`. [`integrate`] integrates it without any approximation, for
+//! comparison.
 
 mod accuracy;
 mod diffuse_fresnel;
 mod fit;
 mod generate;
+mod integrals;
 pub(crate) mod lobe;
 mod nelder_mead;
 mod polygon;
@@ -48,9 +52,10 @@ pub use accuracy::{ACCURACY_DEGREES, Accuracy, AccuracyCase, accuracy_cases};
 pub use diffuse_fresnel::{DIFFUSE_FRESNEL, diffuse_fresnel};
 pub use fit::{Fit, fit};
 pub use generate::{FitReport, TableDifference, generate};
+pub use integrals::Integrals;
 pub use lobe::Masking;
 pub use polygon::{cosine_integral, ltc_integral};
 pub use polynomial::{LTC_POLYNOMIAL_WESL, POLYNOMIAL_COMPONENTS, Polynomial};
-pub use quadrature::{Estimate, Integrals, integrate};
+pub use quadrature::{Estimate, integrate};
 pub use spherical_rectangle::SphericalRectangle;
 pub use table::{Entry, TABLE_SIZE, Table};

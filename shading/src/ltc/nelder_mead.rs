@@ -1,12 +1,12 @@
-//! The least value of a function of three variables, without derivatives (Nelder and Mead 1965).
+//! Minimises a function of three variables without derivatives (Nelder and Mead 1965).
 
 use glam::DVec3;
 
-/// Rounds at most.
+/// The most rounds.
 const ROUNDS: usize = 200;
 
-/// Walks from `start`, with first steps of `step` along each axis, to a minimum, until the values at
-/// the corners of the simplex differ by less than a share of `tolerance`.
+/// Walks from `start`, with first steps of `step` along each axis, to a minimum. It ends when the
+/// values at the corners of the simplex differ by less than a share of `tolerance`.
 pub(super) fn minimize(
     start: DVec3,
     step: f64,
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn the_bottom_of_a_bent_valley_is_found() {
-        // Rosenbrock's valley, lifted; the third variable apart.
+        // Rosenbrock's valley, raised, plus a separate third variable.
         let valley = |p: DVec3| {
             1.0 + (1.0 - p.x).powi(2) + 10.0 * (p.y - p.x * p.x).powi(2) + (p.z - 3.0).powi(2)
         };

@@ -1,23 +1,25 @@
 //! The integral of a cosine, and of a linearly transformed one, over a polygon.
 //!
 //! The integral of `cos / pi` over a spherical polygon is a sum over its edges (Lambert 1760; Baum
-//! et al. 1989, equation 1): `1 / 2 pi` times the angle that the edge spans, times the z of the unit
-//! vector across its ends. Three measures keep it precise, in single precision too:
+//! et al. 1989, equation 1). Each edge adds `1 / 2 pi` times the angle that it spans, times the z
+//! of the unit vector perpendicular to its ends. Three measures keep the sum precise, also in
+//! single precision:
 //!
 //! - An edge that spans more than a right angle is split at its point closest to the origin
-//!   (Dobetsberger 2025, section 5.4.4). Its ends then span less than a right angle each, so that no
-//!   cross product vanishes between opposite directions.
-//! - What remains of the angle, `angle / sin(angle) - 1`, is a polynomial of `1 - cos(angle)`, taken
-//!   from the distance of the ends: no inverse cosine, and no digits lost at small angles.
-//! - The cross products of a small polygon cancel. Their sum does not change when the first vertex is
-//!   subtracted from every other, and then nothing cancels.
+//!   (Dobetsberger 2025, section 5.4.4). Each part then spans less than a right angle, so no cross
+//!   product of opposite directions vanishes.
+//! - The rest of the angle, `angle / sin(angle) - 1`, is a polynomial of `1 - cos(angle)`, which
+//!   follows from the distance of the ends. This needs no inverse cosine and loses no digits at
+//!   small angles.
+//! - The cross products of a small polygon cancel. The first vertex is subtracted from every other
+//!   one. This leaves the sum unchanged, and nothing cancels.
 
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
 
 /// `angle / sin(angle) - 1` over `t = 1 - cos(angle)`, as a polynomial of t in 0..1, lowest power
-/// first: interpolated at Chebyshev's points; times t, at most 5.9e-8 off.
+/// first. It is interpolated at Chebyshev's points; times t, the error is at most 5.9e-8.
 const ANGLE_EXCESS: [f64; 9] = [
     0.333_333_363_655,
     0.133_328_435_801,
@@ -30,31 +32,31 @@ const ANGLE_EXCESS: [f64; 9] = [
     0.008_251_405_882,
 ];
 
-/// Form factor of a polygon: the integral of `cos / pi` over the part of it above the horizon, 0 to
-/// 1. Vertices in the shading frame, in order around the polygon.
+/// Form factor of a polygon, 0 to 1: the integral of `cos / pi` over the part of it above the
+/// horizon. Vertices are in the shading frame, in order around the polygon.
 pub fn cosine_integral(vertices: &[DVec3]) -> f64 {
     edge_sum(&clip(vertices))
 }
 
-/// Share of a linearly transformed cosine's lobe that a polygon covers, 0 to 1, for the inverse of
-/// the lobe's matrix. Exactly 0 below the horizon.
+/// The share of the lobe of a linearly transformed cosine that a polygon covers, 0 to 1, for the
+/// inverse of the lobe's matrix. It is exactly 0 below the horizon.
 pub fn ltc_integral(inverse: &DMat3, vertices: &[DVec3]) -> f64 {
-    // Above the surface's horizon first, then above the cosine's own, which tilts with the lobe.
+    // Clip at the surface's horizon first, then at the cosine's own, which is tilted with the lobe.
     let above: Vec<DVec3> = clip(vertices).into_iter().map(|vertex| *inverse * vertex).collect();
     edge_sum(&clip(&above))
 }
 
 /// The share of a lobe above the surface's horizon, for the inverse of its matrix M.
 ///
-/// M^-1 turns the upper half-space into one around the third row of M, which is along (-c, 0, a). A
+/// M^-1 maps the upper half-space to one around the third row of M, which is along (-c, 0, a). A
 /// half-space at an angle t to the cosine's own covers `(1 + cos t) / 2` of it.
 pub(super) fn share_above_horizon(inverse: &DMat3) -> f64 {
     let (a, c) = (inverse.x_axis.x, inverse.x_axis.z);
     0.5 + 0.5 * a / a.hypot(c)
 }
 
-/// The part of a polygon in `z > 0` (Sutherland and Hodgman 1974); at most one vertex more where
-/// the polygon is convex.
+/// The part of a polygon in `z > 0` (Sutherland and Hodgman 1974). A convex polygon gains at most
+/// one vertex.
 pub(super) fn clip(vertices: &[DVec3]) -> Vec<DVec3> {
     clip_at(vertices, DVec3::Z)
 }
@@ -66,7 +68,8 @@ pub(super) fn clip_at(vertices: &[DVec3], normal: DVec3) -> Vec<DVec3> {
     let (mut from, mut from_height) = (last, last.dot(normal));
     for &to in vertices {
         let to_height = to.dot(normal);
-        // A vertex in the plane counts as outside: what only touches the plane leaves nothing.
+        // A vertex in the plane counts as outside, so nothing remains of a polygon that only
+        // touches the plane.
         if (from_height > 0.0) != (to_height > 0.0) {
             let crossing = from + (to - from) * (from_height / (from_height - to_height));
             kept.push(crossing - normal * crossing.dot(normal));
@@ -98,14 +101,14 @@ fn edge_sum(vertices: &[DVec3]) -> f64 {
     (sum / TAU).abs().clamp(0.0, 1.0)
 }
 
-/// The point closest to the origin of a segment whose ends span an obtuse angle there: it lies
-/// between them.
+/// The point closest to the origin on a segment whose ends span an obtuse angle there. It lies
+/// between the ends.
 fn closest_to_origin(from: DVec3, to: DVec3) -> DVec3 {
     let along = to - from;
     from - along * (from.dot(along) / along.length_squared())
 }
 
-/// An edge's part of the sum; its unit ends span a right angle at most.
+/// An edge's part of the sum. Its unit ends span at most a right angle.
 fn edge(base: DVec3, from: DVec3, to: DVec3) -> f64 {
     let t = 0.5 * (to - from).length_squared();
     let excess = t * ANGLE_EXCESS.iter().rev().fold(0.0, |sum, coefficient| sum * t + coefficient);
@@ -121,7 +124,7 @@ mod tests {
     use super::*;
     use crate::ltc::{SphericalRectangle, integrate};
 
-    /// A rectangle about `center`, spanned by half its edges.
+    /// A rectangle around `center`, spanned by half its edges.
     fn rectangle(center: DVec3, x: DVec3, y: DVec3) -> [DVec3; 4] {
         [center - x - y, center + x - y, center + x + y, center - x + y]
     }
@@ -137,20 +140,21 @@ mod tests {
 
     #[test]
     fn a_square_overhead_has_the_form_factor_of_the_textbooks() {
-        // Howell's catalogue, configuration B-3: a corner above the point, sides a and b at height 1.
+        // Howell's catalogue, configuration B-3: a corner above the point, with sides a and b at
+        // height 1.
         let (a, b) = (0.7_f64, 2.5_f64);
         let corner = |x, y| DVec3::new(x, y, 1.0);
         let square = [corner(0.0, 0.0), corner(a, 0.0), corner(a, b), corner(0.0, b)];
         let side = |a: f64, b: f64| a / (1.0 + a * a).sqrt() * (b / (1.0 + a * a).sqrt()).atan();
         let expected = (side(a, b) + side(b, a)) / TAU;
         assert!((cosine_integral(&square) - expected).abs() < 1e-8);
-        // A far one: its digits do not cancel.
+        // Far away, its digits do not cancel.
         let far = rectangle(DVec3::splat(1e6), DVec3::X * 0.5, DVec3::Y * 0.5);
         assert!((cosine_integral(&far) * 9e12 * std::f64::consts::PI - 1.0).abs() < 1e-8);
     }
 
     #[test]
-    fn the_angle_is_right_to_single_precision() {
+    fn the_angle_is_precise_to_single_precision() {
         for step in 1..=1000 {
             let angle = f64::from(step) / 1000.0 * std::f64::consts::FRAC_PI_2;
             let sum = edge(DVec3::ZERO, DVec3::X, DVec3::new(angle.cos(), angle.sin(), 0.0));
@@ -159,8 +163,8 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_hemisphere_is_one_whatever_the_lobe() {
-        // The lobe's own horizon is the surface's here, so that nothing of it is cut off.
+    fn a_whole_hemisphere_gives_one_for_every_lobe() {
+        // The lobe's own horizon equals the surface's here, so nothing of it is cut off.
         let wide = rectangle(DVec3::Z * 1e-9, DVec3::X, DVec3::Y);
         assert!((cosine_integral(&wide) - 1.0).abs() < 1e-6);
         let scaled = DMat3::from_diagonal(DVec3::new(3.0, 1.0, 0.5));
@@ -177,7 +181,7 @@ mod tests {
             assert_eq!(cosine_integral(&vertices), 0.0);
             assert_eq!(ltc_integral(&stretched(), &vertices), 0.0);
         }
-        // Half above: as much as the upper half alone.
+        // Half of it lies above: the same as only the upper half.
         let half = rectangle(DVec3::new(-1.0, 0.2, 0.0), DVec3::Z, DVec3::Y);
         let upper = rectangle(DVec3::new(-1.0, 0.2, 0.5), DVec3::Z * 0.5, DVec3::Y);
         let difference = ltc_integral(&stretched(), &half) - ltc_integral(&stretched(), &upper);
@@ -186,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn neither_sense_nor_start_nor_odd_vertices_matter() {
+    fn winding_start_and_degenerate_vertices_do_not_matter() {
         let vertices = rectangle(DVec3::new(-1.0, 0.2, 0.3), DVec3::Z, DVec3::Y);
         let whole = ltc_integral(&stretched(), &vertices);
         let mut turned = vertices;
@@ -202,7 +206,8 @@ mod tests {
 
     #[test]
     fn a_long_light_close_by_is_the_sum_of_its_hundred_squares() {
-        // 4 m by 4 cm, 5 cm off: both long edges span nearly half the sphere. The point moves along.
+        // 4 m by 4 cm, 5 cm away: both long edges span nearly half the sphere. The point moves
+        // along them.
         for step in 0..200 {
             let center = DVec3::new(f64::from(step) * 0.005 - 0.5, 0.0, 0.05);
             let (x, y) = (DVec3::X, DVec3::new(0.0, 0.6, 0.8));
@@ -217,8 +222,9 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_integral_of_the_transformed_density() {
-        // By the midpoint rule, over a rectangle across the horizon and across the lobe's own.
+    fn ltc_integral_matches_the_integral_of_the_transformed_density() {
+        // Compare with the midpoint rule, over a rectangle across the horizon and across the lobe's
+        // own.
         let inverse = stretched();
         let (corner, x, y) = (DVec3::new(-2.0, -0.3, -0.5), DVec3::X * 4.0, DVec3::Z * 2.0);
         let rectangle = SphericalRectangle::new(corner, x, y).unwrap();
@@ -238,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_integral_by_quadrature() {
+    fn cosine_integral_matches_quadrature() {
         let vertices = rectangle(DVec3::new(0.3, 0.2, 0.4), DVec3::X, DVec3::new(0.0, 0.5, 0.5));
         let truth = integrate(&vertices, DVec3::Z, 0.5, 1e-6);
         let closed = cosine_integral(&vertices);

@@ -1,8 +1,8 @@
 //! The table as polynomials, for shaders without a look-up (Dobetsberger 2025, section 5.4.3).
 //!
-//! Six polynomials of total degree 6 in x = perceptual roughness and y = sqrt(1 - cos view), fitted
-//! to the table by least squares. c and d shrink with GGX's alpha, so their polynomials give c / alpha
-//! and d / alpha: as they are, they would be lost in the error at low roughness.
+//! Six polynomials of total degree 6 in x = perceptual roughness and y = sqrt(1 - cos view) are
+//! fitted to the table by least squares. c and d shrink with GGX's alpha. So their polynomials give
+//! c / alpha and d / alpha, because at low roughness the error would exceed c and d themselves.
 
 use std::fmt::Write;
 
@@ -16,20 +16,21 @@ use crate::reference::MIN_ROUGHNESS;
 /// The generated WESL module: `ltc_entry_polynomial(roughness, y)`.
 pub const LTC_POLYNOMIAL_WESL: &str = include_str!("../shaders/ltc_polynomial.wesl");
 
-/// Total degree. Median errors over 30,000 random rectangles: 4.9, 4.4, 3.9, 4.0 and 3.8 % for degrees
-/// 4 to 8, and 3.8 % for the table.
+/// Total degree. Median errors over 30,000 random rectangles are 4.9, 4.4, 3.9, 4.0 and 3.8 % for
+/// degrees 4 to 8, and 3.8 % for the table.
 const DEGREE: usize = 6;
 /// Terms of each polynomial.
 const TERMS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
-/// Names of what is fitted, in order.
+/// Names of the fitted components, in order.
 pub const POLYNOMIAL_COMPONENTS: [&str; 6] = ["a", "b", "c/alpha", "d/alpha", "A", "B"];
-/// Least a, and least d / alpha, lest the lobe turns inside out where the polynomial dips below 0.
+/// Least a, and least d / alpha. Below them, where the polynomial dips below 0, the lobe would turn
+/// inside out.
 const LEAST: f64 = 1e-3;
 
 /// Polynomials of the table's entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial {
-    /// Of each term, in the order of [`powers`], the coefficient of each component.
+    /// For each term, in the order of [`powers`], the coefficient of each component.
     coefficients: [[f32; 6]; TERMS],
 }
 
@@ -39,9 +40,9 @@ impl Polynomial {
         Self { coefficients: COEFFICIENTS }
     }
 
-    /// Fits the entries of a table, all alike in weight.
-    pub fn of(table: &Table) -> Self {
-        // Normal equations: sums of products of terms, and of terms and values.
+    /// Fits the entries of a table, all with the same weight.
+    pub fn fit(table: &Table) -> Self {
+        // Normal equations: sums of products of terms, and of products of terms and values.
         let mut products = [[0.0; TERMS]; TERMS];
         let mut values = [[0.0; 6]; TERMS];
         for (x, y, entry) in table.entries() {
@@ -167,12 +168,12 @@ fn components_of(x: f64, entry: &Entry) -> [f64; 6] {
     [a, b, c / alpha, d / alpha, albedo, fresnel]
 }
 
-/// Numbers as both languages read them.
+/// Formats numbers so that both languages read them.
 fn join(numbers: &[f32]) -> String {
     numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Gauss and Jordan's elimination of a symmetric, positive matrix; `values` becomes the solution.
+/// Solves a symmetric positive matrix by Gauss-Jordan elimination. `values` becomes the solution.
 fn solve(matrix: &mut [[f64; TERMS]; TERMS], values: &mut [[f64; 6]; TERMS]) {
     for pivot in 0..TERMS {
         let scale = 1.0 / matrix[pivot][pivot];
@@ -199,8 +200,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_committed_files_are_those_of_the_committed_table() {
-        let polynomial = Polynomial::of(&Table::ggx().unwrap());
+    fn the_committed_polynomials_match_the_committed_table() {
+        let polynomial = Polynomial::fit(&Table::ggx().unwrap());
         assert_eq!(polynomial.to_rust(), include_str!("polynomial_coefficients.rs"));
         assert_eq!(polynomial.to_wesl(), LTC_POLYNOMIAL_WESL);
         assert_eq!(polynomial, Polynomial::ggx());
@@ -214,7 +215,7 @@ mod tests {
 
     #[test]
     fn equations_are_solved() {
-        // Rows of 1 beside a diagonal of 2, 3, 4, ...; the solution is 1, 2, 3, ... in each column.
+        // Ones beside a diagonal of 2, 3, 4, ... The solution is 1, 2, 3, ... in each column.
         let mut matrix = [[1.0; TERMS]; TERMS];
         let mut values = [[0.0; 6]; TERMS];
         for row in 0..TERMS {
@@ -230,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_makes_a_lobe_whatever_its_place() {
+    fn every_entry_gives_a_valid_lobe() {
         for (roughness, cos) in [(0.0, 0.0), (1.0, 0.0), (-1.0, 2.0), (9.0, -3.0), (f64::NAN, 0.5)]
         {
             let entry = Polynomial::ggx().entry(roughness, cos);

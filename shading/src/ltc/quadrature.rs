@@ -1,87 +1,48 @@
-//! The truth: the BRDF itself, integrated over a polygon by adaptive quadrature.
+//! The truth: integrates the BRDF itself over a polygon by adaptive quadrature.
 //!
-//! The polygon is clipped to the horizon, cut along the axes so that no piece spans more than a
-//! right angle, and each piece fanned into triangles. A triangle of unit vectors is integrated by
-//! Radon's rule of seven points (exact to degree 5) over its flat chord, each point pushed out to
-//! the sphere. Triangles are split in four: first until they are no larger than the lobe is narrow,
-//! or than they are far from its peak, so that no peak stays unseen; then the one of the largest
-//! error, until the sum of all errors is small.
+//! The polygon is clipped to the horizon and cut along the axes, so that no piece spans more than a
+//! right angle. Each piece is divided into triangles around a vertex. Radon's rule of seven points
+//! (exact to degree 5) integrates over the flat chord of a triangle of unit vectors, with each
+//! point projected to the sphere.
 //!
-//! The error of a triangle is the change that its last split made, shared by the four parts. The
-//! error that remains is far smaller where the integrand is smooth.
+//! Triangles are split in four. First, each is split until it is no larger than the width of the
+//! lobe or than its distance from the lobe's peak, so that no peak is missed. Then the triangle of
+//! the largest error is split, until the sum of all errors is small.
+//!
+//! The error of a triangle is the change made by its last split, divided among the four parts.
+//! Where the integrand is smooth, the actual error is far smaller.
 
 use std::{cmp::Ordering, collections::BinaryHeap, f64::consts::PI};
 
 use glam::DVec3;
 
 use super::{
+    integrals::Integrals,
     lobe::Lobe,
     polygon::{clip, clip_at},
 };
 
-/// Triangles at most: a bound on time, never met at the tolerances of the tests.
+/// The most triangles. It bounds the time; tests never reach it.
 const MAX_TRIANGLES: usize = 400_000;
-/// An integral below this counts as this one in its relative error.
+/// The relative error of an integral below this is computed as if it had this value.
 const SMALLEST: f64 = 1e-9;
 
-/// Integrals over a polygon of unit radiance, each times the cosine of incidence.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Integrals {
-    /// D V, the specular lobe at a Fresnel term of 1.
-    pub specular: f64,
-    /// D V times Schlick's `(1 - v.h)^5`.
-    pub specular_fresnel: f64,
-    /// 1 / pi: the form factor.
-    pub diffuse: f64,
-    /// `(1 - v.h)^5 / pi`.
-    pub diffuse_fresnel: f64,
-}
-
-impl Integrals {
-    /// Radiance that the specular lobe reflects, for a reflectance at normal incidence.
-    pub fn specular_reflected(&self, f0: f64) -> f64 {
-        f0 * (self.specular - self.specular_fresnel) + self.specular_fresnel
-    }
-
-    /// Radiance that is reflected diffusely, for an albedo and a reflectance at normal incidence.
-    pub fn diffuse_reflected(&self, albedo: f64, f0: f64) -> f64 {
-        albedo * (1.0 - f0) * (self.diffuse - self.diffuse_fresnel)
-    }
-
-    fn map(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self {
-            specular: f(self.specular, other.specular),
-            specular_fresnel: f(self.specular_fresnel, other.specular_fresnel),
-            diffuse: f(self.diffuse, other.diffuse),
-            diffuse_fresnel: f(self.diffuse_fresnel, other.diffuse_fresnel),
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        self.map(other, |a, b| a + b)
-    }
-
-    fn largest(self) -> f64 {
-        self.specular.max(self.specular_fresnel).max(self.diffuse).max(self.diffuse_fresnel)
-    }
-}
-
-/// What a quadrature found.
+/// The result of a quadrature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The integrals.
     pub value: Integrals,
-    /// Bounds of their errors, absolute.
+    /// Absolute bounds of their errors.
     pub error: Integrals,
-    /// Triangles that the polygon was cut into.
+    /// The number of triangles into which the polygon was cut.
     pub triangles: usize,
 }
 
 /// Integrates the BRDF of a perceptual roughness, seen from the unit direction `to_eye`, over the
-/// part of a convex polygon above the horizon. Vertices in the shading frame, in order.
+/// part of a convex polygon above the horizon. Vertices are in the shading frame, in order.
 ///
-/// Each error is at most `tolerance` times its integral, or times 1e-9 where that is larger; a
-/// tolerance below 1e-10 counts as that.
+/// Each error is at most `tolerance` times its integral, or times 1e-9 if that is larger. A
+/// tolerance below 1e-10 counts as 1e-10.
 pub fn integrate(vertices: &[DVec3], to_eye: DVec3, roughness: f64, tolerance: f64) -> Estimate {
     let integrand = Integrand::new(Lobe::new(roughness, to_eye));
     let tolerance = tolerance.max(1e-10);
@@ -163,7 +124,7 @@ impl Ord for Triangle {
     }
 }
 
-/// What is integrated, and where it peaks.
+/// The integrand, and the direction of its peak.
 struct Integrand {
     lobe: Lobe,
     peak: DVec3,
@@ -173,8 +134,8 @@ struct Integrand {
 impl Integrand {
     fn new(lobe: Lobe) -> Self {
         let peak = DVec3::new(-lobe.to_eye.x, -lobe.to_eye.y, lobe.to_eye.z);
-        // Half vectors spread by alpha; light directions by twice that, foreshortened across the
-        // plane of incidence.
+        // Half vectors spread by alpha. Light directions spread by twice that, foreshortened across
+        // the plane of incidence.
         let width = 2.0 * lobe.alpha() * lobe.cos_view().max(0.05);
         Self { lobe, peak, width }
     }
@@ -214,7 +175,7 @@ impl Integrand {
     }
 }
 
-/// Splits a triangle until none is larger than the lobe is narrow or than it is far from the peak.
+/// Splits a triangle until none is larger than the lobe's width or its distance from the peak.
 fn refine(
     integrand: &Integrand,
     corners: [DVec3; 3],
@@ -225,7 +186,7 @@ fn refine(
     let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let center = (a + b + c).normalize_or_zero();
     let distance = center.distance(integrand.peak);
-    // A direction that is no number has no peak, and ends the search at once.
+    // A direction that is not a number has no peak, and ends the search at once.
     let is_wider = size > 0.5 * integrand.width;
     let is_near = size > 0.5 * (integrand.width + distance - size);
     if is_wider && is_near && depth < 24 {
@@ -245,7 +206,7 @@ fn parts([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
-/// The four parts of a triangle; a quarter of the change is the error of each.
+/// The four parts of a triangle. The error of each is a quarter of the change.
 fn split(integrand: &Integrand, whole: &Triangle) -> [Triangle; 4] {
     let split = parts(whole.corners).map(|corners| (corners, integrand.over(corners)));
     let sum = split.iter().fold(Integrals::default(), |sum, (_, value)| sum.plus(*value));
@@ -281,8 +242,8 @@ mod tests {
     }
 
     #[test]
-    fn it_agrees_with_samples_of_the_area_preserving_map() {
-        // Beside the peak and across it, across the horizon, at a grazing view.
+    fn quadrature_matches_samples_of_the_area_preserving_map() {
+        // Beside the peak and across it, across the horizon, and at a grazing view.
         for (corner, x, y, cos_view, roughness) in [
             (DVec3::new(-1.5, -0.5, 1.0), DVec3::X, DVec3::Y, 0.7, 0.3),
             (DVec3::new(-1.5, -0.5, -0.5), DVec3::Z, DVec3::Y, 0.2, 0.5),
@@ -302,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_bound_what_a_finer_quadrature_changes() {
+    fn errors_bound_the_change_of_a_finer_quadrature() {
         let polygon = [[-3.0, -1.0], [1.0, -2.0], [2.0, 1.0], [-1.0, 2.0]];
         for height in [0.1, 1.0] {
             let polygon = polygon.map(|[x, y]| DVec3::new(x, y, height + 0.03 * x));
@@ -326,8 +287,8 @@ mod tests {
     }
 
     #[test]
-    fn no_peak_stays_unseen() {
-        // A mirror's reflection, a tenth of a degree wide, anywhere in the sky.
+    fn no_peak_is_missed() {
+        // The reflection of a mirror, a tenth of a degree wide, anywhere in the sky.
         let sky = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| DVec3::new(x, y, 1e-9));
         for step in 0..400 {
@@ -358,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_ends_at_once() {
+    fn nan_inputs_end_at_once() {
         let above =
             [DVec3::new(0.0, 0.0, 1.0), DVec3::new(1.0, 0.2, 1.0), DVec3::new(0.1, 1.0, 1.0)];
         let odd = [

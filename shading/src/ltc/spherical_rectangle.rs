@@ -1,5 +1,5 @@
-//! The spherical rectangle that a planar one covers, and an area-preserving map onto it (Ureña,
-//! Fajardo and King 2013).
+//! The spherical rectangle that a planar rectangle covers, and an area-preserving map onto it
+//! (Ureña, Fajardo and King 2013).
 
 use std::f64::consts::TAU;
 
@@ -11,13 +11,13 @@ pub struct SphericalRectangle {
     x: DVec3,
     y: DVec3,
     z: DVec3,
-    /// Extent along x and y, and the plane's negative distance, in the rectangle's own frame.
+    /// Extent along x and y, and negative distance of the plane, in the rectangle's own frame.
     x0: f64,
     x1: f64,
     y0: f64,
     y1: f64,
     z0: f64,
-    /// z of the normals of the planes through the origin and the edges along x.
+    /// z components of the normals of the planes through the origin and the edges along x.
     b0: f64,
     b1: f64,
     k: f64,
@@ -25,8 +25,8 @@ pub struct SphericalRectangle {
 }
 
 impl SphericalRectangle {
-    /// The rectangle of a corner and its two edges, at right angles; `None` where it has no area or
-    /// the origin lies in its plane.
+    /// The rectangle of a corner and two edges at right angles; `None` if it has no area or the
+    /// origin lies in its plane.
     pub fn new(corner: DVec3, edge_x: DVec3, edge_y: DVec3) -> Option<Self> {
         let (x, y) = (edge_x.try_normalize()?, edge_y.try_normalize()?);
         let mut z = x.cross(y);
@@ -36,8 +36,8 @@ impl SphericalRectangle {
         }
         let (x0, y0) = (corner.dot(x), corner.dot(y));
         let (x1, y1) = (x0 + edge_x.length(), y0 + edge_y.length());
-        // Normals of the planes through the origin and the edges, in the rectangle's frame: those of
-        // the edges along x lack an x, the other two lack a y.
+        // Normals of the planes through the origin and the edges, in the rectangle's frame. Those
+        // of the edges along x have no x component; the other two have no y component.
         let z_of = |offset: f64, sign: f64| sign * offset / (offset * offset + z0 * z0).sqrt();
         let (n0, n1, n2, n3) = (z_of(y0, -1.0), z_of(x1, 1.0), z_of(y1, 1.0), z_of(x0, -1.0));
         // Interior angles (section 3, equation 3).
@@ -49,14 +49,14 @@ impl SphericalRectangle {
         sound.then_some(Self { x, y, z, x0, x1, y0, y1, z0, b0: n0, b1: n2, k, solid_angle })
     }
 
-    /// What it covers of the sphere, steradians.
+    /// Its solid angle, steradians.
     pub fn solid_angle(&self) -> f64 {
         self.solid_angle
     }
 
-    /// Unit direction of a point of the unit square: equal areas there are equal solid angles here.
+    /// The unit direction of a point of the unit square. Equal areas map to equal solid angles.
     pub fn direction(&self, u: f64, v: f64) -> DVec3 {
-        // The x at which the part before it covers a share of u (equations 5 to 8).
+        // The x coordinate before which the area is a share u of the whole (equations 5 to 8).
         let angle = u * self.solid_angle + self.k;
         let fu = (angle.cos() * self.b0 - self.b1) / angle.sin();
         let cu = (1.0 / (fu * fu + self.b0 * self.b0).sqrt()).copysign(fu).clamp(-1.0, 1.0);
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_covers_nothing_is_none() {
+    fn an_invisible_rectangle_is_none() {
         assert!(SphericalRectangle::new(DVec3::X, DVec3::Y, DVec3::X).is_none());
         assert!(SphericalRectangle::new(DVec3::Z, DVec3::ZERO, DVec3::X).is_none());
         assert!(SphericalRectangle::new(DVec3::NAN, DVec3::Y, DVec3::X).is_none());

@@ -1,12 +1,18 @@
 //! The table of fitted lobes.
 //!
-//! Indexed by x = perceptual roughness and y = sqrt(1 - cos view), both 0 to 1; the first texel's
-//! centre lies on 0, the last one's on 1, and between centres the look-up is bilinear.
+//! It is indexed by x = perceptual roughness and y = sqrt(1 - cos view), both 0 to 1. The centre of
+//! the first texel lies on 0 and that of the last one on 1. Between centres the look-up is
+//! bilinear.
 //!
-//! M^-1 is stored, not M. Between texels, what a fitted lobe covers of squares about its size was off by
-//! these shares with either, medians: 0.9 and 2.7 % for roughness 0.05 to 0.16 seen from near the
-//! normal, 1.4 and 2.9 % from midway, 0.14 and 0.22 % for roughness 0.16 to 0.48 near the normal. Only
-//! for the latter at the most grazing views was M better, 1.8 and 1.0 %.
+//! It stores M^-1, not M, because interpolated M^-1 is more precise. The error is the median error
+//! of the share of a square, about as large as the lobe, that the lobe covers:
+//!
+//! | roughness | view | error with M^-1 | with M |
+//! |---|---|---|---|
+//! | 0.05 to 0.16 | near the normal | 0.9 % | 2.7 % |
+//! | 0.05 to 0.16 | midway | 1.4 % | 2.9 % |
+//! | 0.16 to 0.48 | near the normal | 0.14 % | 0.22 % |
+//! | 0.16 to 0.48 | most grazing | 1.8 % | 1.0 % |
 
 use glam::DMat3;
 use rayon::prelude::*;
@@ -21,16 +27,17 @@ use crate::ShadingError;
 const MAGIC: [u8; 4] = *b"LTCT";
 const VERSION: u32 = 1;
 const HEADER_BYTES: usize = 12;
-/// Texels each way, least and most.
+/// The least and the most texels each way.
 const SIZES: (usize, usize) = (2, 1024);
 /// Texels each way of the committed table.
 pub const TABLE_SIZE: usize = 64;
 
-/// What the table holds for a roughness and a view.
+/// The table's values for a roughness and a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Entry {
-    /// a, b, c, d of `M^-1 = [[a, 0, b], [0, 1, 0], [c, 0, d]]`, rows, divided by its middle element.
+    /// a, b, c, d of `M^-1 = [[a, 0, b], [0, 1, 0], [c, 0, d]]` in rows, divided by its middle
+    /// element.
     pub inverse: [f32; 4],
     /// A, the integral of D V cos; B, that of D V cos (1 - v.h)^5; 0; 0.
     pub integrals: [f32; 4],
@@ -53,8 +60,9 @@ impl Entry {
         DMat3::from_cols_array(&[a, 0.0, c, 0.0, 1.0, 0.0, b, 0.0, d])
     }
 
-    /// What the specular lobe reflects per share of it that a polygon covers, for a reflectance at
-    /// normal incidence: `(f0 * (A - B) + B) / share`, with the lobe's share above the horizon.
+    /// The factor from the share of the lobe that a polygon covers to the radiance reflected, for a
+    /// reflectance at normal incidence: `(f0 * (A - B) + B) / share`, with the lobe's share above
+    /// the horizon.
     pub fn specular_albedo(&self, f0: f64) -> f64 {
         let [a, b, ..] = self.integrals.map(f64::from);
         (f0 * (a - b) + b) / self.share_above_horizon()
@@ -74,7 +82,7 @@ impl Entry {
     }
 }
 
-/// Fitted lobes of all roughnesses and views.
+/// Fitted lobes for all roughnesses and views.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     size: usize,
@@ -87,25 +95,26 @@ impl Table {
     ///
     /// # Errors
     ///
-    /// As of [`Self::from_bytes`], if the file was not what [`Self::to_bytes`] wrote.
+    /// Those of [`Self::from_bytes`], if the committed file is not valid.
     pub fn ggx() -> Result<Self, ShadingError> {
-        Self::of(Masking::Correlated)
+        Self::load(Masking::Correlated)
     }
 
-    /// The table of GGX with a masking, 64 x 64.
+    /// The table of GGX with the given masking, 64 x 64.
     ///
     /// # Errors
     ///
-    /// As of [`Self::from_bytes`], if the file was not what [`Self::to_bytes`] wrote.
-    pub fn of(masking: Masking) -> Result<Self, ShadingError> {
+    /// Those of [`Self::from_bytes`], if the committed file is not valid.
+    pub fn load(masking: Masking) -> Result<Self, ShadingError> {
         Self::from_bytes(match masking {
             Masking::Correlated => include_bytes!("ggx.bin"),
             Masking::Hammon => include_bytes!("ggx_hammon.bin"),
         })
     }
 
-    /// Fits a table of `size` texels each way, 2 to 1,024, to GGX with a masking; `progress` is called
-    /// after every row of roughness, with the number of entries done, from several threads.
+    /// Fits a table of `size` texels each way, 2 to 1,024, to GGX with the given masking. Calls
+    /// `progress` with the number of entries done after every row of roughness, from several
+    /// threads.
     ///
     /// # Errors
     ///
@@ -117,8 +126,9 @@ impl Table {
     ) -> Result<Self, ShadingError> {
         let fit = |roughness, cos_view, start| fit_masked(masking, roughness, cos_view, start);
         check_size(size)?;
-        // Down the first row, where the view is the normal, from rough to smooth; then from there to
-        // grazing views, each roughness by itself. Every search starts at its neighbour's end.
+        // First along the row where the view is the normal, from rough to smooth. Then, for each
+        // roughness separately, from there to grazing views. Every search starts at its neighbour's
+        // result.
         let mut upright = Vec::with_capacity(size);
         for x in (0..size).rev() {
             let start = upright.last().map(|fit: &Fit| fit.parameters);
@@ -143,11 +153,11 @@ impl Table {
         Ok(Self { size, entries })
     }
 
-    /// Reads what [`Self::to_bytes`] wrote.
+    /// Reads the bytes that [`Self::to_bytes`] writes.
     ///
     /// # Errors
     ///
-    /// [`ShadingError::LtcTable`] where bytes are missing, too many, or not those of a table.
+    /// [`ShadingError::LtcTable`] if bytes are missing, too many, or not those of a table.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ShadingError> {
         let word = |at: usize| -> Result<[u8; 4], ShadingError> {
             let word = bytes.get(at..at + 4).and_then(|word| word.try_into().ok());
@@ -177,7 +187,7 @@ impl Table {
         Ok(Self { size, entries: bytemuck::cast_slice(&floats).to_vec() })
     }
 
-    /// The table as a file: magic, version and size, then its entries, little-endian.
+    /// The table as a file: magic, version and size, then its entries, all little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(VERSION.to_le_bytes());
@@ -187,7 +197,8 @@ impl Table {
         bytes
     }
 
-    /// The entries for upload as `array<vec4f>`, two an entry, row-major over y, x fastest.
+    /// The entries for upload as `array<vec4f>`, two vectors per entry, row-major over y, x
+    /// fastest.
     pub fn as_bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.entries)
     }
@@ -227,17 +238,17 @@ fn at(texel: usize, size: usize) -> f64 {
     texel as f64 / (size - 1) as f64
 }
 
-/// The cosine of the view of a y.
+/// The cosine of the view for a y.
 pub(super) fn cos_view(y: f64) -> f64 {
     1.0 - y * y
 }
 
-/// The y of a cosine of the view, clamped to 0..1.
+/// The y for a cosine of the view, clamped to 0..1.
 pub(super) fn y_of(cos_view: f64) -> f64 {
     (1.0 - unit(cos_view)).sqrt()
 }
 
-/// A value clamped to 0..1; what is no number counts as 0.
+/// A value clamped to 0..1. NaN counts as 0.
 pub(super) fn unit(value: f64) -> f64 {
     if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
@@ -270,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_table_is_refused() {
+    fn an_invalid_file_is_refused() {
         let good = Table::fit(Masking::Correlated, 2, |_| ()).unwrap().to_bytes();
         let with = |at: usize, bytes: &[u8]| {
             let mut file = good.clone();
@@ -299,14 +310,14 @@ mod tests {
         let last = (TABLE_SIZE - 1) as f64;
         for (x, y, entry) in table.entries() {
             let found = table.look_up(x, cos_view(y));
-            // The way through the cosine costs some digits.
+            // Converting to the cosine and back costs some digits.
             let near = |a: &f32, b: &f32| (a - b).abs() <= 1e-5;
             assert!(found.inverse.iter().zip(&entry.inverse).all(|(a, b)| near(a, b)), "{x}, {y}");
         }
         let at = |x: f64, y: f64| table.look_up(x / last, cos_view(y / last)).inverse[3];
         let mean = 0.25 * (at(30.0, 40.0) + at(31.0, 40.0) + at(30.0, 41.0) + at(31.0, 41.0));
         assert!((at(30.5, 40.5) - mean).abs() < 1e-6);
-        // Outside, the edge.
+        // Outside the table, the edge counts.
         assert_eq!(table.look_up(-1.0, 2.0), table.look_up(0.0, 1.0));
         assert_eq!(table.look_up(9.0, -1.0), table.look_up(1.0, 0.0));
         assert_eq!(table.look_up(f64::NAN, 1.0), table.look_up(0.0, 1.0));

@@ -1,4 +1,5 @@
-//! Area lights in f64 on the CPU: the true integral, and what linearly transformed cosines make of it.
+//! Area lights in f64 on the CPU: the true integral, and its approximation by linearly transformed
+//! cosines.
 
 use assign::{Emitter, Light, range_window};
 use glam::{DMat3, DVec3};
@@ -11,7 +12,7 @@ const TOLERANCE: f64 = 1e-4;
 
 /// An area light seen from a surface.
 pub(crate) struct SeenArea {
-    /// Emitter in the shading frame, see [`ltc`].
+    /// Vertices of the emitter in the shading frame, see [`ltc`].
     vertices: Vec<DVec3>,
     to_eye: DVec3,
     /// Radiance of the emitter times the window of each term.
@@ -24,7 +25,7 @@ pub(crate) struct SeenArea {
 }
 
 impl SeenArea {
-    /// `None` where the light does not reach the position.
+    /// `None` if the light does not reach the position.
     pub(crate) fn new(
         light: &Light,
         emitter: &Emitter,
@@ -53,7 +54,7 @@ impl SeenArea {
         })
     }
 
-    /// Radiance to the eye: the BRDF itself, integrated.
+    /// Radiance to the eye: the integral of the BRDF itself.
     pub(crate) fn truth(&self) -> DVec3 {
         if self.specular == DVec3::ZERO && self.diffuse == DVec3::ZERO {
             return DVec3::ZERO;
@@ -61,7 +62,8 @@ impl SeenArea {
         let found = ltc::integrate(&self.vertices, self.to_eye, self.roughness, TOLERANCE).value;
         let channel = |c: usize| {
             let (albedo, f0) = (self.albedo[c], self.f0[c]);
-            // Less is reflected at grazing incidence than the integrals have, and more is kept.
+            // With f90 below 1, less light is reflected at grazing incidence than in the integrals,
+            // and more is left for diffuse reflection.
             let less = 1.0 - self.f90;
             let diffuse =
                 found.diffuse_reflected(albedo, f0) + less * albedo * found.diffuse_fresnel;
@@ -87,7 +89,7 @@ impl SeenArea {
     }
 }
 
-/// World to shading frame: x the view's projection onto the surface, z the normal.
+/// World to shading frame: x is the view's projection onto the surface, z is the normal.
 fn shading_frame(normal: DVec3, to_eye: DVec3) -> DMat3 {
     let x = to_eye.reject_from_normalized(normal).try_normalize();
     let x = x.unwrap_or_else(|| normal.any_orthonormal_vector());

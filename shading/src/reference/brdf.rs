@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scenes::Dielectric;
 
-/// A point of a surface, as `brdf.wesl` has it.
+/// A point of a surface, as in `brdf.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Linear RGB.
@@ -14,11 +14,11 @@ pub struct Surface {
     pub normal: DVec3,
     /// Perceptual roughness.
     pub roughness: f64,
-    /// What its dielectric share reflects.
+    /// Reflectance of its dielectric share.
     pub dielectric: Reflectance,
 }
 
-/// What a dielectric reflects at normal and at grazing incidence.
+/// Reflectance of a dielectric at normal and at grazing incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflectance {
     /// At normal incidence, linear RGB.
@@ -92,9 +92,10 @@ pub(crate) fn lobes_of(surface: &Surface, to_eye: DVec3, to_light: DVec3) -> Lob
 }
 
 /// GGX's distribution of half vectors (Walter et al. 2007, equation 33), for alpha squared and unit
-/// vectors. Its denominator is `cos^2 (alpha^2 - 1) + 1`, which loses its digits where the cosine is nearly
-/// 1 and alpha is small: highlights. So the squared sine comes from the distance q of the two vectors'
-/// ends, `sin^2 = q^2 (1 - q^2 / 4)`. A half vector below the horizon counts as one on it.
+/// vectors. Its denominator is `cos^2 (alpha^2 - 1) + 1`. In highlights, where the cosine is nearly
+/// 1 and alpha is small, this loses its digits. So the squared sine is computed from the distance q
+/// of the two vectors' ends: `sin^2 = q^2 (1 - q^2 / 4)`. A half vector below the horizon counts as
+/// one on it.
 pub(crate) fn ggx(alpha_2: f64, normal: DVec3, half_way: DVec3) -> f64 {
     let q_2 = normal.distance_squared(half_way).min(2.0);
     let sin_2 = q_2 * (1.0 - 0.25 * q_2);
@@ -106,14 +107,14 @@ pub(crate) fn ggx(alpha_2: f64, normal: DVec3, half_way: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    /// White metal, or a black dielectric: the specular term alone.
+    /// White metal, or a black dielectric: only the specular term reflects.
     fn surface(roughness: f64, metallic: f64) -> Surface {
         let base_color = DVec3::splat(metallic);
         let dielectric = Reflectance::default();
         Surface { base_color, metallic, normal: DVec3::Z, roughness, dielectric }
     }
 
-    /// Light reflected over the hemisphere for unit irradiance, by the midpoint rule.
+    /// Light reflected from the whole hemisphere for unit irradiance, by the midpoint rule.
     fn albedo(surface: &Surface, to_eye: DVec3) -> f64 {
         let (rings, sectors) = (400, 400);
         let mut sum = 0.0;

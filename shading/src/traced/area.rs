@@ -1,15 +1,17 @@
-//! Area lights with shadows: radiance of a flat emitter, reflected at a sample.
+//! Area lights with shadows: the radiance of a flat emitter, reflected at a sample.
 //!
-//! Drawn in pairs of directions: one uniform in the solid angle of the emitter's rectangle (Ureña et al.
-//! 2013), one drawn as the BRDF reflects, both weighted by the balance heuristic (Veach and Guibas 1995, equation 14): a direction counts
-//! once over the sum of both densities, whichever drew it. Where the lobe is wide, both directions are drawn
-//! from the rectangle. So neither a mirror's small highlight nor
-//! a small emitter over a rough surface makes a rare, large value.
+//! Directions are drawn in pairs. One is uniform in the solid angle of the emitter's rectangle
+//! (Ureña et al. 2013), and one is drawn as the BRDF reflects. The balance heuristic weights both
+//! (Veach and Guibas 1995, equation 14): a direction counts once over the sum of both densities,
+//! whichever drew it. Where the lobe is wide, both directions are drawn from the rectangle. So
+//! neither a mirror's small highlight nor a small emitter over a rough surface gives rare, large
+//! values.
 //!
-//! How much an emitter sends without shadows is known: by quadrature. So the pairs only have to tell which
-//! share of that arrives (Heitz, Hill and McGuire 2018). The share's error is far smaller: where nothing
-//! blocks the emitter, and where all of it is blocked, there is none. A ratio of two means is off by about
-//! one over the number of pairs, so few pairs estimate the radiance itself.
+//! Quadrature already gives the emitter's light without shadows, so the pairs only estimate the
+//! share of it that arrives (Heitz, Hill and McGuire 2018). The error of the share is far smaller:
+//! it is zero where nothing blocks the emitter, and where all of it is blocked. A ratio of two
+//! means has a bias of about one over the number of pairs. With few pairs, they therefore estimate
+//! the radiance itself.
 
 use assign::{Emitter, Light, range_window};
 use glam::{DVec3, Vec3};
@@ -22,33 +24,35 @@ use crate::{
     reference::{light_contribution, lobes_of},
 };
 
-/// Below this solid angle, steradians, an emitter casts the shadow of its middle: the difference of
-/// angles that the area-preserving map starts from has too few digits left.
+/// Below this solid angle, steradians, an emitter casts the shadow of its middle. The
+/// area-preserving map starts from a difference of angles that would have too few digits.
 const SMALL: f64 = 1e-8;
-/// Where the lobe's peak is no more than this many times as dense as the rectangle's directions, the latter
-/// find it well enough. Directions of the lobe would cross the emitter's edge, which is noise.
+/// If the lobe's peak is at most this many times as dense as the rectangle's directions, these
+/// sample it well enough. Directions of the lobe would cross the emitter's edge, which adds noise.
 const NARROW: f64 = 8.0;
-/// From this number of pairs on they estimate a share: its bias is then far below its error.
+/// From this number of pairs on they estimate a share, because its bias is then far below its
+/// error.
 const RATIO_PAIRS: u32 = 64;
-/// Coordinates of a sample's point that a pair of directions takes.
+/// The number of coordinates of a sample's point that a pair of directions uses.
 pub(super) const PAIR_DIMENSIONS: u32 = 5;
 
-/// An emitter as a sample sees it.
+/// An emitter seen from a sample.
 pub(super) struct SeenEmitter<'a> {
     light: &'a Light,
     emitter: &'a Emitter,
     sample: &'a SurfaceSample,
     /// Vector from the sample to the emitter's middle, metres.
     center: DVec3,
-    /// Of the vertices, of any length: half axes and [`Emitter::normal`] are rounded.
+    /// Normal computed from the vertices, of any length. Half axes and [`Emitter::normal`] are
+    /// rounded.
     normal: DVec3,
-    /// Emitted radiance times the windows of diffuse and of specular light.
+    /// Emitted radiance times the window of diffuse and of specular light.
     diffuse: DVec3,
     specular: DVec3,
 }
 
 impl<'a> SeenEmitter<'a> {
-    /// `None` where its light does not reach the sample.
+    /// `None` if its light does not reach the sample.
     pub(super) fn new(
         light: &'a Light,
         emitter: &'a Emitter,
@@ -79,7 +83,7 @@ impl<'a> SeenEmitter<'a> {
         self.emitter.vertices()[ix].as_dvec3() + self.center
     }
 
-    /// Reflected radiance that nothing of the scene blocks, from `pairs` of directions.
+    /// The reflected radiance that nothing in the scene blocks, from `pairs` of directions.
     pub(super) fn shadowed(
         &self,
         scene: &TracedScene<'_>,
@@ -113,7 +117,7 @@ impl<'a> SeenEmitter<'a> {
         }
     }
 
-    /// The whole emitter's light, where its middle is seen.
+    /// The light of the whole emitter, if its middle is visible.
     fn by_middle(&self, scene: &TracedScene<'_>) -> DVec3 {
         let SurfaceSample { position, surface, to_eye, .. } = self.sample;
         if scene.sees(self.sample, *position + self.center) {
@@ -136,8 +140,8 @@ impl<'a> SeenEmitter<'a> {
         Drawn { shadowed: if is_seen { whole } else { DVec3::ZERO }, whole }
     }
 
-    /// The point of the emitter that a ray from the sample meets, world space. The ray passes all
-    /// edges on one side, so nothing has to be told from rounding, however large or far the emitter is.
+    /// The point of the emitter that a ray from the sample hits, world space. The ray must pass all
+    /// edges on the same side. This test needs no tolerance, however large or far the emitter is.
     fn point_along(&self, direction: DVec3) -> Option<DVec3> {
         let count = self.emitter.vertices().len();
         let turn = |ix: usize| self.vertex(ix).cross(self.vertex((ix + 1) % count)).dot(direction);
@@ -148,7 +152,7 @@ impl<'a> SeenEmitter<'a> {
     }
 }
 
-/// What drawn directions reflect: with shadows, and without.
+/// The radiance of drawn directions, with and without shadows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drawn {
     shadowed: DVec3,
@@ -159,12 +163,12 @@ struct Drawn {
 struct Pairs<'a> {
     seen: &'a SeenEmitter<'a>,
     rectangle: SphericalRectangle,
-    /// `None` where the surface's lobe is so wide that the rectangle alone serves both directions.
+    /// `None` if the surface's lobe is so wide that both directions come from the rectangle.
     brdf: Option<BrdfSampler>,
 }
 
 impl<'a> Pairs<'a> {
-    /// `None` where the emitter is too small to draw from.
+    /// `None` if the emitter is too small to draw from.
     fn new(seen: &'a SeenEmitter<'a>) -> Option<Self> {
         let [x, y] = seen.emitter.half_axes().map(Vec3::as_dvec3);
         let rectangle = SphericalRectangle::new(seen.center - x - y, 2.0 * x, 2.0 * y);
@@ -174,7 +178,7 @@ impl<'a> Pairs<'a> {
         Some(Self { seen, rectangle, brdf: is_narrow.then_some(brdf) })
     }
 
-    /// Radiance by one pair.
+    /// Radiance from one pair.
     fn radiance(&self, scene: &TracedScene<'_>, [u, v, s, t, choice]: [f64; 5]) -> Drawn {
         let uniform = 1.0 / self.rectangle.solid_angle();
         let second = match &self.brdf {
@@ -183,7 +187,8 @@ impl<'a> Pairs<'a> {
         };
         let directions = [self.rectangle.direction(u, v), second];
         directions.into_iter().fold(Drawn::default(), |sum, direction| {
-            // Its light comes from the rectangle, so that both could have drawn it.
+            // Use only directions that hit the rectangle, because both methods could have drawn
+            // them.
             let other = self.brdf.as_ref().map_or(uniform, |brdf| brdf.density(direction));
             let density = uniform + other;
             let Drawn { shadowed, whole } = self.seen.reflected(direction, scene);

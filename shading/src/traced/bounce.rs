@@ -1,16 +1,16 @@
-//! Light that comes by a detour: off other surfaces, or from surfaces that emit.
+//! Indirect light: light that other surfaces reflect or emit.
 //!
 //! # The idea
 //!
-//! A path starts at the sample and follows directions drawn as the BRDF reflects, one per bounce. At
-//! every surface that it meets, it takes up what the lights add there directly, by rays to them, and
-//! what the surface emits. Each is multiplied by what all surfaces before it reflect.
+//! A path starts at the sample and follows directions drawn as the BRDF reflects, one per bounce.
+//! At every surface that it hits, it adds the direct light of the lights, by rays to them, and the
+//! surface's emission. Each is multiplied by the reflection of all surfaces before it.
 //!
-//! Emission is found in two ways: the path meets a triangle that emits, or one is drawn
-//! ([`emissive`](super::emissive)) and a ray finds whether it is seen. Both are weighted by the balance
-//! heuristic, so that neither small emitters nor mirrors make rare, large values.
+//! Emission is found in two ways: the path hits an emitting triangle, or a point on one is drawn
+//! ([`emissive`](super::emissive)) and a ray tests whether it is visible. The balance heuristic
+//! weights both, so neither small emitters nor mirrors give rare, large values.
 //!
-//! Paths end after the given number of bounces: what takes more is missing.
+//! Paths end after the given number of bounces. Light of further bounces is missing.
 
 use glam::DVec3;
 
@@ -30,23 +30,24 @@ pub const MAX_BOUNCES: u32 = 16;
 /// The paths of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paths {
-    /// How many.
+    /// The number of paths.
     pub count: u32,
-    /// Surfaces that each may meet, at most [`MAX_BOUNCES`].
+    /// The number of surfaces that each path may hit, at most [`MAX_BOUNCES`].
     pub bounces: u32,
-    /// Whether those surfaces reflect lights as virtual point lights emit: diffusely, and no area lights, no
-    /// suns and no emission.
-    /// Then a path ends at the first.
+    /// Whether those surfaces reflect lights as virtual point lights emit: only diffusely, and
+    /// without area lights, suns and emission. Then a path ends at the first surface.
     pub is_matte: bool,
 }
 
-/// Dimensions that the way to the next surface takes.
+/// The number of dimensions that the way to the next surface uses.
 const TURN: u32 = 3;
-/// Dimensions of each surface of a path: the way on, emission, and the lights.
+/// The number of dimensions per surface of a path: the way to the next one, emission, and the
+/// lights.
 const DIMENSIONS: u32 = TURN + DRAW_DIMENSIONS + PAIR_DIMENSIONS;
 
-/// Radiance that a sample reflects of what other surfaces, one after another, emit and reflect of the
-/// lights, shadows on all ways, diffuse and specular.
+/// The radiance that a sample reflects of other surfaces' light: their emission, and the lights
+/// that they reflect, one surface after another. All ways have shadows, and all reflections are
+/// diffuse and specular.
 pub fn bounced_light(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
@@ -67,7 +68,7 @@ fn path(
 ) -> DVec3 {
     let bounces = if paths.is_matte { 1 } else { paths.bounces.min(MAX_BOUNCES) };
     let mut radiance = DVec3::ZERO;
-    // What reaches the eye of light that leaves the path's last surface.
+    // The share of light leaving the path's last surface that reaches the eye.
     let mut share = DVec3::ONE;
     let mut at = *sample;
     for bounce in 0..bounces {
@@ -108,7 +109,7 @@ fn is_above(at: &SurfaceSample, direction: DVec3) -> bool {
     at.surface.normal.dot(direction) > 0.0 && at.geometric_normal.dot(direction) > 0.0
 }
 
-/// Emitted radiance that a sample reflects, where the emitter is seen.
+/// The emitted radiance that a sample reflects, if the emitter is visible.
 fn from_direction(at: &SurfaceSample, emission: &Emission, scene: &TracedScene<'_>) -> DVec3 {
     if !is_above(at, emission.direction) || !scene.sees(at, emission.point) {
         return DVec3::ZERO;

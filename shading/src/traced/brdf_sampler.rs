@@ -1,9 +1,10 @@
-//! Directions drawn about as often as a surface reflects light from them.
+//! Draws directions about in proportion to the light that a surface reflects from them.
 //!
-//! One of two lobes is chosen: the cosine, or GGX's visible normals (Heitz 2018), which alone serves
-//! metals. The density is that of the mixture, so that neither lobe's tail is divided by nothing. Where
-//! GGX's lobe is hardly narrower than the cosine, the cosine serves both: one smooth map of the square to
-//! directions leaves less noise than two.
+//! Each direction comes from one of two lobes: the cosine, or GGX's visible normals (Heitz 2018).
+//! Metals use only the latter. The density is that of the mixture, so neither lobe's tail is
+//! divided by a density near 0. Where GGX's lobe is hardly narrower than the cosine, all directions
+//! come from the cosine, because one smooth map from the square to directions gives less noise than
+//! two.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,15 +15,16 @@ use crate::{
     reference::{MIN_COS_VIEW, Surface},
 };
 
-/// How often a dielectric's specular lobe is chosen.
+/// The probability with which a dielectric's specular lobe is chosen.
 const SPECULAR_SHARE: f64 = 0.5;
 
-/// Up to this ratio of densities in the mirror direction the cosine serves GGX's lobe.
+/// Up to this ratio of densities in the mirror direction, the cosine replaces GGX's lobe.
 const WIDE: f64 = 4.0;
 
 /// Samples the BRDF of one surface seen from one direction.
 pub(super) struct BrdfSampler {
-    /// From the shading frame, z the normal and the eye in the plane of x and z, to world space.
+    /// From the shading frame (z is the normal, the eye lies in the plane of x and z) to world
+    /// space.
     to_world: DMat3,
     lobe: Lobe,
     specular_share: f64,
@@ -52,19 +54,20 @@ impl BrdfSampler {
         self.to_world.transpose() * world
     }
 
-    /// A unit direction, world space, perhaps below the horizon, from coordinates in 0..1.
+    /// A unit direction in world space, from coordinates in 0..1. It may lie below the horizon.
     pub(super) fn sample(&self, [u, v, choice]: [f64; 3]) -> DVec3 {
         let local = if choice < self.specular_share {
             self.lobe.sample(u, v)
         } else {
-            // Uniform on the disc, raised to the hemisphere (Malley).
+            // Uniform on the disc, projected up to the hemisphere (Malley).
             let (sin, cos) = (u * TAU).sin_cos();
             DVec3::new(v.sqrt() * cos, v.sqrt() * sin, (1.0 - v).sqrt())
         };
         self.to_world * local
     }
 
-    /// About the largest density of [`Self::sample`], per steradian: that of the mirror direction.
+    /// Approximately the largest density of [`Self::sample`], per steradian: that of the mirror
+    /// direction.
     pub(super) fn peak_density(&self) -> f64 {
         self.density(self.to_world * mirror(&self.lobe))
     }
@@ -78,7 +81,7 @@ impl BrdfSampler {
     }
 }
 
-/// Where a mirror would reflect the eye.
+/// The direction in which a mirror would reflect the eye.
 fn mirror(lobe: &Lobe) -> DVec3 {
     lobe.to_eye * DVec3::new(-1.0, -1.0, 1.0)
 }
@@ -89,7 +92,7 @@ mod tests {
     use crate::traced::Numbers;
 
     #[test]
-    fn directions_come_as_often_as_their_density_says() {
+    fn direction_counts_match_densities() {
         let normal = DVec3::new(0.3, 0.8, -0.5).normalize();
         for (roughness, metallic) in [(0.3, 0.0), (0.6, 1.0), (1.0, 0.4)] {
             let dielectric = Default::default();
@@ -97,7 +100,7 @@ mod tests {
                 Surface { base_color: DVec3::ONE, metallic, normal, roughness, dielectric };
             let to_eye = (normal + DVec3::X).normalize();
             let sampler = BrdfSampler::new(&surface, to_eye);
-            // The solid angle of a cone's directions, each counted by the inverse of its density.
+            // The solid angle of a cone: the sum over its directions of one over their density.
             let axis = (normal - 0.6 * DVec3::X).normalize();
             let count = 65_536;
             let mut solid_angle = 0.0;

@@ -1,4 +1,4 @@
-//! Light that comes from lights without a detour.
+//! Direct light: light that comes straight from lights.
 
 use assign::{Light, LightShape, Sun};
 use glam::DVec3;
@@ -9,11 +9,11 @@ use crate::{
     reference::{light_contribution, matte_contribution, sun_contribution},
 };
 
-/// Pairs of directions to an area light with shadows, unless told otherwise.
+/// The default number of pairs of directions to an area light with shadows.
 pub const AREA_SAMPLES: u32 = 64;
 
-/// Radiance that one light adds to a sample; with shadows where there is a scene to cast them, an
-/// area light's by `area_samples` pairs of directions.
+/// Radiance that one light adds to a sample. With a scene, the light has shadows, and an area light
+/// is sampled by `area_samples` pairs of directions.
 pub fn direct_light(
     light: &Light,
     sample: &SurfaceSample,
@@ -28,7 +28,7 @@ pub fn direct_light(
     }
 }
 
-/// Radiance that needs no samples: of a light without an emitter, or without shadows.
+/// Radiance that needs no samples: that of a light without an emitter, or without shadows.
 fn exact_light(
     light: &Light,
     sample: &SurfaceSample,
@@ -40,7 +40,7 @@ fn exact_light(
     if is_seen { radiance } else { DVec3::ZERO }
 }
 
-/// Radiance that a sun adds to a sample; with shadows where there is a scene to cast them.
+/// Radiance that a sun adds to a sample, with shadows if there is a scene.
 pub fn direct_sun(
     sun: &Sun,
     sample: &SurfaceSample,
@@ -77,8 +77,8 @@ pub fn direct_radiance(
     })
 }
 
-/// The same with shadows, each area light's by one pair of directions, drawn by a point's coordinates
-/// from `first` on.
+/// The same with shadows. Each area light is sampled by one pair of directions, drawn by the
+/// coordinates of a point from `first` on.
 pub(super) fn direct_radiance_once(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
@@ -99,7 +99,7 @@ pub(super) fn direct_radiance_once(
     reaching(lights, sample).into_iter().map(from_light).fold(suns, |sum, light| sum + light)
 }
 
-/// What a sample reflects of all lights as a virtual point light emits, with shadows.
+/// The radiance of all lights that a sample reflects as a virtual point light emits, with shadows.
 pub(super) fn matte_radiance(
     lights: &LightBvh<'_>,
     sample: &SurfaceSample,
@@ -118,7 +118,7 @@ pub(super) fn matte_radiance(
 fn reaching(lights: &LightBvh<'_>, sample: &SurfaceSample) -> Vec<u32> {
     let mut reaching = Vec::new();
     lights.lights_at(sample.position.as_vec3().to_array(), |light, _| reaching.push(light));
-    // The hierarchy finds them in an order of its own.
+    // The hierarchy finds them in its own order.
     reaching.sort_unstable();
     reaching
 }

@@ -1,16 +1,17 @@
-//! Triangles that emit, drawn about as often as they send out light.
+//! Draws points on emitting triangles, about in proportion to the light that they emit.
 //!
-//! A triangle's weight is its area times the luminance of its material's emission; an emissive texture
-//! counts by its mean. Points are uniform on the triangle.
+//! A triangle's weight is its area times the luminance of its material's emission. An emissive
+//! texture counts by its mean. Points are uniform on the triangle.
 
 use glam::DVec3;
 
 use crate::luminance;
 
-/// Coordinates that one draw takes: the triangle, and the point on it.
+/// The number of coordinates of one draw: for the triangle, and for the point on it.
 pub(super) const DRAW_DIMENSIONS: u32 = 3;
 
-/// The least weight of a texel's luminance: a texture that is dark on the whole may have bright spots.
+/// The least weight of a texture's luminance. A texture that is dark on average may have bright
+/// spots.
 const LEAST_TEXEL: f64 = 0.01;
 
 /// Emitted light that reaches a sample from a drawn point.
@@ -22,7 +23,7 @@ pub(super) struct Emission {
     pub(super) direction: DVec3,
     /// Linear RGB.
     pub(super) radiance: DVec3,
-    /// How often the direction is drawn, per steradian.
+    /// The density with which the direction is drawn, per steradian.
     pub(super) density: f64,
 }
 
@@ -31,9 +32,9 @@ pub(super) struct Emission {
 pub(super) struct EmissiveTriangles {
     /// Ascending.
     triangles: Vec<u32>,
-    /// Sum of the weights up to each triangle, itself included.
+    /// For each triangle, the sum of the weights up to and including it.
     sums: Vec<f64>,
-    /// How often a point of each is drawn, per square metre.
+    /// For each triangle, the density of its points, per square metre.
     densities: Vec<f64>,
 }
 
@@ -52,7 +53,7 @@ impl EmissiveTriangles {
         }
     }
 
-    /// Turns weights into densities once all triangles are there.
+    /// Turns weights into densities after all triangles are added.
     pub(super) fn finish(&mut self) {
         let Some(sum) = self.sums.last().copied() else { return };
         self.densities.iter_mut().for_each(|density| *density /= sum);
@@ -64,7 +65,7 @@ impl EmissiveTriangles {
     }
 
     /// A triangle and the weights of its second and third corner, from coordinates in 0..1; `None`
-    /// where nothing emits.
+    /// if nothing emits.
     pub(super) fn draw(&self, [choice, u, v]: [f64; 3]) -> Option<(u32, [f64; 2])> {
         let sum = self.sums.last()?;
         let ix = self.sums.partition_point(|below| *below <= choice * sum);
@@ -74,7 +75,7 @@ impl EmissiveTriangles {
         Some((triangle, [root * (1.0 - v), root * v]))
     }
 
-    /// How often a point of a triangle is drawn, per square metre: 0 where it does not emit.
+    /// The density of points on a triangle, per square metre; 0 if it does not emit.
     pub(super) fn density(&self, triangle: u32) -> f64 {
         self.triangles.binary_search(&triangle).map_or(0.0, |ix| self.densities[ix])
     }
@@ -85,10 +86,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn triangles_are_drawn_as_often_as_their_density_says() {
+    fn draw_counts_match_densities() {
         let mut emissive = EmissiveTriangles::default();
         let corners = |size: f64| [DVec3::ZERO, DVec3::X * size, DVec3::Y * size];
-        // Areas 2 and 8 square metres; 1, 0 and 3 times as bright.
+        // The areas are 2 and 8 square metres, and the brightnesses 1, 0 and 3.
         emissive.add(4, corners(2.0), DVec3::ONE, DVec3::ONE);
         emissive.add(5, corners(2.0), DVec3::ZERO, DVec3::ONE);
         emissive.add(9, corners(4.0), DVec3::ONE, DVec3::splat(3.0));

@@ -1,4 +1,4 @@
-//! Sampled values with their error.
+//! Sampled values with their standard errors.
 
 use std::ops::Add;
 
@@ -6,12 +6,12 @@ use glam::DVec3;
 
 use super::numbers::{Numbers, Point, SEQUENCES};
 
-/// A value, each channel alone, and how far off it may be.
+/// A value and its variance, each channel separately.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// The mean of the samples.
     pub mean: DVec3,
-    /// Variance of that mean: 0 where it is exact.
+    /// The variance of that mean; 0 if it is exact.
     pub variance: DVec3,
 }
 
@@ -21,9 +21,9 @@ impl Estimate {
         Self { mean: value, variance: DVec3::ZERO }
     }
 
-    /// The mean of `count` independent samples, and the variance that their spread gives it (Welford
-    /// 1962). One sample knows no spread: its variance is the square of its value, the larger where
-    /// samples are mostly 0.
+    /// The mean of `count` independent samples, and its variance from their spread (Welford 1962).
+    /// One sample has no spread. Its variance is then the square of its value, which exceeds the
+    /// true one where samples are mostly 0.
     pub fn of_samples(count: u32, mut sample: impl FnMut() -> DVec3) -> Self {
         let (mut mean, mut squares) = (DVec3::ZERO, DVec3::ZERO);
         for number in 1..=count {
@@ -40,8 +40,8 @@ impl Estimate {
         Self { mean, variance }
     }
 
-    /// The mean over `count` points of Sobol sequences: of 8 sequences, or of one per point where there
-    /// are fewer. The variance follows from the spread of the sequences' means.
+    /// The mean over `count` points of Sobol sequences: of 8 sequences, or of one per point if
+    /// there are fewer points. The variance follows from the spread of the sequences' means.
     pub(super) fn of_points(
         count: u32,
         numbers: Numbers,
@@ -57,9 +57,10 @@ impl Estimate {
         })
     }
 
-    /// A share of a known whole: the mean of the first values over that of the second, per channel, times
-    /// the whole, over `count` points of 8 Sobol sequences. The variance is that of a ratio (Cochran 1977,
-    /// section 6.3): of the spread of what the sequences are off the common share.
+    /// A share of a known whole, over `count` points of 8 Sobol sequences: the mean of the first
+    /// values over the mean of the second, per channel, times the whole. The variance is that of a
+    /// ratio (Cochran 1977, section 6.3): it follows from the differences between each sequence and
+    /// the common share.
     pub(super) fn of_shares(
         count: u32,
         numbers: Numbers,
@@ -101,7 +102,7 @@ impl Estimate {
 impl Add for Estimate {
     type Output = Self;
 
-    /// Of independent estimates.
+    /// The sum of independent estimates.
     fn add(self, other: Self) -> Self {
         Self { mean: self.mean + other.mean, variance: self.variance + other.variance }
     }
@@ -113,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_share_by_hand() {
-        // Of sequences with all of it, half of it, and none of it.
+        // Three kinds of sequences: with all of the whole, half of it, and none of it.
         let numbers = Numbers::new(1);
         let mut ix = 0;
         let estimate = Estimate::of_shares(8, numbers, DVec3::splat(6.0), |_| {
@@ -121,7 +122,8 @@ mod tests {
             let part = [2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 1.0, 1.0][ix - 1];
             (DVec3::splat(part), DVec3::splat(2.0))
         });
-        // A half, and four of eight are 1 off: 8 / 7 of 4 / 16^2, times the whole's square.
+        // The share is a half, and four of eight sequences differ by 1: 8 / 7 of 4 / 16^2, times
+        // the square of the whole.
         assert_eq!(estimate.mean, DVec3::splat(3.0));
         let expected = 36.0 * 4.0 / 256.0 * 8.0 / 7.0;
         assert!((estimate.variance.x - expected).abs() < 1e-12, "{estimate:?}");

@@ -1,7 +1,7 @@
-//! Primary surfaces as deferred lighting reads them: what the G-buffer's formats cost.
+//! Primary surfaces from the G-buffer, to measure the error of its formats.
 //!
-//! Positions are rebuilt from depth by the shader code that deferred lighting runs, surfaces are the
-//! G-buffer's. Lit in f64, they differ from the truth by the rounding of depth and G-buffer alone.
+//! Positions are rebuilt from depth by the shader code of deferred lighting; surfaces are those of
+//! the G-buffer. Lit in f64, they differ from the truth only by the rounding of depth and G-buffer.
 
 use assign::{Projection, View, entry, storage_entry};
 use bytemuck::pod_collect_to_vec;
@@ -16,12 +16,12 @@ use crate::{
     shaders::{LISTS_GROUP, lighting_modules},
 };
 
-/// What each pixel of a view shows.
+/// The surface of each pixel of a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GBufferSamples {
-    /// Pixels a row.
+    /// Pixels per row.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
     view: View,
     /// World-space position, metres, and 1; zeros where nothing was drawn.
@@ -32,13 +32,14 @@ pub struct GBufferSamples {
     normals: Vec<Vec4>,
     /// Emitted radiance; empty where the scene emits none.
     emissions: Vec<Vec4>,
-    /// What dielectrics reflect at normal and at grazing incidence; empty where all are plain.
+    /// Reflectance of dielectrics at normal and at grazing incidence; empty if all have glTF's
+    /// default.
     dielectrics: Vec<Vec4>,
 }
 
 impl GBufferSamples {
-    /// Reads depth and G-buffer of the last recorded passes `depth` and `gbuffer`, blocking. `view`
-    /// is the one that the renderer was prepared for.
+    /// Reads depth and G-buffer of the last recorded passes `depth` and `gbuffer`. Blocks. `view`
+    /// is the one for which the renderer was prepared.
     pub fn read(renderer: &Renderer, view: &View) -> Result<Self, ShadingError> {
         let gpu = &renderer.gpu;
         let images = GBufferInputs::of_scene(&renderer.scene);
@@ -85,8 +86,8 @@ impl GBufferSamples {
         })
     }
 
-    /// The sample of a pixel, index into the viewport, rows from the top; `None` where nothing was
-    /// drawn or the position is no number. `scene` tells its geometric normal.
+    /// The sample of a pixel, an index into the viewport, rows from the top. `None` if nothing was
+    /// drawn or the position is not a number. `scene` gives the geometric normal.
     pub fn sample(&self, pixel: usize, scene: &TracedScene<'_>) -> Option<SurfaceSample> {
         let position = *self.positions.get(pixel)?;
         if position.w == 0.0 || !position.is_finite() {
@@ -115,7 +116,7 @@ impl GBufferSamples {
         })
     }
 
-    /// Unit vector to the eye: along the viewing axis in an orthographic view.
+    /// Unit vector to the eye. In an orthographic view it lies along the viewing axis.
     fn to_eye(&self, position: DVec3) -> DVec3 {
         match self.view.projection {
             Projection::Perspective { .. } => {

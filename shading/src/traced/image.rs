@@ -12,28 +12,27 @@ use super::{
 };
 use crate::{HdrImage, LightBvh, ShadingError};
 
-/// Rows that one thread renders before it reports.
+/// The number of rows that one thread renders before it reports progress.
 const BLOCK_ROWS: usize = 8;
 
-/// The way that light takes.
+/// Which light an image shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
-    /// From lights to surface to eye, nothing in between, and what surfaces emit: what the shading
-    /// pipeline shows.
+    /// Direct light without shadows, and emission: what the shading pipeline shows.
     Unshadowed,
     /// The same with shadows.
     Direct,
-    /// From lights to a surface, and then to one or more others before the eye, with shadows; and from
-    /// surfaces that emit to another to the eye. Nothing else.
+    /// Only indirect light with shadows: light of lights by way of at least one other surface, and
+    /// light of emitting surfaces on others.
     Bounce,
 }
 
 /// How a truth image is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthSettings {
-    /// The light that it shows.
+    /// Which light it shows.
     pub transport: Transport,
-    /// Paths of each pixel, of bounces.
+    /// Paths per pixel for indirect light.
     pub paths: Paths,
     /// Pairs of directions to each area light with shadows.
     pub area_samples: u32,
@@ -44,7 +43,7 @@ pub struct TruthSettings {
 }
 
 impl TruthSettings {
-    /// One bounce, 64 samples of either kind, seed 1.
+    /// One bounce, 64 samples of each kind, seed 1.
     pub fn new(transport: Transport) -> Self {
         let paths = Paths { count: 64, bounces: 1, is_matte: false };
         let suns = Suns::default();
@@ -52,17 +51,17 @@ impl TruthSettings {
     }
 }
 
-/// A truth and how far off it may be.
+/// A truth image and its standard error.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TruthImage {
     /// Linear RGB radiance.
     pub radiance: HdrImage,
-    /// Standard error of each channel: 0 where the value is exact.
+    /// Standard error of each channel; 0 where the value is exact.
     pub standard_error: HdrImage,
 }
 
 impl TruthImage {
-    /// The sum with the independent image of another transport.
+    /// The sum with the independent image of another kind of light.
     pub fn plus(&self, other: &Self) -> Result<Self, ShadingError> {
         let sum = |a: f32, b: f32| a + b;
         Ok(Self {
@@ -88,10 +87,10 @@ fn combine(
 
 /// Renders the truth of an image of `size` pixels on all threads.
 ///
-/// `sample_of` gives a pixel's sample, index into the image, rows from the top: of
-/// [`TracedScene::primary`], or of [`GBufferSamples::sample`](super::GBufferSamples::sample). Pixels
-/// without one are black. Faulty lights are left out, as they are where lights are uploaded.
-/// `progress` is told how many rows of how many are done, from any thread.
+/// `sample_of` returns a pixel's sample; the argument is an index into the image, rows from the
+/// top. Use [`TracedScene::primary`], or [`GBufferSamples::sample`](super::GBufferSamples::sample).
+/// Pixels without a sample are black. Faulty lights are left out, as when lights are uploaded.
+/// `progress` gets the number of finished rows and of all rows, from any thread.
 pub fn truth_image(
     scene: &TracedScene<'_>,
     lights: &[Light],
@@ -131,7 +130,7 @@ fn pixel_of(
     settings: TruthSettings,
     pixel: usize,
 ) -> Estimate {
-    // Numbers of the pixel's own: threads may take pixels in any order.
+    // Each pixel has its own numbers, so threads may take pixels in any order.
     let numbers = Numbers::new(settings.seed).part(pixel as u64);
     let emitted = Estimate::exact(sample.emission);
     let shadows = match settings.transport {

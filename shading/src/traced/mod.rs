@@ -2,12 +2,14 @@
 //!
 //! # The idea
 //!
-//! The samples are those of rays from the eye: positions, normals and materials come from the triangles
-//! and textures themselves ([`TracedScene::primary`]). So an image's distance to the truth holds all that
-//! rendering costs. What the G-buffer's formats cost alone shows when the samples are the G-buffer's
-//! ([`GBufferSamples`]). At each sample, every light that reaches it is evaluated by the formulas of
-//! [`reference`](crate::reference), summed in f64 in ascending light index. Rays against all of the
-//! scene's triangles ([`TracedScene`]) tell shadows, and what a bounce meets.
+//! The samples are those of rays from the eye: positions, normals and materials come from the
+//! triangles and textures themselves ([`TracedScene::primary`]). So the distance between an image
+//! and the truth includes all errors of rendering. With samples of the G-buffer
+//! ([`GBufferSamples`]), it shows the error of the G-buffer's formats alone.
+//!
+//! At each sample, the formulas of [`reference`](crate::reference) evaluate every light that
+//! reaches it, summed in f64 in ascending light index. Rays against all of the scene's triangles
+//! ([`TracedScene`]) find shadows, and the surfaces that bounces hit.
 //!
 //! # What is exact and what is sampled
 //!
@@ -17,21 +19,22 @@
 //! | rectangles, polygons | quadrature, to 1e-4 | directions to the emitter, sampled |
 //! | bounces, and surfaces that emit | | paths, sampled |
 //!
-//! Samples are points of Owen-scrambled Sobol sequences ([`Numbers`]). Every sampled value comes with the
-//! variance of its mean ([`Estimate`]), from the spread of eight independent sequences. Each pixel has
-//! numbers of its own, from seed and pixel, so that an image does not depend on the number of threads.
+//! Samples are points of Owen-scrambled Sobol sequences ([`Numbers`]). Every sampled value has the
+//! variance of its mean ([`Estimate`]), from the spread of eight independent sequences. Seed and
+//! pixel decide the numbers of each pixel, so an image does not depend on the number of threads.
 //!
 //! # What blocks light
 //!
-//! Every triangle, from both sides; alpha below a material's cutoff lets light through. The back of
-//! a surface that is not double-sided is not drawn: rays from the eye pass it as the rasteriser does,
-//! and a bounce that meets it finds black. Emitters of area lights block nothing and are not seen.
+//! Every triangle blocks light, from both sides. Where alpha is below a material's cutoff, light
+//! passes. The back of a surface that is not double-sided is not drawn: rays from the eye pass it,
+//! as in the rasteriser, and a bounce that hits it finds black. Emitters of area lights block
+//! nothing and are invisible.
 //!
 //! # What emits
 //!
-//! Lights, and triangles whose material emits. The shading pipeline shows the latter's own radiance but
-//! lights nothing with it. So does the truth without bounces; their light on other surfaces is part of the
-//! first bounce.
+//! Lights emit, and so do triangles whose material emits. The shading pipeline shows such triangles
+//! but they light nothing. The same holds for the truth without bounces. Their light on other
+//! surfaces is part of the first bounce.
 
 mod area;
 mod bounce;

@@ -1,4 +1,4 @@
-//! The numbers that samples are drawn with: points of Owen-scrambled Sobol sequences.
+//! Numbers for sampling: points of Owen-scrambled Sobol sequences.
 //!
 //! # The idea
 //!
@@ -16,20 +16,20 @@
 
 use sobol_burley::parts::{hash, owen_scramble_rev, sobol_rev};
 
-/// Independent sequences of one estimate: enough to know the error, few enough to be long.
+/// Independent sequences per estimate: enough to know the error, and few enough to make each long.
 pub(super) const SEQUENCES: u32 = 8;
 
-/// Where random numbers come from: the same seed gives the same numbers.
+/// A source of random numbers. The same seed gives the same numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Numbers(u64);
 
 impl Numbers {
-    /// Numbers of a seed: those of different seeds are independent.
+    /// The numbers of a seed. Those of different seeds are independent.
     pub fn new(seed: u64) -> Self {
         Self(mix(seed))
     }
 
-    /// Independent numbers for one part of what this is for.
+    /// Independent numbers for one part of the work.
     #[must_use]
     pub fn part(self, part: u64) -> Self {
         Self(mix(self.0 ^ mix(part.wrapping_add(1))))
@@ -63,7 +63,8 @@ impl Point {
         })
     }
 
-    /// The same point, scrambled in another way: as even with the other dimensions, and independent.
+    /// The same point scrambled in another way. It is as even in the other dimensions, and
+    /// independent.
     pub(super) fn scrambled(self, by: u32) -> Self {
         Self { scramble: hash(self.scramble ^ hash(by.wrapping_add(1))), ..self }
     }
@@ -97,7 +98,8 @@ mod tests {
                 assert_eq!(cells, (0..256).collect::<Vec<_>>(), "{across} x {along}");
             }
         }
-        // Correlation of two scrambles of one point, over many points: 0 within 4 standard errors.
+        // The correlation of two scrambles of one point, over many points, must be 0 within 4
+        // standard errors.
         let pairs = (0..4096_u32).map(|ix| {
             let point = Numbers::new(u64::from(ix)).point(0, 3);
             let [[a], [b], [c]] = [point.at(0), point.scrambled(7).at(0), point.at(9)];

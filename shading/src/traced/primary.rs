@@ -1,4 +1,4 @@
-//! What the pixels of a view show, by rays from the eye.
+//! The surfaces that the pixels of a view show, by rays from the eye.
 
 use assign::{Projection, View, ViewUniform};
 use glam::{DMat4, DVec2, DVec3, Vec2};
@@ -25,8 +25,8 @@ impl Rays {
         }
     }
 
-    /// Origin, unit direction, and view depth per metre along it, of the ray through the middle of a
-    /// pixel of the viewport.
+    /// The ray through the middle of a pixel of the viewport: origin, unit direction, and view
+    /// depth per metre along it.
     fn through(&self, pixel: DVec2) -> (DVec3, DVec3, f64) {
         let of = |pair: [f32; 2]| Vec2::from(pair).as_dvec2();
         let uv = (pixel + 0.5) / of(self.uniform.viewport_size);
@@ -42,7 +42,7 @@ impl Rays {
         (origin, to_world(direction), 1.0 / direction.length())
     }
 
-    /// The rays through the pixels beside and below in the block of 2 x 2 pixels in which GPUs take
+    /// The rays through the neighbouring pixels in the block of 2 x 2 pixels over which GPUs take
     /// differences.
     fn beside(&self, pixel: [u32; 2]) -> [(DVec3, DVec3); 2] {
         let pixel_at = pixel.map(f64::from);
@@ -57,8 +57,8 @@ impl Rays {
 }
 
 impl TracedScene<'_> {
-    /// What a pixel of the viewport shows, by a ray through its middle: as the rasteriser draws it, from
-    /// the triangles themselves, so without the rounding of depth and G-buffer.
+    /// The surface that a pixel of the viewport shows, by a ray through its middle. It is the
+    /// surface that the rasteriser draws, but without the rounding of depth and G-buffer.
     pub fn primary(&self, view: &View, pixel: [u32; 2]) -> Option<SurfaceSample> {
         let rays = Rays::new(view);
         let (origin, direction, per_metre) = rays.through(pixel.map(f64::from).into());

@@ -1,4 +1,4 @@
-//! A scene's triangles for rays: what they meet, and whether anything lies between two points.
+//! A scene's triangles for rays: what rays hit, and whether anything lies between two points.
 
 use glam::DVec3;
 use scenes::{Material, Mesh, Scene, Vertex};
@@ -14,19 +14,19 @@ use crate::{
     reference::Surface,
 };
 
-/// How far around a position its triangle is looked for, in multiples of [`offset`].
+/// The distance within which a position's triangle is searched, in multiples of [`offset`].
 const SEARCH: f64 = 8.0;
 
-/// The triangles of a scene in a hierarchy, with all that a hit's surface needs.
+/// The triangles of a scene in a hierarchy, with everything that the surface of a hit needs.
 pub struct TracedScene<'a> {
     scene: &'a Scene,
     pub(super) triangles: Triangles,
     emissive: EmissiveTriangles,
-    /// Instance and place in its mesh, by triangle.
+    /// For each triangle, its instance and its index in the mesh.
     sources: Vec<(u32, u32)>,
-    /// By instance.
+    /// For each instance.
     records: Vec<InstanceRecord>,
-    /// By image.
+    /// For each image.
     pub(super) textures: Vec<Texture>,
 }
 
@@ -76,7 +76,7 @@ impl<'a> TracedScene<'a> {
         emissive
     }
 
-    /// How many triangles emit light of their own.
+    /// The number of triangles that emit.
     pub fn emissive_count(&self) -> usize {
         self.emissive.count()
     }
@@ -87,7 +87,7 @@ impl<'a> TracedScene<'a> {
         let to_point = point - origin;
         let distance_m = to_point.length();
         let direction = to_point / distance_m.max(f64::MIN_POSITIVE);
-        // A light may lie on a surface.
+        // The light itself may lie on a surface.
         let end_m = distance_m - from.offset_m;
         !self.triangles.any(origin, direction, end_m, |hit| self.is_solid(hit))
     }
@@ -98,21 +98,22 @@ impl<'a> TracedScene<'a> {
         !self.triangles.any(from.ray_origin(), direction, f64::INFINITY, solid)
     }
 
-    /// How far a ray goes before it meets a triangle, from either side, metres; `None` where it meets
-    /// none. Holes of alpha masks count as surface, as in deep images.
+    /// The distance along a ray to the first triangle, seen from either side, metres; `None` if
+    /// there is none. Holes of alpha masks count as surface, as in deep images.
     pub fn distance_m(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let hit = self.triangles.first(origin, direction, f64::INFINITY, |_| true)?;
         Some(hit.distance_m)
     }
 
-    /// The same, with the unit normal of the triangle on the side that the ray comes from.
+    /// The same, with the unit normal of the triangle on the side of the ray's origin.
     pub fn surface(&self, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
         let hit = self.triangles.first(origin, direction, f64::INFINITY, |_| true)?;
         Some((hit.distance_m, towards(self.geometric_normal(&hit), -direction)))
     }
 
-    /// What a ray from a sample meets first, and how often [`Self::draw_emission`] draws that direction,
-    /// per steradian; `None` where the ray leaves the scene, or meets the back of a surface that has none.
+    /// The first surface that a ray from a sample hits, and the density with which
+    /// [`Self::draw_emission`] draws that direction, per steradian. `None` if the ray leaves the
+    /// scene, or hits the back of a single-sided surface.
     pub(super) fn bounce(
         &self,
         from: &SurfaceSample,
@@ -130,8 +131,8 @@ impl<'a> TracedScene<'a> {
         })
     }
 
-    /// A point of a triangle that emits, drawn by coordinates in 0..1; `None` where nothing emits, or
-    /// not towards the sample. Whether the sample sees it is not known.
+    /// A point of an emitting triangle, drawn by coordinates in 0..1; `None` if nothing emits, or
+    /// not towards the sample. The caller tests whether the sample sees it.
     pub(super) fn draw_emission(
         &self,
         from: &SurfaceSample,
@@ -154,7 +155,7 @@ impl<'a> TracedScene<'a> {
         })
     }
 
-    /// How often a hit is drawn as a point that emits, per steradian.
+    /// The density with which a hit is drawn as an emitting point, per steradian.
     fn emission_density(&self, hit: &Hit, direction: DVec3) -> f64 {
         let per_m2 = self.emissive.density(hit.triangle);
         if per_m2 == 0.0 {
@@ -163,8 +164,8 @@ impl<'a> TracedScene<'a> {
         per_m2 * hit.distance_m.powi(2) / self.geometric_normal(hit).dot(direction).abs()
     }
 
-    /// A sample of a known surface: its triangle is the one found around the position, on the line
-    /// of sight; without one, the shading normal serves.
+    /// A sample of a known surface. Its triangle is the one found near the position on the line of
+    /// sight. If none is found, the shading normal replaces the geometric one.
     pub(super) fn seen_sample(
         &self,
         position: DVec3,
@@ -208,7 +209,7 @@ impl<'a> TracedScene<'a> {
         [0, 1, 2].map(|corner| mesh.vertices[mesh.indices[first + corner] as usize])
     }
 
-    /// The colours of a hit's vertices; `None` where its mesh has none.
+    /// The colours of a hit's vertices; `None` if its mesh has none.
     pub(super) fn vertex_colors(&self, hit: &Hit) -> Option<[[f32; 4]; 3]> {
         let mesh = self.mesh(hit);
         let first = 3 * self.sources[hit.triangle as usize].1 as usize;
@@ -216,7 +217,7 @@ impl<'a> TracedScene<'a> {
         (!mesh.colors.is_empty()).then(|| [0, 1, 2].map(color))
     }
 
-    /// Whether the front is hit: a mirrored model turns its triangles' sense.
+    /// Whether the front is hit. A mirrored model reverses the winding of its triangles.
     pub(super) fn is_front(&self, hit: &Hit) -> bool {
         hit.is_front == (self.record(hit).handedness > 0.0)
     }
@@ -226,7 +227,7 @@ impl<'a> TracedScene<'a> {
         self.material(hit).double_sided || self.is_front(hit)
     }
 
-    /// Whether a hit is no hole of an alpha mask.
+    /// Whether a hit is not a hole of an alpha mask.
     pub(super) fn is_solid(&self, hit: &Hit) -> bool {
         let material = self.material(hit);
         let Some(cutoff) = material.alpha_cutoff else { return true };

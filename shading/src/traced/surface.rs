@@ -10,10 +10,10 @@ use super::{
 };
 use crate::reference::Surface;
 
-/// A hit's place in its triangle's textures.
+/// A hit's place in the textures of its triangle.
 struct Place {
     uv: Vec2,
-    /// How far the uv of two neighbouring pixels lie from it.
+    /// The differences in uv to two neighbouring pixels.
     steps: [Vec2; 2],
 }
 
@@ -63,7 +63,7 @@ impl TracedScene<'_> {
         (color.w * self.vertex_color(hit).w) as f32
     }
 
-    /// The colour that a hit's vertices give it, white where they have none.
+    /// The colour from the vertices of a hit; white if they have none.
     fn vertex_color(&self, hit: &Hit) -> DVec4 {
         let colors = self.vertex_colors(hit);
         colors.map_or(DVec4::ONE, |colors| {
@@ -77,7 +77,7 @@ impl TracedScene<'_> {
         let [a, b, c] = self.triangles.corners(hit.triangle);
         let (ab, ac) = (b - a, c - a);
         let normal = ab.cross(ac);
-        // From the hit to where a neighbour's ray meets the triangle's plane.
+        // The step from the hit to the point where a neighbour's ray hits the triangle's plane.
         let step = |(origin, direction): (DVec3, DVec3)| {
             let along = normal.dot(a - origin) / normal.dot(direction);
             let offset = origin + direction * along - position;
@@ -118,7 +118,7 @@ impl TracedScene<'_> {
             let sense = (tangent.w * f64::from(record.handedness)).signum();
             let bitangent = vertex_normal.cross(flat) * sense;
             let turned = flat * mapped.x + bitangent * mapped.y + vertex_normal * mapped.z;
-            // A map that points nowhere leaves the vertex normal.
+            // A normal map with a zero vector leaves the vertex normal.
             normal = turned.try_normalize().unwrap_or(vertex_normal);
         }
         if self.is_front(hit) { normal } else { -normal }
@@ -140,7 +140,7 @@ fn uv_of(vertex: Vertex) -> DVec2 {
     Vec2::from(vertex.uv).as_dvec2()
 }
 
-/// A vertex attribute at a hit.
+/// A vertex attribute interpolated at a hit.
 fn interpolate<V>([a, b, c]: [V; 3], [wb, wc]: [f64; 2]) -> V
 where
     V: std::ops::Mul<f64, Output = V> + std::ops::Add<Output = V>,

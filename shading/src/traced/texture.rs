@@ -1,7 +1,7 @@
-//! Textures on the CPU, filtered as the GPU filters them: its samplers without anisotropy.
+//! Textures on the CPU, filtered as by the GPU's samplers without anisotropy.
 //!
-//! The level of mips follows from the distance of neighbouring pixels in texels. At the finest level the
-//! filter for magnification counts, above it the one for minification.
+//! The mip level follows from the distance of neighbouring pixels in texels. The finest level uses
+//! the filter for magnification; coarser levels use that for minification.
 
 use glam::{DVec3, Vec2, Vec4};
 use scenes::{Encoding, Filter, Image, TextureRef, Wrap};
@@ -14,7 +14,7 @@ struct Level {
     first_byte: usize,
 }
 
-/// An image with its mip chain: the bytes that the GPU has.
+/// An image with its mip chain, with the same bytes as on the GPU.
 pub(super) struct Texture {
     levels: Vec<Level>,
     bytes: Vec<u8>,
@@ -40,8 +40,8 @@ impl Texture {
         self.levels.last().map_or(DVec3::ONE, |last| self.texel(last, 0, 0).truncate().as_dvec3())
     }
 
-    /// The level of mips of a pixel whose neighbours lie these steps of uv away: 0 is the finest,
-    /// below it one texel covers several pixels.
+    /// The mip level of a pixel whose neighbours are these steps of uv away. 0 is the finest level;
+    /// at a negative level one texel covers several pixels.
     pub(super) fn level(&self, texture: &TextureRef, steps: [Vec2; 2]) -> f32 {
         let [width, height] = self.levels[0].size;
         let texels = |step: Vec2| {
@@ -104,7 +104,7 @@ impl Texture {
     }
 }
 
-/// The texel that a coordinate in texels falls on.
+/// The texel at a coordinate in texels.
 fn wrap(at: f32, size: u32, wrap: Wrap) -> u32 {
     let edge = size as f32;
     let wrapped = match wrap {
@@ -115,7 +115,7 @@ fn wrap(at: f32, size: u32, wrap: Wrap) -> u32 {
         }
         Wrap::ClampToEdge => at,
     };
-    // What is no number becomes 0.
+    // NaN becomes 0.
     (wrapped.max(0.0) as u32).min(size - 1)
 }
 
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn filters_are_the_sampler_s() {
+    fn filters_follow_the_sampler() {
         let mut texture = TextureRef::new(0);
         texture.sampler.mag = Filter::Nearest;
         let at = |texture: &TextureRef, u: f32, level: f32| {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_is_that_of_the_longest_step() {
+    fn the_longest_step_decides_the_level() {
         let mut texture = TextureRef::new(0);
         let level = |texture: &TextureRef, x: f32, y: f32| {
             ramp().level(texture, [Vec2::new(x, 0.0), Vec2::new(0.0, y)])

@@ -1,8 +1,8 @@
 //! Rays against triangles: the one module that traces rays with obvhs.
 //!
-//! The hierarchy is traversed in single precision, over boxes a little larger than their triangles;
-//! the triangles themselves are intersected in double precision, so that edges of shadows lie where
-//! the vertices say, and no ray slips between two triangles that share an edge.
+//! The hierarchy is traversed in single precision, over boxes a little larger than their triangles.
+//! The triangles themselves are intersected in double precision. So shadow edges lie where the
+//! vertices put them, and no ray slips between two triangles that share an edge.
 
 use glam::{DVec3, Vec3};
 use obvhs::{
@@ -13,10 +13,10 @@ use obvhs::{
 use scenes::{BuildEffort, DistinctTriangles, build_hierarchy};
 
 /// How much larger boxes are than triangles, as a share of the largest coordinate: eight units in
-/// the last place, for traversal's rounding and that of the ray's origin.
+/// the last place, for the rounding of traversal and of the ray's origin.
 const BOX_SLACK: f32 = 8.0 * f32::EPSILON;
 
-/// Where a ray meets a triangle.
+/// Where a ray hits a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit {
     /// Index of the triangle.
@@ -25,13 +25,13 @@ pub(super) struct Hit {
     pub(super) distance_m: f64,
     /// Weights of the second and the third corner.
     pub(super) weights: [f64; 2],
-    /// Whether the ray came from the side on which the corners run counter-clockwise.
+    /// Whether the ray came from the side on which the corners are counter-clockwise.
     pub(super) is_front: bool,
 }
 
 /// A hierarchy over triangles.
 pub(super) struct Triangles {
-    /// Over one of each kind of triangles that are the same.
+    /// It contains one of each set of equal triangles.
     bvh: Bvh2,
     distinct: DistinctTriangles,
     corners: Vec<[Vec3; 3]>,
@@ -42,7 +42,7 @@ impl Triangles {
     pub(super) fn new(corners: Vec<[Vec3; 3]>) -> Self {
         let farthest = corners.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs().max_element()));
         let slack = farthest * BOX_SLACK;
-        let distinct = DistinctTriangles::of(&corners);
+        let distinct = DistinctTriangles::find(&corners);
         let firsts = distinct.firsts.iter();
         let boxes: Vec<Aabb> = firsts
             .map(|ix| {
@@ -58,8 +58,8 @@ impl Triangles {
         self.corners[triangle as usize].map(Vec3::as_dvec3)
     }
 
-    /// The first hit along a unit direction before `max_m` that `counts`. Of two at the same
-    /// distance, that of the lower index, so that the hierarchy's shape does not matter.
+    /// The first hit along a unit direction before `max_m` that `counts`. Of two hits at the same
+    /// distance, the one of the lower index wins, so the shape of the hierarchy does not matter.
     pub(super) fn first(
         &self,
         origin: DVec3,
@@ -97,26 +97,26 @@ impl Triangles {
         let Some(ray) = ray(origin, direction, max_m) else { return false };
         !self.bvh.ray_traverse_miss(ray, |_, leaf| {
             let hit = self.intersect(self.triangle_of(leaf), origin, direction, max_m);
-            // Anything below the ray's end ends the search.
+            // Any hit before the ray's end ends the search.
             if self.all_like(hit).any(|hit| counts(&hit)) { 0.0 } else { f32::INFINITY }
         })
     }
 
-    /// The triangle of a leaf; of those that are the same, the one of the lowest index.
+    /// The triangle of a leaf; of equal triangles, the one with the lowest index.
     fn triangle_of(&self, leaf: usize) -> u32 {
         self.distinct.firsts[self.bvh.primitive_indices[leaf] as usize]
     }
 
-    /// A hit, and the same hit of every triangle that is the same, in ascending order.
+    /// A hit, and the same hit of every equal triangle, in ascending order.
     fn all_like(&self, hit: Option<Hit>) -> impl Iterator<Item = Hit> {
         std::iter::successors(hit, |hit| {
             self.distinct.next(hit.triangle).map(|triangle| Hit { triangle, ..*hit })
         })
     }
 
-    /// From either side. The volumes that the ray spans with the edges are those of Woop et al. 2013
-    /// (section 3.2), without the shear: triangles on both sides of an edge compute the same number
-    /// with opposite signs, so that no ray slips between them.
+    /// Intersects from either side. The volumes between ray and edges are those of Woop et al. 2013
+    /// (section 3.2), without the shear. Triangles on both sides of an edge compute the same number
+    /// with opposite signs, so no ray slips between them.
     fn intersect(&self, triangle: u32, origin: DVec3, direction: DVec3, max_m: f64) -> Option<Hit> {
         let [a, b, c] = self.corners(triangle);
         let normal = (b - a).cross(c - a);
@@ -124,7 +124,7 @@ impl Triangles {
         let volumes = [b.cross(c), c.cross(a), a.cross(b)].map(|across| direction.dot(across));
         let inside = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
         let sum: f64 = volumes.iter().sum();
-        // A comparison with what is no number is false: edge-on triangles are missed.
+        // Comparisons with NaN are false, so edge-on triangles are missed.
         let distance_m = normal.dot(a) / normal.dot(direction);
         let is_hit = inside && sum != 0.0 && distance_m > 0.0 && distance_m < max_m;
         is_hit.then(|| Hit {
@@ -136,7 +136,7 @@ impl Triangles {
     }
 }
 
-/// The ray in single precision; `None` where it is none.
+/// The ray in single precision; `None` if it is not finite.
 fn ray(origin: DVec3, direction: DVec3, max_m: f64) -> Option<Ray> {
     let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
     let sound = origin.is_finite() && direction.is_finite() && max_m > 0.0;
@@ -168,7 +168,7 @@ mod tests {
         let mut hits = 0;
         for _ in 0..2000 {
             let (origin, direction) = (random(&mut rng) * 6.0, random(&mut rng).normalize());
-            // Every third is passed through.
+            // Every third triangle lets the ray through.
             let counts = |hit: &Hit| !hit.triangle.is_multiple_of(3);
             let looped = (0..400)
                 .filter_map(|ix| triangles.intersect(ix, origin, direction, 5.0))
@@ -181,12 +181,12 @@ mod tests {
         assert!((200..1500).contains(&hits), "{hits}");
     }
 
-    /// One of those that are the same is in the hierarchy, and all of them can be hit.
+    /// The hierarchy contains one of the equal triangles, and all of them can be hit.
     #[test]
     fn coincident_triangles_take_seconds_and_hit_in_ascending_order() {
         let mut corners = vec![[Vec3::ZERO; 3]; 100_000];
         corners.extend(vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 200_000]);
-        // A pile of triangles that differ by less than their boxes grow.
+        // A pile of triangles that differ by less than the growth of their boxes.
         corners.extend((1..100_000).map(|ix| {
             let away = Vec3::Z * (-1e-6 * ix as f32);
             [away, Vec3::X + away, Vec3::Y + away]
@@ -213,7 +213,7 @@ mod tests {
             (corner(-0.7, -0.9), corner(0.8, -0.7), corner(0.9, 1.1), corner(-1.0, 0.8));
         let triangles = Triangles::new(vec![[a, b, c], [a, c, d]]);
         for step in 1..1000 {
-            // Onto the diagonal that both share.
+            // Onto the diagonal shared by both.
             let target = a.as_dvec3().lerp(c.as_dvec3(), f64::from(step) / 1000.0);
             let origin = DVec3::new(0.1, 2.0, -0.4);
             let direction = (target - origin).normalize();

@@ -1,4 +1,4 @@
-//! Area lights of all outlines, points around them, and what the BRDF itself makes of both.
+//! Area lights of all outlines, points around them, and the BRDF's own integral for both.
 
 use assign::{Emitter, Light, LightBuffer};
 use glam::{DVec3, Vec3};
@@ -8,7 +8,7 @@ use shading::reference::{Surface, light_contribution};
 
 use super::evaluate::Query;
 
-/// A unit vector, drawn uniformly.
+/// A random unit vector, uniform on the sphere.
 pub(crate) fn direction(rng: &mut Pcg64Mcg) -> Vec3 {
     loop {
         let v = Vec3::from_array(rng.random()) * 2.0 - 1.0;
@@ -18,7 +18,7 @@ pub(crate) fn direction(rng: &mut Pcg64Mcg) -> Vec3 {
     }
 }
 
-/// Rectangles and polygons of 3 to 10 vertices, one- and two-sided, of 4 cm to 4 m.
+/// Rectangles and polygons of 3 to 10 vertices, one- and two-sided, from 4 cm to 4 m.
 pub(crate) fn lights(count: usize) -> Vec<Light> {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     (0..count)
@@ -83,7 +83,7 @@ pub(crate) fn light_of(query: &Query) -> usize {
     query[0][3].to_bits() as usize
 }
 
-/// What the BRDF itself makes of each query.
+/// The BRDF's own integral for each query.
 pub(crate) fn truth_of(buffer: &LightBuffer, queries: &[Query]) -> Vec<DVec3> {
     let one = |query| {
         let (position, surface, to_eye) = asked(query);
@@ -92,7 +92,8 @@ pub(crate) fn truth_of(buffer: &LightBuffer, queries: &[Query]) -> Vec<DVec3> {
     queries.iter().map(one).collect()
 }
 
-/// Share of the light that a model gets wrong: the sum of differences over the sum of the truth.
+/// The share of the light that a model gets wrong: the sum of differences over the sum of the
+/// truth.
 pub(crate) fn error_of(answers: &[[f32; 4]], truth: &[DVec3]) -> f64 {
     let off = |(answer, truth): (&[f32; 4], &DVec3)| (f64::from(answer[0]) - truth.x).abs();
     let sum: f64 = truth.iter().map(|truth| truth.x).sum();

@@ -1,4 +1,4 @@
-//! A small scene with one of everything the pipeline draws.
+//! A small scene with one of everything that the pipeline draws.
 
 pub(crate) mod areas;
 pub(crate) mod evaluate;
@@ -11,7 +11,7 @@ use scenes::{
     Vertex,
 };
 
-/// The adapter of this machine. Tests of GPU work fail where there is none.
+/// This machine's adapter. Tests of GPU work fail if there is none.
 pub(crate) fn gpu() -> Gpu {
     Gpu::open(None).expect("an adapter: scripts/test installs the software one")
 }
@@ -171,7 +171,7 @@ pub(crate) fn lights(count: u32) -> Vec<Light> {
         .collect()
 }
 
-/// Two suns over the showcase, from before it and from the side.
+/// Two suns over the showcase, from the front and from the side.
 pub(crate) fn suns() -> Suns {
     let sun = |direction: Vec3, irradiance| Sun { direction: direction.normalize(), irradiance };
     let suns = [

@@ -1,4 +1,4 @@
-//! Scenes of rectangles, and what the pipeline makes of a scene.
+//! Scenes of rectangles, and the pipeline's images of a scene.
 
 use assign::{EncoderPasses, Everything, Gpu, Light, LightBuffer, Suns, View};
 use glam::{Mat4, Vec3, Vec4};
@@ -8,7 +8,7 @@ use shading::{
     traced::GBufferSamples,
 };
 
-/// Rectangles, each a centre and two half edges, that face the cross product of these.
+/// Rectangles, each given by a centre and two half edges. They face the cross product of the edges.
 pub(crate) fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Image>) -> Scene {
     let vertex = |[center, x, y]: &[Vec3; 3], u: f32, v: f32| Vertex {
         position: (*center + *x * u + *y * v).to_array(),

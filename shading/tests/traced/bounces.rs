@@ -1,4 +1,4 @@
-//! Bounces and emission against integrals over the walls, and a random walk.
+//! Tests bounces and emission against integrals over the walls, and against a random walk.
 
 use assign::Light;
 use glam::{DVec3, Vec3};
@@ -17,7 +17,7 @@ use crate::{
 };
 
 #[test]
-fn a_bounce_is_the_integral_over_the_walls() {
+fn a_bounce_matches_the_integral_over_the_walls() {
     let walls = cube();
     let scene = scene_of(&walls, grey(0.7), vec![]);
     let traced = TracedScene::new(&scene);
@@ -34,7 +34,7 @@ fn a_bounce_is_the_integral_over_the_walls() {
     }
 }
 
-/// Light that a sample reflects off lit walls.
+/// The light of lit walls that a sample reflects.
 fn over_walls(walls: &[[Vec3; 3]], light: &Light, at: &SurfaceSample) -> DVec3 {
     over_quads(walls, at, |point, normal, direction| {
         let wall = surface(normal, f64::from(0.7_f32), f64::from(0.6_f32));
@@ -42,8 +42,8 @@ fn over_walls(walls: &[[Vec3; 3]], light: &Light, at: &SurfaceSample) -> DVec3 {
     })
 }
 
-/// Light that a sample reflects off rectangles, by the midpoint rule over these. `radiance` is what a
-/// point with a normal sends against a direction.
+/// The light of rectangles that a sample reflects, by the midpoint rule over them. `radiance` is
+/// the radiance of a point with a normal in a direction.
 fn over_quads(
     quads: &[[Vec3; 3]],
     at: &SurfaceSample,
@@ -69,10 +69,10 @@ fn over_quads(
 }
 
 #[test]
-fn triangles_that_emit_light_the_scene_as_the_integral_says() {
+fn emitting_triangles_match_the_integral() {
     let walls = cube();
     let emission = DVec3::new(1.0, 2.0, 4.0);
-    // All walls emit, or a small double-sided square near the middle, large in power.
+    // Either all walls emit, or a small, powerful double-sided square near the middle.
     let glowing = Material { emissive: emission.as_vec3(), ..grey(0.7) };
     let spark = [Vec3::new(0.1, 0.2, 0.0), Vec3::X * 0.01, Vec3::Z * 0.01];
     for (quads, shine) in [(walls.clone(), 1.0), (vec![spark], 1e4)] {
@@ -86,7 +86,7 @@ fn triangles_that_emit_light_the_scene_as_the_integral_says() {
             let drawn = bounced_light(&LightBvh::new(&[]), &at, &traced, paths(1, 4096), numbers());
             let emitted = |_, _, _| emission * f64::from(shine);
             let expected = over_quads(&quads, &at, emitted);
-            // The midpoint rule is right to 1e-4.
+            // The error of the midpoint rule is 1e-4.
             let off = (drawn.mean - expected).abs() - 1e-4 * expected;
             let error = drawn.standard_error() / expected;
             let most = 3.0 * drawn.standard_error();
@@ -96,10 +96,10 @@ fn triangles_that_emit_light_the_scene_as_the_integral_says() {
     }
 }
 
-/// Two bounces against a random walk of another kind: uniform directions, independent numbers, the
-/// walls' planes.
+/// Two bounces against a random walk of another kind: uniform directions, independent numbers, and
+/// the planes of the walls.
 #[test]
-fn two_bounces_are_what_a_random_walk_finds() {
+fn two_bounces_match_a_random_walk() {
     let walls = cube();
     let scene = scene_of(&walls, grey(0.7), vec![]);
     let traced = TracedScene::new(&scene);
@@ -117,7 +117,7 @@ fn two_bounces_are_what_a_random_walk_finds() {
             let (x, y) = surface.normal.any_orthonormal_pair();
             let direction = surface.normal * cos + (x * turn.cos() + y * turn.sin()) * sin;
             share *= reflect_light(&surface, to_eye, direction) * std::f64::consts::TAU;
-            // The first of the planes at 1 and -1 along the axes.
+            // The first hit of the planes at 1 and -1 along the axes.
             let to_plane = DVec3::from_array(std::array::from_fn(|axis| {
                 (direction[axis].signum() - position[axis]) / direction[axis]
             }));
@@ -141,14 +141,15 @@ fn two_bounces_are_what_a_random_walk_finds() {
     let off = (drawn.mean - walk.mean).abs() / DVec3::from_array(error);
     assert!(off.max_element() < 3.0, "{drawn:?} for {walk:?}");
     assert!((error[0] / walk.mean.x) < 5e-3, "{drawn:?} for {walk:?}");
-    // The second bounce is a part of it.
+    // The second bounce is part of it.
     let one = bounced_light(&LightBvh::new(&[light]), &at, &traced, paths(1, 8192), numbers());
     assert!(drawn.mean.x > 1.2 * one.mean.x, "{drawn:?} {one:?}");
 }
 
-/// Surfaces that reflect as virtual point lights emit: no specular term, Fresnel's by its mean.
+/// Surfaces that reflect as virtual point lights emit: without a specular term, and with the mean
+/// of Fresnel's term.
 #[test]
-fn a_matte_bounce_is_what_virtual_point_lights_send() {
+fn a_matte_bounce_matches_virtual_point_lights() {
     let walls = cube();
     let scene = scene_of(&walls, grey(0.7), vec![]);
     let traced = TracedScene::new(&scene);

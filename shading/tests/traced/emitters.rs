@@ -1,4 +1,4 @@
-//! Area lights with shadows against quadrature.
+//! Tests area lights with shadows against quadrature.
 
 use assign::{Emitter, Light};
 use glam::{DVec3, Vec3};
@@ -51,9 +51,9 @@ fn sampled_emitters_agree_with_the_quadrature() {
     assert!(direct_light(&both, &behind, None, 1, numbers()).mean.x > 0.0);
 }
 
-/// What is on an emitter depends on its size, not on how far its light reaches.
+/// The size of an emitter matters, the range of its light does not.
 #[test]
-fn an_emitter_is_as_large_whatever_its_range() {
+fn an_emitters_size_does_not_depend_on_its_range() {
     let empty = scene_of(&[], grey(0.5), vec![]);
     let traced = TracedScene::new(&empty);
     let pentagon = [(-0.6, 0.2), (0.1, 0.0), (0.7, 0.3), (0.53, 0.9), (-0.26, 0.8)]
@@ -88,18 +88,18 @@ fn a_small_emitter_is_a_point_light_with_a_cosine() {
     };
     let close = |a: DVec3, b: DVec3| assert!((a / b - 1.0).abs().max_element() < 2e-3, "{a} {b}");
     close(radiance(emitter, at.surface), reflected(&at.surface));
-    // Beyond the range of its diffuse light a surface shines as a black one does.
+    // Beyond the range of its diffuse light, a surface reflects as a black one does.
     let black = Surface { base_color: DVec3::ZERO, ..at.surface };
     close(radiance(emitter.with_diffuse_share(0.7), at.surface), reflected(&black));
 }
 
 #[test]
-fn half_a_blocked_emitter_is_half_an_emitter() {
+fn a_half_blocked_emitter_gives_half_its_light() {
     let blocker = [Vec3::new(-5.0, 1.0, 0.0), Vec3::X * 5.0, Vec3::Z * 9.0];
     let scene = scene_of(&[blocker], grey(0.5), vec![]);
     let at = sample(DVec3::ZERO, DVec3::Y, 0.4);
     let whole = Light::area(rectangle(1.0, false), Vec3::Y * 2.0, 50.0, Vec3::ONE);
-    // The half at positive x, as bright; its closest point is the same.
+    // The half at positive x is as bright, and its closest point is the same.
     let right = Vec3::new(0.5, 2.0, 0.0);
     let half = Light::area(rectangle(0.5, false), right, 50.0, Vec3::splat(0.5));
     let expected = direct_light(&half, &at, None, 1, numbers()).mean;

@@ -1,4 +1,4 @@
-//! The truth against the model evaluated in f64 from exact inputs, by code of its own: rays against a
+//! Tests the truth against the model in f64 with exact inputs, by separate code: rays against a
 //! plane, the formulas of glTF's appendix B, sums over the emitter.
 
 use std::f64::consts::PI;
@@ -34,7 +34,7 @@ fn scene(base_color: Vec3, metallic: f32, roughness: f32) -> Scene {
     scene_of(&[QUAD], Material { base_color, metallic, roughness, ..Material::default() }, vec![])
 }
 
-/// Where a pixel's ray meets the square, and the unit vector to the eye.
+/// The point where a pixel's ray hits the square, and the unit vector to the eye.
 fn seen(pixel: usize) -> Option<(DVec3, DVec3)> {
     let (eye, target) = (EYE.as_dvec3(), TARGET.as_dvec3());
     let forward = (target - eye).normalize();
@@ -54,7 +54,7 @@ fn seen(pixel: usize) -> Option<(DVec3, DVec3)> {
     (distance > 0.0 && inside).then_some((point, -direction))
 }
 
-/// What is lit, in f64.
+/// The lit surface, in f64.
 struct Model {
     base_color: DVec3,
     metallic: f64,
@@ -104,7 +104,7 @@ impl Model {
         let (distance, l) = (offset.length(), offset.normalize());
         match &light.shape {
             LightShape::Area(emitter) => {
-                // The closest point is taken from the cells, too.
+                // The closest point comes from the cells, too.
                 let (mut sum, mut closest) = (DVec3::ZERO, f64::INFINITY);
                 let steps = if self.roughness < 0.2 { 400 } else { 120 };
                 let vertices: Vec<DVec3> =
@@ -141,7 +141,8 @@ impl Model {
     }
 }
 
-/// Middles of the cells of a triangle cut into `steps` squared equal ones, by its two edges' shares.
+/// Middles of the cells of a triangle that is cut into `steps` squared equal cells, as shares of
+/// its two edges.
 fn for_cells(steps: u32, mut cell: impl FnMut(f64, f64)) {
     let side = f64::from(steps);
     for i in 0..steps {
@@ -163,7 +164,7 @@ fn lights() -> [(&'static str, Light); 4] {
     let direction = towards.normalize();
     let spot = LightShape::Spot { direction, inner_angle: 0.3, outer_angle: 0.6 };
     let x = Vec3::new(0.5, 0.1, 0.05);
-    // Faces the square: counter-clockwise seen from it.
+    // It faces the square: counter-clockwise seen from it.
     let y = towards.cross(x).normalize() * 0.3;
     let corners = [(-1.0, -0.8), (0.6, -1.0), (1.1, 0.1), (0.1, 1.2), (-0.9, 0.5)];
     let corners = corners.map(|(s, t): (f32, f32)| position + x * s + y * t);
@@ -176,7 +177,7 @@ fn lights() -> [(&'static str, Light); 4] {
     ]
 }
 
-/// How far an image is off: relMSE as in the table of metrics, and the worst of the bright pixels.
+/// The error of an image: relMSE as in the table of metrics, and the worst of the bright pixels.
 struct Off {
     rel_mse: f64,
     highlight: f64,
@@ -199,8 +200,8 @@ fn off(pairs: &[(DVec3, DVec3)]) -> Off {
     off
 }
 
-/// Pixels where an image is compared: all of a light without area; else the brightest, where the lobe
-/// is narrow, and some of the others.
+/// Pixels at which images are compared. For lights without area, all of them. Otherwise the
+/// brightest ones, where the lobe is narrow, and some of the others.
 fn compared(image: &HdrImage, light: &Light) -> Vec<usize> {
     let mut pixels: Vec<usize> = (0..image.pixels.len()).filter(|p| seen(*p).is_some()).collect();
     if matches!(light.shape, LightShape::Area(_)) {
@@ -233,7 +234,7 @@ fn truth(scene: &Scene, light: &Light) -> HdrImage {
 const COLORED: Vec3 = Vec3::new(0.9, 0.3, 0.02);
 
 #[test]
-fn the_truth_is_the_model_from_exact_inputs() {
+fn the_truth_matches_the_model_on_exact_inputs() {
     for (base_color, metallic) in [(Vec3::ONE, 0.0), (COLORED, 0.0), (COLORED, 1.0)] {
         for roughness in [0.05, 0.3, 1.0] {
             let scene = scene(base_color, metallic, roughness);
@@ -260,6 +261,6 @@ fn forward_shading_keeps_its_digits_in_a_highlight_and_the_g_buffer_does_not() {
     });
     println!("forward {:.1e}, deferred {:.1e}", forward.highlight, deferred.highlight);
     assert!(forward.highlight < 1e-3, "{}", forward.highlight);
-    // The control: a truth lit from the G-buffer would be off.
+    // The control: a truth lit from the G-buffer would fail.
     assert!(deferred.highlight > 50.0 * forward.highlight, "{}", deferred.highlight);
 }

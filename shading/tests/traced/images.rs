@@ -1,4 +1,4 @@
-//! Images: seeds, threads, error bars and progress.
+//! Tests images: seeds, threads, error bars and progress.
 
 use assign::{Emitter, Light, LightShape};
 use glam::Vec3;
@@ -9,7 +9,7 @@ use shading::{
 
 use crate::{common, paths};
 
-/// Points, a spot and two emitters among them.
+/// Points, a spot and two emitters.
 fn lights() -> Vec<Light> {
     let mut lights = common::lights(12);
     let [x, z] = [Vec3::X * 0.6, Vec3::Z * 0.4];
@@ -42,13 +42,13 @@ fn images_depend_on_the_seed_and_not_on_threads() {
 }
 
 #[test]
-fn error_bars_are_honest() {
+fn error_bars_cover_the_actual_errors() {
     for transport in [Transport::Direct, Transport::Bounce] {
         let (a, b) = (traced_image(transport, 1), traced_image(transport, 2));
         let channels = |image: &HdrImage| -> Vec<f32> { image.pixels.concat() };
         let values = channels(&a.radiance).into_iter().zip(channels(&b.radiance));
         let errors = channels(&a.standard_error).into_iter().zip(channels(&b.standard_error));
-        // Differences in standard errors, where there is an error.
+        // Differences in standard errors, where the standard error is above 0.
         let off: Vec<f32> = values
             .zip(errors)
             .map(|((a, b), (ea, eb))| ((a - b).abs(), ea.hypot(eb)))
@@ -59,7 +59,7 @@ fn error_bars_are_honest() {
             |most: f32| off.iter().filter(|v| **v <= most).count() as f64 / off.len() as f64;
         assert!(off.len() > 150, "{transport:?}: {} channels", off.len());
         assert!(within(4.0) > 0.99, "{transport:?}: {} within 4", within(4.0));
-        // 0.68 for normal errors: neither a bar that is too long.
+        // It is 0.68 for normal errors, so too long an error bar fails as well.
         assert!((0.5..0.9).contains(&within(1.0)), "{transport:?}: {} within 1", within(1.0));
     }
 }

@@ -1,4 +1,4 @@
-//! Traced truth against geometry, quadrature, other samplers and the rasteriser.
+//! Tests the traced truth against geometry, quadrature, other samplers and the rasteriser.
 
 #![allow(dead_code, reason = "the common module serves several tests")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
@@ -44,7 +44,7 @@ fn numbers() -> Numbers {
     Numbers::new(7)
 }
 
-/// The walls of a cube of 2 m, that face its middle.
+/// The walls of a cube of 2 m, facing its middle.
 fn cube() -> Vec<[Vec3; 3]> {
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
     let wall = |axis: usize, sign: f32| {

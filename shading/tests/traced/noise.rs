@@ -1,4 +1,4 @@
-//! How much less noise Sobol points leave than independent ones.
+//! Tests how much less noise Sobol points leave than independent ones.
 
 use assign::{Emitter, Light};
 use glam::{DVec3, Vec3};
@@ -21,7 +21,8 @@ fn gain(estimate: impl Fn(u32, u64) -> Estimate) -> f64 {
     let all: Vec<Estimate> = (0..24).map(|seed| estimate(4096, seed)).collect();
     let mean = all.iter().map(|one| one.mean.y).sum::<f64>() / 24.0;
     let seen = all.iter().map(|one| (one.mean.y - mean).powi(2)).sum::<f64>() / 23.0;
-    // What the images state of themselves is what 24 of them differ by, as far as 24 can tell.
+    // The variance that the images state must be the variance among 24 of them, as far as 24 can
+    // show.
     let stated = all.iter().map(|one| one.variance.y).sum::<f64>() / 24.0;
     assert!((0.3..3.0).contains(&(stated / seen)), "stated {stated}, seen {seen}");
     println!("gain {} seen, {} stated", spread / 4096.0 / seen, spread / 4096.0 / stated);
@@ -30,7 +31,7 @@ fn gain(estimate: impl Fn(u32, u64) -> Estimate) -> f64 {
 
 #[test]
 fn sobol_points_have_a_twentieth_of_the_variance() {
-    // A penumbra, its edge aslant.
+    // A penumbra with a slanted edge.
     let across = Vec3::new(3.0, 0.0, -1.5);
     let blocker = [Vec3::new(0.1, 1.0, 0.0) - across, across, Vec3::new(2.0, 0.0, 4.0)];
     let scene = scene_of(&[blocker], grey(0.5), vec![]);
@@ -45,7 +46,7 @@ fn sobol_points_have_a_twentieth_of_the_variance() {
         let gain = gain(drawn);
         assert!(gain > 20.0, "roughness {roughness}: {gain}");
     }
-    // A bounce of a point's light and of an emitter's, in a room.
+    // A bounce of the light of a point and of an emitter, in a room.
     let scene = scene_of(&cube(), grey(0.7), vec![]);
     let traced = TracedScene::new(&scene);
     let at = sample(DVec3::new(-0.3, -1.0, 0.4), DVec3::Y, 0.6);

@@ -1,4 +1,4 @@
-//! The truth against what the GPU draws.
+//! Tests the truth against the GPU's images.
 
 use assign::{Suns, View};
 use shading::{
@@ -9,13 +9,13 @@ use shading::{
 use crate::common::{self, quads::rasterise};
 
 #[test]
-fn truth_without_shadows_is_what_the_pipeline_shows() {
+fn truth_without_shadows_matches_the_pipeline() {
     let gpu = common::gpu();
     let scene = common::showcase();
     let traced = TracedScene::new(&scene);
     let view = common::view([96, 64]);
     let mut lights = common::lights(40);
-    // Far enough to throw shadows.
+    // Far enough to cast shadows.
     lights.iter_mut().for_each(|light| light.range_m += 4.0);
     let suns = common::suns();
     let (gbuffer, image) = rasterise(&gpu, &scene, &view, &lights, suns, Mode::Deferred);
@@ -31,11 +31,11 @@ fn truth_without_shadows_is_what_the_pipeline_shows() {
     let shadowed = truth_image(&traced, &lights, [96, 64], sample_of, direct, &|_, _| ());
     let sum = |image: &HdrImage| image.pixels.iter().flatten().sum::<f32>();
     let share = sum(&shadowed.radiance) / sum(&truth.radiance);
-    assert!((0.3..0.99).contains(&share), "{share} of the light is left");
+    assert!((0.3..0.99).contains(&share), "{share} of the light remains");
 }
 
 #[test]
-fn surfaces_of_rays_are_those_of_the_rasteriser() {
+fn rays_and_rasteriser_find_the_same_surfaces() {
     let gpu = common::gpu();
     let scenes = [(scenes::atrium(1), "atrium"), (common::showcase(), "showcase")];
     for (scene, name) in &scenes {
@@ -74,8 +74,8 @@ fn surfaces_of_rays_are_those_of_the_rasteriser() {
         }
         let off = off.map(|sum| sum / f64::from(seen));
         assert!(seen > 5000 && missing <= seen as usize / 500, "{name}: {seen}, {missing}");
-        // Mips and eight-bit colour: 0.0064 of base colour in the atrium, 0.0071 in the showcase; at
-        // silhouettes the two may see different surfaces.
+        // The differences come from mips and eight-bit colour: 0.0064 of base colour in the atrium,
+        // 0.0071 in the showcase. At silhouettes the two may see different surfaces.
         let most = [1e-3, 0.01, 0.01, 0.02, 0.02];
         assert!(off.iter().zip(most).all(|(off, most)| *off < most), "{name}: {off:?}");
     }

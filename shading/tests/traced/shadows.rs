@@ -1,4 +1,4 @@
-//! Shadows end where geometry says.
+//! Tests that shadows end where geometry says.
 
 use assign::{Light, Sun, Suns};
 use glam::{DVec3, Vec3};
@@ -14,7 +14,7 @@ use crate::{
     numbers, paths, sample,
 };
 
-/// Whether a floor at `x`, lit from 3 m above its origin, lies in the light.
+/// Whether light reaches the floor at `x`, lit from 3 m above its origin.
 fn is_lit(scene: &Scene, x: f64) -> bool {
     let light = Light::point(Vec3::new(0.0, 3.0, 0.0), 20.0, Vec3::ONE);
     let at = sample(DVec3::new(x, 0.0, 0.1), DVec3::Y, 0.6);
@@ -28,7 +28,7 @@ fn is_lit(scene: &Scene, x: f64) -> bool {
 #[test]
 fn a_shadow_ends_where_the_blocker_does() {
     let floor = [Vec3::ZERO, Vec3::Z * 9.0, Vec3::X * 9.0];
-    // A square of 1 m at a height of 1 m casts one of 1.5 m, whichever side it turns up.
+    // A square of 1 m at a height of 1 m casts a shadow of 1.5 m, whichever side faces up.
     for blocker in
         [[Vec3::Y, Vec3::Z * 0.5, Vec3::X * 0.5], [Vec3::Y, Vec3::X * 0.5, Vec3::Z * 0.5]]
     {
@@ -42,7 +42,7 @@ fn a_shadow_ends_where_the_blocker_does() {
 
 #[test]
 fn light_falls_through_the_holes_of_a_mask() {
-    // Opaque on the left half of the image, which is the blocker's half of negative x.
+    // The left half of the image is opaque; it is the blocker's half at negative x.
     let texel = |i: u32| [255, 255, 255, if i < 8 { 255 } else { 0 }];
     let image = Image {
         name: "half".into(),
@@ -60,8 +60,8 @@ fn light_falls_through_the_holes_of_a_mask() {
     assert!(is_lit(&scene, 0.4) && !is_lit(&scene, -0.4));
 }
 
-/// A square of 1 m at a height of 1 m shades the floor where a sun at 45 degrees throws it, and a
-/// floor below a wall that the sun lights gets a bounce of it.
+/// A square of 1 m at a height of 1 m shades the floor where a sun at 45 degrees casts its shadow.
+/// The floor below a sunlit wall gets a bounce of its light.
 #[test]
 fn suns_cast_shadows_and_bounce() {
     let floor = [Vec3::ZERO, Vec3::Z * 9.0, Vec3::X * 9.0];

@@ -68,7 +68,7 @@ impl Order {
 
     /// Of the times to assign and shade: by rounds or laps where both have them, else by the figures.
     pub(crate) fn of_times(record: &Record, other: &Record) -> Self {
-        match Ratio::of(record, other) {
+        match Ratio::between(record, other) {
             Some(ratio) => Self::of_ratio(ratio),
             None => Self::of_figures(record.assign_and_shade_ms(), other.assign_and_shade_ms()),
         }

@@ -228,7 +228,7 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
     }
     let other = fastest(usual(case).filter(|record| competes(record) && !is_of_the_paper(record)));
     if let Some(other) = other {
-        let against = match Ratio::of(other, leader) {
+        let against = match Ratio::between(other, leader) {
             Some(ratio) if ratio.is_tie() => "as much",
             Some(ratio) if ratio.is_faster() => "less",
             Some(_) => "more",
@@ -269,7 +269,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
             continue;
         }
         all += 1;
-        let ratio = |record: &Record| Ratio::of(record, position);
+        let ratio = |record: &Record| Ratio::between(record, position);
         let is_faster = |record: &Record| match ratio(record) {
             Some(ratio) => ratio.is_faster(),
             None => record.assign_and_shade_ms() < position.assign_and_shade_ms(),

@@ -95,7 +95,7 @@ impl<'a> Shots<'a> {
                 (self.linear(&job.name, &truth.raw, truth.exposure), None, "truth")
             }
         };
-        let key = format!("{}:{}", job.name, record.strategy);
+        let key = format!("{}:{text}:{}", job.name, record.strategy);
         let errors = match wanted {
             Wanted::Pair => &record.image.errors,
             Wanted::Unbounded => &record.image.unbounded_errors,

@@ -1,4 +1,4 @@
-//! Area lights: in `extras`, and by EXT_lights_area.
+//! Tests of area lights in `extras` and by EXT_lights_area.
 
 use assign::LightKind;
 
@@ -36,7 +36,7 @@ fn extras_carry_area_lights() {
 }
 
 #[test]
-fn area_lights_that_are_not_understood_name_the_field() {
+fn errors_of_area_lights_name_the_field() {
     let error = |light| with_area_light(light).expect_err("faulty").to_string();
     let missing = error(json!({ "shape": "rectangle", "width": 1.0 }));
     assert!(missing.contains("nodes[0].extras.lightbench_area_light"), "{missing}");
@@ -73,7 +73,7 @@ fn ext_lights_area_gives_area_lights() {
         "color": [1.0, 0.5, 0.25]});
     let scene = with_area_extension(rectangle).expect("valid");
     let (emitter, intensity) = emitter_of(&scene);
-    // Twice the size of the file's by the node's scale; 100 cd on each of 2 square metres.
+    // The node's scale doubles the size in the file. 100 cd on each of 2 square metres.
     assert_eq!((emitter.area(), emitter.normal()), (2.0, Vec3::NEG_Z));
     assert_eq!(intensity, Vec3::new(200.0, 100.0, 50.0));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
@@ -85,7 +85,10 @@ fn ext_lights_area_gives_area_lights() {
     assert_warns(&scene, "a disc is drawn as a polygon");
     let odd = with_area_extension(json!({"type": "tube", "name": "neon"})).expect("valid");
     assert!(odd.lights.is_empty());
-    assert_warns(&odd, "light \"neon\": EXT_lights_area type \"tube\" is left out");
+    assert_warns(
+        &odd,
+        "light \"neon\" is left out: EXT_lights_area type \"tube\" is not supported",
+    );
     for (light, expected) in [
         (json!({"type": "rect", "size": 0}), "size and aspect above 0"),
         (json!({"size": 1}), "missing field `type`"),

@@ -1,4 +1,4 @@
-//! Cameras of files: their fields, their directions, and scenes far from the origin.
+//! Tests of a file's cameras: their fields, their directions, and scenes far from the origin.
 
 use glam::{DVec3, Quat, Vec3};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{error_with, load, sample};
 use crate::{Lens, Scene};
 
-/// The sample with its camera replaced and standing still.
+/// The sample with another camera that stands still.
 fn with_camera(camera: Value, node: Value) -> Scene {
     let mut sample = sample();
     sample.json["cameras"][0] = camera;
@@ -53,7 +53,7 @@ fn faulty_fields_are_named_with_their_value() {
         let expected = format!("sample.glb: cameras[0].{expected}");
         assert!(error.ends_with(&expected) || error.contains(&expected), "{error}");
     }
-    // A camera that the scene does not place is not looked at.
+    // A camera that the scene does not place is not read.
     let mut unplaced = sample();
     unplaced.json["cameras"][0]["perspective"]["znear"] = json!(0);
     unplaced.json["nodes"][3] = json!({});
@@ -76,7 +76,7 @@ fn scale_and_flat_axes_do_not_turn_a_camera() {
     }
 }
 
-/// Everything under one node, which stands at a place.
+/// Puts everything under one node at a place.
 fn moved_to(place: [f64; 3]) -> Scene {
     let mut sample = sample();
     let turn = Quat::from_rotation_y(0.7) * Quat::from_rotation_x(-0.3);
@@ -87,10 +87,10 @@ fn moved_to(place: [f64; 3]) -> Scene {
     load(&sample).expect("valid")
 }
 
-/// A scene 1,000 and 100,000 km away is that at the origin to within the bits of its own size, its
-/// animated camera too. In the file's coordinates it still stands where it stood.
+/// A scene 1,000 and 100,000 km away equals the one at the origin, up to the digits of its own
+/// size. So does its animated camera. In the file's coordinates it still stands where it stood.
 #[test]
-fn a_scene_far_from_the_origin_is_drawn_as_one_at_it() {
+fn a_scene_far_from_the_origin_equals_one_at_it() {
     let near = moved_to([0.0; 3]);
     assert_eq!(near.origin, DVec3::ZERO);
     for place in [[1e6, 0.0, 1e6], [0.0, -1e8, 3.0], [20_000.0, 0.0, 0.0]] {
@@ -119,8 +119,8 @@ fn a_scene_far_from_the_origin_is_drawn_as_one_at_it() {
     assert!((scaled.origin.x - 2e6).abs() < 10.0, "{}", scaled.origin);
 }
 
-/// A camera under a node that is flat along one axis looks where it would look without an animation, and a
-/// second animated camera is named.
+/// A camera under a node that is flat along one axis looks in the same direction with and without
+/// an animation. A warning names the second animated camera.
 #[test]
 fn animated_cameras_keep_their_directions_and_others_are_named() {
     let mut sample = sample();

@@ -1,4 +1,5 @@
-//! EXT_meshopt_compression and KHR_draco_mesh_compression, encoded by crates and damaged.
+//! Tests of EXT_meshopt_compression and KHR_draco_mesh_compression, on data that crates encode and
+//! on damaged data.
 
 use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder,
@@ -69,8 +70,8 @@ fn meshopt(mode: &str, side: u32) -> Sample {
     sample
 }
 
-/// Corners of all triangles of the first mesh, each triangle from its smallest corner on:
-/// compression may turn triangles, and Draco reorders them.
+/// Corners of all triangles of the first mesh, each triangle from its smallest corner on.
+/// Compression may rotate the corners of a triangle, and Draco reorders triangles.
 fn triangles(corners: impl Iterator<Item = [f32; 3]>) -> Vec<[[i32; 3]; 3]> {
     let corners: Vec<_> = corners.map(|p| p.map(|x| (x * 100.0).round() as i32)).collect();
     let turned = |triangle: &[[i32; 3]; 3]| {
@@ -94,7 +95,7 @@ fn grid_triangles(side: u32) -> Vec<[[i32; 3]; 3]> {
 
 #[test]
 fn meshopt_views_decode() {
-    // 900 vertices are four blocks, the last of them not whole.
+    // 900 vertices fill four blocks, the last of them only in part.
     for (mode, side) in [("TRIANGLES", 30), ("INDICES", 30), ("TRIANGLES", 2)] {
         let scene = load(&meshopt(mode, side)).expect("valid");
         assert_eq!(triangles_of(&scene), grid_triangles(side), "{mode} {side}");
@@ -105,11 +106,11 @@ fn meshopt_views_decode() {
 #[test]
 fn meshopt_filters_decode() {
     use super::super::meshopt::Compressed;
-    // Eight elements of eight bytes, stored verbatim: all of a group of 16.
+    // Eight elements of eight bytes, stored verbatim as part of a group of 16.
     let decode = |filter: &str, element: [u8; 8]| -> [u8; 8] {
         let mut source = vec![0xa0];
         for byte in element {
-            // The first differs from the tail's zeros, and the others not from it.
+            // The first element differs from the zeros of the tail. The others equal the first.
             source.push(3);
             let delta = byte.cast_signed();
             source.push((delta << 1 ^ delta >> 7).cast_unsigned());
@@ -127,19 +128,19 @@ fn meshopt_filters_decode() {
         values.map(i16::to_le_bytes).as_flattened().try_into().expect("eight")
     };
     assert_eq!(decode("NONE", [1, 2, 3, 250, 5, 6, 7, 128]), [1, 2, 3, 250, 5, 6, 7, 128]);
-    // Straight up, and a corner that is folded over.
+    // Straight up, and a folded corner.
     assert_eq!(decode("OCTAHEDRAL", shorts([0, 0, 511, 7])), shorts([0, 0, 32767, 7]));
     assert_eq!(decode("OCTAHEDRAL", shorts([511, 511, 511, 0])), shorts([0, 0, -32767, 0]));
-    // The identity: the largest component is the fourth.
+    // The identity, whose largest component is the fourth.
     assert_eq!(decode("QUATERNION", shorts([0, 0, 0, 2047])), shorts([0, 0, 0, 32767]));
-    // 3 times two to the power of -1, and -1 times two to the power of 4.
+    // 3 times 2^-1, and -1 times 2^4.
     let two = [(-1_i32 << 24) | 3, (4 << 24) | 0xff_ffff];
     let bytes: [u8; 8] = two.map(i32::to_le_bytes).as_flattened().try_into().expect("eight");
     let expected = [1.5_f32, -16.0].map(f32::to_le_bytes);
     assert_eq!(decode("EXPONENTIAL", bytes), expected.as_flattened());
 }
 
-/// The sample with a grid in Draco's form.
+/// The sample with a grid compressed by Draco.
 fn draco(side: u32) -> Sample {
     let (positions, indices) = grid(side);
     let mut mesh = Mesh::new();
@@ -184,7 +185,7 @@ fn draco_primitives_decode() {
     assert!(error.contains("attributes.POSITION is 77"), "{error}");
 }
 
-/// Flipped and cut bytes of compressed data: an error or a scene, never a panic.
+/// Flipped and truncated bytes of compressed data give an error or a scene, never a panic.
 #[test]
 fn damaged_compression_is_refused_or_read() {
     let mut rng = Pcg64Mcg::seed_from_u64(3);

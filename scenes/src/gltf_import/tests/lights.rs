@@ -1,4 +1,4 @@
-//! Lights of KHR_lights_punctual.
+//! Tests of KHR_lights_punctual.
 
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -31,7 +31,7 @@ fn faulty_lights_stay_to_be_reported() {
     let expected =
         ["intensity", "range", "intensity", "intensity", "intensity", "spot outer angle", ""];
     assert_eq!(faults(&scene), expected);
-    let inf = "light \"light 7\": left out: sun irradiance is inf: it must be finite";
+    let inf = "light \"light 7\" is left out: sun irradiance is inf: it must be finite";
     assert_eq!((scene.warnings.clone(), scene.suns.len()), (vec![inf.to_owned()], 0));
     let pose = scene.path.pose(0, 10);
     assert!(pose.eye.is_finite() && pose.forward().is_finite());
@@ -39,7 +39,7 @@ fn faulty_lights_stay_to_be_reported() {
     assert_eq!(faults(&scene.scaled(1e-6).expect("in range"))[..6], expected[..6]);
 }
 
-/// The sample with these lights instead of its own, each in a node of its own that looks down.
+/// The sample with these lights instead of its own. Each has its own node, which looks down.
 fn lit_by(lights: Vec<Value>) -> Sample {
     let mut sample = sample();
     let nodes = sample.json["nodes"].as_array_mut().expect("nodes");
@@ -62,7 +62,7 @@ fn directional_lights_are_suns() {
     assert_eq!(scene.suns.len(), 2);
     assert_eq!(scene.suns[0].irradiance, Vec3::new(3.0, 1.5, 0.0));
     assert!(scene.suns[0].direction.distance(Vec3::NEG_Y) < 1e-6, "{:?}", scene.suns);
-    let left_out = |value: &str| format!("light \"sol\": left out: sun irradiance is {value}");
+    let left_out = |value: &str| format!("light \"sol\" is left out: sun irradiance is {value}");
     assert_eq!(scene.warnings.len(), 2, "{:?}", scene.warnings);
     assert!(scene.warnings[0].starts_with(&left_out("0")), "{:?}", scene.warnings);
     assert!(scene.warnings[1].starts_with(&left_out("-1")), "{:?}", scene.warnings);

@@ -1,4 +1,4 @@
-//! Extensions of materials, colours of vertices, quantized vertices and WebP.
+//! Tests of material extensions, vertex colours, quantized vertices and WebP.
 
 use glam::{Vec2, Vec4};
 
@@ -21,7 +21,7 @@ fn ior_and_specular_make_reflectances() {
     assert_eq!(dielectric(json!({"KHR_materials_ior": {}})), Dielectric::default());
     let water = dielectric(json!({"KHR_materials_ior": {"ior": 1.33}}));
     assert!((water.f0.x - 0.02006).abs() < 1e-5 && water.f90 == 1.0, "{water:?}");
-    // 0 stands for an index without end.
+    // 0 stands for an infinite index.
     assert_eq!(dielectric(json!({"KHR_materials_ior": {"ior": 0}})).f0, Vec3::ONE);
     let tinted = json!({"KHR_materials_specular":
         {"specularFactor": 0.5, "specularColorFactor": [2.0, 1.0, 100.0]}});
@@ -43,7 +43,10 @@ fn ior_and_specular_make_reflectances() {
     let mut textured = sample();
     textured.json["materials"][0]["extensions"] =
         json!({"KHR_materials_specular": {"specularColorTexture": {"index": 0}}});
-    assert_warns(&load(&textured).expect("valid"), "specularColorTexture is left out");
+    assert_warns(
+        &load(&textured).expect("valid"),
+        "specularColorTexture of KHR_materials_specular is ignored",
+    );
 }
 
 #[test]
@@ -71,7 +74,7 @@ fn specular_and_glossiness_make_a_dielectric() {
         {"specularGlossinessTexture": {"index": 0}}});
     let scene = load(&textured).expect("valid");
     assert_eq!((scene.materials[0].roughness, scene.materials[0].metallic), (0.5, 0.0));
-    assert_warns(&scene, "specularGlossinessTexture is left out");
+    assert_warns(&scene, "specularGlossinessTexture is ignored");
 }
 
 #[test]
@@ -117,7 +120,7 @@ fn colours_of_vertices_follow_their_vertices() {
         let corner = POSITIONS.iter().position(|p| *p == vertex.position).expect("a corner");
         assert_eq!(*color, expected[corner]);
     }
-    // White ones cost nothing.
+    // White colours cost nothing.
     let white = json!({"componentType": 5121, "normalized": true, "type": "VEC3", "count": 4});
     let ix = add_accessor(&mut colored, &[255; 12], white);
     colored.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = ix.into();
@@ -163,7 +166,7 @@ fn quantized_vertices_are_read() {
 
 #[test]
 fn webp_textures_are_decoded() {
-    // Lossless, one pixel.
+    // A lossless image of one pixel.
     let webp = base64::engine::general_purpose::STANDARD
         .decode("UklGRhoAAABXRUJQVlA4TA0AAAAvAAAAEAcQERGIiP4HAA==")
         .expect("base64");
@@ -175,7 +178,7 @@ fn webp_textures_are_decoded() {
     let scene = load(&webp_only).expect("valid");
     assert_eq!((scene.images[0].width, scene.images[0].height), (1, 1));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    // A KTX2 is not: its texture is left out by name.
+    // KTX2 is not supported: a warning names its texture.
     webp_only.json["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
     webp_only.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
     let scene = load(&webp_only).expect("valid");

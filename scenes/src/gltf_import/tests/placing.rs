@@ -1,11 +1,11 @@
-//! Extensions and skins that place what is drawn.
+//! Tests of extensions and skins that place meshes.
 
 use super::{
     valid::{add_accessor, add_floats, assert_warns},
     *,
 };
 
-/// The sample whose second node draws by EXT_mesh_gpu_instancing.
+/// The sample whose second node is drawn many times by EXT_mesh_gpu_instancing.
 fn instanced(attributes: Value) -> Sample {
     let mut sample = sample();
     sample.json["nodes"][1] = json!({"mesh": 0, "translation": [0, 0, 1],
@@ -18,7 +18,7 @@ fn instances_are_models() {
     let mut sample = instanced(json!({}));
     let at = add_floats(&mut sample, &[-3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0], "VEC3");
     let scale = add_floats(&mut sample, &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0, -1.0, 1.0], "VEC3");
-    // Normalised bytes: no turn, no turn, and half a turn about Z.
+    // Rotations in normalised bytes: none, none, and half a turn about Z.
     let turns = [[0_i8, 0, 0, 127], [0, 0, 0, 127], [0, 0, 127, 0]];
     let turns: Vec<u8> = turns.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
     let bytes = json!({"componentType": 5120, "normalized": true, "type": "VEC4", "count": 3});
@@ -32,7 +32,7 @@ fn instances_are_models() {
     assert!((corner(2) - Vec3::new(2.0, 2.0, 3.0)).length() < 1e-6, "{}", corner(2));
     assert!((corner(3) - Vec3::new(2.0, 1.0, 2.0)).length() < 1e-6, "{}", corner(3));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    // Counts that differ, and an accessor that is none.
+    // Counts that differ, and an accessor that does not exist.
     let short = add_floats(&mut sample, &[1.0; 6], "VEC3");
     let attributes = "/nodes/1/extensions/EXT_mesh_gpu_instancing/attributes";
     for (scale, expected) in [(json!(short), "SCALE count is 2"), (json!(99), "SCALE is 99")] {
@@ -59,7 +59,7 @@ fn hidden_nodes_hide_what_is_below_them() {
     assert_eq!(load(&sample).expect("valid").triangle_count(), 2);
     sample.json["nodes"][1]["extensions"] = json!({"KHR_node_visibility": {"visible": true}});
     assert_eq!(load(&sample).expect("valid").triangle_count(), 4);
-    // Node 4 draws; node 0 and all below it, the light among them, do not.
+    // Node 4 is drawn. Node 0 and everything below it, its light included, are not.
     sample.json["nodes"][0]["extensions"] = hidden;
     sample.json["nodes"].as_array_mut().expect("nodes").push(json!({"mesh": 0}));
     sample.json["scenes"][0]["nodes"] = json!([0, 3, 4]);
@@ -68,7 +68,7 @@ fn hidden_nodes_hide_what_is_below_them() {
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
-/// Node 1 holds the mesh and node 4 is the joint; the first vertex follows node 5.
+/// Node 1 holds the mesh and node 4 is the joint. The first vertex follows node 5.
 fn skinned() -> Sample {
     let mut sample = sample();
     let joints = [[0_u8, 1, 0, 0]; 4];
@@ -77,7 +77,7 @@ fn skinned() -> Sample {
     let mut weights = [[1.0_f32, 0.0, 0.0, 0.0]; 4];
     weights[0] = [0.0, 0.5, 0.0, 0.0];
     let weights = add_floats(&mut sample, weights.as_flattened(), "VEC4");
-    // The second joint's inverse bind matrix undoes its own place but for 7 along Y.
+    // The second joint's inverse bind matrix cancels its own place, except for 7 along Y.
     let mut inverse_bind = [glam::Mat4::IDENTITY.to_cols_array(); 2];
     inverse_bind[1] = glam::Mat4::from_translation(Vec3::new(-9.0, 7.0, 0.0)).to_cols_array();
     let matrices = add_floats(&mut sample, inverse_bind.as_flattened(), "MAT4");
@@ -110,7 +110,7 @@ fn joints_place_skinned_meshes_and_their_node_does_not() {
         assert!((Vec3::from(vertex.normal) - normal).length() < 1e-6, "{vertex:?}");
     }
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    // The mesh itself is drawn by node 0, which has no skin.
+    // Node 0, which has no skin, draws the mesh itself.
     assert_eq!(
         scene.meshes[scene.instances[0].mesh as usize].vertices[1].position,
         [1.0, 0.0, 0.0]
@@ -121,7 +121,7 @@ fn joints_place_skinned_meshes_and_their_node_does_not() {
 fn skins_that_cannot_pose_are_named() {
     let mut outside = skinned();
     outside.json["scenes"][0]["nodes"] = json!([0, 3, 4]);
-    assert_warns(&load(&outside).expect("valid"), "skin 0: joints outside the scene");
+    assert_warns(&load(&outside).expect("valid"), "skin 0: joints lie outside the scene");
     let mut unbound = skinned();
     let attributes = &mut unbound.json["meshes"][0]["primitives"][0]["attributes"];
     attributes.as_object_mut().expect("attributes").remove("JOINTS_0");
@@ -132,12 +132,12 @@ fn skins_that_cannot_pose_are_named() {
     assert!(error.contains("JOINTS_0 is out of range: it must be below 1"), "{error}");
     let mut animated = skinned();
     animated.json["animations"][0]["channels"][0]["target"]["node"] = 4.into();
-    assert_warns(&load(&animated).expect("valid"), "\"node 4\" the first");
+    assert_warns(&load(&animated).expect("valid"), "the first is \"node 4\"");
 }
 
-/// Odd values in place of every number of a skin, of instances and of an area light.
+/// Odd values replace every number of a skin, of instances and of an area light.
 #[test]
-fn no_odd_value_of_what_places_makes_it_panic() {
+fn odd_values_of_skins_and_instances_never_panic() {
     let mut whole = skinned();
     let at = add_floats(&mut whole, &[0.0; 9], "VEC3");
     whole.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing":
@@ -164,7 +164,7 @@ fn no_odd_value_of_what_places_makes_it_panic() {
         for value in odd_values() {
             let mut json = whole.json.clone();
             *json.pointer_mut(pointer).expect("a leaf") = value;
-            // Either is fine; a panic is not.
+            // A scene or an error is accepted, a panic is not.
             let _ = load(&Sample { json, binary: whole.binary.clone() });
         }
     }

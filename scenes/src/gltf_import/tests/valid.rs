@@ -1,8 +1,8 @@
-//! Files that glTF allows and that other readers refuse or draw wrong.
+//! Tests of files that glTF allows and that other readers refuse or draw wrongly.
 
 use super::*;
 
-/// Asserts that a warning holds a text.
+/// Asserts that a warning contains a text.
 pub(super) fn assert_warns(scene: &Scene, text: &str) {
     assert!(scene.warnings.iter().any(|w| w.contains(text)), "{text}: {:?}", scene.warnings);
 }
@@ -40,7 +40,7 @@ pub(super) fn add_floats(sample: &mut Sample, values: &[f32], kind: &str) -> usi
 }
 
 #[test]
-fn what_may_be_missing_may_be_missing() {
+fn optional_fields_may_be_missing() {
     let pointer = json!({"sampler": 0, "target": {"path": "pointer", "extensions":
         {"KHR_animation_pointer": {"pointer": "/nodes/2/scale"}}}});
     let cases = [
@@ -51,11 +51,11 @@ fn what_may_be_missing_may_be_missing() {
             "1 channels that move no node",
         ),
         ("/scenes", json!([{"nodes": [0, 3]}, {"name": "empty"}]), ""),
-        ("/textures/0", json!({}), "texture 0 has no image that is read (none)"),
+        ("/textures/0", json!({}), "texture 0 has no image of a supported format (none)"),
         (
             "/textures/0",
             json!({"extensions": {"EXT_texture_odd": {"source": 0}}}),
-            "texture 0 has no image that is read (EXT_texture_odd)",
+            "texture 0 has no image of a supported format (EXT_texture_odd)",
         ),
         ("/accessors/2", json!({"count": 4, "componentType": 5126, "type": "VEC2"}), ""),
         ("/accessors/0/min", json!(null), ""),
@@ -63,14 +63,18 @@ fn what_may_be_missing_may_be_missing() {
             "/meshes/0/primitives",
             json!([{"attributes": {"NORMAL": 1}},
                 {"attributes": {"POSITION": 0}, "indices": 3, "material": 0}]),
-            "mesh \"mesh 0.0\": has no POSITION",
+            "mesh \"mesh 0.0\" has no POSITION",
         ),
-        ("/extensionsRequired", json!(["KHR_materials_sheen"]), "KHR_materials_sheen is not read"),
+        (
+            "/extensionsRequired",
+            json!(["KHR_materials_sheen"]),
+            "KHR_materials_sheen is not supported",
+        ),
         ("/extensionsUsed", json!(["EXT_lights_image_based"]), "EXT_lights_image_based"),
         (
             "/nodes/3",
             json!({"camera": 0, "extensions": {"EXT_undeclared": {"x": 1}}}),
-            "EXT_undeclared is not read: what it adds is left out (used once)",
+            "EXT_undeclared is not supported: what it adds is left out (used once)",
         ),
     ];
     for (pointer, value, warning) in cases {
@@ -117,7 +121,7 @@ fn glb_chunks_of_other_types_are_passed_over() {
 #[test]
 fn base64_needs_no_padding() {
     let mut sample = sample();
-    // One byte more than needed makes padding due.
+    // One byte more than needed, so that padding would be required.
     sample.binary.resize(sample.binary.len().next_multiple_of(3) + 1, 0);
     let hash = load(&sample).expect("valid").hash();
     let base64 = base64::engine::general_purpose::STANDARD.encode(&sample.binary);
@@ -131,7 +135,7 @@ fn base64_needs_no_padding() {
     }
 }
 
-/// Nodes of the sample: 1 mirrors its mesh, 2 holds the spot.
+/// In the sample, node 1 mirrors its mesh and node 2 holds the spot.
 #[test]
 fn scales_of_zero_flatten_and_keep_directions() {
     for (scale, triangles) in [([1.0, 1.0, 0.0], 4), ([0.0, 0.0, 1.0], 2), ([0.0; 3], 2)] {
@@ -140,7 +144,7 @@ fn scales_of_zero_flatten_and_keep_directions() {
         let scene = load(&flat).expect("valid");
         assert_eq!(scene.triangle_count(), triangles, "{scale:?}");
         if triangles == 2 {
-            assert_warns(&scene, "scaled to a line or a point");
+            assert_warns(&scene, "is scaled to a line or a point");
         }
     }
     let turn = |sample: &mut Sample, node: Value| {
@@ -148,7 +152,7 @@ fn scales_of_zero_flatten_and_keep_directions() {
         sample.json["nodes"][2]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
     };
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    // A quarter turn about X: -Z looks down. As parts, and as a matrix of no scale at all.
+    // A quarter turn about X, so that -Z looks down: as parts, and as a matrix of scale 0.
     let rotation = json!([-half, 0.0, 0.0, half]);
     for scale in [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 2.0, 2.0]] {
         let mut spot = sample();
@@ -169,7 +173,7 @@ fn scales_of_zero_flatten_and_keep_directions() {
 }
 
 #[test]
-fn files_of_lights_alone_give_their_lights() {
+fn files_with_only_lights_give_their_lights() {
     let lights = json!({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
         "nodes": [{"translation": [0, 3, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
         "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 60}]}},
@@ -193,20 +197,20 @@ fn files_of_lights_alone_give_their_lights() {
 }
 
 #[test]
-fn animations_of_what_is_drawn_are_named() {
+fn animations_of_drawn_nodes_are_named() {
     let moved = |node: usize| {
         let mut sample = sample();
         sample.json["animations"][0]["channels"][0]["target"]["node"] = node.into();
         load(&sample).expect("valid")
     };
     assert!(moved(3).warnings.is_empty());
-    assert_warns(&moved(2), "1 animated nodes stay at rest, \"node 2\" the first");
-    assert_warns(&moved(0), "\"node 0\" the first");
+    assert_warns(&moved(2), "1 animated nodes stay at rest; the first is \"node 2\"");
+    assert_warns(&moved(0), "the first is \"node 0\"");
 }
 
-/// Whatever stands in an extension that nobody reads is no fault.
+/// An unsupported extension may contain anything without being a fault.
 #[test]
-fn extensions_that_are_not_read_cannot_be_faulty() {
+fn unsupported_extensions_cannot_be_faulty() {
     let mut sample = sample();
     sample.json["materials"][0]["extensions"] = json!({"KHR_materials_volume": {"thicknessFactor": "inf"}, "KHR_materials_transmission": 7});
     sample.json["extensionsUsed"] = json!(["KHR_materials_volume", "KHR_materials_transmission"]);

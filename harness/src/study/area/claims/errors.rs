@@ -62,7 +62,7 @@ pub(crate) const BALLS: Check = Check {
             let Some(outline) = outline.filter(|record| record.lists.entries > 0) else { continue };
             count += 1;
             good += usize::from(ball.lists.entries > outline.lists.entries);
-            let time = Ratio::of(ball, outline).map_or_else(String::new, |ratio| {
+            let time = Ratio::between(ball, outline).map_or_else(String::new, |ratio| {
                 let tie = if ratio.is_tie() { " (a tie)" } else { "" };
                 format!(", \u{d7} {} in assign + shade{tie}", significant(ratio.median))
             });

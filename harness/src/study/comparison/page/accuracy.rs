@@ -104,7 +104,7 @@ pub(crate) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
     let (lossy, lossless) = (fastest(true)?, fastest(false)?);
     let [time, exact] = [lossy, lossless].map(Record::assign_and_shade_ms);
     let error = difference(lossy.image.errors.get("rel_mse").copied().flatten().unwrap_or(0.0));
-    let is_faster = Ratio::of(lossy, lossless).is_some_and(|ratio| ratio.is_faster());
+    let is_faster = Ratio::between(lossy, lossless).is_some_and(|ratio| ratio.is_faster());
     Some(if is_faster {
         format!(
             "A relMSE of {error} buys {} % of the time: {} takes {} ms, {}, the fastest exact one \

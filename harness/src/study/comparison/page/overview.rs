@@ -154,7 +154,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let mut text = format!("In {scene} at {lights}, {}{still} with {time}", lead.is_fastest());
     text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
-        let slower = Ratio::of(next.record, leader).map_or_else(String::new, |ratio| {
+        let slower = Ratio::between(next.record, leader).map_or_else(String::new, |ratio| {
             let ends = [ratio.low, ratio.high].map(significant);
             let range = if ends[0] == ends[1] { ends[0].clone() } else { ends.join(" to ") };
             format!(", {range} times as long")
@@ -168,7 +168,11 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     if let Some(faster) = comparison.speedup(leader) {
         text += &format!(". No culling takes {} times as long", significant(faster));
     }
-    Some(text + ".")
+    text += ".";
+    if let Some(hierarchy) = lead.hierarchy() {
+        text += &format!(" {hierarchy}");
+    }
+    Some(text)
 }
 
 fn ms(record: &Record) -> String {
