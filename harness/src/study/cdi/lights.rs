@@ -11,8 +11,8 @@ pub(crate) const RULES: [(&str, &str, &str); 6] = [
     ("average", "series-0", "rays, average"),
     ("maximum", "series-1", "rays, maximum"),
     ("random", "series-3", "random"),
-    ("random-discard", "series-4", "random, lights that meet nothing left out"),
-    ("constant-discard", "series-6", "constant, lights that meet nothing left out"),
+    ("random-discard", "series-4", "random, without lights whose rays hit nothing"),
+    ("constant-discard", "series-6", "constant, without lights whose rays hit nothing"),
     ("infinite", "strategy-none", "infinite"),
 ];
 

@@ -40,7 +40,7 @@ pub(crate) struct Claim<'a> {
 /// Whether a study ran on another GPU than a paper: then absolute times decide nothing.
 pub(crate) fn on_another_gpu(done: &Done, gpu: &str) -> Option<Verdict> {
     let is_other = done.results.values().any(|results| !results.machine.adapter.contains(gpu));
-    is_other.then(|| Verdict::undecided(&format!("another GPU than the paper\u{2019}s {gpu}")))
+    is_other.then(|| Verdict::undecided(&format!("the paper used another GPU, {gpu}")))
 }
 
 /// All claims of a paper.
@@ -83,11 +83,14 @@ impl Claim<'_> {
                             .collect();
                         (!scenes.is_empty()).then(|| format!("{how} in {}", listed(&scenes)))
                     };
-                    let parts: Vec<String> =
-                        [of("holds", "holds"), of("differs", "in part"), of("fails", "not")]
-                            .into_iter()
-                            .flatten()
-                            .collect();
+                    let parts: Vec<String> = [
+                        of("holds", "holds"),
+                        of("differs", "holds in part"),
+                        of("fails", "fails"),
+                    ]
+                    .into_iter()
+                    .flatten()
+                    .collect();
                     Verdict::Differs(parts.join("; "))
                 }
             }
@@ -155,7 +158,7 @@ mod tests {
         assert_eq!(claim(&[unknown(), unknown()]).verdict(), unknown());
         assert_eq!(claim(&[unknown(), unknown()]).verdict_text(), "no path");
         let Differs(why) = claim(&[Holds, Fails]).verdict() else { panic!("it differs") };
-        assert_eq!(why, "holds in scene; not in scene");
+        assert_eq!(why, "holds in scene; fails in scene");
         assert!(matches!(claim(&[]).verdict(), Unknown(_)));
     }
 

@@ -14,7 +14,7 @@ pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool
     }
     let rows: Vec<Vec<Html>> = claims.iter().map(row).collect();
     let caveat = if is_software {
-        " This study ran on a software adapter: the verdicts are not a GPU\u{2019}s."
+        " This study ran on a software adapter, so the verdicts do not apply to a GPU."
     } else {
         ""
     };

@@ -17,12 +17,14 @@ use crate::study::page::part::Part;
 const MODES: [&str; 2] = ["deferred", "forward"];
 
 /// What stands above forward times of a data-centre GPU.
-const FORWARD_CAUTION: &str = " This GPU runs fragment shaders on a few of its processors: compare these times \
-    with each other, not with deferred ones nor with another chip\u{2019}s.";
+const FORWARD_CAUTION: &str = " This GPU runs fragment shaders on only a few of its processors: \
+                               compare these times with each other, not with deferred ones or \
+                               with those of another GPU.";
 
 /// What stands above deferred times of a data-centre GPU.
-const DEFERRED_CAUTION: &str = " This GPU runs fragment shaders on a few of its processors: RasterSphere and Clay \
-    shade there, the other methods in a compute pass.";
+const DEFERRED_CAUTION: &str = " This GPU runs fragment shaders on only a few of its processors: \
+                                RasterSphere and Clay shade there, the other methods in a compute \
+                                pass.";
 
 fn frame(record: &Record) -> f64 {
     record.times.frame_ms
@@ -39,7 +41,11 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
             }
             let chart = XyChart {
                 title: format!("Frame time against lights, {mode}"),
-                x: Axis { label: "Lights".to_owned(), unit: String::new(), scale: Scale::LinearFromZero },
+                x: Axis {
+                    label: "Lights".to_owned(),
+                    unit: String::new(),
+                    scale: Scale::LinearFromZero,
+                },
                 y: Axis {
                     label: "Frame, mean along the path".to_owned(),
                     unit: "ms".to_owned(),
@@ -58,9 +64,10 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
                 false => "",
             };
             let text = format!(
-                "The whole frame, mean over the frames of the path; slope and offset of the straight line \
-                 through these times; relMSE against no culling at the most lights. Clusters of 40 x 40 \
-                 pixels and 24 slices that end at 128 lights are the survey\u{2019}s.{caution}"
+                "Times are of whole frames, mean over the frames of the path. Slope and offset \
+                 belong to the straight line through these times. The relMSE compares with no \
+                 culling at the most lights. The survey\u{2019}s own clusters are those of 40 x \
+                 40 pixels and 24 slices, capped at 128 lights.{caution}"
             );
             Some(Part::new(mode, format!("Times, {mode}"), text, body))
         })
@@ -109,7 +116,7 @@ fn error(record: &Record) -> Option<String> {
 }
 
 /// A record's time, and its error where a knob loses light.
-fn said(record: &Record) -> String {
+fn time_and_error(record: &Record) -> String {
     let time = format!("{} {} ms", record.strategy, significant(record.times.frame_ms));
     match error(record).filter(|_| record.is_lossy) {
         Some(error) => format!("{time} (lossy, relMSE {error})"),
@@ -136,9 +143,9 @@ fn by_time<'a>(done: &'a Done, scene: &'a str, mode: &'a str) -> Vec<&'a Record>
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let sentence = |mode: &&str| {
         let records = by_time(done, scene, mode);
-        let times: Vec<String> = records.iter().map(|record| said(record)).collect();
+        let times: Vec<String> = records.iter().map(|record| time_and_error(record)).collect();
         Some(format!(
-            "In {scene} at {}, {mode}, a frame takes, mean along the path: {}.",
+            "In {scene} at {}, {mode}, the mean times of a frame along the path are: {}.",
             lights(records.first()?.setting.lights),
             listed(&times)
         ))

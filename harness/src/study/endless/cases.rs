@@ -17,7 +17,7 @@ pub(crate) const PLACES: [(&str, &str); 3] = [
 
 /// Location A under ranges by the paper's own rule. No claim is held against it.
 pub(crate) const RULED: (&str, &str) =
-    ("influence", "Location A: ranges by the paper\u{2019}s influence radius, cut hard");
+    ("influence", "Location A: ranges from the paper\u{2019}s influence radius, with a hard cut");
 
 /// The clusters of all settings but the paper's own.
 pub(crate) const USUAL: &str = "48x48x40";
@@ -236,17 +236,17 @@ const PAPER: [Row; 25] = [
 ];
 
 /// What the paper measured: operations of both terms, assignment and shading, ms.
-pub(crate) struct Paper {
+pub(crate) struct Published {
     pub(crate) listed: Option<u64>,
     pub(crate) assign_ms: f64,
     pub(crate) shade_ms: f64,
 }
 
 /// The paper's row of a place, its lights and a setting.
-pub(crate) fn paper(place: &str, lights: u64, setting: &Setting<'_>) -> Option<Paper> {
+pub(crate) fn paper(place: &str, lights: u64, setting: &Setting<'_>) -> Option<Published> {
     let kind = Kind::of(setting)?;
     let row = PAPER.iter().find(|row| (row.0, row.1, row.2) == (place, lights, kind))?;
-    Some(Paper { listed: row.3, assign_ms: row.4, shade_ms: row.5 })
+    Some(Published { listed: row.3, assign_ms: row.4, shade_ms: row.5 })
 }
 
 #[cfg(test)]

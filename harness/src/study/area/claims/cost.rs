@@ -66,7 +66,8 @@ pub(crate) const ONE_LIGHT: Check = Check {
     place: "section 5.5.3, figure 5.22",
     words: "With one light MRP is fastest and LTC second.",
     paper: "MRP is 0.21 ms faster",
-    departure: "one stochastic sample stands for the third place; MRP is mrp-published, our reading of equation 5.5",
+    departure: "one stochastic sample takes the third place; MRP is mrp-published, our reading of \
+                equation 5.5",
     decide: |done, scene| {
         let of = |name: &str| at(done, scene, name, 1);
         let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
@@ -190,7 +191,8 @@ pub(crate) const SPOTS_RATIO: Check = Check {
     place: "section 5.6, figures 5.25 and 5.26",
     words: "Area lights take about twice as long as spots.",
     paper: "about 2, of the frame, at 22 lights and at varying counts",
-    departure: "1, 16 and 64 lights; about twice is 1.5 to 2.5 times; every light shades every pixel; neither has shadows",
+    departure: "1, 16 and 64 lights; about twice means 1.5 to 2.5 times; every light shades every \
+                pixel; neither casts shadows",
     decide: |done, scene| {
         let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
         for lights in [16, 64] {

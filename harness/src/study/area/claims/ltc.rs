@@ -64,7 +64,7 @@ pub(crate) const POLYNOMIAL_FIT: Check = Check {
 pub(crate) const POLYNOMIAL_IMAGE: Check = Check {
     id: "polynomial-image",
     place: "section 5.4.3, figure 5.17",
-    words: "Images by polynomials and by the table are no different to the eye.",
+    words: "Images by polynomials and by the table look the same.",
     paper: "root mean square error below 0.01",
     departure: "the two images are not compared with each other, only with the truth",
     decide: |done, scene| {
@@ -86,8 +86,8 @@ pub(crate) const TABLE_OR_POLYNOMIAL: Check = Check {
     place: "section 5.4.3, figure 5.18",
     words: "The table is as fast as polynomials for one light, and faster for many.",
     paper: "a figure without numbers: similar at 16 lights, then a gap that grows",
-    departure: "both find the lobe once per light, as the paper does; the table lies in a storage buffer, \
-                not in a texture; whole frames decide, and shading is told",
+    departure: "both find the lobe once per light, as the paper does; the table is in a storage \
+                buffer, not in a texture; whole frames decide, and shading is shown",
     decide: |done, scene| {
         let pair = |lights| {
             let polynomial = at(done, scene, "ltc-polynomial-per-light", lights)?;

@@ -51,13 +51,14 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
             + figure(
                 difference,
                 &format!("Difference \u{d7} {}", significant(f64::from(gain))),
-                "absolute, linear; black is none",
+                "absolute and linear; black means none",
             )
             + figure(
                 cut,
                 "The worst tile",
                 &format!(
-                    "of {TILE_PX} pixels, at {}, {}, and what is around it: the truth on the left, {name} on the right",
+                    "of {TILE_PX} pixels, at {}, {}, with its surroundings: truth on the left, \
+                     {name} on the right",
                     corner[0], corner[1]
                 ),
             );
@@ -66,7 +67,7 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
     Some(Part::new(
         "pictures",
         "What models look like",
-        "All under the exposure of the truth.",
+        "All pictures use the exposure of the truth.",
         panels("Model", &shown),
     ))
 }

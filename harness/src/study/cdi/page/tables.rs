@@ -77,9 +77,10 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
     let ms = |head| unit(head, "ms");
     let heads = ["step".into(), ms("here"), ms("paper, Atrium"), ms("paper, Rungholt")];
     let text = format!(
-        "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
-         paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding. A data-centre GPU \
-         draws fragments on a few of its processors: what is rasterised is slow there as on no other chip.",
+        "{} at {} x {}: {} virtual point lights from a reflective shadow map of {} x {}, listed by \
+         {}. The paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after \
+         discarding. A data-centre GPU draws fragments on a few of its processors, so rasterised \
+         passes are unusually slow there.",
         record.setting.scene,
         record.setting.width,
         record.setting.height,
@@ -167,9 +168,10 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
         "casts",
         "Rays from every pixel of the shadow map",
         format!(
-            "Every pixel that shows a surface is a virtual point light, none is discarded; about every one does in a \
-             map of the scene\u{2019}s middle, whose rays lie closer together; {} rays each through {} directions of \
-             {} x {} pixels. Times struck out were taken while the clock was still rising. The paper\u{2019}s \
+            "Every pixel that shows a surface becomes a virtual point light; none is discarded. In \
+             a map of the scene\u{2019}s middle nearly every pixel does, and rays lie closer \
+             together. Each light casts {} rays through {} directions of {} x {} pixels. \
+             Struck-out times were taken while the GPU clock was still rising. The paper\u{2019}s \
              figures: {PAPER}.",
             run.casts.first().map_or(0, |cast| cast.rays),
             run.deep.directions(),
@@ -194,8 +196,8 @@ fn strategies(done: &Done, scene: &str) -> Option<Part> {
         unit("lists", "MiB"),
     ];
     let text = format!(
-        "{} virtual point lights at {} x {}, in the order of their map, from the list of all: lights of this frame \
-         have no hierarchy.",
+        "{} virtual point lights at {} x {}, in the order of their map. Strategies take them from \
+         the list of all lights, because lights made in this frame have no hierarchy.",
         number(first.record.setting.lights as f64),
         first.record.setting.width,
         first.record.setting.height

@@ -76,9 +76,10 @@ pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     Part::new(
         "main",
         "All strategies",
-        "At the comparison paper\u{2019}s parameters, from the list of all lights and through the hierarchy \
-         (/bvh). Times are means along the path where they were measured there: these rank. A table of \
-         one pose is an example, with pictures and lists. A heading sorts by its column.",
+        "All strategies run at the comparison paper\u{2019}s parameters, from the list of all \
+         lights and through the hierarchy (/bvh). Times that were measured along the path are \
+         means over it, and only these rank. A table of one pose is an example with pictures and \
+         lists. Click a heading to sort by its column.",
         panels("Lights", &shown),
     )
 }

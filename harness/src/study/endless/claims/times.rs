@@ -5,14 +5,14 @@ use crate::report::rank::listed;
 use crate::results::Record;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::endless::cases::{Case, Cut, USUAL, cases, setting};
-use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, told, verdict};
+use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, verdict, with_time};
 use crate::study::manifest::Done;
 
 /// Cones against position in assign + shade.
 fn beats(done: &Done, scene: &str, count: u32) -> Answer {
     by_case(done, scene, false, &|_, rows| {
         let cones = rows.cones(count)?;
-        let figure = format!("{}, {}", told(cones), told(rows.position));
+        let figure = format!("{}, {}", with_time(cones), with_time(rows.position));
         Some((figure, Outcome::faster(cones, rows.position)))
     })
 }
@@ -40,7 +40,7 @@ pub(crate) fn balance(done: &Done, scene: &str) -> Answer {
             all if all.contains(&Outcome::Tie) => Outcome::Tie,
             _ => Outcome::Good,
         };
-        let said: Vec<String> = std::iter::once(six).chain(others).map(told).collect();
+        let said: Vec<String> = std::iter::once(six).chain(others).map(with_time).collect();
         Some((listed(&said), outcome))
     })
 }
@@ -54,7 +54,7 @@ pub(crate) fn dif(done: &Done, scene: &str) -> Answer {
         let fastest = others
             .iter()
             .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))?;
-        let figure = format!("{}, the fastest other {}", told(dif), told(fastest));
+        let figure = format!("{}, the fastest other {}", with_time(dif), with_time(fastest));
         Some((figure, Outcome::faster(dif, fastest)))
     });
     match answer.verdict {
@@ -251,7 +251,7 @@ pub(crate) fn thread_per_cluster(_: &Done, _: &str) -> Answer {
 
 /// What nothing here can answer.
 pub(crate) fn flagless(_: &Done, _: &str) -> Answer {
-    Answer::unknown("lists that do not tell their terms apart are not built")
+    Answer::unknown("lists that do not separate their terms are not built")
 }
 
 /// The rows of a case, for figures of other claims.
