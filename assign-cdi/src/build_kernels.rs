@@ -90,9 +90,9 @@ impl BuildKernels {
         let plan_slots = [Slot::Uniform, Slot::Uniform, write, read, write];
         let plan_layout = kernel::layout(gpu, "plan", stages, &plan_slots);
         let plan = kernel::uncounted(gpu, &shader, "package::plan")?;
-        let planner = |entry_point| kernel::compute(gpu, &plan, entry_point, &[&plan_layout]);
+        let planner = |entry_point| kernel::pipeline(gpu, &plan, entry_point, &[&plan_layout]);
         let staged = |module: &wgpu::ShaderModule, entry_point| {
-            kernel::compute(gpu, module, entry_point, &[&build_layout, &stage_layout])
+            kernel::pipeline(gpu, module, entry_point, &[&build_layout, &stage_layout])
         };
         let finders = match settings.build {
             Build::SinglePass { raster, .. } => {
@@ -101,7 +101,8 @@ impl BuildKernels {
                     samplers: match raster {
                         Raster::Compute => {
                             let module = kernel::uncounted(gpu, &shader, "package::samples")?;
-                            let make = |name| kernel::compute(gpu, &module, name, &[&build_layout]);
+                            let make =
+                                |name| kernel::pipeline(gpu, &module, name, &[&build_layout]);
                             Samplers::Compute {
                                 small: make("make_samples"),
                                 large: make("make_large_samples"),
@@ -115,7 +116,7 @@ impl BuildKernels {
             Build::PerDirection { .. } => {
                 let module = kernel::uncounted(gpu, &shader, "package::from_triangles")?;
                 Finders::PerDirection {
-                    find_large: kernel::compute(gpu, &module, "find_large", &[&build_layout]),
+                    find_large: kernel::pipeline(gpu, &module, "find_large", &[&build_layout]),
                     small: staged(&module, "put_small"),
                     large: staged(&module, "put_large"),
                 }

@@ -137,8 +137,8 @@ impl DeepImages {
             [&self.uniform, &self.stages.plan, &b.header, &b.offsets, &self.stages.dispatches];
         let draw = match &self.kernels.finders {
             Finders::SinglePass { samplers: Samplers::Fragment(draw), .. } => Some([
-                kernel::group(gpu, &draw.read_layout, &[&self.uniform, positions]),
-                kernel::group(gpu, &draw.write_layout, &[&b.header, &b.samples]),
+                kernel::bind_buffers(gpu, &draw.read_layout, &[&self.uniform, positions]),
+                kernel::bind_buffers(gpu, &draw.write_layout, &[&b.header, &b.samples]),
             ]),
             _ => None,
         };
@@ -148,11 +148,11 @@ impl DeepImages {
         };
         let rays = [&self.uniform, &b.frames, &b.header, starts, &b.fragments];
         Groups {
-            build: kernel::group(gpu, &self.kernels.build_layout, &build),
-            stage: kernel::group_of(gpu, &self.kernels.stage_layout, &[self.stages.entry()]),
-            plan: kernel::group(gpu, &self.kernels.plan_layout, &plan),
+            build: kernel::bind_buffers(gpu, &self.kernels.build_layout, &build),
+            stage: kernel::bind_entries(gpu, &self.kernels.stage_layout, &[self.stages.entry()]),
+            plan: kernel::bind_buffers(gpu, &self.kernels.plan_layout, &plan),
             draw,
-            rays: kernel::group(gpu, &self.ray_layout, &rays),
+            rays: kernel::bind_buffers(gpu, &self.ray_layout, &rays),
         }
     }
 

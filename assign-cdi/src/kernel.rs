@@ -1,8 +1,6 @@
 //! Short forms of wgpu's descriptors for this crate's many small kernels.
 
-pub(crate) use assign::kernel::{
-    Slot, bind_buffers as group, bind_entries as group_of, layout, pipeline as compute, workgroups,
-};
+pub(crate) use assign::kernel::{Slot, bind_buffers, bind_entries, layout, pipeline, workgroups};
 use assign::{AssignError, Gpu, Shader};
 
 /// A layout of bind groups 0, 1, 2 and so on.

@@ -53,8 +53,8 @@ impl PrefixSum {
         let slots = [Slot::Uniform, Slot::Read, Slot::Read, Slot::Write];
         let layout = kernel::layout(gpu, "prefix sum", wgpu::ShaderStages::COMPUTE, &slots);
         Ok(Self {
-            sum: kernel::compute(gpu, &module, "sum_blocks", &[&layout]),
-            scan: kernel::compute(gpu, &module, "scan_blocks", &[&layout]),
+            sum: kernel::pipeline(gpu, &module, "sum_blocks", &[&layout]),
+            scan: kernel::pipeline(gpu, &module, "scan_blocks", &[&layout]),
             layout,
             levels: Vec::new(),
             bytes: 0,
@@ -101,7 +101,7 @@ impl PrefixSum {
                 let uniform = gpu.uniform("prefix sum", 16);
                 let scan = ScanUniform { in_count, out_count, has_bases };
                 gpu.queue.write_buffer(&uniform, 0, bytes_of(&scan));
-                kernel::group(gpu, &self.layout, &[&uniform, &values, bases, to])
+                kernel::bind_buffers(gpu, &self.layout, &[&uniform, &values, bases, to])
             };
             self.levels.push(Level {
                 blocks,

@@ -40,7 +40,7 @@ impl RandomRanges {
         let slots = [Slot::Uniform, Slot::Write];
         let layout = kernel::layout(gpu, "random ranges", wgpu::ShaderStages::COMPUTE, &slots);
         Ok(Self {
-            pipeline: kernel::compute(gpu, &module, "draw_ranges", &[&layout]),
+            pipeline: kernel::pipeline(gpu, &module, "draw_ranges", &[&layout]),
             layout,
             uniform: gpu.uniform("random ranges", size_of::<RandomUniform>() as u64),
             group: None,
@@ -92,7 +92,7 @@ impl RandomRanges {
             keeps_unknown: u32::from(self.keeps_unknown),
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
-        self.group = Some(kernel::group(gpu, &self.layout, &[&self.uniform, ranges_m]));
+        self.group = Some(kernel::bind_buffers(gpu, &self.layout, &[&self.uniform, ranges_m]));
         self.count = count;
         Ok(())
     }

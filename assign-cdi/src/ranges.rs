@@ -167,7 +167,7 @@ impl RangeCaster {
         let layout = kernel::layout(gpu, "ranges", wgpu::ShaderStages::COMPUTE, &slots);
         let layouts = [images.layout(), &layout];
         Ok(Self {
-            pipeline: kernel::compute(gpu, &module, "estimate_ranges", &layouts),
+            pipeline: kernel::pipeline(gpu, &module, "estimate_ranges", &layouts),
             layout,
             uniform: gpu.uniform("ranges", size_of::<RangesUniform>() as u64),
             group: None,
@@ -234,7 +234,7 @@ impl RangeCaster {
         }
         gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
         let bound = [&self.uniform, points.positions, points.normals, primaries, points.ranges_m];
-        self.group = Some(kernel::group(gpu, &self.layout, &bound));
+        self.group = Some(kernel::bind_buffers(gpu, &self.layout, &bound));
         self.count = points.count;
         Ok(())
     }

@@ -147,9 +147,9 @@ impl ListSort {
         ];
         let [keys, append, read, round] = &layouts;
         let sort = Self {
-            short: kernel::compute(gpu, &short, "sort_short", &[keys, append]),
-            parts: kernel::compute(gpu, &long, "sort_parts", &[keys, read]),
-            merge: kernel::compute(gpu, &long, "merge_round", &[keys, read, round]),
+            short: kernel::pipeline(gpu, &short, "sort_short", &[keys, append]),
+            parts: kernel::pipeline(gpu, &long, "sort_parts", &[keys, read]),
+            merge: kernel::pipeline(gpu, &long, "merge_round", &[keys, read, round]),
             uniform: gpu.uniform("sort", size_of::<SortUniform>() as u64),
             empty_work: gpu.storage("empty sort work", size_of::<SortWork>() as u64)?,
             work: work_buffer(gpu)?,
@@ -218,10 +218,10 @@ impl ListSort {
             }),
         };
         self.groups = Some([
-            kernel::group(gpu, keys, &key_buffers),
-            kernel::group(gpu, append, &item_buffers),
-            kernel::group(gpu, read, &item_buffers),
-            kernel::group_of(gpu, round, &[round_entry]),
+            kernel::bind_buffers(gpu, keys, &key_buffers),
+            kernel::bind_buffers(gpu, append, &item_buffers),
+            kernel::bind_buffers(gpu, read, &item_buffers),
+            kernel::bind_entries(gpu, round, &[round_entry]),
         ]);
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Every kernel, linked and validated without a GPU; and every struct shared by Rust and WESL.
+//! Every kernel links and validates without a GPU, and every struct shared by Rust and WESL has one layout.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -66,7 +66,7 @@ macro_rules! assert_same {
 }
 
 #[test]
-fn structs() {
+fn structs_have_one_layout_in_wesl_and_rust() {
     let settings = DeepImageSettings::default();
     let build = build_shader(&settings);
     let samples = validated(&build, "package::from_samples");
@@ -97,9 +97,9 @@ fn structs() {
     assert_eq!(std::mem::offset_of!(SortWork, longest) as u64, ListSort::LONGEST_AT);
 }
 
-/// Linked lists are written by the build, and read by rays and on the CPU.
+/// The build writes linked lists; rays and the CPU read them.
 #[test]
-fn linked_nodes() {
+fn linked_nodes_have_one_layout() {
     let settings = DeepImageSettings { storage: Storage::LinkedLists, ..Default::default() };
     let build = validated(&build_shader(&settings), "package::from_samples");
     assert_same!(build, "Node", LinkedNode: depth_m, next);
@@ -108,9 +108,9 @@ fn linked_nodes() {
     assert_same!(rays, "RayNode", LinkedNode: depth_m, next);
 }
 
-/// Frames are written as three columns of 16 bytes.
+/// The CPU writes frames of directions as three columns of 16 bytes.
 #[test]
-fn direction_frames() {
+fn direction_frames_are_three_columns() {
     let module = validated(&build_shader(&DeepImageSettings::default()), "package::from_samples");
     let frame = module.layout_of("DirectionFrame");
     assert_eq!((frame.fields, frame.bytes), (vec![("axes".to_owned(), 0)], 48));

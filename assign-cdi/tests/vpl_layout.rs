@@ -1,5 +1,5 @@
-//! The VPL passes' modules, linked without a GPU: they validate, and their structs have the same sizes
-//! and offsets in Rust and in WESL.
+//! The shaders of VPLs, linked without a GPU: they validate, and their structs have the same size and offsets in Rust
+//! and in WESL.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -19,7 +19,7 @@ macro_rules! assert_same {
 }
 
 #[test]
-fn reflective_shadow_map() {
+fn the_map_has_one_layout_in_wesl_and_rust() {
     for root in ["package::vpl_mips", "package::vpl_choose"] {
         let module = module(&choose_shader(), root);
         assert_same!(module, "Rsm", RsmUniform: intensity, range_m, direction, outer_chord_2,
@@ -28,7 +28,7 @@ fn reflective_shadow_map() {
 }
 
 #[test]
-fn kept_lights() {
+fn kept_lights_have_one_layout_in_wesl_and_rust() {
     let module = module(&keep_shader(), "package::vpl_keep");
     assert_same!(module, "Keep", KeepUniform: range_scale, min_range_m, max_range_m, min_distance_2,
         capacity, clamps);

@@ -67,13 +67,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         .create(&gpu, "package::shade")?;
     let mut bindings = FrameBindings::new(&gpu);
     let image = gpu.storage("image", u64::from(width * height) * 16)?;
-    let own = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+    let image_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
         entries: &[storage_entry(0, wgpu::ShaderStages::COMPUTE, false)],
     });
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: &[Some(bindings.layout()), Some(strategy.lookup().layout), Some(&own)],
+        bind_group_layouts: &[
+            Some(bindings.layout()),
+            Some(strategy.lookup().layout),
+            Some(&image_layout),
+        ],
         immediate_size: 0,
     });
     let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -86,7 +90,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let target = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
-        layout: &own,
+        layout: &image_layout,
         entries: &[entry(0, &image)],
     });
 

@@ -2,15 +2,12 @@
 //! normals.
 
 use assign::{
-    AssignError, Bounds, Frame, FrameBindings, Gpu, LiveGroups, Passes, Shader, View, entry,
-    storage_entry, uniform_entry,
+    AssignError, Bounds, Frame, FrameBindings, Gpu, LiveGroups, Passes, Shader, UNFILTERED, View,
+    entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{
-    Normals, Occupancy,
-    bindings::{TEXELS, texture, texture_layout},
-    cluster_wesl::cluster_wesl,
-    froxels::FROXELS_BINDING,
+    Normals, Occupancy, cluster_wesl::cluster_wesl, froxels::FROXELS_BINDING,
     normal_bins::BINS_BINDING,
 };
 
@@ -54,16 +51,16 @@ impl Gather {
     ) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let mut entries = vec![
-            texture_layout(0, wgpu::TextureSampleType::Depth),
+            texture_entry(0, stages, wgpu::TextureSampleType::Depth),
             storage_entry(1, stages, false),
             uniform_entry(FROXELS_BINDING, stages),
         ];
         if normals.is_some() {
-            entries.push(texture_layout(2, TEXELS));
+            entries.push(texture_entry(2, stages, UNFILTERED));
             entries.push(uniform_entry(BINS_BINDING, stages));
         }
         if glossy {
-            entries.push(texture_layout(3, TEXELS));
+            entries.push(texture_entry(3, stages, UNFILTERED));
         }
         let layout = gpu.bind_group_layout("gather", &entries);
         let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
@@ -73,9 +70,8 @@ impl Gather {
         // workgroup, or over slices, at most 1,024, or over cells along an edge, at most 3.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::gather") }?;
-        let layouts = [Some(frame.layout()), Some(&layout), Some(&live_layout)];
-        // Workgroup memory need not start as zero: the kernel writes it before it reads it.
-        let pipeline = |entry_point| gpu.compute_pipeline(&module, entry_point, &layouts, false);
+        let layouts = [frame.layout(), &layout, &live_layout];
+        let pipeline = |entry_point| kernel::pipeline(gpu, &module, entry_point, &layouts);
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
         Ok(Self {
             words: match bounds {

@@ -90,7 +90,6 @@
 //! DC-I serves look-ups at any depth, including transparent layers and volumes. The others serve only the opaque
 //! surfaces in the depth buffer, and refuse any other look-up.
 
-mod bindings;
 mod cluster_wesl;
 mod clustered;
 mod froxels;

@@ -6,7 +6,6 @@
 use assign::{
     LightKinds, LiveGroups,
     conformance::{LinkedModule, StructLayout},
-    struct_layout,
 };
 use assign_clustered::HybridShader;
 

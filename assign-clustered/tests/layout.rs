@@ -12,7 +12,7 @@ use assign_clustered::{
     NormalBinsUniform, Normals, Occupancy, gather_source,
 };
 
-/// The culling kernel around a module of clusters, validated.
+/// The culling kernel of clusters, validated.
 fn kernel(bounds: Bounds, sparse: bool, source: LightSource, kinds: LightKinds) -> LinkedModule {
     let (shape, module) = match bounds {
         Bounds::Implicit => (GroupShape::Frustum, IMPLICIT_WESL),

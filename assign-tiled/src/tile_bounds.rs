@@ -1,8 +1,8 @@
 //! The pass `bounds`: finds the depth range of each tile's samples.
 
 use assign::{
-    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, Passes, Shader, entry,
-    storage_entry, uniform_entry,
+    AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, Passes, Shader, entry, kernel,
+    storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::tile_wesl::EXPLICIT_WESL;
@@ -24,16 +24,7 @@ pub(crate) struct TileBounds {
 impl TileBounds {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
-        let depth = wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: stages,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
+        let depth = texture_entry(0, stages, wgpu::TextureSampleType::Depth);
         let entries =
             [depth, storage_entry(1, stages, false), uniform_entry(FIRST_STRATEGY_BINDING, stages)];
         let layout = gpu.bind_group_layout("tile bounds", &entries);
@@ -41,9 +32,7 @@ impl TileBounds {
         // SAFETY: its one loop counts up to the number of pixels of a tile.
         #[allow(unsafe_code, reason = "its loop ends")]
         let module = unsafe { bounds_shader().create_uncounted(gpu, "package::tile_bounds") }?;
-        let layouts = [Some(frame.layout()), Some(&layout)];
-        // Workgroup memory need not start as zero: the kernel writes it before it reads it.
-        let pipeline = gpu.compute_pipeline(&module, "reduce", &layouts, false);
+        let pipeline = kernel::pipeline(gpu, &module, "reduce", &[frame.layout(), &layout]);
         let depths = gpu.storage("tile depths", 0)?;
         Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0] })
     }
@@ -67,10 +56,7 @@ impl TileBounds {
             label: Some("tile bounds"),
             layout: &self.layout,
             entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(depth),
-                },
+                texture(0, depth),
                 entry(1, &self.depths),
                 entry(FIRST_STRATEGY_BINDING, tiles),
             ],

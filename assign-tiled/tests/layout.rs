@@ -9,7 +9,7 @@ use assign::{
 };
 use assign_tiled::{EXPLICIT_WESL, IMPLICIT_WESL, TilesUniform, bounds_source};
 
-/// The culling kernel around a module of tiles, validated.
+/// The culling kernel of tiles, validated.
 fn kernel(bounds: Bounds, settings: CullSettings, kinds: LightKinds) -> LinkedModule {
     let module = match bounds {
         Bounds::Implicit => IMPLICIT_WESL,
@@ -51,6 +51,6 @@ fn tiles_have_one_layout_in_wesl_and_rust() {
 }
 
 #[test]
-fn the_bounds_pass_validates_and_reads_the_same_tiles() {
+fn the_pass_bounds_validates_and_reads_the_same_layout() {
     check_tiles(&LinkedModule::new("tile bounds", &bounds_source().unwrap()));
 }

@@ -62,7 +62,10 @@ pub use cull_settings::{AreaBounds, Bounds, CullSettings, FrustumTests, LightSou
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use error::AssignError;
 pub use everything::Everything;
-pub use frame::{Frame, FrameBindings, Needs, SampleDomain, entry, storage_entry, uniform_entry};
+pub use frame::{
+    Frame, FrameBindings, Needs, SampleDomain, UNFILTERED, entry, storage_entry, texture,
+    texture_entry, uniform_entry,
+};
 pub use gpu::Gpu;
 pub use groups::{Facing, GroupShape, Groups};
 pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};

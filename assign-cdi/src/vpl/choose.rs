@@ -1,6 +1,9 @@
 //! The passes `rsm-mips` and `vpl-choose`: from the map to VPLs.
 
-use assign::{AssignError, Gpu, Passes, Shader, ViewUniform, entry, storage_entry, uniform_entry};
+use assign::{
+    AssignError, Gpu, Passes, Shader, UNFILTERED, ViewUniform, entry, storage_entry, texture,
+    texture_entry, uniform_entry,
+};
 use bytemuck::bytes_of;
 
 use super::rsm::{Rsm, RsmUniform};
@@ -85,10 +88,10 @@ impl Choose {
             gpu.queue.write_buffer(&level_numbers, at, bytes_of(&[level, 0, 0, 0]));
         }
         Ok(Self {
-            reflect: kernel::compute(gpu, &mips, "reflect_texels", &mips_layouts),
-            join: kernel::compute(gpu, &mips, "join_blocks", &mips_layouts),
-            flag: kernel::compute(gpu, &choose, "flag_blocks", &choose_layouts),
-            write: kernel::compute(gpu, &choose, "write_vpls", &choose_layouts),
+            reflect: kernel::pipeline(gpu, &mips, "reflect_texels", &mips_layouts),
+            join: kernel::pipeline(gpu, &mips, "join_blocks", &mips_layouts),
+            flag: kernel::pipeline(gpu, &choose, "flag_blocks", &choose_layouts),
+            write: kernel::pipeline(gpu, &choose, "write_vpls", &choose_layouts),
             view: gpu.uniform("view of the RSM", size_of::<ViewUniform>() as u64),
             rsm: gpu.uniform("RSM", size_of::<RsmUniform>() as u64),
             level_numbers,
@@ -125,10 +128,6 @@ impl Choose {
     }
 
     fn bind(&self, gpu: &Gpu, rsm: &Rsm<'_>, scratch: &Scratch, chosen: &Chosen) -> Groups {
-        let texture = |binding, view| wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::TextureView(view),
-        };
         let level = wgpu::BindGroupEntry {
             binding: 0,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -154,12 +153,12 @@ impl Choose {
         ];
         let with_map = |others: &[wgpu::BindGroupEntry<'_>], layout| {
             let entries: Vec<_> = map.iter().chain(others).cloned().collect();
-            kernel::group_of(gpu, layout, &entries)
+            kernel::bind_entries(gpu, layout, &entries)
         };
         Groups {
-            view: kernel::group(gpu, &self.layouts.view, &[&self.view]),
+            view: kernel::bind_buffers(gpu, &self.layouts.view, &[&self.view]),
             mips: with_map(&mips, &self.layouts.mips),
-            level: kernel::group_of(gpu, &self.layouts.level, &[level]),
+            level: kernel::bind_entries(gpu, &self.layouts.level, &[level]),
             choose: with_map(&choose, &self.layouts.choose),
         }
     }
@@ -223,24 +222,16 @@ impl Scratch {
 impl Layouts {
     fn new(gpu: &Gpu) -> Self {
         let stages = wgpu::ShaderStages::COMPUTE;
-        let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: stages,
-            ty: wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
-        let float = wgpu::TextureSampleType::Float { filterable: false };
         let map = [
             uniform_entry(0, stages),
-            texture(1, wgpu::TextureSampleType::Depth),
-            texture(2, float),
+            texture_entry(1, stages, wgpu::TextureSampleType::Depth),
+            texture_entry(2, stages, UNFILTERED),
         ];
-        let mips =
-            [texture(3, float), storage_entry(4, stages, false), storage_entry(5, stages, false)];
+        let mips = [
+            texture_entry(3, stages, UNFILTERED),
+            storage_entry(4, stages, false),
+            storage_entry(5, stages, false),
+        ];
         let choose =
             [(3, true), (4, true), (5, false), (6, true), (7, false), (8, false), (9, false)]
                 .map(|(binding, read_only)| storage_entry(binding, stages, read_only));

@@ -61,7 +61,7 @@ pub(super) struct Keep {
     write: wgpu::ComputePipeline,
     layouts: [wgpu::BindGroupLayout; 3],
     /// An empty bind group: group 1 of `write`.
-    none: wgpu::BindGroup,
+    empty: wgpu::BindGroup,
     uniform: wgpu::Buffer,
     prefix: PrefixSum,
     flags: wgpu::Buffer,
@@ -83,11 +83,11 @@ impl Keep {
         ];
         let [ranges, flags, lights] = &layouts;
         // Flags and lights together would exceed WebGPU's eight storage buffers.
-        let none = kernel::layout(gpu, "none", stages, &[]);
+        let empty = kernel::layout(gpu, "empty", stages, &[]);
         Ok(Self {
-            flag: kernel::compute(gpu, &module, "flag_kept", &[ranges, flags]),
-            write: kernel::compute(gpu, &module, "write_lights", &[ranges, &none, lights]),
-            none: kernel::group(gpu, &none, &[]),
+            flag: kernel::pipeline(gpu, &module, "flag_kept", &[ranges, flags]),
+            write: kernel::pipeline(gpu, &module, "write_lights", &[ranges, &empty, lights]),
+            empty: kernel::bind_buffers(gpu, &empty, &[]),
             uniform: gpu.uniform("VPLs kept", size_of::<KeepUniform>() as u64),
             prefix: PrefixSum::new(gpu)?,
             flags: gpu.storage("VPLs kept: flags", 4)?,
@@ -134,9 +134,9 @@ impl Keep {
             &kept.shapes,
         ];
         self.groups = Some([
-            kernel::group(gpu, ranges_layout, &[&self.uniform, ranges_m]),
-            kernel::group(gpu, flags_layout, &[&self.flags, counts]),
-            kernel::group(gpu, lights_layout, &lights),
+            kernel::bind_buffers(gpu, ranges_layout, &[&self.uniform, ranges_m]),
+            kernel::bind_buffers(gpu, flags_layout, &[&self.flags, counts]),
+            kernel::bind_buffers(gpu, lights_layout, &lights),
         ]);
         Ok(())
     }
@@ -154,7 +154,7 @@ impl Keep {
             pass.dispatch_workgroups(groups, 1, 1);
             self.prefix.dispatch(pass);
             pass.set_bind_group(0, ranges, &[]);
-            pass.set_bind_group(1, &self.none, &[]);
+            pass.set_bind_group(1, &self.empty, &[]);
             pass.set_bind_group(2, lights, &[]);
             pass.set_pipeline(&self.write);
             pass.dispatch_workgroups(groups, 1, 1);

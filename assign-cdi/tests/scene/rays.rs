@@ -28,7 +28,7 @@ pub(crate) struct Ray {
     pub(crate) normal: Vec3,
 }
 
-/// Lengths of rays, by a kernel of the test's own around the given module of ray casting.
+/// Lengths of rays. A kernel of this test casts them with the given module of ray casting.
 pub(crate) fn cast_with(gpu: &Gpu, images: &DeepImages, rays: &[Ray], ray_cast: &str) -> Vec<f32> {
     let shader = DeepImages::mount(images.settings(), Shader::new(3), 0)
         .module("package::ray_cast", ray_cast.to_owned())
@@ -56,7 +56,7 @@ pub(crate) fn upload<T: bytemuck::NoUninit>(gpu: &Gpu, words: &[T]) -> wgpu::Buf
     assign::conformance::upload(gpu, "words", words).unwrap()
 }
 
-/// Length of a ray among triangles, beyond 0.1 mm: of that of its own surface.
+/// Length of a ray by a test against all triangles. Hits within 0.1 mm belong to its own surface and do not count.
 pub(crate) fn true_length(triangles: &[Corners], ray: &Ray) -> Option<f32> {
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let hits = triangles.iter().filter_map(|corners| distance(corners, origin, direction));
@@ -78,7 +78,7 @@ pub(crate) fn rays_from_surfaces(triangles: &[Corners], count: usize, seed: u64)
     rays
 }
 
-/// Settings of `count` directions: a square number, or twice one.
+/// Settings with `count` directions, which must be a square number or twice one.
 pub(crate) fn settings(count: u32, size_px: u32, spread: Spread) -> DeepImageSettings {
     let stacks = (1..=32).find(|n| count == n * n || count == 2 * n * n).unwrap();
     DeepImageSettings {
@@ -88,10 +88,10 @@ pub(crate) fn settings(count: u32, size_px: u32, spread: Spread) -> DeepImageSet
     }
 }
 
-/// The light that points reflect.
+/// Position of the light that points reflect.
 pub(crate) const LIGHT_WORLD: Vec3 = Vec3::new(30.0, 50.0, 20.0);
 
-/// Ranges of rays' origins; their directions are the primary ones.
+/// Ranges of the origins of rays. The directions of the rays are the primary directions.
 pub(crate) fn ranges_of(gpu: &Gpu, images: &DeepImages, rays: &[Ray], rule: RangeRule) -> Vec<f32> {
     let words = |of: fn(&Ray) -> Vec3| -> Vec<Vec4> {
         rays.iter().map(|ray| of(ray).extend(7.0)).collect()

@@ -2,17 +2,14 @@
 
 use assign::{
     AssignError, Frame, FrameBindings, Gpu, LightKinds, LightLists, ListsBindings, Passes,
-    SampleDomain, entry, storage_entry, uniform_entry,
+    SampleDomain, entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use super::{
     buffers::{Buffers, Sizes},
     shader::{HybridShader, LISTS_GROUP},
 };
-use crate::{
-    bindings::{texture, texture_layout},
-    froxels::{FROXELS_BINDING, FroxelsUniform},
-};
+use crate::froxels::{FROXELS_BINDING, FroxelsUniform};
 
 /// Bindings of the cells in bind group [`LISTS_GROUP`].
 const MASKS: u32 = FROXELS_BINDING + 1;
@@ -26,7 +23,7 @@ pub(crate) struct HybridPasses {
     /// The cells without the lists: what `occupancy` and `scatter` read and write.
     cells_layout: wgpu::BindGroupLayout,
     cells_bind_group: Option<wgpu::BindGroup>,
-    kernel: ListsBindings,
+    lists: ListsBindings,
     depth_layout: wgpu::BindGroupLayout,
     depth_bind_group: Option<wgpu::BindGroup>,
     /// The live cells: first as `clear` and `reserve_lists` write them, then as `sort` reads them.
@@ -56,30 +53,30 @@ impl HybridPasses {
         let cells_layout = gpu.bind_group_layout("hybrid cells", &with_cull);
         let depth_layout = gpu.bind_group_layout(
             "hybrid depth",
-            &[texture_layout(0, wgpu::TextureSampleType::Depth)],
+            &[texture_entry(0, stages, wgpu::TextureSampleType::Depth)],
         );
         let live_layouts = [false, true].map(|read_only| {
             gpu.bind_group_layout("hybrid live", &[storage_entry(0, stages, read_only)])
         });
-        let kernel = ListsBindings::of_kernel(gpu, "hybrid lists", &cells);
+        let bound_lists = ListsBindings::of_kernel(gpu, "hybrid lists", &cells);
         let kinds = LightKinds::default();
         let occupancy = HybridShader::Occupancy.create(gpu, kinds)?;
         let reserve = HybridShader::Reserve.create(gpu, kinds)?;
         let sort = HybridShader::Sort.create(gpu, kinds)?;
-        let depth_groups = [Some(frame.layout()), Some(&cells_layout), Some(&depth_layout)];
+        let depth_groups = [frame.layout(), &cells_layout, &depth_layout];
         let [written, read_only] = &live_layouts;
-        let reserve_groups = [None, Some(kernel.layout()), Some(written)];
-        let sort_groups = [None, Some(kernel.layout()), Some(read_only)];
+        let reserve_groups = [None, Some(bound_lists.layout()), Some(written)];
+        let sort_groups = [None, Some(bound_lists.layout()), Some(read_only)];
         Ok(Self {
+            occupancy: kernel::pipeline(gpu, &occupancy, "occupancy", &depth_groups),
             // Workgroup memory need not start as zero: `sort` writes it before it reads it.
-            occupancy: gpu.compute_pipeline(&occupancy, "occupancy", &depth_groups, false),
             clear: gpu.compute_pipeline(&reserve, "clear", &reserve_groups, false),
             reserve: gpu.compute_pipeline(&reserve, "reserve_lists", &reserve_groups, false),
             sort: gpu.compute_pipeline(&sort, "sort_lists", &sort_groups, false),
             frame,
             cells_layout,
             cells_bind_group: None,
-            kernel,
+            lists: bound_lists,
             depth_layout,
             depth_bind_group: None,
             live_layouts,
@@ -108,8 +105,8 @@ impl HybridPasses {
         let kinds = frame.lights.kinds();
         if self.scatter.as_ref().is_none_or(|(known, _)| *known != kinds) {
             let module = HybridShader::Scatter.create(gpu, kinds)?;
-            let layouts = [Some(self.frame.layout()), Some(&self.cells_layout)];
-            let pipeline = gpu.compute_pipeline(&module, "scatter", &layouts, false);
+            let layouts = [self.frame.layout(), &self.cells_layout];
+            let pipeline = kernel::pipeline(gpu, &module, "scatter", &layouts);
             self.scatter = Some((kinds, pipeline));
         }
         Ok(())
@@ -129,7 +126,7 @@ impl HybridPasses {
             entry(CURSORS, cursors),
             entry(UNSORTED, unsorted),
         ];
-        self.kernel.bind(gpu, lists, &cells);
+        self.lists.bind(gpu, lists, &cells);
         let with_cull = [&[entry(3, lists.uniform())], &cells[..]].concat();
         self.cells_bind_group =
             Some(bind_group(gpu, "hybrid cells", &self.cells_layout, &with_cull));
@@ -195,7 +192,7 @@ impl HybridPasses {
     }
 
     fn bind_lists(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_bind_group(LISTS_GROUP, self.kernel.bind_group(), &[]);
+        pass.set_bind_group(LISTS_GROUP, self.lists.bind_group(), &[]);
         let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
         pass.set_bind_group(2, live, &[]);
     }

@@ -5,10 +5,9 @@ use serde_json::json;
 use super::figure::Charts;
 use super::part::Part;
 use super::shots::Shots;
-use crate::chart::CHART_CSS;
 use crate::report::finding::clock_notice;
 use crate::report::format::short_adapter;
-use crate::report::html::{PAGE, SCRIPT, STYLE, fill, in_script};
+use crate::report::html::{PAGE, SCRIPT, fill, in_script, style};
 use crate::report::markup::{Html, html, with_names_whole};
 use crate::report::rank::listed;
 use crate::report::terms::terms;
@@ -81,7 +80,7 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     .unwrap_or_else(|_| "null".to_owned());
     let embedded = if data.len() <= MOST_DATA { data.as_str() } else { "null" };
     let view = shots.view().to_string();
-    let style = [STYLE, CHART_CSS, STUDY_STYLE].join("\n");
+    let style = style(STUDY_STYLE);
     let html = fill(
         PAGE,
         &[
