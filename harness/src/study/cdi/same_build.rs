@@ -30,8 +30,8 @@ fn own_errors<'r>(errors: &'r &Errors) -> &'r Errors {
     errors
 }
 
-/// How far the image through deep images of a pass a direction is from that of one pass: its mean error,
-/// and the share of pixels that differ by more than a twentieth.
+/// The error of the image through deep images of one pass per direction against the image through those
+/// of one pass: mean error, and the share of pixels that differ by more than a twentieth.
 pub(crate) fn image_by_build(done: &Done, scene: &str) -> Option<(f64, f64)> {
     entries(done, scene, MODELS).iter().find_map(|entry| {
         let vpls = entry.record.setting.vpls.as_ref()?;

@@ -75,7 +75,7 @@ pub(crate) fn shown(ms: f64, counts: bool) -> Html {
     if counts { text.into() } else { html!("<s>{}</s>", text) }
 }
 
-/// What a reader has to know: which times are struck out, and of which lights the errors are.
+/// What a reader must know: which times are struck out, and which lights the errors belong to.
 pub(crate) fn notices(done: &Done) -> Vec<String> {
     let mut notices = Vec::new();
     for scene in done.scenes() {
@@ -83,7 +83,7 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
             [jobs::BUILDS, jobs::CASTS].into_iter().flat_map(|section| done.of(scene, section));
         for (job, results) in jobs {
             let Some(run) = results.deep_images.as_ref() else { continue };
-            // What a job says of itself stands among the notices already.
+            // The job's own warning already stands among the notices.
             if results.warnings.iter().any(|warning| warning.contains("are refused")) {
                 continue;
             }

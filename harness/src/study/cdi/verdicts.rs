@@ -56,7 +56,7 @@ pub(crate) fn nearer(first: f64, second: f64, noise: f64) -> Nearer {
     }
 }
 
-/// What the page says of ties.
+/// The page's note on ties.
 pub(crate) fn about_ties(truth: &TruthImage) -> String {
     format!(
         "The noise of the truth changes a difference of two mean errors by at most {} (two \
@@ -100,7 +100,7 @@ fn named(id: &str) -> &'static str {
     RULES.iter().find(|(known, ..)| *known == id).map_or("", |(_, _, name)| name)
 }
 
-/// The parameter that a sweep varies: the factor on lengths, or the longest range.
+/// The parameter that a sweep varies: the factor on lengths of rays, or the longest range.
 fn parameter(vpls: &Vpls) -> f64 {
     vpls.random_m.map_or(vpls.range_scale, |[_, high]| high)
 }
@@ -200,7 +200,7 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     found
 }
 
-/// Whether a record's lights lack Fresnel's term: then its errors decide nothing.
+/// Whether a record's lights lack Fresnel's term. If so, its errors decide nothing.
 fn is_stale(record: &Record) -> bool {
     record.setting.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel)
 }
@@ -239,7 +239,7 @@ pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
 }
 
 /// The setting of a sweep that errs least on average over the scenes, with that error and the greatest of
-/// any scene: what a renderer would set once.
+/// any scene. A renderer would choose this setting once.
 fn best_in_common(done: &Done, is_of: fn(&Settings) -> bool) -> Option<(f64, f64)> {
     let scenes = done.scenes();
     let mut errors_of: Vec<(&Settings, Vec<f64>)> = Vec::new();

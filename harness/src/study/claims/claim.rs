@@ -22,7 +22,7 @@ pub(crate) struct Check {
     pub(crate) decide: fn(&Done, &str) -> Answer,
 }
 
-/// What a paper claims, and how it came to it.
+/// A paper's claims, and how it measured.
 pub(crate) struct Paper {
     /// What the page calls it: `the comparison paper`.
     pub(crate) name: &'static str,
@@ -37,7 +37,7 @@ pub(crate) struct Claim<'a> {
     pub(crate) answers: Vec<(&'a str, Answer)>,
 }
 
-/// Whether a study ran on another GPU than a paper: then absolute times decide nothing.
+/// Undecided if the study ran on another GPU than the paper, because then absolute times decide nothing.
 pub(crate) fn on_another_gpu(done: &Done, gpu: &str) -> Option<Verdict> {
     let is_other = done.results.values().any(|results| !results.machine.adapter.contains(gpu));
     is_other.then(|| Verdict::undecided(&format!("the paper used another GPU, {gpu}")))
@@ -54,7 +54,7 @@ pub(crate) fn judge<'a>(done: &'a Done, paper: &Paper) -> Vec<Claim<'a>> {
 }
 
 impl Claim<'_> {
-    /// What all scenes together say.
+    /// The verdict of all scenes together.
     pub(crate) fn verdict(&self) -> Verdict {
         let known: Vec<&(&str, Answer)> = self
             .answers
@@ -69,7 +69,7 @@ impl Claim<'_> {
             [(_, one)] => one.verdict.clone(),
             several => {
                 let all = |verdict: &Verdict| several.iter().all(|(_, a)| a.verdict == *verdict);
-                // Scenes that say nothing are counted in `verdict_text`.
+                // `verdict_text` counts the scenes that decide nothing.
                 if all(&Verdict::Holds) {
                     Verdict::Holds
                 } else if all(&Verdict::Fails) {
@@ -97,7 +97,7 @@ impl Claim<'_> {
         }
     }
 
-    /// The verdict, and how many scenes decide it where some do not: `holds (1 of 3 scenes measured)`.
+    /// The verdict, and how many scenes decide it if not all do: `holds (1 of 3 scenes measured)`.
     pub(crate) fn verdict_text(&self) -> String {
         let is_known = |answer: &Answer| !matches!(answer.verdict, Verdict::Unknown(_));
         let known = self.answers.iter().filter(|(_, answer)| is_known(answer)).count();

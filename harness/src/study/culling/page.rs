@@ -2,14 +2,17 @@
 //! claims of them is judged in `claims`.
 
 use crate::chart::{Axis, Marks, Scale, XyChart};
+use crate::report::column::{Better, Column};
 use crate::report::finding::lights;
-use crate::report::format::{ABSENT, number, significant};
+use crate::report::fit::Fit;
+use crate::report::format::{number, significant};
 use crate::report::markup::Html;
 use crate::report::rank::{ALIKE, listed};
+use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::study::data::{Entry, counts, entries, lines};
+use crate::study::data::{Entry, Line, counts, entries, lines};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, name, table, unit};
+use crate::study::page::figure::Charts;
 use crate::study::page::lines::{fit, times_series};
 use crate::study::page::part::Part;
 
@@ -74,52 +77,69 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
         .collect()
 }
 
-fn times(entries: &[Entry<'_>]) -> Html {
-    let counts = counts(entries);
-    let rows: Vec<Vec<Html>> = lines(entries)
-        .into_iter()
-        .map(|(id, records)| {
-            let mut cells: Vec<Option<String>> = Vec::new();
-            cells.extend(counts.iter().map(|count| {
-                let found = records.iter().find(|record| record.setting.lights == *count);
-                found.map(|record| significant(frame(record)))
-            }));
-            cells.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
-                Some(fit) => [
-                    Some(significant(fit.slope * 1e6)),
-                    Some(significant(fit.offset)),
-                    Some(format!("{:.3}", fit.r2)),
-                ],
-                None => [None, None, None],
-            });
-            cells.push(records.last().and_then(|r| error(r)));
-            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| ABSENT.to_owned()));
-            std::iter::once(name(id)).chain(cells.map(Html::from)).collect()
-        })
-        .collect();
-    let mut heads: Vec<Html> = vec!["method".into()];
-    heads.extend(counts.iter().map(|count| unit(&number(*count as f64), "ms")));
-    heads.extend([
-        unit("slope", "\u{b5}s per 1,000 lights"),
-        unit("offset", "ms"),
-        "R\u{b2}".into(),
-        "relMSE".into(),
+/// The time of a frame at each count of lights, the straight line through these times, and the error at the
+/// most lights.
+fn times<'a>(entries: &[Entry<'a>]) -> Html {
+    let at = |count: u64| {
+        let time = move |(_, records): &Line<'a>| {
+            let found = records.iter().find(|record| record.setting.lights == count);
+            found.map(|record| frame(record))
+        };
+        Column::figure(number(count as f64), "ms", Better::Less, time, significant)
+    };
+    let mut columns: Vec<Column<'a, Line<'a>>> = counts(entries).into_iter().map(at).collect();
+    columns.extend([
+        Column::figure(
+            "slope",
+            "\u{b5}s per 1,000 lights",
+            Better::Less,
+            |line: &Line<'a>| Some(straight(line)?.slope * 1e6),
+            significant,
+        ),
+        Column::figure(
+            "offset",
+            "ms",
+            Better::Less,
+            |line: &Line<'a>| Some(straight(line)?.offset),
+            significant,
+        ),
+        Column::figure(
+            "R\u{b2}",
+            "",
+            Better::More,
+            |line: &Line<'a>| Some(straight(line)?.r2),
+            |r2| format!("{r2:.3}"),
+        ),
+        Column::figure(
+            "relMSE",
+            "",
+            Better::Less,
+            |(_, records): &Line<'a>| error(records.last()?),
+            significant,
+        ),
     ]);
-    table("Frame times by lights", &heads, &rows)
+    let row = |line: Line<'a>| Row::new(line.0.to_string(), line);
+    Table::new("method", columns, lines(entries).into_iter().map(row).collect())
+        .competing(|_| false)
+        .dotted(|(id, _)| id.class())
+        .html("Frame times by lights", Look::Plain)
+}
+
+/// The straight line through the times of a method, from three counts of lights on.
+fn straight((_, records): &Line<'_>) -> Option<Fit> {
+    fit(records, frame).filter(|fit| fit.points > 2)
 }
 
 /// The error of a record against no culling; `None` where it was not compared.
-fn error(record: &Record) -> Option<String> {
-    let error =
-        record.image.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control());
-    error.map(significant)
+fn error(record: &Record) -> Option<f64> {
+    record.image.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control())
 }
 
 /// A record's time, and its error where a knob loses light.
 fn time_and_error(record: &Record) -> String {
     let time = format!("{} {} ms", record.strategy, significant(record.times.frame_ms));
     match error(record).filter(|_| record.is_lossy) {
-        Some(error) => format!("{time} (lossy, relMSE {error})"),
+        Some(error) => format!("{time} (lossy, relMSE {})", significant(error)),
         None => time,
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Ht
         html += counted(&culled, title, "Outer specular operations", "%", share)
             .map_or_else(Html::default, |chart| charts.bars(&slug("outer"), &chart));
     }
-    // Of what a setting lists, not of what it should.
+    // The share of visible terms among those that a setting lists, not among those that it should list.
     let waste = |operations: &Operations| match seen(operations) {
         0 => f64::NAN,
         seen => operations.listed() as f64 / seen as f64,

@@ -19,7 +19,7 @@ use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
 
-/// What the figures of a part mean.
+/// The meaning of a part's figures.
 const NOTE: &str = "A light operation is one term, diffuse or specular, of one light at one \
                     sample. Listed: the sample\u{2019}s list contains it. Evaluated: listed, and \
                     shading does not skip it at that sample. Outer: a specular term beyond the \
@@ -57,7 +57,7 @@ pub(crate) fn places(
     parts
 }
 
-/// What the camera sees.
+/// A picture of the view.
 fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
     let key = case.entries.iter().find_map(|Entry { job, record }| {
         shots.file(&job.name, record.image.files.baseline.as_deref()?)
@@ -81,7 +81,7 @@ fn operations<'a>(case: &'a Case<'a>) -> Html {
         .html(&format!("Light operations and times, {}", case.name()), Look::Plain)
 }
 
-/// Columns of light operations, and what is lost of them.
+/// Columns of light operations and of lost operations.
 fn terms<'a>(case: &'a Case<'a>) -> Vec<Column<'a, &'a Record>> {
     let count = |head, unit, of: fn(&Operations) -> Option<u64>| {
         let value = move |record: &&Record| {
@@ -179,7 +179,7 @@ fn loss(case: &Case<'_>, record: &Record) -> Option<String> {
     Some(format!("{least}{}", number(lost as f64)))
 }
 
-/// What is fastest without a loss, what it evaluates, and what the fastest with a loss loses.
+/// Names the fastest setting without a loss, what it evaluates, and what the fastest lossy setting loses.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     cases(done, scene).iter().filter_map(|case| sentence(scene, case)).collect()
 }

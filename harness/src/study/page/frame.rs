@@ -17,7 +17,7 @@ use crate::study::claims;
 use crate::study::manifest::Done;
 use crate::study::slice::Study;
 
-/// The page's own rules, beside those of a comparison's page.
+/// The style rules of study pages; those of a comparison's page apply too.
 pub(crate) const STUDY_STYLE: &str = include_str!("study.css");
 
 /// More data than this lie beside the page and not in it, bytes.
@@ -39,7 +39,7 @@ pub(crate) struct Page {
     pub(crate) words: Vec<String>,
 }
 
-/// The page of what is done of a study.
+/// Draws the page of the jobs that are done.
 pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     let mut charts = Charts::default();
     let mut shots = Shots::new(done);
@@ -141,7 +141,7 @@ fn is_software(done: &Done) -> bool {
     done.results.values().any(|results| results.machine.device_type == DeviceType::Cpu)
 }
 
-/// What a reader has to know before trusting a figure.
+/// What a reader must know before trusting a figure.
 fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<String> {
     let mut notices = Vec::new();
     let missing = done.missing();

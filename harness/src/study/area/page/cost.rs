@@ -1,4 +1,4 @@
-//! What area lights cost: times against the number of lights, by model, beside spots.
+//! The cost of area lights: times against the number of lights, by model, compared with spots.
 
 use crate::chart::{Axis, Marks, Scale, Series, XyChart};
 use crate::report::finding::lights;
@@ -107,7 +107,7 @@ fn times(done: &Done, scene: &str, lines: &[ModelLine<'_>]) -> Html {
     table("Shading times by lights", &heads, &rows)
 }
 
-/// What an area light costs beside a spot, at the most lights.
+/// The cost of an area light compared with a spot, at the most lights.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let lines = by_model(done, scene);
     let at_most = |own: &str| {

@@ -15,20 +15,20 @@ use crate::study::page::figure::{Charts, dotted, table, words};
 use crate::study::page::part::Part;
 use crate::study::page::shots::{Shots, Wanted};
 
-/// The metric by which models are told apart in words.
+/// The metric by which sentences compare models.
 const METRIC: &str = "flip";
 
-/// What spots are called among models.
+/// The name of spots among models.
 pub(crate) const SPOTS: &str = "spots";
 
-/// A family of models: what it leaves out by its construction.
+/// A family of models, and what it cannot represent.
 struct Family {
     id: &'static str,
     class: &'static str,
     about: &'static str,
 }
 
-/// All families, in the order in which they are told.
+/// All families, in the order of the table.
 const FAMILIES: [Family; 11] = [
     Family {
         id: "point",
@@ -123,7 +123,7 @@ fn error(record: &Record, id: &str) -> Option<f64> {
     record.image.truth_errors.get(id).copied().flatten()
 }
 
-/// Errors and times of all models, and what each gets wrong.
+/// Errors and times of all models, and the faults of each.
 pub(crate) fn models(
     done: &Done,
     scene: &str,
@@ -250,7 +250,7 @@ fn words_table(entries: &[Entry<'_>]) -> Html {
     table("What each model gets wrong", &heads, &rows)
 }
 
-/// Which models lie on the frontier of time and error, and the table against its polynomials.
+/// Names the models on the frontier of time and error, and compares the table with its polynomials.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let all = entries(done, scene, MODELS);
     let known: Vec<(&Record, f64)> = all

@@ -16,10 +16,10 @@ use crate::study::page::part::Part;
 use crate::study::page::pictures::{figure, linear};
 use crate::study::page::shots::Shots;
 
-/// Gain of difference pictures over that of the images.
+/// Gain of difference pictures, relative to the images.
 const GAIN: f32 = 8.0;
 
-/// Side of what is cut out around the worst tile, pixels, and how much larger it is shown.
+/// Side of the cut-out around the worst tile in pixels, and its enlargement.
 const CUT_PX: u32 = 4 * TILE_PX as u32;
 const LARGER: u32 = 4;
 
@@ -72,7 +72,7 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
     ))
 }
 
-/// What is around a tile, in the truth and beside it in the image, enlarged.
+/// The enlarged surroundings of a tile: the truth on the left, the image on the right.
 fn beside(pair: &ImagePair<'_>, corner: [u32; 2]) -> Option<Vec<u8>> {
     let (width, height) = (pair.image.width, pair.image.height);
     let size = [CUT_PX.min(width), CUT_PX.min(height)];

@@ -20,7 +20,7 @@ const PAPER_BUILDS: [(u32, [f64; 2]); 6] = [
     (169, [5.5, 22.1]),
 ];
 
-/// The paper's factors of one pass over one a direction, at 169 directions: atrium and town.
+/// The paper's speed-up of one pass over one pass per direction, at 169 directions: atrium and town.
 const PAPER_FACTORS: [f64; 2] = [20.0, 100.0];
 
 /// Whether an image is of the size and sampling that directions and builds are compared at.

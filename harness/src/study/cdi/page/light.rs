@@ -21,7 +21,7 @@ use crate::study::page::part::Part;
 use crate::study::page::pictures::{figure, linear};
 use crate::study::page::shots::{Shots, Wanted};
 
-/// Gain of pictures of differences over that of the images.
+/// Gain of difference pictures, relative to the images.
 const GAIN: f32 = 4.0;
 
 /// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set

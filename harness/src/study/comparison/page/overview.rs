@@ -1,4 +1,4 @@
-//! The main comparison: what is best at each count of lights, and why.
+//! The main comparison: the best strategy at each count of lights, with its passes.
 
 use crate::chart::{BarChart, Scale};
 use crate::report::colours::Colours;
@@ -131,7 +131,7 @@ fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarC
     pass_bars(title, scale, counted, &records, &Colours::new(results))
 }
 
-/// What a scene's comparison found, one sentence per count of lights, the most lights first.
+/// The findings of a scene: one sentence per count of lights, the most lights first.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let all = rankings(done, scene);
     all.iter().rev().filter_map(|results| sentence(scene, &comparison(results)?)).collect()

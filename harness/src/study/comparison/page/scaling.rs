@@ -42,8 +42,8 @@ impl Straight {
     }
 }
 
-/// How straight times are: through the line that takes every count's relative distance alike, so that
-/// the greatest counts do not decide alone. `None` of fewer than four counts.
+/// How straight times are: through the line that takes every count's relative distance alike, so that the
+/// greatest counts do not decide on their own. `None` with fewer than four counts.
 pub(crate) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
     let points: Vec<(f64, f64)> =
         records.iter().map(|r| (r.setting.lights as f64, time(r))).collect();

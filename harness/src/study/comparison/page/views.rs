@@ -66,7 +66,7 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     )
 }
 
-/// The heat maps of records, each with what its lists come to.
+/// The heat maps of records, each with the mean length of its lists and its times.
 fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html {
     let mut figures = Html::default();
     for entry in entries {

@@ -69,7 +69,7 @@ impl Outcome {
         if is_good { Self::Good } else { Self::Bad }
     }
 
-    /// Whether one record is faster than another, in assign + shade, as far as their rounds tell.
+    /// Whether one record is faster than another in assign + shade, if their rounds can decide it.
     pub(crate) fn faster(record: &Record, other: &Record) -> Self {
         match Order::of_times(record, other) {
             Order::Less => Self::Good,

@@ -63,7 +63,7 @@ pub(crate) fn dif(done: &Done, scene: &str) -> Answer {
     }
 }
 
-/// Up to this share of the time by position, shading is almost halved: the paper's own at A.
+/// Shading counts as almost halved up to this share of the time by position: the paper's own at A.
 const HALVED: f64 = 0.7;
 
 pub(crate) fn shading(done: &Done, scene: &str) -> Answer {
@@ -209,7 +209,8 @@ pub(crate) fn slices(done: &Done, scene: &str) -> Answer {
     Answer { figure: figures.join("; "), verdict }
 }
 
-/// The early exit, which the paper's shading lacks: what cones without a loss gain with it and without.
+/// The early exit, which the paper's shading lacks: the gain of cones without a loss, with and without
+/// it.
 pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
     for case in cases(done, scene) {
@@ -244,12 +245,12 @@ pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
     Answer { figure: figures.join("; "), verdict }
 }
 
-/// What nothing here can answer.
+/// Nothing here can answer this claim.
 pub(crate) fn thread_per_cluster(_: &Done, _: &str) -> Answer {
     Answer::unknown("one thread per cluster is not built")
 }
 
-/// What nothing here can answer.
+/// Nothing here can answer this claim.
 pub(crate) fn flagless(_: &Done, _: &str) -> Answer {
     Answer::unknown("lists that do not separate their terms are not built")
 }
