@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_span_counts_gaps_between_its_passes_and_no_other() {
+    fn a_span_includes_only_gaps_between_its_own_passes() {
         let frame = together(&[
             ("depth", 0.0, 1.0),
             ("bounds", 1.5, 2.0),
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_between_is_not_in_the_span_and_overlap_counts_once() {
+    fn a_span_excludes_other_passes_and_counts_overlap_once() {
         let frame = together(&[
             ("cull", 0.0, 1.0),
             ("gbuffer", 1.5, 4.0),

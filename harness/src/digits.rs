@@ -1,6 +1,6 @@
-//! Digits in groups of three.
+//! Groups digits by thousands.
 
-/// `1000` as `1,000`; what follows a decimal point is left alone.
+/// Writes `1000` as `1,000`. Digits after a decimal point stay as they are.
 pub(crate) fn grouped(digits: &str) -> String {
     let (whole, rest) = digits.split_at(digits.find('.').unwrap_or(digits.len()));
     let (sign, whole) = whole.split_at(usize::from(whole.starts_with('-')));

@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_that_drift_are_refused() {
+    fn samples_that_drift_are_unsteady() {
         assert_eq!(unsteady(&noisy(|_| 0.316, 32)), None);
         // The clock rises slowly, by 8 % over the samples.
         let rising = noisy(|ix| 0.34 - 0.027 * ix as f64 / 32.0, 32);
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tick_and_a_few_samples_say_nothing() {
+    fn timestamp_ticks_and_few_samples_show_no_drift() {
         // 4.1 and 4.4 microseconds are one tick of the timestamp apart.
         assert_eq!(unsteady(&noisy(|ix| if ix < 16 { 0.0041 } else { 0.0045 }, 32)), None);
         assert_eq!(unsteady(&[3.0, 1.0, 1.0]), None);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn one_sample_that_is_no_number_refuses_the_series() {
+    fn a_series_with_a_sample_that_is_not_finite_is_unsteady() {
         let mut samples = noisy(|_| 0.316, 32);
         samples[5] = f64::NAN;
         assert!(unsteady(&samples).expect("refused").contains("1 of its 32 samples"));
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_stays_low_shows_where_work_is_timed_twice() {
+    fn timing_the_same_work_twice_reveals_a_low_clock() {
         // Steady, and three times as slow as the same build elsewhere.
         assert_eq!(unsteady(&noisy(|_| 0.967, 32)), None);
         assert!(slower_than_again(0.967, 0.316));
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_is_warm_when_its_times_are_level() {
+    fn a_device_is_warm_when_its_times_are_steady() {
         assert!(is_level(&noisy(|_| 0.3, 24)));
         assert!(!is_level(&noisy(|_| 0.3, 23)), "three windows of eight");
         assert!(!is_level(&noisy(|ix| 0.9 - 0.02 * ix as f64, 24)), "it still falls");

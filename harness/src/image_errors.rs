@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_highlight_that_lacks_or_is_twice_as_bright_shows() {
+    fn missing_and_doubled_highlights_raise_the_error() {
         // Five bright pixels of 2,048, a hundred times as bright as the rest.
         let with = |bright: f32| image(|ix| if ix % 400 == 7 { bright } else { 1.0 });
         let reference = with(100.0);
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn flip_grows_with_what_the_eye_sees() {
+    fn flip_grows_with_the_visible_difference() {
         let reference = image(|ix| if ix % 64 < 32 { 0.2 } else { 0.6 });
         let at = |gain: f32| {
             let pixels = reference.pixels.iter().map(|p| p.map(|v| v * gain)).collect();
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_images_give_no_panic() {
+    fn empty_and_non_finite_images_do_not_panic() {
         let black = image(|_| 0.0);
         let lit = image(|_| 1.0);
         let nan = image(|_| f32::NAN);

@@ -62,13 +62,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bins_double() {
+    fn each_bin_is_twice_as_wide_as_the_last() {
         assert_eq!([0, 1, 2, 3, 4, 7, 8].map(bin_of), [0, 1, 2, 2, 3, 3, 4]);
         assert_eq!(bin_of(u32::MAX), 32);
     }
 
     #[test]
-    fn groups_are_counted_once_and_pixels_each() {
+    fn each_group_counts_once_and_every_pixel_counts() {
         let list = |count| LightList { first: 0, count };
         let lists = ListsSnapshot {
             lists: vec![list(9), list(0), list(3), list(77)],

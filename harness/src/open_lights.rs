@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_note_states_count_end_and_loss() {
+    fn the_note_states_number_range_and_loss() {
         let lamp = |range_m, intensity| Light::point(Vec3::ZERO, range_m, Vec3::splat(intensity));
         let lights = [lamp(10.0, 2.0), lamp(3.0, 9.0), lamp(20.0, 8.0), lamp(1.0, f32::NAN)];
         assert_eq!(OpenLights::new(&lights, &[]), None);

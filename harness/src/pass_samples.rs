@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn spans_are_kept_frame_by_frame_and_only_where_every_frame_has_them() {
+    fn spans_are_stored_only_if_every_frame_has_them() {
         let mut samples = PassSamples::default();
         samples.collect_frame(frame(Some([1.5, 3.0])));
         samples.collect_frame(frame(Some([2.0, 3.0])));
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn the_depth_pre_pass_is_on_the_bill_where_the_mode_has_none() {
+    fn a_method_pays_for_the_depth_pre_pass_in_a_mode_without_one() {
         let kind = |mode: Mode| {
             let mut samples = PassSamples::new(mode);
             samples.collect_frame(frame(Some([1.5, 3.0])));

@@ -1,12 +1,12 @@
-//! Text from files and drivers, made harmless.
+//! Escapes control characters in text from files and drivers.
 //!
-//! Names of scenes, adapters and strategies come from anywhere. A control character in one could move a
-//! terminal's cursor, change its title or forge a line of output; a direction mark could reorder what a
-//! reader sees. Both are shown as escapes instead.
+//! Names of scenes, adapters and strategies may come from any source. A control character in a name could move
+//! the terminal's cursor, change its title or forge a line of output. A direction mark could reorder the
+//! visible text. This module turns both into escapes.
 
 use std::borrow::Cow;
 
-/// Whether a character draws nothing but changes how others are drawn.
+/// Whether a character is invisible but changes the display of others.
 fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(
@@ -21,12 +21,12 @@ fn is_hidden(c: char) -> bool {
         )
 }
 
-/// The text on one line: whatever a terminal would obey is escaped, line breaks too.
+/// The text on one line, with control characters and line breaks escaped.
 pub fn visible(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
 
-/// The same, but line breaks stay.
+/// The text with control characters escaped, except line breaks.
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |c| c != '\n' && is_hidden(c))
 }
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_that_a_terminal_obeys_is_left() {
+    fn all_control_characters_are_escaped() {
         for odd in [
             "\u{1b}[31m",
             "\u{1b}]0;title\u{7}",

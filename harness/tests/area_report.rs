@@ -120,20 +120,15 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
         assert!(charts.contains(&name), "{name} of {charts:?}");
     }
     assert!(page.contains("the G-buffer alone"), "what the G-buffer costs has a row");
-    assert!(text.contains("Without noise, ltc is nearest to the truth in atrium"), "{text}");
-    assert!(
-        text.contains("no model is both faster and nearer to the truth by FLIP than"),
-        "{text}"
-    );
+    assert!(text.contains("without noise, ltc is nearest to the truth in atrium"), "{text}");
+    assert!(text.contains("no model beats any of these in both time and FLIP"), "{text}");
     // The polynomials are slower and further off.
     assert!(!text.contains("ltc-polynomial ("), "{text}");
-    assert!(text.contains("polynomials in place of the table take 1.5"), "{text}");
+    assert!(text.contains("polynomials instead of the table take 1.5"), "{text}");
     assert!(text.contains("at 16 lights, LTC takes 2."), "{text}");
     // The dark tile is the worst, and cut out.
     assert!(
-        page.contains(
-            "at 32, 16, and what is around it: the truth on the left, point on the right"
-        )
+        page.contains("at 32, 16, with its surroundings: truth on the left, point on the right")
     );
     let panel = page.split("data-part=\"pictures\"").nth(1).expect("pictures");
     assert_eq!(panel.matches("data-picture=").count(), MODELS.len() * 4);

@@ -17,7 +17,7 @@ fn the_words_name_the_best_with_its_interval_and_every_chart_is_a_file() {
     assert!(text.contains("In atrium at 100 lights, DC-I/128x128x64 is fastest with 1."), "{text}");
     assert!(text.contains("next is G/20x20x20 with"), "{text}");
     assert!(text.contains("A relMSE of"), "{text}");
-    assert!(text.contains("not GPU figures") && page.contains("not a GPU\u{2019}s"));
+    assert!(text.contains("not GPU figures") && page.contains("do not apply to a GPU"));
     for part in [
         "accuracy", "ranges", "scaling", "density", "radii", "path", "frames", "views", "sizes",
         "tests", "main",

@@ -29,7 +29,7 @@ fn linearly_transformed_cosines_match_f64() {
         let expected = ltc_contribution(&table, light, position, &surface, to_eye);
         let off = (f64::from(answer[0]) - expected.x).abs() / (expected.x.abs() + 1e-3);
         worst = worst.max(off);
-        assert!(off < 2e-3, "{answer:?} for {expected}: {query:?}");
+        assert!(off < 2e-3, "{answer:?}, expected {expected}: {query:?}");
         lit += usize::from(expected.x > 1e-4);
     }
     println!("{}: {lit} lit, off by {worst:.1e} at most", gpu.info.name);

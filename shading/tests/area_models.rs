@@ -223,6 +223,6 @@ fn all_models_agree_on_the_diffuse_light_of_a_small_emitter() {
     for model in AreaModel::ALL {
         let answers = evaluate(&gpu, &buffer, &queries, model);
         let found = f64::from(answers[0][0]) - f64::from(answers[1][0]);
-        assert!((found / expected - 1.0).abs() < 0.02, "{model}: {found} for {expected}");
+        assert!((found / expected - 1.0).abs() < 0.02, "{model}: {found}, expected {expected}");
     }
 }

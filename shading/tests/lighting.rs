@@ -89,7 +89,10 @@ fn shaders_agree_with_the_reference() {
             let expected = expected(&lights, query);
             for (a, e) in answer.iter().zip(expected.to_array()) {
                 let tolerance = relative_error(query) * e.abs() + 2e-6;
-                assert!((f64::from(*a) - e).abs() <= tolerance, "{kinds}: {a} for {e}, {query:?}");
+                assert!(
+                    (f64::from(*a) - e).abs() <= tolerance,
+                    "{kinds}: {a}, expected {e}, {query:?}"
+                );
             }
             lit += usize::from(expected.x > 1e-4);
         }
@@ -191,8 +194,11 @@ fn narrow_spots_are_as_bright_as_points_inside_their_inner_cone() {
             ((angle.cos() - outer.cos()) / (inner.cos() - outer.cos())).powi(2)
         };
         let share = f64::from(answer[1][0]) / f64::from(answer[0][0]);
-        assert!((share - ramp).abs() < 0.01, "{share} for {ramp} at {angle} of {spot:?}");
+        assert!((share - ramp).abs() < 0.01, "{share}, expected {ramp}, at {angle} of {spot:?}");
         let reference = expected(&lights, &query[1]).x / expected(&lights, &query[0]).x;
-        assert!((reference - ramp).abs() < 1e-6, "{reference} for {ramp} at {angle} of {spot:?}");
+        assert!(
+            (reference - ramp).abs() < 1e-6,
+            "{reference}, expected {ramp}, at {angle} of {spot:?}"
+        );
     }
 }

@@ -97,7 +97,7 @@ fn images_match_the_reference() {
         floors += i32::from(b.dielectric.f90 == 0.5);
     }
     assert!(seen > 1_000 && floors > 100, "{seen} samples, {floors} of the floor");
-    assert!(error < 2e-3 * sum, "{error} off {sum}");
+    assert!(error < 2e-3 * sum, "error {error}, sum {sum}");
     // Without the reflectances or without the colours, the image differs.
     for change in [
         (|scene| scene.materials[0].dielectric = Dielectric::default()) as fn(&mut Scene),

@@ -57,11 +57,11 @@ fn deferred_and_forward_agree_up_to_the_g_buffers_precision() {
     assert!(mean(&forward) > 0.01, "the image is dark: {}", mean(&forward));
     // Colours have eight bits and normals are half floats: 2 % of the mean is accepted.
     let most = 0.02 * mean(&forward);
-    assert!(off(&deferred) < most, "{} off a mean of {}", off(&deferred), mean(&forward));
+    assert!(off(&deferred) < most, "difference {}, mean {}", off(&deferred), mean(&forward));
     // Leaving out ten of the 40 lights must be visible.
     let fewer = LightBuffer::new(&gpu, &common::lights(40)[10..]).unwrap();
     let (fewer, _) = draw(&gpu, &view, &fewer, Mode::Deferred);
-    assert!(off(&fewer) > most, "{} off a mean of {}", off(&fewer), mean(&forward));
+    assert!(off(&fewer) > most, "difference {}, mean {}", off(&fewer), mean(&forward));
 }
 
 /// The showcase has holes cut by alpha masks. Without a pre-pass, forward lighting cuts them

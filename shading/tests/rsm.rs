@@ -65,7 +65,7 @@ fn world_triangles_match_the_scene() {
     let most = corners().reduce(Vec3::max).unwrap();
     assert!(low.cmple(least).all() && high.cmpge(most).all(), "{low} {high}");
     let off = (least - low).max(high - most).max_element();
-    assert!(off < 1e-4 * (most - least).length(), "{off} m too large: {low} {high}");
+    assert!(off < 1e-4 * (most - least).length(), "the box is {off} m too large: {low} {high}");
 }
 
 /// VPLs of a scene's own map. Nearly all lie where a ray from the light hits the scene, and

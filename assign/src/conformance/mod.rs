@@ -47,6 +47,7 @@
 
 mod cases;
 mod check;
+mod fault;
 pub mod faulty;
 mod flat_depth;
 mod lights;

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use proptest::prelude::*;
 
-use crate::cases::{Kind, aim, group, witness};
+use crate::aims::{Kind, aim, witness};
+use crate::cases::group;
 use crate::deterministic;
 use crate::groups::{UNIONS, box_of, union};
 

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use proptest::prelude::*;
 
-use crate::cases::{Kind, aim, group};
+use crate::aims::{Kind, aim};
+use crate::cases::group;
 use crate::deterministic;
 use crate::groups::{UNIONS, box_of, union};
 

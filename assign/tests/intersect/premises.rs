@@ -5,7 +5,8 @@
 use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
-use crate::cases::{Kind, aabb, aim, frustum, oriented, witness};
+use crate::aims::{Kind, aim, witness};
+use crate::cases::{aabb, frustum, oriented};
 use crate::deterministic;
 use crate::groups::Group;
 

@@ -7,7 +7,8 @@ use assign::{FrustumTests, Light, LightShape, Projection, SpotRamp, View};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use proptest::prelude::*;
 
-use crate::cases::{Kind, aim, group, witness};
+use crate::aims::{Kind, aim, witness};
+use crate::cases::group;
 use crate::deterministic;
 use crate::groups::{Group, Shape, UNIONS, box_of, union};
 

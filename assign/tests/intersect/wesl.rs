@@ -8,7 +8,8 @@ use assign::{
 use proptest::strategy::{BoxedStrategy, Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
-use crate::cases::{Kind, aabb, aim, frustum, oriented, witness};
+use crate::aims::{Kind, aim, witness};
+use crate::cases::{aabb, frustum, oriented};
 use crate::deterministic;
 use crate::groups::{Bounds, Group, Shape, UNIONS, box_of, union};
 

@@ -4,59 +4,81 @@ use clap::{Arg, Command, CommandFactory};
 
 use super::{Cli, Invocation, parse};
 
-/// The most lines of a short help: a tall terminal.
+/// The most lines of the short help of a command: a tall terminal.
 const MAX_SHORT_LINES: usize = 60;
 
-/// The most lines of the short help that a newcomer sees first.
+/// The most lines of the short help of the program, which newcomers see first.
 const MAX_FIRST_LINES: usize = 50;
 
-/// The program and its commands, each with the words that call it.
+/// The most columns of a line of help.
+const MAX_COLUMNS: usize = 100;
+
+/// The program and its commands, each with its name; the program has none.
 fn commands() -> Vec<(String, Command)> {
     let mut program = Cli::command();
     program.build();
-    let commands = program.get_subcommands().map(|command| (command.get_name().into(), command));
+    let commands = program.get_subcommands().map(|command| (command.get_name(), command));
     let mut commands: Vec<(String, Command)> =
-        commands.map(|(name, command)| (name, command.clone())).collect();
+        commands.map(|(name, command)| (name.to_owned(), command.clone())).collect();
     commands.push((String::new(), program));
     commands
 }
 
-/// The options of a command without -h and -V.
-fn options(command: &Command) -> impl Iterator<Item = &Arg> {
-    command.get_opts().chain(command.get_arguments().filter(|arg| {
-        arg.get_long().is_some_and(|long| !["help", "version"].contains(&long))
-            && !arg.get_action().takes_values()
-    }))
+/// Faults in the size of a command's short help.
+fn size_faults(command: Command, most_lines: usize) -> Vec<String> {
+    let help = command.term_width(MAX_COLUMNS).render_help().to_string();
+    let count = help.lines().count();
+    let is_long = |line: &&str| line.chars().count() > MAX_COLUMNS;
+    let mut faults: Vec<String> =
+        help.lines().filter(is_long).map(|line| format!("a long line: {line}")).collect();
+    if count > most_lines {
+        faults.push(format!("{count} lines:\n{help}"));
+    }
+    faults
+}
+
+/// Options that the short help hides and that have no heading, and a short help that hides options without
+/// saying so.
+fn heading_faults(command: &Command) -> Vec<String> {
+    let hidden: Vec<&Arg> =
+        command.get_arguments().filter(|arg| arg.is_hide_short_help_set()).collect();
+    let mut faults: Vec<String> = hidden
+        .iter()
+        .filter(|arg| arg.get_help_heading().is_none())
+        .map(|arg| format!("{arg} has no heading"))
+        .collect();
+    let end = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    if !hidden.is_empty() && !end.contains("--help shows all options") {
+        faults.push(format!("the end does not name --help: {end:?}"));
+    }
+    faults
 }
 
 #[test]
 fn the_short_help_of_every_command_fits_a_screen() {
     for (name, command) in commands() {
-        let help = command.term_width(100).render_help().to_string();
-        let lines = help.lines().count();
         let most = if name.is_empty() { MAX_FIRST_LINES } else { MAX_SHORT_LINES };
-        assert!(lines <= most, "`lightbench {name} -h` has {lines} lines:\n{help}");
-        for line in help.lines() {
-            assert!(line.chars().count() <= 100, "`lightbench {name} -h` has a long line:\n{line}");
-        }
+        assert_eq!(size_faults(command, most), [""; 0], "`lightbench {name} -h`");
     }
 }
 
 #[test]
 fn options_that_the_short_help_hides_stand_under_headings() {
     for (name, command) in commands() {
-        let mut hidden = 0;
-        for option in options(&command) {
-            let has_heading = option.get_help_heading().is_some();
-            let is_hidden = option.is_hide_short_help_set();
-            assert!(has_heading || !is_hidden, "`lightbench {name}`: {option} has no heading");
-            hidden += usize::from(is_hidden);
-        }
-        if hidden > 0 {
-            let short = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(short.contains("--help shows all"), "`lightbench {name} -h`: {short:?}");
-        }
+        assert_eq!(heading_faults(&command), [""; 0], "`lightbench {name} -h`");
     }
+    let (_, compare) = commands().into_iter().find(|(name, _)| name == "compare").expect("compare");
+    assert!(compare.get_arguments().filter(|arg| arg.is_hide_short_help_set()).count() > 40);
+}
+
+#[test]
+fn both_checks_find_a_planted_fault() {
+    let hidden = Arg::new("rare").long("rare").hide_short_help(true);
+    let planted = Command::new("planted").arg(hidden);
+    assert_eq!(heading_faults(&planted).len(), 2);
+    let word = "x".repeat(MAX_COLUMNS + 1);
+    let planted = Command::new("planted").about(word);
+    assert_eq!(size_faults(planted, 1).len(), 2);
 }
 
 #[test]

@@ -36,7 +36,7 @@ const WIDE: Lens = Lens::Perspective { fov_y: 1.0 };
 const FLAT: Lens = Lens::Orthographic { half_width: 4.0, half_height: 3.0 };
 
 #[test]
-fn a_scene_without_a_camera_is_seen_to_its_end_from_every_pose() {
+fn without_a_camera_the_far_plane_lies_behind_the_scene_at_every_pose() {
     let scene = scene(None, 0.0, None);
     let optics = Optics::new(&scene, &args("")).unwrap();
     let corner = |ix: usize| {
@@ -79,7 +79,7 @@ fn planes_come_from_the_option_else_the_file_else_the_scene() {
 }
 
 #[test]
-fn planes_in_the_wrong_order_are_refused_by_the_option_at_fault() {
+fn an_error_about_planes_in_the_wrong_order_names_the_option() {
     let scene_of = |lens| scene(Some(lens), 0.5, Some(20.0));
     let far = refusal(&scene_of(WIDE), "--far 0.25");
     assert_eq!(far, "--far is 0.25: it must be above the near plane, 0.5 m of the file's camera");
@@ -106,7 +106,7 @@ fn fitted(scene: &Scene, line: &str, pose: Pose) -> (Optics, View) {
 }
 
 #[test]
-fn the_near_plane_lies_in_front_of_what_the_view_shows_and_stays_where_it_cuts_nothing() {
+fn the_near_plane_moves_only_if_it_would_cut_a_visible_surface_away() {
     let scene = scene(None, 0.0, None);
     let usual_m = scene.core_bounds.diagonal() * NEAR_SHARE;
     // The scene's own views see everything: none of them changes, at one pose or along the path.
@@ -145,7 +145,7 @@ fn the_near_plane_lies_in_front_of_what_the_view_shows_and_stays_where_it_cuts_n
 }
 
 #[test]
-fn what_given_planes_cut_away_is_stated() {
+fn notes_name_the_planes_that_cut_surfaces_away() {
     let notes = |scene: &Scene, line: &str, pose: Pose| {
         let (optics, view) = fitted(scene, line, pose);
         optics.notes(scene, &[view])

@@ -17,10 +17,15 @@ use crate::chart::{CHART_CSS, page_colours};
 use crate::results::{Results, ResultsError, write_atomically};
 
 pub(crate) const PAGE: &str = include_str!("report.html");
-pub(crate) const STYLE: &str = include_str!("report.css");
+const STYLE: &str = include_str!("report.css");
 
 /// The page's script.
 pub(crate) const SCRIPT: &str = include_str!("report.js");
+
+/// The rules of a page: its own, those of charts, the colours of strategies and passes, and some more.
+pub(crate) fn style(more: &str) -> String {
+    [STYLE, CHART_CSS, &page_colours(), more].join("\n")
+}
 
 /// Writes `out_dir/index.html` and returns its path. `images` holds the pictures that records name: the names
 /// and the contents of PNG files. The page says which pictures are missing.
@@ -51,7 +56,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
         PAGE,
         &[
             ("title", title(results).into()),
-            ("style", Html::trusted([STYLE, CHART_CSS, &page_colours()].join("\n"))),
+            ("style", Html::trusted(style(""))),
             ("headline", headline),
             ("findings", page::paragraphs("finding", &others)),
             ("notices", page::notices(&notices(results))),

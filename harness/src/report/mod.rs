@@ -4,7 +4,7 @@
 //! records that differ in nothing but the strategy.
 
 pub(crate) mod colours;
-mod column;
+pub(crate) mod column;
 pub(crate) mod comparison;
 pub(crate) mod finding;
 pub(crate) mod fit;
@@ -25,7 +25,7 @@ pub(crate) mod rank;
 pub(crate) mod raster;
 mod samples;
 pub(crate) mod section;
-mod table;
+pub(crate) mod table;
 pub(crate) mod terminal;
 pub(crate) mod terms;
 

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_know_their_raster_passes() {
+    fn records_list_their_raster_passes() {
         let of = |strategy: &str, mode, passes: &[(&str, f64)]| {
             record(strategy, mode, passes).raster_passes().join(",")
         };
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn each_frame_bills_what_it_does_not_draw_anyway() {
+    fn a_frame_bills_only_passes_that_it_does_not_draw_for_all() {
         let explicit = [("depth", 0.5), ("bounds", 0.1), ("cull", 0.2), ("shade", 1.0)];
         let forward = record("SC-E/48x48x40/bvh", Mode::Forward, &explicit);
         assert!((forward.with_depth_ms() - 1.8).abs() < 1e-12);
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stored_forward_row_pays_for_its_g_buffer() {
+    fn a_stored_forward_record_pays_for_its_g_buffer() {
         let passes = [("depth", 1.0), ("gbuffer", 2.0), ("cull", 1.0), ("shade", 1.0)];
         let mut stored = record("SC-E/48x48x40/n6", Mode::Forward, &passes);
         stored.times.passes.bill_again(|name, kind| match name {

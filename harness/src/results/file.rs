@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_cannot_be_written_is_named() {
+    fn an_error_names_the_path_that_cannot_be_written() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = folder.path().join("file");
         fs::write(&file, "").expect("writes");

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_flat_file_is_read_as_its_nested_twin() {
+    fn a_flat_file_gives_the_same_results_as_a_nested_one() {
         let folder = tempfile::tempdir().unwrap();
         let read = |text: &str| {
             let path = folder.path().join("results.json");

@@ -221,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_of_no_rays_survive_json() {
+    fn json_keeps_the_errors_of_zero_rays() {
         let none = RangeErrors { median_range_error: f64::NAN, ..RangeErrors::default() };
         let json = serde_json::to_string(&none).expect("serialises");
         let back: RangeErrors = serde_json::from_str(&json).expect("parses");

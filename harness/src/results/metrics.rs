@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_lie_beside_raw_results_which_stay_as_they_are() {
+    fn writing_errors_leaves_the_results_file_unchanged() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(RESULTS);
         let text = include_str!("example.json");

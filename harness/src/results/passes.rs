@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_that_is_no_number_survives_json() {
+    fn json_keeps_a_sample_that_is_not_a_number() {
         let json = serde_json::to_string(&PassTimes::new(PassKind::Shade, vec![f64::NAN]))
             .expect("serialises");
         let back: PassTimes = serde_json::from_str(&json).expect("parses");

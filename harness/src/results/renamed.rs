@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_of_supports_is_called_so() {
+    fn a_stored_grid_of_supports_gets_its_new_id() {
         let name = |id, grid_box| renamed(id, "box", grid_box, None);
         assert_eq!(name("G/20x20x20", "lights"), "G/20x20x20/supports");
         assert_eq!(name("G/20x20x20/bvh/cap8", "lights"), "G/20x20x20/supports/bvh/cap8");

@@ -56,7 +56,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn whatever_is_changed_shows() {
+    fn every_change_to_a_file_is_detected() {
         let value = json!({"times": [0.1, 2.0, 1e-9], "name": "a", "none": null});
         let text = sealed(&value).unwrap();
         assert_eq!(unsealed(text.as_bytes()).unwrap().0["times"], value["times"]);

@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_name_moves_the_cursor() {
+    fn control_characters_in_names_are_escaped() {
         let mut results: Results = serde_json::from_str(include_str!("example.json")).unwrap();
         let odd = || "a\u{1b}[2J\nreport   /elsewhere".to_owned();
         results.machine.adapter = odd();

@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn median_is_the_middle_whatever_the_order() {
+    fn the_median_does_not_depend_on_the_order() {
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[3.0, 1.0, 2.0, 100.0]), 2.5);
         assert_eq!(median(&[7.0]), 7.0);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_hold_the_median_as_often_as_they_say() {
+    fn intervals_contain_the_median_as_often_as_their_coverage() {
         // Known ranks (any table of order-statistic intervals).
         let ranks = |n: i32| {
             let samples: Vec<f64> = (1..=n).map(f64::from).collect();
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn one_outlier_moves_neither_like_the_mean() {
+    fn an_outlier_moves_the_mean_but_not_the_median_or_percentile() {
         let mut samples = vec![1.0; 99];
         samples.push(1_000.0);
         assert_eq!(median(&samples), 1.0);

@@ -34,12 +34,13 @@ impl StrategyId {
     /// Reads an id that this program can run, in any case and with segments in any order. A family
     /// without parameters takes its default ones.
     pub fn parse(id: &str) -> Result<Self, IdError> {
-        parse::parse(id)
+        let (row, options) = parse::parse(id)?;
+        Ok(Self::new(row, options))
     }
 
     /// Reads any id, as stored results hold it.
     pub fn read(id: &str) -> Self {
-        parse::parse(id).unwrap_or_else(|_| {
+        Self::parse(id).unwrap_or_else(|_| {
             let (row, options) = parse::read_foreign(id);
             Self { text: id.to_owned(), row, options }
         })

@@ -4,7 +4,7 @@ use assign::{AreaBounds, LightSource};
 use assign_clustered::SpecularCut;
 use thiserror::Error;
 
-use super::{Axis, Options, Row, StrategyId, row, rows};
+use super::{Axis, Options, Row, row, rows};
 
 /// Why an id cannot be run.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -26,7 +26,7 @@ pub enum IdError {
 }
 
 /// Reads an id that this program can run.
-pub(super) fn parse(id: &str) -> Result<StrategyId, IdError> {
+pub(super) fn parse(id: &str) -> Result<(&'static Row, Options), IdError> {
     let mut segments = id.split('/');
     let family = segments.next().unwrap_or_default();
     let same = |row: &&Row| row.family.eq_ignore_ascii_case(family);
@@ -44,7 +44,7 @@ pub(super) fn parse(id: &str) -> Result<StrategyId, IdError> {
     if options.parameters.is_empty() {
         row.default.clone_into(&mut options.parameters);
     }
-    Ok(StrategyId::new(row, options))
+    Ok((row, options))
 }
 
 /// Reads what can be read of an id that this program cannot run: a result of another program, or of a

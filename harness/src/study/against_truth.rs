@@ -1,4 +1,4 @@
-//! How far the models of a study are from its truth image: an error of shading, never of culling.
+//! The error of the models of a study against its truth image: an error of shading, never of culling.
 
 use super::job::Job;
 use super::manifest::Done;

@@ -1,4 +1,4 @@
-//! What the parts of the page ask of a study's records.
+//! Selects and groups the records of a study for its page and its claims.
 
 use super::job::Job;
 use super::manifest::Done;
@@ -44,7 +44,7 @@ pub(crate) fn laps(record: &Record) -> Vec<Vec<f64>> {
     record.frames_ms().chunks_exact(poses(record).max(1)).map(<[f64]>::to_vec).collect()
 }
 
-/// What a time is a mean of: `240 poses`, or `one pose`.
+/// The poses that a time averages: `240 poses`, or `one pose`.
 pub(crate) fn stand(record: &Record) -> String {
     match poses(record) {
         1 => "one pose".to_owned(),

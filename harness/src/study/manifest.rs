@@ -1,4 +1,4 @@
-//! What a study consists of, and what of it is done.
+//! The jobs of a study, and which of them are done.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -161,7 +161,7 @@ impl Done {
         done.ok_or_else(|| ResultsError::Parse { path: PathBuf::new(), reason: "no folder".into() })
     }
 
-    /// Writes errors that were computed anew beside the raw results of their jobs.
+    /// Writes recomputed errors beside the raw results of their jobs.
     pub fn write_metrics(&self) -> Result<(), ResultsError> {
         for (job, results) in &self.results {
             if let Some(folder) = self.folders.get(job) {
@@ -171,7 +171,7 @@ impl Done {
         Ok(())
     }
 
-    /// Whether results are a job's own, and may be compared with those that are known.
+    /// Checks that results belong to a job, and may be compared with the other results.
     fn check(&self, job: &Job, results: &Results) -> Result<(), String> {
         if results.command != job.command {
             return Err(format!(
@@ -191,7 +191,7 @@ impl Done {
             let same_scene = is_same_scene(known_job);
             let machines = known.machine.identity().into_iter().zip(results.machine.identity());
             for ((field, known), (_, own)) in machines {
-                // Times of two scenes are not put side by side: a later commit may add a scene.
+                // A later commit may add a scene, because times of two scenes are never compared.
                 if known != own && (same_scene || field != "commit") {
                     return Err(format!(
                         "machine.{field} is {own}: it must be that of the other jobs, {known}"
@@ -253,7 +253,7 @@ fn read_job(job: &Job, path: &Path) -> Result<Option<Results>, ResultsError> {
     };
     match Results::read_checked(path) {
         Ok((results, None)) => Ok(Some(results)),
-        // Another command's results are refused as such.
+        // Results of another command are refused by the caller.
         Ok((results, Some(_))) if results.command != job.command => Ok(Some(results)),
         Ok((_, Some(lack))) => not_done(format!("{}: {lack}", path.display())),
         Err(error @ ResultsError::Version { .. }) => Err(error),

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Runs a study, or a share of it, and writes its report; returns what to print. `command` is the command
-/// line, which others see who want the same folder.
+/// line; a process that wants the same folder is shown it.
 pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessError> {
     let study = list::named(&args.study)?;
     let scenes = StudyScene::all(args)?;
@@ -52,7 +52,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
             Manifest::new(wanted, study.name(), jobs)
         }
     };
-    // What is wrong with a job shows before the first is run, and before anything is written.
+    // Faulty jobs show before the first one runs, and before anything is written.
     manifest.jobs.iter().try_for_each(Job::check).map_err(|error| match is_new {
         true => error,
         false => CliError::new(format!(
@@ -92,7 +92,7 @@ const NAMED: usize = 6;
 /// Runs the jobs that are not done.
 fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError> {
     let began = Instant::now();
-    // What stands in the way of the last job shows before the first is run.
+    // Problems of any job show before the first one runs.
     let mut open = Vec::new();
     for (ix, job) in mine.iter().enumerate() {
         if !is_done(bench, job, &job.folder(out))? {
@@ -105,7 +105,7 @@ fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError>
         let (at, of) = (ix + 1, mine.len());
         say(format!("job      {at} of {of}, {seconds} s so far: {}", job.name));
         let asked = job.asked(&folder)?;
-        // What an interrupted run left there is not this one's.
+        // Remove what an interrupted run left there.
         if folder.is_dir() {
             std::fs::remove_dir_all(&folder)
                 .map_err(|source| ResultsError::Write { path: folder.clone(), source })?;
@@ -120,8 +120,8 @@ fn run(bench: &mut Bench, out: &Path, mine: &[&Job]) -> Result<(), HarnessError>
     Ok(())
 }
 
-/// Whether a job was done, by this commit on this adapter: an error where by another. Results that are
-/// damaged or incomplete are none, and the job runs again.
+/// Whether this commit did a job on this adapter; an error where another commit or adapter did it. A job
+/// with damaged or incomplete results runs again.
 fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError> {
     let path = folder.join("results.json");
     if !path.is_file() {
@@ -157,7 +157,7 @@ fn is_done(bench: &Bench, job: &Job, folder: &Path) -> Result<bool, HarnessError
     }
 }
 
-/// What a job asks for.
+/// The command of a job.
 #[allow(clippy::large_enum_variant, reason = "one value a job")]
 enum Asked {
     /// A comparison.
@@ -169,7 +169,7 @@ enum Asked {
 }
 
 impl Job {
-    /// Whether its command would be understood.
+    /// Checks that its command is valid.
     fn check(&self) -> Result<(), CliError> {
         let checked = self.asked(Path::new("")).and_then(|asked| match asked {
             Asked::Compare(args) => check_options(&args, &args.choices()?),
@@ -178,7 +178,7 @@ impl Job {
         checked.map_err(|error| CliError::new(format!("job {}: {error}", self.name)))
     }
 
-    /// What it asks for, written to `folder`.
+    /// Its command, with `folder` as its output.
     fn asked(&self, folder: &Path) -> Result<Asked, CliError> {
         let out = folder.to_owned();
         match cli::parse(&self.command)? {

@@ -16,7 +16,7 @@ use crate::{
 pub struct StudyScene {
     /// The name or file.
     pub scene: String,
-    /// What jobs and report call it: unique within the study.
+    /// Its name in jobs and in the report: unique within the study.
     pub name: String,
     /// Factor on its size.
     pub scale: f64,
@@ -34,7 +34,7 @@ impl StudyScene {
         for (ix, scene) in args.scene.iter().enumerate() {
             let path = Path::new(scene);
             let stem = path.file_stem().map_or_else(|| scene.into(), |stem| stem.to_string_lossy());
-            // Many files are called scene.gltf: their folder tells them apart.
+            // Many files are called scene.gltf, so their folder names them.
             let folder = path.parent().and_then(Path::file_name).map(|name| name.to_string_lossy());
             let name = match folder {
                 Some(folder) if stem == "scene" => folder.into_owned(),
@@ -52,7 +52,7 @@ impl StudyScene {
         Ok(all)
     }
 
-    /// The options of jobs that draw it, under scattered lights alone.
+    /// The options of jobs that draw it under scattered lights only.
     pub(crate) fn options(&self, Size { width, height }: Size, seed: u64) -> Vec<String> {
         let (scale, size) = (self.scale.to_string(), format!("{width}x{height}"));
         let scene = ["--scene", &self.scene, "--scene-scale", &scale, "--size", &size];

@@ -61,7 +61,7 @@ pub(crate) trait Study: Sync {
     /// The paper whose claims the study judges.
     fn paper(&self) -> &'static Paper;
 
-    /// What a reader has to know before trusting a figure, beside what the frame of the page says.
+    /// What a reader must know before trusting a figure; the frame of the page adds its own notices.
     fn notices(&self, _done: &Done) -> Vec<String> {
         Vec::new()
     }

@@ -114,8 +114,8 @@ pub(super) fn note_unplayed(file: &File, walk: &Walk, warnings: &mut Warnings) {
     };
     let name = nodes[*first].name.clone().unwrap_or_else(|| format!("node {first}"));
     warnings.add(format!(
-        "animations of meshes and lights are not played: {} animated nodes stay at rest, \
-         {name:?} the first",
+        "animations of meshes and lights are not played: {} animated nodes stay at rest; \
+         the first is {name:?}",
         moved.len()
     ));
 }

@@ -213,8 +213,8 @@ impl Reader<'_> {
             material.dielectric = Dielectric::default();
             material.roughness = GLOSSY_ROUGHNESS;
             self.warnings.add(format!(
-                "material {:?}: specularGlossinessTexture is left out: drawn with roughness \
-                 {GLOSSY_ROUGHNESS} and glTF's plain reflectance",
+                "material {:?}: specularGlossinessTexture is ignored; it is drawn with \
+                 roughness {GLOSSY_ROUGHNESS} and glTF's default reflectance",
                 self.name
             ));
         }

@@ -1,20 +1,21 @@
-//! Buffer views of EXT_meshopt_compression, decoded as its specification has them.
+//! Decodes buffer views of EXT_meshopt_compression as its specification describes.
 //!
 //! - `ATTRIBUTES`: elements of a fixed stride. Each byte of an element is coded against the same
-//!   byte of the element before, sixteen elements at a time, in 0, 2, 4 or 8 bits each.
-//! - `TRIANGLES`: indices, three at a time, from a queue of recent edges and one of recent vertices.
-//! - `INDICES`: indices as differences to one of two that came before.
+//!   byte of the element before it, sixteen elements at a time, in 0, 2, 4 or 8 bits each.
+//! - `TRIANGLES`: indices, three at a time, from a queue of recent edges and a queue of recent
+//!   vertices.
+//! - `INDICES`: indices as differences to one of two earlier ones.
 //!
-//! A filter then turns integers of attributes into unit vectors, quaternions or floats. Our own
-//! code: the crate that decodes this in Rust takes strides as types and asserts on bad input.
+//! A filter then turns integers of attributes into unit vectors, quaternions or floats. The decoder
+//! is our own, because the Rust crate for this takes strides as types and asserts on bad input.
 
 use gltf::json::Buffer;
 use serde::Deserialize;
 
-/// The extension under its two names. What only the second can say is refused by its header.
+/// The two names of the extension. What only the second can describe is refused by its header.
 pub(super) const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Whether a buffer stands for bytes that are compressed elsewhere, and has none of its own.
+/// Whether the bytes of a buffer are compressed in another one, so that it has none itself.
 pub(super) fn is_fallback(buffer: &Buffer) -> bool {
     let extensions = buffer.extensions.as_ref().map(|e| &e.others);
     NAMES.iter().any(|name| {
@@ -56,22 +57,22 @@ enum Filter {
     Exponential,
 }
 
-/// The most bytes that one compressed byte can stand for: a byte of header for four groups of
+/// The most bytes that one compressed byte can expand to: a byte of header describes four groups of
 /// sixteen equal elements.
 const MAX_RATIO: usize = 64;
 
-/// Why compressed bytes are refused; a phrase for people.
+/// What would be accepted instead of the compressed bytes: a phrase for errors.
 type Fault = &'static str;
 
 const CUT_SHORT: Fault = "compressed bytes that hold all elements";
 
 impl Compressed {
-    /// Bytes once decoded.
+    /// The number of bytes after decoding.
     pub(super) fn size(&self) -> u64 {
         (self.count as u64).saturating_mul(self.byte_stride as u64)
     }
 
-    /// The bytes of the buffer view; else what they should have been.
+    /// The bytes of the buffer view. If they cannot be decoded, what would be accepted.
     pub(super) fn decode(&self, source: &[u8]) -> Result<Vec<u8>, Fault> {
         let stride = self.byte_stride;
         let size = self.count.checked_mul(stride).ok_or("a count that memory can hold")?;
@@ -100,7 +101,7 @@ fn index_bytes(indices: Vec<u32>, stride: usize) -> Vec<u8> {
     indices.into_iter().flat_map(|ix| ix.to_le_bytes().into_iter().take(stride)).collect()
 }
 
-/// Reads a source from its start; a read past its end is a fault.
+/// Reads a source from its start. Reading past its end is a fault.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -114,7 +115,7 @@ impl<'a> Reader<'a> {
         Ok(self.take(1)?[0])
     }
 
-    /// The first byte: the format and its version.
+    /// The first byte, which holds the format and its version.
     fn header(&mut self, wanted: u8) -> Result<(), Fault> {
         if self.byte()? == wanted {
             return Ok(());
@@ -135,13 +136,13 @@ impl<'a> Reader<'a> {
         Err("numbers of at most five bytes")
     }
 
-    /// A difference to an index.
+    /// Decodes the difference of an index.
     fn difference(&mut self) -> Result<u32, Fault> {
         self.number().map(unfold)
     }
 }
 
-/// 0, -1, 1, -2, ... in two's complement from 0, 1, 2, 3, ...
+/// Maps 0, 1, 2, 3, ... to 0, -1, 1, -2, ... in two's complement.
 fn unfold(value: u32) -> u32 {
     (value >> 1) ^ (value & 1).wrapping_neg()
 }
@@ -149,7 +150,7 @@ fn unfold(value: u32) -> u32 {
 fn attributes(source: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, Fault> {
     let mut reader = Reader(source);
     reader.header(0xa0)?;
-    // The element that the first is coded against stands at the end.
+    // The end holds the element against which the first one is coded.
     let mut last = source[source.len().saturating_sub(stride)..].to_vec();
     if last.len() < stride || source.len() < stride + 1 {
         return Err(CUT_SHORT);
@@ -177,8 +178,8 @@ fn attributes(source: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, Fau
     Ok(bytes)
 }
 
-/// The differences of one byte of sixteen elements. In 2 and 4 bits, all ones stand for a byte
-/// that follows.
+/// The differences of one byte of sixteen elements. In 2 and 4 bits, a value of all ones means that
+/// a whole byte follows.
 fn deltas(reader: &mut Reader<'_>, mode: u8) -> Result<[u8; 16], Fault> {
     let mut deltas = [0; 16];
     match mode {
@@ -199,7 +200,7 @@ fn deltas(reader: &mut Reader<'_>, mode: u8) -> Result<[u8; 16], Fault> {
     Ok(deltas)
 }
 
-/// The last sixteen things pushed; 0 is the latest.
+/// The last sixteen values pushed. Index 0 is the latest.
 struct Queue<T> {
     items: [T; 16],
     next: usize,
@@ -230,7 +231,7 @@ fn triangles(source: &[u8], count: usize) -> Result<Vec<u32>, Fault> {
     let mut vertices = Queue::new(0_u32);
     let (mut next, mut last) = (0_u32, 0_u32);
     let mut found = Vec::with_capacity(count);
-    // Hands out the next new vertex.
+    // Returns the next new vertex.
     let new = |next: &mut u32| {
         let vertex = *next;
         *next = next.wrapping_add(1);
@@ -336,8 +337,8 @@ fn shorts(bytes: &mut [u8], map: impl Fn([f32; 4]) -> [f32; 4]) {
     }
 }
 
-/// A unit vector from a point of an octahedron, whose third number is 1 in the input's scale. The
-/// fourth stays.
+/// A unit vector from a point of an octahedron. The third number is 1 in the scale of the input;
+/// the fourth number is kept.
 fn octahedral([x, y, one, w]: [f32; 4], max: f32) -> [f32; 4] {
     let one = if one == 0.0 { 1.0 } else { one };
     let (x, y) = (x / one, y / one);
@@ -348,8 +349,8 @@ fn octahedral([x, y, one, w]: [f32; 4], max: f32) -> [f32; 4] {
     [(x * scale).round(), (y * scale).round(), (z * scale).round(), w]
 }
 
-/// A quaternion from three components, the largest left out; the fourth number says which, and
-/// the scale of the others.
+/// A quaternion from three components, without the largest. The fourth number says which one is
+/// missing, and the scale of the others.
 fn quaternion([x, y, z, w]: [f32; 4]) -> [f32; 4] {
     let code = w as i16;
     let scale = std::f32::consts::FRAC_1_SQRT_2 / f32::from(code | 3);

@@ -27,7 +27,7 @@ mod tests {
             let to_eye = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
             let truth = integrate(&sky, to_eye, 1.0, 1e-4).value.diffuse_fresnel;
             let off = diffuse_fresnel(cos) - truth;
-            assert!(off.abs() < 1.2e-5 && truth > 1e-5, "{cos}: off {off}");
+            assert!(off.abs() < 1.2e-5 && truth > 1e-5, "cosine {cos}: error {off}");
         }
     }
 }

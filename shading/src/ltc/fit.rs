@@ -235,9 +235,9 @@ mod tests {
             let seen = Mean::integrate(&lobe);
             let truth = integrate(&sky, lobe.to_eye, roughness, 1e-5).value;
             let off = seen.albedo - truth.specular;
-            assert!(off.abs() < 5e-5, "{x}, {y}: A off {off:e}");
+            assert!(off.abs() < 5e-5, "{x}, {y}: error of A {off:e}");
             let off = seen.fresnel - truth.specular_fresnel;
-            assert!(off.abs() < 5e-6, "{x}, {y}: B off {off:e}");
+            assert!(off.abs() < 5e-6, "{x}, {y}: error of B {off:e}");
         }
     }
 

@@ -112,7 +112,10 @@ mod tests {
             }
             let expected = TAU * 0.1;
             let off = (solid_angle / expected - 1.0).abs();
-            assert!(off < 0.02, "{roughness}, {metallic}: {solid_angle} for {expected}");
+            assert!(
+                off < 0.02,
+                "roughness {roughness}, metallic {metallic}: {solid_angle}, expected {expected}"
+            );
         }
     }
 }

@@ -29,8 +29,8 @@ fn a_bounce_matches_the_integral_over_the_walls() {
         let expected = over_walls(&walls, &lights[0], &at);
         let off = (estimate.mean - expected).abs() / estimate.standard_error();
         let error = estimate.standard_error() / expected;
-        assert!(off.max_element() < 3.0, "{roughness}: {estimate:?} for {expected}");
-        assert!(error.max_element() < 1e-3, "{roughness}: {estimate:?} for {expected}");
+        assert!(off.max_element() < 3.0, "{roughness}: {estimate:?}, expected {expected}");
+        assert!(error.max_element() < 1e-3, "{roughness}: {estimate:?}, expected {expected}");
     }
 }
 
@@ -90,8 +90,8 @@ fn emitting_triangles_match_the_integral() {
             let off = (drawn.mean - expected).abs() - 1e-4 * expected;
             let error = drawn.standard_error() / expected;
             let most = 3.0 * drawn.standard_error();
-            assert!(off.cmplt(most).all(), "{roughness}: {drawn:?} for {expected}");
-            assert!(error.max_element() < 5e-3, "{roughness}: {drawn:?} for {expected}");
+            assert!(off.cmplt(most).all(), "{roughness}: {drawn:?}, expected {expected}");
+            assert!(error.max_element() < 5e-3, "{roughness}: {drawn:?}, expected {expected}");
         }
     }
 }
@@ -139,8 +139,8 @@ fn two_bounces_match_a_random_walk() {
     });
     let error = (drawn.variance + walk.variance).to_array().map(f64::sqrt);
     let off = (drawn.mean - walk.mean).abs() / DVec3::from_array(error);
-    assert!(off.max_element() < 3.0, "{drawn:?} for {walk:?}");
-    assert!((error[0] / walk.mean.x) < 5e-3, "{drawn:?} for {walk:?}");
+    assert!(off.max_element() < 3.0, "{drawn:?}, expected {walk:?}");
+    assert!((error[0] / walk.mean.x) < 5e-3, "{drawn:?}, expected {walk:?}");
     // The second bounce is part of it.
     let one = bounced_light(&LightBvh::new(&[light]), &at, &traced, paths(1, 8192), numbers());
     assert!(drawn.mean.x > 1.2 * one.mean.x, "{drawn:?} {one:?}");
@@ -167,7 +167,7 @@ fn a_matte_bounce_matches_virtual_point_lights() {
             / std::f64::consts::PI
     });
     let off = (drawn.mean / expected - 1.0).abs().max_element();
-    assert!(off < 3e-4, "{drawn:?} for {expected}");
+    assert!(off < 3e-4, "{drawn:?}, expected {expected}");
     let whole = bounced_light(&LightBvh::new(&[light]), &at, &traced, paths(1, 16_384), numbers());
     assert!(whole.mean.x > 1.01 * drawn.mean.x, "the specular term adds light: {whole:?}");
 }

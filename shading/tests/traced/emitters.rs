@@ -37,7 +37,7 @@ fn sampled_emitters_agree_with_the_quadrature() {
             let variance = all.iter().map(|one| one.variance).sum::<DVec3>() / 128.0 / 128.0;
             let error = DVec3::from_array(variance.to_array().map(f64::sqrt));
             let off = (mean - exact.mean).abs() / error;
-            assert!(off.max_element() < 3.0, "{roughness}: {mean} for {exact:?}");
+            assert!(off.max_element() < 3.0, "{roughness}: {mean}, expected {exact:?}");
             let error = error / exact.mean;
             assert!(error.max_element() < 0.02, "{roughness}: {error}");
             // Nothing blocks it, so all of its light arrives.
@@ -67,7 +67,7 @@ fn an_emitters_size_does_not_depend_on_its_range() {
             let exact = direct_light(&light, &at, None, 1, numbers()).mean.x;
             let drawn = |seed| direct_light(&light, &at, Some(&traced), 63, Numbers::new(seed));
             let mean = (0..64).map(|seed| drawn(seed).mean.x).sum::<f64>() / 64.0;
-            assert!((mean / exact - 1.0).abs() < 0.01, "{range_m}: {mean} for {exact}");
+            assert!((mean / exact - 1.0).abs() < 0.01, "{range_m}: {mean}, expected {exact}");
         }
     }
 }
@@ -106,5 +106,5 @@ fn a_half_blocked_emitter_gives_half_its_light() {
     let traced = TracedScene::new(&scene);
     let sampled = direct_light(&whole, &at, Some(&traced), 4000, numbers());
     let off = (sampled.mean - expected).abs() / sampled.standard_error();
-    assert!(off.max_element() < 4.0, "{sampled:?} for {expected}");
+    assert!(off.max_element() < 4.0, "{sampled:?}, expected {expected}");
 }

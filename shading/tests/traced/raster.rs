@@ -25,7 +25,7 @@ fn truth_without_shadows_matches_the_pipeline() {
     assert!(truth.standard_error.pixels.iter().flatten().all(|e| *e == 0.0));
     for (pixel, truth) in image.pixels.iter().flatten().zip(truth.radiance.pixels.iter().flatten())
     {
-        assert!((pixel - truth).abs() <= 2e-2 * truth + 1e-5, "{pixel} for {truth}");
+        assert!((pixel - truth).abs() <= 2e-2 * truth + 1e-5, "{pixel}, expected {truth}");
     }
     let direct = TruthSettings { suns, ..TruthSettings::new(Transport::Direct) };
     let shadowed = truth_image(&traced, &lights, [96, 64], sample_of, direct, &|_, _| ());

@@ -126,7 +126,7 @@ pub(crate) fn jobs(
     let drawn = scene.options(args.size.unwrap_or(extent.size), args.seed);
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
     let ([core, _], _) = scene.boxes(bench)?;
-    // Every digit: in a scene of millimetres a rounded range would be another one.
+    // All digits: in a scene of millimetres, a rounded range would differ.
     let range = |share: f32| (core.diagonal() * share).clamp(1e-6, 1e6).to_string();
     let alike = [&drawn[..], &["--radii", "equal"]].concat();
     let far = range(RANGE_SHARE);

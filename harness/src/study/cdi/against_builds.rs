@@ -1,5 +1,5 @@
-//! Whether it shows in the image how deep images were built: the same lights, with ranges through
-//! deep images of one pass over the triangles and through those of a pass for each direction.
+//! Compares images by the build of their deep images: the same lights, with ranges through deep images of
+//! one pass over the triangles and of one pass per direction.
 
 use crate::study::against_truth::MODELS;
 use crate::study::manifest::Done;
@@ -10,7 +10,7 @@ use crate::{
     stored::Store,
 };
 
-/// The build that others are compared with.
+/// The build that the others are compared with.
 const SINGLE_PASS: &str = "compute";
 
 /// Computes how far the image of each record of [`MODELS`] whose deep images were built otherwise is

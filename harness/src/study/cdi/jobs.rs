@@ -57,8 +57,8 @@ struct Extent {
     casts: &'static str,
     compared: &'static str,
     strategies: &'static str,
-    /// Directions of conservative images: a fragment at least of every triangle in each, which in the town
-    /// would be five GiB of 169.
+    /// Directions of conservative images: at least one fragment per triangle and direction, which would
+    /// be 5 GiB in the town with 169 directions.
     conservative: &'static str,
 }
 
@@ -234,8 +234,8 @@ fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
     let deep = extent.deep(None, None);
     let common = [&["compare"], &drawn[..], &timed, &["--vpls", extent.rsm], &deep].concat();
     let own = ["--strategies", GRID, "--light-order", "given", "--truth", "none"];
-    // Pairs in f64 would take minutes: images say whether anything was lost.
-    // Lights that are made anew each frame have no order but their map's, and no hierarchy.
+    // Pairs in f64 would take minutes: images say whether anything was lost. Lights that are made in each
+    // frame have the order of their map and no hierarchy.
     let all = ["--strategies", extent.strategies, "--light-order", "given", "--truth", "none"];
     vec![
         Job::new(scene, STEPS, "", Settings::default(), &[&common[..], &own].concat()),

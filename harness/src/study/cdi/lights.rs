@@ -3,7 +3,7 @@
 use crate::report::format::{number, significant};
 use crate::results::{Record, Vpls};
 
-/// The metric by which rules are told apart in words.
+/// The metric by which sentences compare rules.
 pub(crate) const METRIC: &str = "mean_error";
 
 /// Rules of ranges, in the order of their colours, and what each is.
@@ -11,8 +11,8 @@ pub(crate) const RULES: [(&str, &str, &str); 6] = [
     ("average", "series-0", "rays, average"),
     ("maximum", "series-1", "rays, maximum"),
     ("random", "series-3", "random"),
-    ("random-discard", "series-4", "random, lights that meet nothing left out"),
-    ("constant-discard", "series-6", "constant, lights that meet nothing left out"),
+    ("random-discard", "series-4", "random, without lights whose rays hit nothing"),
+    ("constant-discard", "series-6", "constant, without lights whose rays hit nothing"),
     ("infinite", "strategy-none", "infinite"),
 ];
 
@@ -22,7 +22,7 @@ pub(crate) fn rule(record: &Record) -> &'static str {
     RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
 }
 
-/// Everything that a frame takes: lights, lists and shading, ms. NaN where the clock was not steady.
+/// The time of making lights, lists and shading, ms. NaN where the clock was not steady.
 pub(crate) fn total_ms(record: &Record) -> f64 {
     if record.setting.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
         return f64::NAN;
@@ -30,7 +30,7 @@ pub(crate) fn total_ms(record: &Record) -> f64 {
     record.setting.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
 }
 
-/// What is set otherwise than usual: `× 3`, `0.4 to 8 m`, `8 directions`.
+/// The settings that differ from the usual ones: `× 3`, `0.4 to 8 m`, `8 directions`.
 pub(crate) fn setting(record: &Record) -> String {
     let Some(vpls) = &record.setting.vpls else { return String::new() };
     let mut parts = Vec::new();

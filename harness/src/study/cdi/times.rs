@@ -41,7 +41,7 @@ pub(crate) fn refused_build(done: &Done, scene: &str, run: &DeepImageRun) -> Opt
     let own = run.build_ms();
     slower_than_again(own, least).then(|| {
         format!(
-            "another job of this study did the same in {} ms, this one in {}",
+            "another job of this study took {} ms for the same work, this one {}",
             significant(least),
             significant(own)
         )
@@ -75,7 +75,7 @@ pub(crate) fn shown(ms: f64, counts: bool) -> Html {
     if counts { text.into() } else { html!("<s>{}</s>", text) }
 }
 
-/// What a reader has to know: which times are struck out, and of which lights the errors are.
+/// What a reader must know: which times are struck out, and which lights the errors belong to.
 pub(crate) fn notices(done: &Done) -> Vec<String> {
     let mut notices = Vec::new();
     for scene in done.scenes() {
@@ -83,7 +83,7 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
             [jobs::BUILDS, jobs::CASTS].into_iter().flat_map(|section| done.of(scene, section));
         for (job, results) in jobs {
             let Some(run) = results.deep_images.as_ref() else { continue };
-            // What a job says of itself stands among the notices already.
+            // The job's own warning already stands among the notices.
             if results.warnings.iter().any(|warning| warning.contains("are refused")) {
                 continue;
             }
@@ -94,7 +94,8 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
             let left_out = run.casts.len() - counted.len();
             if left_out > 0 {
                 notices.push(format!(
-                    "{}: {left_out} of {} times of rays are left out: the clock was still rising.",
+                    "{}: {left_out} of {} times of rays are left out because the clock was still \
+                     rising.",
                     job.name,
                     run.casts.len()
                 ));
@@ -114,9 +115,9 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
     }
     if lights().any(|(_, vpls)| !vpls.has_fresnel) {
         notices.push(
-            "The lights of these results lack what Fresnel\u{2019}s term takes from diffuse reflection: \
-             they are 4 to 7 % too bright, and errors against the truth must be measured again. Times do \
-             not depend on it."
+            "An older program measured these results without Fresnel\u{2019}s term in diffuse \
+             reflection, so their lights are 4 to 7 % too bright. Measure the errors against the \
+             truth again. Times are not affected."
                 .to_owned(),
         );
     }

@@ -56,12 +56,12 @@ pub(crate) fn nearer(first: f64, second: f64, noise: f64) -> Nearer {
     }
 }
 
-/// What the page says of ties.
+/// The page's note on ties.
 pub(crate) fn about_ties(truth: &TruthImage) -> String {
     format!(
-        "The truth\u{2019}s noise moves a difference of two mean errors by at most {} (two standard errors): \
-         smaller ones are ties. Random ranges come from one seed, and the best of each sweep is shown, so \
-         errors within {} % of each other are ties too.",
+        "The noise of the truth changes a difference of two mean errors by at most {} (two \
+         standard errors), so smaller differences are ties. Random ranges come from one seed, and \
+         the best of each sweep is shown, so errors within {} % of each other are also ties.",
         difference(SIGMAS * 2.0 * noise_of(truth)),
         significant(ALIKE * 100.0)
     )
@@ -100,7 +100,7 @@ fn named(id: &str) -> &'static str {
     RULES.iter().find(|(known, ..)| *known == id).map_or("", |(_, _, name)| name)
 }
 
-/// The parameter that a sweep varies: the factor on lengths, or the longest range.
+/// The parameter that a sweep varies: the factor on lengths of rays, or the longest range.
 fn parameter(vpls: &Vpls) -> f64 {
     vpls.random_m.map_or(vpls.range_scale, |[_, high]| high)
 }
@@ -143,11 +143,12 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
         let verdict = match nearer(own, theirs, noise) {
             _ if [cast, other].iter().any(|entry| is_stale(entry.record)) => STALE,
             Nearer::First => "rays are nearer to the truth",
-            Nearer::Second => "rays are farther from the truth",
+            Nearer::Second => "rays are further from the truth",
             Nearer::Tie => "a tie",
         };
         format!(
-            "In {scene} ranges by rays ({}) err by {} of the mean{}; {what} ({}) by {}{}: {verdict}.{}",
+            "In {scene} the mean error of ranges from rays ({}) is {} of the mean{}; that of \
+             {what} ({}) is {}{}: {verdict}.{}",
             setting(cast.record),
             difference(own),
             in_time(cast.record),
@@ -156,7 +157,8 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
             in_time(other.record),
             match is_at_end(&all, other.record) {
                 Some(true) =>
-                    " The best value is the first or last one tried: a better one may lie beyond.",
+                    " The best value is the first or last one that was tried, so a better one may \
+                     exist.",
                 _ => "",
             }
         )
@@ -183,13 +185,14 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     }
     if is_at_end(&all, cast.record) == Some(true) {
         found.push(format!(
-            "In {scene} the best factor on ranges by rays is the first or last one tried."
+            "In {scene} the best factor on ranges from rays is the first or last one that was \
+             tried."
         ));
     }
     if let Some(other) = best(&all, named("infinite"), |_| true) {
         let theirs = error(other.record).unwrap_or(f64::NAN);
         found.push(format!(
-            "In {scene} lights of infinite range err by {} of the mean{}.",
+            "In {scene} the mean error of lights with infinite range is {} of the mean{}.",
             difference(theirs),
             in_time(other.record)
         ));
@@ -197,7 +200,7 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     found
 }
 
-/// Whether a record's lights lack Fresnel's term: then its errors decide nothing.
+/// Whether a record's lights lack Fresnel's term. If so, its errors decide nothing.
 fn is_stale(record: &Record) -> bool {
     record.setting.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel)
 }
@@ -225,7 +228,8 @@ pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
             _ => String::new(),
         };
         Some(format!(
-            "In {scene} lights with ranges by rays err by {} of the mean{}, with the best random ranges by {}{}{verdict}.",
+            "In {scene} the mean error of lights is {} of the mean{} with ranges from rays, and \
+             {}{} with the best random ranges{verdict}.",
             significant(own),
             in_time(cast.record),
             significant(theirs),
@@ -235,7 +239,7 @@ pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
 }
 
 /// The setting of a sweep that errs least on average over the scenes, with that error and the greatest of
-/// any scene: what a renderer would set once.
+/// any scene. A renderer would choose this setting once.
 fn best_in_common(done: &Done, is_of: fn(&Settings) -> bool) -> Option<(f64, f64)> {
     let scenes = done.scenes();
     let mut errors_of: Vec<(&Settings, Vec<f64>)> = Vec::new();
@@ -300,8 +304,8 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     let tie = tie(theirs);
     let stale = if is_stale { format!(": {STALE}") } else { String::new() };
     Some(format!(
-        "With one setting for all {} scenes, lights with ranges by rays err by {} of the mean ({} at worst), with \
-         random ranges of all lights by {} ({}{tie}){}{stale}.",
+        "With one setting for all {} scenes, the mean error of lights with ranges from rays is {} \
+         of the mean ({} at worst); with random ranges of all lights it is {} ({}{tie}){}{stale}.",
         scenes.len(),
         significant(own),
         significant(own_worst),

@@ -22,7 +22,7 @@ pub(crate) struct Check {
     pub(crate) decide: fn(&Done, &str) -> Answer,
 }
 
-/// What a paper claims, and how it came to it.
+/// A paper's claims, and how it measured.
 pub(crate) struct Paper {
     /// What the page calls it: `the comparison paper`.
     pub(crate) name: &'static str,
@@ -37,10 +37,10 @@ pub(crate) struct Claim<'a> {
     pub(crate) answers: Vec<(&'a str, Answer)>,
 }
 
-/// Whether a study ran on another GPU than a paper: then absolute times decide nothing.
+/// Undecided if the study ran on another GPU than the paper, because then absolute times decide nothing.
 pub(crate) fn on_another_gpu(done: &Done, gpu: &str) -> Option<Verdict> {
     let is_other = done.results.values().any(|results| !results.machine.adapter.contains(gpu));
-    is_other.then(|| Verdict::undecided(&format!("another GPU than the paper\u{2019}s {gpu}")))
+    is_other.then(|| Verdict::undecided(&format!("the paper used another GPU, {gpu}")))
 }
 
 /// All claims of a paper.
@@ -54,7 +54,7 @@ pub(crate) fn judge<'a>(done: &'a Done, paper: &Paper) -> Vec<Claim<'a>> {
 }
 
 impl Claim<'_> {
-    /// What all scenes together say.
+    /// The verdict of all scenes together.
     pub(crate) fn verdict(&self) -> Verdict {
         let known: Vec<&(&str, Answer)> = self
             .answers
@@ -69,7 +69,7 @@ impl Claim<'_> {
             [(_, one)] => one.verdict.clone(),
             several => {
                 let all = |verdict: &Verdict| several.iter().all(|(_, a)| a.verdict == *verdict);
-                // Scenes that say nothing are counted in `verdict_text`.
+                // `verdict_text` counts the scenes that decide nothing.
                 if all(&Verdict::Holds) {
                     Verdict::Holds
                 } else if all(&Verdict::Fails) {
@@ -83,18 +83,21 @@ impl Claim<'_> {
                             .collect();
                         (!scenes.is_empty()).then(|| format!("{how} in {}", listed(&scenes)))
                     };
-                    let parts: Vec<String> =
-                        [of("holds", "holds"), of("differs", "in part"), of("fails", "not")]
-                            .into_iter()
-                            .flatten()
-                            .collect();
+                    let parts: Vec<String> = [
+                        of("holds", "holds"),
+                        of("differs", "holds in part"),
+                        of("fails", "fails"),
+                    ]
+                    .into_iter()
+                    .flatten()
+                    .collect();
                     Verdict::Differs(parts.join("; "))
                 }
             }
         }
     }
 
-    /// The verdict, and how many scenes decide it where some do not: `holds (1 of 3 scenes measured)`.
+    /// The verdict, and how many scenes decide it if not all do: `holds (1 of 3 scenes measured)`.
     pub(crate) fn verdict_text(&self) -> String {
         let is_known = |answer: &Answer| !matches!(answer.verdict, Verdict::Unknown(_));
         let known = self.answers.iter().filter(|(_, answer)| is_known(answer)).count();
@@ -155,7 +158,7 @@ mod tests {
         assert_eq!(claim(&[unknown(), unknown()]).verdict(), unknown());
         assert_eq!(claim(&[unknown(), unknown()]).verdict_text(), "no path");
         let Differs(why) = claim(&[Holds, Fails]).verdict() else { panic!("it differs") };
-        assert_eq!(why, "holds in scene; not in scene");
+        assert_eq!(why, "holds in scene; fails in scene");
         assert!(matches!(claim(&[]).verdict(), Unknown(_)));
     }
 

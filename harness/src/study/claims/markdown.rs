@@ -17,7 +17,7 @@ pub(crate) fn markdown(paper: &Paper, claims: &[Claim<'_>]) -> String {
     text
 }
 
-/// Text that ends no cell and no line.
+/// Escapes what would end a cell or a line.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }

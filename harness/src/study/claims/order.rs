@@ -1,17 +1,17 @@
-//! Which of two records has the lesser figure, as far as repetitions tell.
+//! Orders two figures, if repetitions can decide.
 //!
 //! One rule for all claims:
 //!
 //! - Six rounds or laps, or more: two figures tie where the interval of their ratio includes 1, or its
 //!   median is within 0.5 % of 1, as in [ranks](crate::report::rank::ranks).
-//! - Fewer: nothing is known of the noise. Figures that are less than 5 % apart are not ordered.
+//! - Fewer: the noise is unknown, so figures that are less than 5 % apart are not ordered.
 //! - Slopes and offsets of fitted lines: less than 2 % apart is a tie.
 
 use crate::report::rank::{Ratio, SURE};
 use crate::results::{Record, mean, median, median_interval};
 
-/// Without six rounds or laps, a smaller difference orders nothing. Our limit: times of one job that was
-/// run twice differ by less.
+/// Without six rounds or laps, smaller differences decide nothing. This limit is ours: times of one job
+/// that ran twice differ by less.
 const TOO_FEW_LAPS: f64 = 0.05;
 
 /// Slopes and offsets of fitted lines tie within this share of each other. Our limit.
@@ -48,13 +48,13 @@ impl Order {
         }
     }
 
-    /// Of single figures, without repetitions.
+    /// Orders single figures, without repetitions.
     pub(crate) fn of_figures(figure: f64, other: f64) -> Self {
         Self::within(figure / other, TOO_FEW_LAPS, Self::Unsure)
     }
 
-    /// Of slopes or offsets of fitted lines. One below zero is less than one above it, whatever their
-    /// ratio.
+    /// Orders slopes or offsets of fitted lines. A negative one is less than a positive one, whatever
+    /// their ratio.
     pub(crate) fn of_fits(figure: f64, other: f64) -> Self {
         if figure > 0.0 && other > 0.0 {
             return Self::within(figure / other, FITTED, Self::Tie);
@@ -66,7 +66,8 @@ impl Order {
         }
     }
 
-    /// Of the times to assign and shade: by rounds or laps where both have them, else by the figures.
+    /// Orders the times to assign and shade: by rounds or laps if both have them, otherwise by the
+    /// figures.
     pub(crate) fn of_times(record: &Record, other: &Record) -> Self {
         match Ratio::between(record, other) {
             Some(ratio) => Self::of_ratio(ratio),
@@ -74,7 +75,7 @@ impl Order {
         }
     }
 
-    /// Of the times of whole frames: by rounds or laps where both have them, else by the figures.
+    /// Orders the times of whole frames: by rounds or laps if both have them, otherwise by the figures.
     pub(crate) fn of_frames(record: &Record, other: &Record) -> Self {
         let times = [record, other].map(frame_rounds_ms);
         let same = (record.setting.along_path, record.times.frames)
@@ -87,7 +88,7 @@ impl Order {
         }
     }
 
-    /// Of figures that were taken once a lap; `wholes` decide where there is one lap.
+    /// Orders figures that were taken once per lap; `wholes` decide if there is only one lap.
     pub(crate) fn of_laps(laps: &[f64], others: &[f64], wholes: [f64; 2]) -> Self {
         let ratios: Vec<f64> = laps.iter().zip(others).map(|(lap, other)| lap / other).collect();
         match median_interval(&ratios).filter(|_| laps.len() == others.len()) {

@@ -1,4 +1,4 @@
-//! All claims of a paper as a table.
+//! Draws all claims of a paper as a table.
 
 use super::claim::{Claim, Paper};
 use super::verdict::Answer;
@@ -14,7 +14,7 @@ pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool
     }
     let rows: Vec<Vec<Html>> = claims.iter().map(row).collect();
     let caveat = if is_software {
-        " This study ran on a software adapter: the verdicts are not a GPU\u{2019}s."
+        " This study ran on a software adapter, so the verdicts do not apply to a GPU."
     } else {
         ""
     };
@@ -28,7 +28,7 @@ pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool
     )
 }
 
-/// The claim, the paper's figures and our departure, what each scene says, and the verdict.
+/// One row: the claim, the paper's figures and our departure, the answer of each scene, and the verdict.
 fn row(claim: &Claim<'_>) -> Vec<Html> {
     let check = claim.check;
     let departure = match check.departure {
@@ -38,7 +38,7 @@ fn row(claim: &Claim<'_>) -> Vec<Html> {
     let several = claim.answers.len() > 1;
     vec![
         html!("{} <small>{}</small>", check.words, check.place),
-        // Where the table is too narrow for heads, words stand before the figures.
+        // A narrow table has no heads, so a word precedes the figures.
         html!("<b class=\"of\">paper: </b>{}{}", check.paper, departure),
         claim.answers.iter().map(|answer| measured(answer, several)).collect(),
         html!(
@@ -50,7 +50,7 @@ fn row(claim: &Claim<'_>) -> Vec<Html> {
     ]
 }
 
-/// What one scene says; of several, each with its own verdict.
+/// The answer of one scene, with its own verdict if there are several.
 fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> Html {
     let (verdict, figure) = (answer.verdict.text(), &answer.figure);
     let own = html!("<span class=\"verdict {}\">{}</span>", answer.verdict.id(), verdict);

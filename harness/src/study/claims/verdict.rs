@@ -1,25 +1,25 @@
-//! What the figures of a scene say of a claim.
+//! The verdict of a scene's figures on a claim.
 
-/// What the figures say of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// They bear it out.
+    /// The figures confirm it.
     Holds,
-    /// They contradict it.
+    /// The figures contradict it.
     Fails,
-    /// They bear a part of it out: which.
+    /// The figures confirm a part of it, which the text names.
     Differs(String),
-    /// They decide nothing: why, as a phrase.
+    /// The figures decide nothing; the text says why.
     Unknown(String),
 }
 
 impl Verdict {
-    /// The figures are missing: which.
+    /// The figures that decide it are missing; `what` names them.
     pub(crate) fn unmeasured(what: &str) -> Self {
         Self::Unknown(format!("not measured: {what}"))
     }
 
-    /// There are figures, and they cannot decide the claim: why.
+    /// There are figures, but they cannot decide the claim; `why` says why.
     pub(crate) fn undecided(why: &str) -> Self {
         Self::Unknown(format!("not decided: {why}"))
     }
@@ -34,7 +34,8 @@ impl Verdict {
         }
     }
 
-    /// The same with what bars it from holding outright: what was not measured, or what stands in for it.
+    /// Adds notes on what was not measured or what stands in for it; with a note, a claim cannot hold
+    /// outright.
     pub(crate) fn qualified(self, notes: &[String]) -> Self {
         match self {
             Self::Holds if !notes.is_empty() => Self::Differs(notes.join("; ")),
@@ -65,7 +66,7 @@ impl Verdict {
     }
 }
 
-/// What one scene says of a claim.
+/// The answer of one scene to a claim.
 #[derive(Clone, Debug)]
 pub(crate) struct Answer {
     /// Our figures.
@@ -74,12 +75,12 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
-    /// Without figures: what was not measured.
+    /// An answer without figures; `what` was not measured.
     pub(crate) fn unknown(what: &str) -> Self {
         Self { figure: String::new(), verdict: Verdict::unmeasured(what) }
     }
 
-    /// Without figures, and why they would decide nothing.
+    /// An answer without figures, and why figures would decide nothing.
     pub(crate) fn undecided(why: &str) -> Self {
         Self { figure: String::new(), verdict: Verdict::undecided(why) }
     }

@@ -1,9 +1,9 @@
-//! The comparison paper (Enhuber 2019) on any scene, and what it left out: many more lights, other
-//! radii, and speed against accuracy.
+//! The comparison paper (Enhuber 2019) on any scene, and what it left out: many more lights, other radii,
+//! and speed against accuracy.
 //!
 //! Rankings, searches and scaling are means along the scene's path, as in the paper. Each method draws
-//! every pose of a run once a lap, and laps repeat the run, so that ties are known. A still camera serves
-//! as an example only: pictures, heat maps, and lists checked pair by pair.
+//! every pose of a run once a lap, and laps repeat the run, so that ties can be detected. A still camera
+//! serves only as an example: pictures, heat maps, and lists that are checked pair by pair.
 
 use super::depth_views::Views;
 use super::extent::{self, Extent};
@@ -167,8 +167,8 @@ impl Plan<'_> {
         }
     }
 
-    /// Times along the camera path (sections 4.4.1.1 and 4.4.2.1). Methods that take tens of
-    /// milliseconds a frame have jobs of their own with fewer poses.
+    /// Times along the camera path (sections 4.4.1.1 and 4.4.2.1). Methods that take tens of milliseconds
+    /// per frame have separate jobs with fewer poses.
     fn rankings(&mut self) {
         for (ix, &count) in self.extent.counts.iter().enumerate() {
             let is_most = ix + 1 == self.extent.counts.len();

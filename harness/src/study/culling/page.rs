@@ -2,14 +2,17 @@
 //! claims of them is judged in `claims`.
 
 use crate::chart::{Axis, Marks, Scale, XyChart};
+use crate::report::column::{Better, Column};
 use crate::report::finding::lights;
-use crate::report::format::{ABSENT, number, significant};
+use crate::report::fit::Fit;
+use crate::report::format::{number, significant};
 use crate::report::markup::Html;
 use crate::report::rank::{ALIKE, listed};
+use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::study::data::{Entry, counts, entries, lines};
+use crate::study::data::{Entry, Line, counts, entries, lines};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, name, table, unit};
+use crate::study::page::figure::Charts;
 use crate::study::page::lines::{fit, times_series};
 use crate::study::page::part::Part;
 
@@ -17,12 +20,14 @@ use crate::study::page::part::Part;
 const MODES: [&str; 2] = ["deferred", "forward"];
 
 /// What stands above forward times of a data-centre GPU.
-const FORWARD_CAUTION: &str = " This GPU runs fragment shaders on a few of its processors: compare these times \
-    with each other, not with deferred ones nor with another chip\u{2019}s.";
+const FORWARD_CAUTION: &str = " This GPU runs fragment shaders on only a few of its processors: \
+                               compare these times with each other, not with deferred ones or \
+                               with those of another GPU.";
 
 /// What stands above deferred times of a data-centre GPU.
-const DEFERRED_CAUTION: &str = " This GPU runs fragment shaders on a few of its processors: RasterSphere and Clay \
-    shade there, the other methods in a compute pass.";
+const DEFERRED_CAUTION: &str = " This GPU runs fragment shaders on only a few of its processors: \
+                                RasterSphere and Clay shade there, the other methods in a compute \
+                                pass.";
 
 fn frame(record: &Record) -> f64 {
     record.times.frame_ms
@@ -39,7 +44,11 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
             }
             let chart = XyChart {
                 title: format!("Frame time against lights, {mode}"),
-                x: Axis { label: "Lights".to_owned(), unit: String::new(), scale: Scale::LinearFromZero },
+                x: Axis {
+                    label: "Lights".to_owned(),
+                    unit: String::new(),
+                    scale: Scale::LinearFromZero,
+                },
                 y: Axis {
                     label: "Frame, mean along the path".to_owned(),
                     unit: "ms".to_owned(),
@@ -58,61 +67,79 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
                 false => "",
             };
             let text = format!(
-                "The whole frame, mean over the frames of the path; slope and offset of the straight line \
-                 through these times; relMSE against no culling at the most lights. Clusters of 40 x 40 \
-                 pixels and 24 slices that end at 128 lights are the survey\u{2019}s.{caution}"
+                "Times are of whole frames, mean over the frames of the path. Slope and offset \
+                 belong to the straight line through these times. The relMSE compares with no \
+                 culling at the most lights. The survey\u{2019}s own clusters are those of 40 x \
+                 40 pixels and 24 slices, capped at 128 lights.{caution}"
             );
             Some(Part::new(mode, format!("Times, {mode}"), text, body))
         })
         .collect()
 }
 
-fn times(entries: &[Entry<'_>]) -> Html {
-    let counts = counts(entries);
-    let rows: Vec<Vec<Html>> = lines(entries)
-        .into_iter()
-        .map(|(id, records)| {
-            let mut cells: Vec<Option<String>> = Vec::new();
-            cells.extend(counts.iter().map(|count| {
-                let found = records.iter().find(|record| record.setting.lights == *count);
-                found.map(|record| significant(frame(record)))
-            }));
-            cells.extend(match fit(&records, frame).filter(|fit| fit.points > 2) {
-                Some(fit) => [
-                    Some(significant(fit.slope * 1e6)),
-                    Some(significant(fit.offset)),
-                    Some(format!("{:.3}", fit.r2)),
-                ],
-                None => [None, None, None],
-            });
-            cells.push(records.last().and_then(|r| error(r)));
-            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| ABSENT.to_owned()));
-            std::iter::once(name(id)).chain(cells.map(Html::from)).collect()
-        })
-        .collect();
-    let mut heads: Vec<Html> = vec!["method".into()];
-    heads.extend(counts.iter().map(|count| unit(&number(*count as f64), "ms")));
-    heads.extend([
-        unit("slope", "\u{b5}s per 1,000 lights"),
-        unit("offset", "ms"),
-        "R\u{b2}".into(),
-        "relMSE".into(),
+/// The time of a frame at each count of lights, the straight line through these times, and the error at the
+/// most lights.
+fn times<'a>(entries: &[Entry<'a>]) -> Html {
+    let at = |count: u64| {
+        let time = move |(_, records): &Line<'a>| {
+            let found = records.iter().find(|record| record.setting.lights == count);
+            found.map(|record| frame(record))
+        };
+        Column::figure(number(count as f64), "ms", Better::Less, time, significant)
+    };
+    let mut columns: Vec<Column<'a, Line<'a>>> = counts(entries).into_iter().map(at).collect();
+    columns.extend([
+        Column::figure(
+            "slope",
+            "\u{b5}s per 1,000 lights",
+            Better::Less,
+            |line: &Line<'a>| Some(straight(line)?.slope * 1e6),
+            significant,
+        ),
+        Column::figure(
+            "offset",
+            "ms",
+            Better::Less,
+            |line: &Line<'a>| Some(straight(line)?.offset),
+            significant,
+        ),
+        Column::figure(
+            "R\u{b2}",
+            "",
+            Better::More,
+            |line: &Line<'a>| Some(straight(line)?.r2),
+            |r2| format!("{r2:.3}"),
+        ),
+        Column::figure(
+            "relMSE",
+            "",
+            Better::Less,
+            |(_, records): &Line<'a>| error(records.last()?),
+            significant,
+        ),
     ]);
-    table("Frame times by lights", &heads, &rows)
+    let row = |line: Line<'a>| Row::new(line.0.to_string(), line);
+    Table::new("method", columns, lines(entries).into_iter().map(row).collect())
+        .competing(|_| false)
+        .dotted(|(id, _)| id.class())
+        .html("Frame times by lights", Look::Plain)
+}
+
+/// The straight line through the times of a method, from three counts of lights on.
+fn straight((_, records): &Line<'_>) -> Option<Fit> {
+    fit(records, frame).filter(|fit| fit.points > 2)
 }
 
 /// The error of a record against no culling; `None` where it was not compared.
-fn error(record: &Record) -> Option<String> {
-    let error =
-        record.image.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control());
-    error.map(significant)
+fn error(record: &Record) -> Option<f64> {
+    record.image.errors.get("rel_mse").copied().flatten().filter(|_| !record.is_control())
 }
 
 /// A record's time, and its error where a knob loses light.
-fn said(record: &Record) -> String {
+fn time_and_error(record: &Record) -> String {
     let time = format!("{} {} ms", record.strategy, significant(record.times.frame_ms));
     match error(record).filter(|_| record.is_lossy) {
-        Some(error) => format!("{time} (lossy, relMSE {error})"),
+        Some(error) => format!("{time} (lossy, relMSE {})", significant(error)),
         None => time,
     }
 }
@@ -136,9 +163,9 @@ fn by_time<'a>(done: &'a Done, scene: &'a str, mode: &'a str) -> Vec<&'a Record>
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let sentence = |mode: &&str| {
         let records = by_time(done, scene, mode);
-        let times: Vec<String> = records.iter().map(|record| said(record)).collect();
+        let times: Vec<String> = records.iter().map(|record| time_and_error(record)).collect();
         Some(format!(
-            "In {scene} at {}, {mode}, a frame takes, mean along the path: {}.",
+            "In {scene} at {}, {mode}, the mean times of a frame along the path are: {}.",
             lights(records.first()?.setting.lights),
             listed(&times)
         ))

@@ -15,11 +15,11 @@ pub(crate) const PLACES: [(&str, &str); 3] = [
     ("c", "Location C: mostly far fragments"),
 ];
 
-/// Location A under ranges by the paper's own rule. No claim is held against it.
+/// Location A under ranges by the paper's own rule. No claim uses it.
 pub(crate) const RULED: (&str, &str) =
-    ("influence", "Location A: ranges by the paper\u{2019}s influence radius, cut hard");
+    ("influence", "Location A: ranges from the paper\u{2019}s influence radius, with a hard cut");
 
-/// The clusters of all settings but the paper's own.
+/// The clusters of all settings except the paper's.
 pub(crate) const USUAL: &str = "48x48x40";
 
 /// What specular light a setting leaves out on purpose.
@@ -40,10 +40,10 @@ pub(crate) enum Cut {
 pub(crate) struct Setting<'a> {
     /// The clusters: `48x48x40`; empty where there are none.
     pub(crate) grid: &'a str,
-    /// Normal cones that a cluster is split by; `None` where lights are assigned by position alone.
+    /// Normal cones that a cluster is split by; `None` where lights are assigned by position only.
     pub(crate) cones: Option<u32>,
     pub(crate) cut: Cut,
-    /// Whether shading leaves out, at each sample, what adds nothing there.
+    /// Whether shading skips, at each sample, terms that add nothing there.
     pub(crate) exits: bool,
 }
 
@@ -68,7 +68,7 @@ impl<'a> Setting<'a> {
         self.cones.is_none_or(|cones| [6, 24, 54].contains(&cones))
     }
 
-    /// Position alone, without a cut.
+    /// Whether it is position only, without a cut.
     pub(crate) fn is_position(&self) -> bool {
         self.cones.is_none() && self.cut == Cut::None
     }
@@ -145,7 +145,7 @@ impl<'a> Case<'a> {
         self.culled().find(|record| wanted(&Setting::of(&record.strategy)))
     }
 
-    /// The record by position alone, with the usual clusters and the early exit where it is there.
+    /// The record by position only, with the usual clusters and the early exit where it is there.
     pub(crate) fn position(&self) -> Option<&'a Record> {
         let is_usual = |setting: &Setting<'_>| setting.grid == USUAL && setting.exits;
         let any = |setting: &Setting<'_>| setting.is_position();
@@ -236,17 +236,17 @@ const PAPER: [Row; 25] = [
 ];
 
 /// What the paper measured: operations of both terms, assignment and shading, ms.
-pub(crate) struct Paper {
+pub(crate) struct Published {
     pub(crate) listed: Option<u64>,
     pub(crate) assign_ms: f64,
     pub(crate) shade_ms: f64,
 }
 
 /// The paper's row of a place, its lights and a setting.
-pub(crate) fn paper(place: &str, lights: u64, setting: &Setting<'_>) -> Option<Paper> {
+pub(crate) fn paper(place: &str, lights: u64, setting: &Setting<'_>) -> Option<Published> {
     let kind = Kind::of(setting)?;
     let row = PAPER.iter().find(|row| (row.0, row.1, row.2) == (place, lights, kind))?;
-    Some(Paper { listed: row.3, assign_ms: row.4, shade_ms: row.5 })
+    Some(Published { listed: row.3, assign_ms: row.4, shade_ms: row.5 })
 }
 
 #[cfg(test)]

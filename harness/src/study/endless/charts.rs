@@ -24,16 +24,16 @@ pub(crate) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Ht
         case.position().and_then(|record| record.lists.operations).map(|all| all.outer_specular);
     if let Some(all) = outer.filter(|all| *all > 0) {
         let share = |operations: &Operations| operations.outer_specular as f64 / all as f64 * 100.0;
-        let title = "Outer specular operations, of those by position alone";
+        let title = "Outer specular operations, as a share of those by position only";
         html += counted(&culled, title, "Outer specular operations", "%", share)
             .map_or_else(Html::default, |chart| charts.bars(&slug("outer"), &chart));
     }
-    // Of what a setting lists, not of what it should.
+    // The share of visible terms among those that a setting lists, not among those that it should list.
     let waste = |operations: &Operations| match seen(operations) {
         0 => f64::NAN,
         seen => operations.listed() as f64 / seen as f64,
     };
-    let title = "Listed terms over those of them that would be seen";
+    let title = "Listed terms per visible listed term";
     html + counted(&culled, title, "Listed over perceptible", "", waste)
         .map_or_else(Html::default, |chart| charts.bars(&slug("perceptible"), &chart))
 }

@@ -23,7 +23,7 @@ const DIFFUSE_SHARE: &str = "0.6667";
 /// terms on 1280x720 pixels, table 5.1).
 const RANGE_SHARE: f32 = 0.55;
 
-/// Clusters through the hierarchy, by position alone.
+/// Clusters through the hierarchy, by position only.
 const CLUSTERS: &str = "SC-E/48x48x40/bvh";
 
 /// The numbers of cones that the paper has.
@@ -55,7 +55,7 @@ struct Extent {
 }
 
 const FULL: Extent = Extent {
-    // The paper's, for its counts of operations.
+    // The paper's size, because operations are compared with the paper's counts.
     size: Size { width: 1280, height: 720 },
     copies: [("1", "126"), ("4", "2016")],
     // A frame a round.
@@ -78,7 +78,7 @@ const QUICK: Extent = Extent {
 };
 
 /// The jobs of one scene: each place under each count of lights that the paper has figures of, and
-/// location A under the ranges that its own rule gives, cut hard.
+/// location A under the ranges of the paper's rule, with a hard cut.
 pub(crate) fn jobs(
     bench: &mut Bench,
     args: &StudyArgs,
@@ -168,7 +168,7 @@ fn afar(one: Aabb, origin: DVec3, side: u32) -> String {
     let ground = Vec3::new(size.x, 0.0, size.z) * side as f32;
     let middle = one.min + 0.5 * ground;
     let eye = one.min + 0.05 * ground + Vec3::Y * (size.y + 0.2 * ground.length());
-    // Every digit, so that small scenes have views of their own; no negative zero.
+    // All digits, so that small scenes get distinct views; no negative zero.
     let point = |point: Vec3| match origin == DVec3::ZERO {
         true => point.to_array().map(|x| (x + 0.0).to_string()).join(","),
         false => (point.as_dvec3() + origin).to_array().map(|x| x.to_string()).join(","),

@@ -1,31 +1,37 @@
 //! Many polygon lights through clusters with normal cones: the paper's table and charts, by place and
 //! number of lights.
 
+use crate::report::column::{Better, Column};
 use crate::report::finding::lights;
 use crate::report::format::{ABSENT, difference, number, percent, significant};
 use crate::report::markup::{Html, html};
 use crate::report::rank::{Ratio, competes, first, listed, ranks};
-use crate::results::{Operations, Record};
+use crate::report::table::{Look, Row, Table};
+use crate::results::{Errors, Operations, Record};
 use crate::study::data::Entry;
 use crate::study::endless::cases::{
-    Case, Cut, PLACES, RULED, Setting, USUAL, cases, cases_at, lost, paper, seen, setting,
+    Case, Cut, PLACES, Published, RULED, Setting, USUAL, cases, cases_at, lost, paper, seen,
+    setting,
 };
 use crate::study::endless::charts::charts_of;
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, panels, table, unit};
+use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
 
-/// What the figures of a part mean.
-const NOTE: &str = "A light operation is one term, diffuse or specular, of one light at one sample. Listed: \
-    the sample\u{2019}s list names it. Evaluated: listed, and not left out by shading at that sample. Outer: \
-    specular, beyond the reach of the light\u{2019}s diffuse term. Seen: listed, and it would be seen; lost: \
-    it would be seen, position lists it, this setting does not. Position is clusters without cones. A cut \
-    leaves out specular light below a radiance; the 45\u{b0} test is the paper\u{2019}s cone test; diffuse \
-    reach is the paper\u{2019}s dif, where specular light ends with diffuse light. These three lose light: \
-    their errors are against no culling. For scale, linearly transformed cosines themselves have a FLIP of \
-    0.018 and 0.037 against the true integral (h200-area). In brackets stands the paper\u{2019}s figure, \
-    from a GTX 1060 at 1280 x 720 in another scene.";
+/// The meaning of a part's figures.
+const NOTE: &str = "A light operation is one term, diffuse or specular, of one light at one \
+                    sample. Listed: the sample\u{2019}s list contains it. Evaluated: listed, and \
+                    shading does not skip it at that sample. Outer: a specular term beyond the \
+                    reach of the light\u{2019}s diffuse term. Seen: listed and visible. Lost: \
+                    visible and listed by position, but not listed by this setting. Position \
+                    means clusters without cones. A cut removes specular light below a radiance. \
+                    The 45\u{b0} test is the paper\u{2019}s cone test. Diffuse reach is the \
+                    paper\u{2019}s dif: specular light ends where diffuse light ends. These three \
+                    lose light; their errors compare with no culling. For scale, linearly \
+                    transformed cosines themselves have a FLIP of 0.018 and 0.037 against the \
+                    true integral (h200-area). Brackets hold the paper\u{2019}s figure, from a \
+                    GTX 1060 at 1280 x 720 in another scene.";
 
 /// A part per place, with a panel per count of lights.
 pub(crate) fn places(
@@ -51,7 +57,7 @@ pub(crate) fn places(
     parts
 }
 
-/// What the camera sees.
+/// A picture of the view.
 fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
     let key = case.entries.iter().find_map(|Entry { job, record }| {
         shots.file(&job.name, record.image.files.baseline.as_deref()?)
@@ -65,40 +71,86 @@ fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
     )
 }
 
-/// The heads of the table, with their units.
-const HEADS: [(&str, &str); 15] = [
-    ("cones", ""),
-    ("diffuse", "listed"),
-    ("specular", "listed"),
-    ("outer specular", "listed"),
-    ("both terms", "listed"),
-    ("both terms", "evaluated"),
-    ("seen", ""),
-    ("lost", ""),
-    ("assign", "ms"),
-    ("shade", "ms"),
-    ("total", "ms"),
-    ("relMSE", ""),
-    ("FLIP", ""),
-    ("missing energy", ""),
-    ("unbounded relMSE", ""),
-];
-
 /// The paper's table with ours.
-fn operations(case: &Case<'_>) -> Html {
-    let is_unbounded = case
-        .entries
-        .iter()
-        .any(|entry| entry.record.image.unbounded_errors.contains_key("rel_mse"));
-    let columns = HEADS.len() - usize::from(!is_unbounded);
-    let head = |(head, of): &(&str, &str)| match *of {
-        "" => Html::from(*head),
-        in_unit => unit(head, in_unit),
+fn operations<'a>(case: &'a Case<'a>) -> Html {
+    let rows = case.entries.iter();
+    let row = |entry: &'a Entry<'a>| Row::new(setting(&entry.record.strategy), entry.record);
+    let columns = [terms(case), times(case), errors()].into_iter().flatten();
+    Table::new("cones", columns, rows.map(row).collect())
+        .competing(|_| false)
+        .html(&format!("Light operations and times, {}", case.name()), Look::Plain)
+}
+
+/// Columns of light operations and of lost operations.
+fn terms<'a>(case: &'a Case<'a>) -> Vec<Column<'a, &'a Record>> {
+    let count = |head, unit, of: fn(&Operations) -> Option<u64>| {
+        let value = move |record: &&Record| {
+            record.lists.operations.as_ref().and_then(of).map(|terms| terms as f64)
+        };
+        Column::figure(head, unit, Better::Less, value, number)
     };
-    let heads: Vec<Html> = HEADS.iter().take(columns).map(head).collect();
-    let row = |entry: &Entry<'_>| row(case, entry.record).into_iter().take(columns).collect();
-    let rows: Vec<Vec<Html>> = case.entries.iter().map(row).collect();
-    table(&format!("Light operations and times, {}", case.name()), &heads, &rows)
+    vec![
+        count("diffuse", "listed", |all| Some(all.diffuse)),
+        count("specular", "listed", |all| Some(all.specular)),
+        count("outer specular", "listed", |all| Some(all.outer_specular)),
+        count("both terms", "listed", |all| Some(all.listed())).note(|record| {
+            beside(of_the_paper(case, record).and_then(|paper| paper.listed), |terms| {
+                number(terms as f64)
+            })
+        }),
+        count("both terms", "evaluated", |all| {
+            Some(all.evaluated?.diffuse + all.evaluated?.specular)
+        }),
+        count("seen", "", |all| Some(seen(all))),
+        Column::words("lost", "", |record: &&Record| {
+            loss(case, record).unwrap_or_else(|| ABSENT.to_owned())
+        }),
+    ]
+}
+
+/// Columns of times, with the paper's.
+fn times<'a>(case: &'a Case<'a>) -> Vec<Column<'a, &'a Record>> {
+    let ms = |head, own: fn(&Record) -> f64, paper: fn(&Published) -> f64| {
+        Column::figure(
+            head,
+            "ms",
+            Better::Less,
+            move |record: &&Record| Some(own(record)),
+            significant,
+        )
+        .note(move |record| beside(of_the_paper(case, record).as_ref().map(paper), significant))
+    };
+    vec![
+        ms("assign", |record| record.times.assign_ms, |paper| paper.assign_ms),
+        ms("shade", |record| record.times.shade_ms, |paper| paper.shade_ms),
+        ms("total", Record::assign_and_shade_ms, |paper| paper.assign_ms + paper.shade_ms),
+    ]
+}
+
+/// Columns of errors.
+fn errors<'a>() -> Vec<Column<'a, &'a Record>> {
+    let error = |head, errors: fn(&Record) -> &Errors, id: &'static str| {
+        let value = move |record: &&Record| errors(record).get(id).copied().flatten();
+        Column::figure(head, "", Better::Less, value, difference)
+    };
+    vec![
+        error("relMSE", |record| &record.image.errors, "rel_mse"),
+        error("FLIP", |record| &record.image.errors, "flip"),
+        error("missing energy", |record| &record.image.errors, "missing_energy"),
+        error("unbounded relMSE", |record| &record.image.unbounded_errors, "rel_mse").optional(),
+    ]
+}
+
+/// The paper's figure, in brackets after ours; nothing where it has none.
+fn beside<T>(paper: Option<T>, show: fn(T) -> String) -> Html {
+    paper
+        .map_or_else(Html::default, |paper| html!(" <span class=\"unit\">({})</span>", show(paper)))
+}
+
+/// The paper's figures of a setting, where they stand beside it.
+fn of_the_paper(case: &Case<'_>, record: &Record) -> Option<Published> {
+    let setting = Setting::of(&record.strategy);
+    stands_for_the_paper(case, record).then(|| paper(case.place, case.lights, &setting)).flatten()
 }
 
 /// Whether the paper's figures stand beside a record: of all that are of one kind beside the most faithful,
@@ -118,49 +170,6 @@ fn stands_for_the_paper(case: &Case<'_>, record: &Record) -> bool {
     record.culls() && !own.grid.ends_with("x12") && !case.culled().any(is_better)
 }
 
-fn row(case: &Case<'_>, record: &Record) -> Vec<Html> {
-    let counted = record.lists.operations.as_ref();
-    let known = |value: Option<String>| value.unwrap_or_else(|| ABSENT.to_owned());
-    let count = |value: Option<u64>| known(value.map(|value| number(value as f64)));
-    let theirs = match stands_for_the_paper(case, record) {
-        true => paper(case.place, case.lights, &Setting::of(&record.strategy)),
-        false => None,
-    };
-    let beside = |own: String, theirs: Option<String>| match theirs {
-        Some(theirs) => html!("{} <span class=\"unit\">({})</span>", own, theirs),
-        None => own.into(),
-    };
-    let error = |errors: &crate::results::Errors, id: &str| {
-        let error = errors.get(id).copied().flatten();
-        Html::from(known(error.map(difference)))
-    };
-    let ms = |own: f64, paper: Option<f64>| beside(significant(own), paper.map(significant));
-    let evaluated = counted.and_then(|all| all.evaluated);
-    vec![
-        setting(&record.strategy).into(),
-        count(counted.map(|all| all.diffuse)).into(),
-        count(counted.map(|all| all.specular)).into(),
-        count(counted.map(|all| all.outer_specular)).into(),
-        beside(
-            count(counted.map(Operations::listed)),
-            theirs.as_ref().and_then(|theirs| theirs.listed).map(|all| number(all as f64)),
-        ),
-        count(evaluated.map(|all| all.diffuse + all.specular)).into(),
-        count(counted.map(seen)).into(),
-        known(loss(case, record)).into(),
-        ms(record.times.assign_ms, theirs.as_ref().map(|theirs| theirs.assign_ms)),
-        ms(record.times.shade_ms, theirs.as_ref().map(|theirs| theirs.shade_ms)),
-        ms(
-            record.assign_and_shade_ms(),
-            theirs.as_ref().map(|theirs| theirs.assign_ms + theirs.shade_ms),
-        ),
-        error(&record.image.errors, "rel_mse"),
-        error(&record.image.errors, "flip"),
-        error(&record.image.errors, "missing_energy"),
-        error(&record.image.unbounded_errors, "rel_mse"),
-    ]
-}
-
 /// Terms that would be seen and that a lossy setting loses: a number, or the least that it may be.
 fn loss(case: &Case<'_>, record: &Record) -> Option<String> {
     let position = case.position()?.lists.operations.as_ref()?;
@@ -170,7 +179,7 @@ fn loss(case: &Case<'_>, record: &Record) -> Option<String> {
     Some(format!("{least}{}", number(lost as f64)))
 }
 
-/// What is fastest without a loss, what it evaluates, and what the fastest with a loss loses.
+/// Names the fastest setting without a loss, what it evaluates, and what the fastest lossy setting loses.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     cases(done, scene).iter().filter_map(|case| sentence(scene, case)).collect()
 }
@@ -216,7 +225,7 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         lights(case.lights)
     );
     text += &match leaders.len() {
-        1 => format!("{} {} least time: {} ms", names[0], takes(leader), times[0]),
+        1 => format!("{} {} the least time: {} ms", names[0], takes(leader), times[0]),
         _ => format!("{} tie: {} ms", listed(&names), listed(&times)),
     };
     if !leaders.iter().any(|record| std::ptr::eq(*record, position)) {
@@ -248,7 +257,7 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         text += &format!("; {name} {takes} {} ms{flip}", time(lossy));
         if let (Some(lost), Some(all)) = (loss(case, lossy), &position.lists.operations) {
             let all = number(seen(all) as f64);
-            text += &format!("; of {all} terms that would be seen, {lost} are lost");
+            text += &format!("; of {all} visible terms, {lost} are lost");
         }
     }
     Some(text + ".")
@@ -288,7 +297,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         let slower = all - faster.len() - ties;
         format!(
             "Without a loss, 6, 24 or 54 cones beat clusters by position in {} of {all} cases in \
-             {scene}{named}, tie in {ties} and take longer in {slower}.",
+             {scene}{named}, tie in {ties} and are slower in {slower}.",
             faster.len()
         )
     })

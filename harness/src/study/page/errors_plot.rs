@@ -1,4 +1,5 @@
-//! Charts of errors against times, one panel a metric, with the frontier of what nothing beats in both.
+//! Charts of errors against times, one panel per metric, with the frontier: the points that no other
+//! point beats in both.
 
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::image_errors::{ERROR_METRICS, ErrorMetric};
@@ -9,7 +10,7 @@ use crate::study::data::Entry;
 use crate::study::page::figure::{Charts, panels};
 use crate::study::page::shots::{Shots, Wanted};
 
-/// The metric that a reader sees first, where a plot has no reason for another.
+/// The metric that a reader sees first, unless a plot chooses another one.
 pub(crate) const FIRST: &str = "rel_mse";
 
 /// A chart of errors against times.
@@ -24,9 +25,9 @@ pub(crate) struct Plot<'a> {
     pub(crate) class: fn(&Record) -> String,
     /// The shape of a record's points, where it tells something beside the colour.
     pub(crate) shape: fn(&Record) -> Option<usize>,
-    /// What a record is called.
+    /// The name of a record.
     pub(crate) name: fn(&Record) -> String,
-    /// What is written beside a point.
+    /// The label of a point.
     pub(crate) label: fn(&Record) -> String,
     pub(crate) wanted: Wanted,
     pub(crate) time: &'a str,
@@ -37,7 +38,7 @@ pub(crate) struct Plot<'a> {
 }
 
 impl Plot<'_> {
-    /// One panel per metric, the first that is known in front; a place for pictures below.
+    /// Draws one panel per metric, the first metric in front, and leaves a place for pictures below.
     pub(crate) fn html(&self, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Html {
         let mut metrics: Vec<&ErrorMetric> = ERROR_METRICS
             .iter()
@@ -73,7 +74,7 @@ impl Plot<'_> {
     }
 
     fn error(&self, record: &Record, metric: &ErrorMetric) -> Option<f64> {
-        // Bias alone has a sign.
+        // Only bias has a sign.
         let error = (self.errors)(record).get(metric.id).copied().flatten().map(f64::abs);
         error.filter(|error| error.is_finite())
     }

@@ -5,7 +5,7 @@ use crate::report::markup::{Html, html, with_names_whole};
 use crate::report::panels::{self, Panel};
 use crate::strategy::StrategyId;
 
-/// The charts of a page: each is drawn twice, for the page and for a file of its own.
+/// The charts of a page. Each is drawn twice: once for the page, and once for a separate file.
 #[derive(Default)]
 pub(crate) struct Charts {
     /// Names and contents of the files.
@@ -49,7 +49,7 @@ impl Charts {
     }
 }
 
-/// Panels of which one is shown, and the buttons that choose. A single panel needs no button.
+/// Panels, one of which is shown, with buttons that choose. A single panel gets no button.
 pub(crate) fn panels(label: &str, panels: &[(String, Html)]) -> Html {
     match panels {
         [] => return Html::default(),
@@ -70,7 +70,7 @@ pub(crate) fn unit(head: &str, unit: &str) -> Html {
     html!("{} <span class=\"unit\">{}</span>", head, unit)
 }
 
-/// Words in a column of their own, which is wider than those of figures.
+/// Words in a separate column, which is wider than a column of figures.
 pub(crate) fn words(text: &str) -> Html {
     html!("<span class=\"words\">{}</span>", text)
 }

@@ -5,10 +5,9 @@ use serde_json::json;
 use super::figure::Charts;
 use super::part::Part;
 use super::shots::Shots;
-use crate::chart::CHART_CSS;
 use crate::report::finding::clock_notice;
 use crate::report::format::short_adapter;
-use crate::report::html::{PAGE, SCRIPT, STYLE, fill, in_script};
+use crate::report::html::{PAGE, SCRIPT, fill, in_script, style};
 use crate::report::markup::{Html, html, with_names_whole};
 use crate::report::rank::listed;
 use crate::report::terms::terms;
@@ -18,7 +17,7 @@ use crate::study::claims;
 use crate::study::manifest::Done;
 use crate::study::slice::Study;
 
-/// The page's own rules, beside those of a comparison's page.
+/// The style rules of study pages; those of a comparison's page apply too.
 pub(crate) const STUDY_STYLE: &str = include_str!("study.css");
 
 /// More data than this lie beside the page and not in it, bytes.
@@ -40,7 +39,7 @@ pub(crate) struct Page {
     pub(crate) words: Vec<String>,
 }
 
-/// The page of what is done of a study.
+/// Draws the page of the jobs that are done.
 pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     let mut charts = Charts::default();
     let mut shots = Shots::new(done);
@@ -81,7 +80,7 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     .unwrap_or_else(|_| "null".to_owned());
     let embedded = if data.len() <= MOST_DATA { data.as_str() } else { "null" };
     let view = shots.view().to_string();
-    let style = [STYLE, CHART_CSS, STUDY_STYLE].join("\n");
+    let style = style(STUDY_STYLE);
     let html = fill(
         PAGE,
         &[
@@ -105,13 +104,14 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     Page { html, charts, data, words }
 }
 
-const READING: &str = "<p>Frames are drawn in rounds, every method once a round in an order drawn at \
-    random, so that what drifts hits all alike. Whiskers and small figures are intervals of the median \
-    over rounds. Two methods <b>tie</b> where the interval of their ratio, round by round, \
-    holds 1. A <b>lossy</b> setting is shown at its error: culling error is against no culling with the same \
-    shader, the error of the lights\u{2019} range against lights without one, that of a \
-    model of area lights against a truth image. Every chart is a file in \
-    <code>charts/</code> too.</p>";
+const READING: &str = "<p>Frames are drawn in rounds. Each round draws every method once, in \
+                       random order, so that drift affects all methods alike. Whiskers and small \
+                       figures are intervals of the median over rounds. Two methods <b>tie</b> if \
+                       the interval of their ratio, round by round, contains 1. A <b>lossy</b> \
+                       setting is shown with its error. Culling error compares with no culling \
+                       under the same shader. Range error compares with lights that have no \
+                       range. Model error compares a model of area lights with a truth image. \
+                       Every chart is also a file in <code>charts/</code>.</p>";
 
 /// The section of a scene: what it found, links to its parts, and the parts.
 fn section(scene: &str, texts: &Html, parts: &[Part]) -> Html {
@@ -141,7 +141,7 @@ fn is_software(done: &Done) -> bool {
     done.results.values().any(|results| results.machine.device_type == DeviceType::Cpu)
 }
 
-/// What a reader has to know before trusting a figure.
+/// What a reader must know before trusting a figure.
 fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<String> {
     let mut notices = Vec::new();
     let missing = done.missing();
@@ -178,7 +178,8 @@ fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<Stri
     for (job, results) in &done.results {
         for record in results.records.iter().filter(|r| !r.is_lossy && !r.is_lossless()) {
             notices.push(format!(
-                "{job}, {}: it states no loss, and its lists or its image show one.",
+                "{job}, {}: this method claims to lose nothing, but its lists or its image show a \
+                 loss.",
                 record.strategy
             ));
         }
@@ -187,8 +188,8 @@ fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<Stri
     notices.extend(study.notices(done));
     if pictures_left_out > 0 {
         notices.push(format!(
-            "{pictures_left_out} pictures are not on this page, which would be too large: they lie in the \
-             folders of their jobs."
+            "{pictures_left_out} pictures would make this page too large; they are in the folders \
+             of their jobs."
         ));
     }
     notices
@@ -209,8 +210,8 @@ fn provenance(done: &Done) -> Html {
     let count = done.results.values().filter(checked).count();
     let remark = if count < done.results.len() {
         html!(
-            "<p class=\"note\">The lists of {} of {} jobs were checked, pair by pair; of the others the \
-             image alone, where there is one of no culling.</p>\n",
+            "<p class=\"note\">The lists of {} of {} jobs were checked pair by pair. For the other \
+             jobs only the image was compared, where there is an image without culling.</p>\n",
             count,
             done.results.len()
         )

@@ -1,5 +1,6 @@
 //! The page of a study: its frame, and what the pages of several studies share.
 
+pub(crate) mod error_columns;
 pub(crate) mod errors_plot;
 pub(crate) mod figure;
 pub(crate) mod frame;

@@ -1,4 +1,4 @@
-//! The pictures that the page shows: each stored once, as far as there is room.
+//! The pictures of the page. Each is stored once, while there is room.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Cursor;
@@ -42,9 +42,9 @@ pub(crate) struct Shots<'a> {
 /// Which pictures of a record are wanted.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Its image beside that of no culling, and their difference.
+    /// Its image beside the image without culling, and their difference.
     Pair,
-    /// Its image beside that of lights without a range.
+    /// Its image beside the image under lights without a range.
     Unbounded,
     /// Its image beside the truth.
     Truth,
@@ -65,7 +65,7 @@ impl<'a> Shots<'a> {
         }
     }
 
-    /// Keeps the pictures of a record; the key by which the page opens them, where there are any.
+    /// Keeps the pictures of a record; returns the key by which the page opens them, if there are any.
     pub(crate) fn keep(&mut self, entry: Entry<'_>, wanted: Wanted) -> Option<String> {
         let Entry { job, record } = entry;
         let images = &record.image.files;
@@ -121,7 +121,7 @@ impl<'a> Shots<'a> {
         Some(key)
     }
 
-    /// Keeps a file of a job; the name by which the page knows it.
+    /// Keeps a file of a job; returns the name by which the page opens it.
     pub(crate) fn file(&mut self, job: &str, name: &str) -> Option<String> {
         self.picture(job, name, |path| {
             let picture =
@@ -169,7 +169,7 @@ impl<'a> Shots<'a> {
         self.drawn(format!("{job}/{name}"), || read(&path))
     }
 
-    /// Keeps a picture under a key of its own, drawn where it is not known; the key.
+    /// Keeps a picture under the key, and draws it only once; returns the key.
     pub(crate) fn drawn(
         &mut self,
         key: String,

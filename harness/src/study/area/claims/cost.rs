@@ -30,7 +30,7 @@ pub(crate) fn time(record: &Record) -> String {
     )
 }
 
-/// Which of two records is faster.
+/// Says which of two records is faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Faster {
     First,
@@ -39,7 +39,7 @@ pub(crate) enum Faster {
     Tie,
 }
 
-/// Compares two records of different jobs: by the intervals of their medians, for their frames were
+/// Compares two records of different jobs by the intervals of their medians, because their frames were
 /// not drawn in turn.
 pub(crate) fn faster(first: &Record, second: &Record) -> Faster {
     let overlap = match (first.interval_ms(), second.interval_ms()) {
@@ -61,12 +61,37 @@ fn stochastic(samples: u32) -> String {
     format!("monte-carlo-reflected:{samples}")
 }
 
+/// Compares two models at 16 and 64 lights. `judge` makes the figure of a count, and decides whether that
+/// count bears the claim out.
+pub(crate) fn by_lights(
+    done: &Done,
+    scene: &str,
+    models: [&str; 2],
+    judge: impl Fn(&Record, &Record) -> (String, bool),
+) -> Answer {
+    let (mut figures, mut good) = (Vec::new(), 0);
+    for lights in [16, 64] {
+        let [Some(first), Some(second)] = models.map(|model| at(done, scene, model, lights)) else {
+            continue;
+        };
+        let (figure, bears_out) = judge(first, second);
+        figures.push(format!("{lights} lights: {figure}"));
+        good += usize::from(bears_out);
+    }
+    if figures.is_empty() {
+        return Answer::unknown(&format!("{} at 16 or 64 lights", models.join(" and ")));
+    }
+    let verdict = Verdict::of_parts(good, figures.len(), "counts of lights");
+    Answer { figure: figures.join("; "), verdict }
+}
+
 pub(crate) const ONE_LIGHT: Check = Check {
     id: "one-light",
     place: "section 5.5.3, figure 5.22",
     words: "With one light MRP is fastest and LTC second.",
     paper: "MRP is 0.21 ms faster",
-    departure: "one stochastic sample stands for the third place; MRP is mrp-published, our reading of equation 5.5",
+    departure: "one stochastic sample takes the third place; MRP is mrp-published, our reading of \
+                equation 5.5",
     decide: |done, scene| {
         let of = |name: &str| at(done, scene, name, 1);
         let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
@@ -86,7 +111,7 @@ pub(crate) const ONE_LIGHT: Check = Check {
     },
 };
 
-/// The counts of lights for which the paper has a gain, and from which gain on it is the paper's.
+/// The counts of lights for which the paper reports a gain, and the least gain that agrees with it.
 const GAINS: [(u64, f64); 2] = [(16, 0.2), (64, 0.25)];
 
 pub(crate) const MRP_GAIN: Check = Check {
@@ -140,19 +165,10 @@ pub(crate) const ONE_SAMPLE: Check = Check {
     paper: "a figure without numbers",
     departure: "MRP is mrp-published, our reading of equation 5.5",
     decide: |done, scene| {
-        let (mut figures, mut good) = (Vec::new(), 0);
-        for lights in [16, 64] {
-            let mrp = at(done, scene, "mrp-published", lights);
-            let pair = mrp.zip(at(done, scene, &stochastic(1), lights));
-            let Some((mrp, other)) = pair else { continue };
-            good += usize::from(faster(mrp, other) == Faster::First);
-            figures.push(format!("{lights} lights: MRP {}, one sample {}", time(mrp), time(other)));
-        }
-        if figures.is_empty() {
-            return Answer::unknown("mrp-published and one sample at 16 or 64 lights");
-        }
-        let verdict = Verdict::of_parts(good, figures.len(), "counts of lights");
-        Answer { figure: figures.join("; "), verdict }
+        by_lights(done, scene, ["mrp-published", &stochastic(1)], |mrp, other| {
+            let figure = format!("MRP {}, one sample {}", time(mrp), time(other));
+            (figure, faster(mrp, other) == Faster::First)
+        })
     },
 };
 
@@ -182,7 +198,7 @@ pub(crate) const LIGHTS_OR_SAMPLES: Check = Check {
     },
 };
 
-/// What is about twice.
+/// The ratios that count as about twice.
 const ABOUT_TWICE: std::ops::RangeInclusive<f64> = 1.5..=2.5;
 
 pub(crate) const SPOTS_RATIO: Check = Check {
@@ -190,26 +206,18 @@ pub(crate) const SPOTS_RATIO: Check = Check {
     place: "section 5.6, figures 5.25 and 5.26",
     words: "Area lights take about twice as long as spots.",
     paper: "about 2, of the frame, at 22 lights and at varying counts",
-    departure: "1, 16 and 64 lights; about twice is 1.5 to 2.5 times; every light shades every pixel; neither has shadows",
+    departure: "1, 16 and 64 lights; about twice means 1.5 to 2.5 times; every light shades every \
+                pixel; neither casts shadows",
     decide: |done, scene| {
-        let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
-        for lights in [16, 64] {
-            let of = |name| at(done, scene, name, lights);
-            let (Some(ltc), Some(spots)) = (of("ltc"), of(SPOTS)) else { continue };
+        by_lights(done, scene, ["ltc", SPOTS], |ltc, spots| {
             let ratio = ltc.times.frame_ms / spots.times.frame_ms;
-            count += 1;
-            good += usize::from(ABOUT_TWICE.contains(&ratio));
-            figures.push(format!(
-                "{lights} lights: frames \u{d7} {}, shading \u{d7} {}",
+            let figure = format!(
+                "frames \u{d7} {}, shading \u{d7} {}",
                 significant(ratio),
                 significant(ltc.times.shade_ms / spots.times.shade_ms)
-            ));
-        }
-        if count == 0 {
-            return Answer::unknown("ltc and spots at 16 or 64 lights");
-        }
-        let verdict = Verdict::of_parts(good, count, "counts of lights");
-        Answer { figure: figures.join("; "), verdict }
+            );
+            (figure, ABOUT_TWICE.contains(&ratio))
+        })
     },
 };
 

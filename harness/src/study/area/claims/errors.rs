@@ -47,8 +47,8 @@ pub(crate) const BALLS: Check = Check {
     place: "section 5.1.1",
     words: "A box bounds an area light\u{2019}s reach better than a sphere.",
     paper: "the sphere is larger than the box by a factor of \u{3c0} / 3 at least",
-    departure: "the tighter bound here is the reach itself, which lies inside the paper\u{2019}s box; lists \
-                of clusters and tiles are compared, not volumes",
+    departure: "the tighter bound here is the reach itself, which lies inside the paper\u{2019}s \
+                box; we compare lists of clusters and tiles, not volumes",
     decide: |done, scene| {
         let all = entries(done, scene, BOUNDS);
         let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
@@ -96,7 +96,8 @@ pub(crate) const REGION_NOISE: Check = Check {
     place: "section 5.2, figures 5.4 and 5.5",
     words: "Taking specular samples from the reflected region lessens the noise.",
     paper: "pictures only",
-    departure: "judged by relMSE against the truth; where the cone misses the light, samples cover all of it",
+    departure: "relMSE against the truth decides; where the cone misses the light, samples cover \
+                the whole light",
     decide: |done, scene| {
         let pairs = paired(done, scene, "rel_mse");
         if pairs.is_empty() {
@@ -147,7 +148,7 @@ pub(crate) const REGION_BIAS: Check = Check {
     place: "section 5.5.2",
     words: "Samples of the reflected region underestimate specular light from elsewhere.",
     paper: "pictures only",
-    departure: "judged by the signed bias at the most samples, beside that of uniform samples",
+    departure: "the signed bias at the most samples decides, compared with that of uniform samples",
     decide: |done, scene| {
         let Some((samples, uniform, reflected)) = paired(done, scene, "bias").pop() else {
             return Answer::unknown("both ways of sampling");
@@ -192,8 +193,9 @@ pub(crate) const MRP_FLIP: Check = Check {
     place: "table 5.2",
     words: "MRP is farther from the truth than LTC.",
     paper: "FLIP 0.51880 against 0.39245",
-    departure: "mrp-published is our reading of equation 5.5: the text leaves the scale of specular light open, \
-                and by our reading it is far too bright. mrp has derived weights. Decided only where both agree",
+    departure: "mrp-published is our reading of equation 5.5: the text leaves the scale of \
+                specular light open, and our reading makes it far too bright. mrp has derived \
+                weights. The claim is decided only where both agree",
     decide: |done, scene| {
         let of = |name| error_of(done, scene, name, "flip");
         let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {

@@ -3,7 +3,7 @@
 use shading::ltc::{POLYNOMIAL_COMPONENTS, Polynomial, Table};
 
 use crate::report::format::{difference, significant};
-use crate::study::area::claims::cost::{Faster, at, faster, time};
+use crate::study::area::claims::cost::{Faster, at, by_lights, faster, time};
 use crate::study::area::claims::errors::error_of;
 use crate::study::claims::{Answer, Check, Verdict};
 use crate::study::manifest::Done;
@@ -64,7 +64,7 @@ pub(crate) const POLYNOMIAL_FIT: Check = Check {
 pub(crate) const POLYNOMIAL_IMAGE: Check = Check {
     id: "polynomial-image",
     place: "section 5.4.3, figure 5.17",
-    words: "Images by polynomials and by the table are no different to the eye.",
+    words: "Images by polynomials and by the table look the same.",
     paper: "root mean square error below 0.01",
     departure: "the two images are not compared with each other, only with the truth",
     decide: |done, scene| {
@@ -86,8 +86,8 @@ pub(crate) const TABLE_OR_POLYNOMIAL: Check = Check {
     place: "section 5.4.3, figure 5.18",
     words: "The table is as fast as polynomials for one light, and faster for many.",
     paper: "a figure without numbers: similar at 16 lights, then a gap that grows",
-    departure: "both find the lobe once per light, as the paper does; the table lies in a storage buffer, \
-                not in a texture; whole frames decide, and shading is told",
+    departure: "both find the lobe once per light, as the paper does; the table is in a storage \
+                buffer, not in a texture; whole frames decide, and shading is shown",
     decide: |done, scene| {
         let pair = |lights| {
             let polynomial = at(done, scene, "ltc-polynomial-per-light", lights)?;
@@ -147,6 +147,9 @@ pub(crate) const SPLITTING: Check = Check {
     },
 };
 
+/// Up to this ratio of shading, splitting edges costs little.
+const LITTLE: f64 = 1.1;
+
 pub(crate) const SPLITTING_COST: Check = Check {
     id: "splitting-cost",
     place: "section 5.5.3",
@@ -154,23 +157,11 @@ pub(crate) const SPLITTING_COST: Check = Check {
     paper: "without it MRP\u{2019}s lead of 30 % is only slightly lower",
     departure: "split edges take another polynomial for the angle than unsplit ones; little is 10 % of shading",
     decide: |done, scene| {
-        let pairs: Vec<(u64, f64)> = [16, 64]
-            .into_iter()
-            .filter_map(|lights| {
-                let split = at(done, scene, "ltc", lights)?;
-                let unsplit = at(done, scene, "ltc-unsplit", lights)?;
-                Some((lights, split.times.shade_ms / unsplit.times.shade_ms))
-            })
-            .collect();
-        if pairs.is_empty() {
-            return Answer::unknown("ltc-unsplit");
-        }
-        let good = pairs.iter().filter(|(_, ratio)| *ratio <= 1.1).count();
-        let told = pairs.iter().map(|(lights, ratio)| {
-            format!("{lights} lights: split over unsplit \u{d7} {} in shading", significant(*ratio))
-        });
-        let figure = told.collect::<Vec<_>>().join("; ");
-        Answer { figure, verdict: Verdict::of_parts(good, pairs.len(), "counts of lights") }
+        by_lights(done, scene, ["ltc", "ltc-unsplit"], |split, unsplit| {
+            let ratio = split.times.shade_ms / unsplit.times.shade_ms;
+            let figure = format!("split over unsplit \u{d7} {} in shading", significant(ratio));
+            (figure, ratio <= LITTLE)
+        })
     },
 };
 

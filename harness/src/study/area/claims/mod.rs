@@ -17,10 +17,11 @@ use crate::study::claims::{Check, Paper};
 /// Dobetsberger 2025.
 pub(crate) const PAPER: Paper = Paper {
     name: "the engine paper",
-    about: "Dobetsberger 2025 added rectangle lights to the Godot engine and timed whole frames on its own \
-            GPU. Its truth is a path tracer\u{2019}s image with another BRDF, and light intensities were \
-            fitted per model until FLIP was least; here the truth is the shader\u{2019}s own BRDF, \
-            integrated, and no intensity is fitted. Scenes, views and lights differ.",
+    about: "Dobetsberger 2025 added rectangle lights to the Godot engine and timed whole frames on \
+            its own GPU. Its truth is a path tracer\u{2019}s image with another BRDF, and it \
+            fitted light intensities per model until FLIP was least. Here the truth integrates \
+            the shader\u{2019}s own BRDF, and no intensity is fitted. Scenes, views and lights \
+            differ.",
     checks: &CHECKS,
 };
 

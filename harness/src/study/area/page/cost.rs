@@ -1,4 +1,4 @@
-//! What area lights cost: times against the number of lights, by model, beside spots.
+//! The cost of area lights: times against the number of lights, by model, compared with spots.
 
 use crate::chart::{Axis, Marks, Scale, Series, XyChart};
 use crate::report::finding::lights;
@@ -59,10 +59,10 @@ pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part
     Some(Part::new(
         "cost",
         "Cost of area lights and of spots",
-        "The lighting pass alone, every light at every sample. Behind each time stands how many times as \
-         long it takes as with as many spots; the slope is that of the straight line through the times, \
-         and it is set against that of spots. The paper measured about two spots to one area light, of \
-         whole frames: its row among the claims has both.",
+        "The time of the lighting pass only, with every light at every sample. The factor after \
+         each time compares it with the same number of spots. The slope is that of the straight \
+         line through the times; area : spot is its ratio to the slope of spots. The paper \
+         measured about 2 for whole frames; its row among the claims shows both.",
         body,
     ))
 }
@@ -107,7 +107,7 @@ fn times(done: &Done, scene: &str, lines: &[ModelLine<'_>]) -> Html {
     table("Shading times by lights", &heads, &rows)
 }
 
-/// What an area light costs beside a spot, at the most lights.
+/// The cost of an area light compared with a spot, at the most lights.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let lines = by_model(done, scene);
     let at_most = |own: &str| {
@@ -118,7 +118,8 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
         let ((count, spots), (same, ltc)) = (at_most(SPOTS)?, at_most("ltc")?);
         (count == same).then(|| {
             format!(
-                "In {scene} at {}, LTC takes {} times as long as spots (area : spot), {} and {} ms.",
+                "In {scene} at {}, LTC takes {} times as long as spots (area : spot): {} and {} \
+                 ms.",
                 lights(count),
                 significant(ltc / spots),
                 significant(ltc),

@@ -1,56 +1,61 @@
 //! Models of area lights against the truth: errors, times, and what each gets wrong.
 
-use crate::image_errors::ERROR_METRICS;
+use crate::report::column::{Better, Column};
 use crate::report::format::{ABSENT, difference, percent, significant};
 use crate::report::markup::Html;
 use crate::report::rank::listed;
-use crate::results::{Record, TruthImage};
+use crate::report::table::{Look, Row, Table};
+use crate::results::{Errors, Record, TruthImage};
 use crate::study::against_truth::{MODELS, truth_of};
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
+use crate::study::page::error_columns::error_columns;
 use crate::study::page::errors_plot::{FIRST, Plot, frontier};
-use crate::study::page::figure::{Charts, dotted, table, unit, words};
+use crate::study::page::figure::{Charts, dotted, table, words};
 use crate::study::page::part::Part;
 use crate::study::page::shots::{Shots, Wanted};
 
-/// The metric by which models are told apart in words.
+/// The metric by which sentences compare models.
 const METRIC: &str = "flip";
 
-/// What spots are called among models.
+/// The name of spots among models.
 pub(crate) const SPOTS: &str = "spots";
 
-/// A family of models: what it leaves out by its construction.
+/// A family of models, and what it cannot represent.
 struct Family {
     id: &'static str,
     class: &'static str,
     about: &'static str,
 }
 
-/// All families, in the order in which they are told.
+/// All families, in the order of the table.
 const FAMILIES: [Family; 11] = [
     Family {
         id: "point",
         class: "series-0",
-        about: "All light comes from the middle: no outline in highlights, too bright beside a large \
-                emitter, and edges of light where the middle sets.",
+        about: "All light comes from the emitter\u{2019}s middle. Highlights lose the outline, \
+                surfaces near a large emitter are too bright, and light ends abruptly where the \
+                middle sets.",
     },
     Family {
         id: "mrp",
         class: "series-1",
-        about: "One point stands for the emitter in each term: the highlight keeps the outline. The cosine \
-                and the lobe at that point are greater than their means over the emitter, so it is too bright.",
+        about: "One point stands for the emitter in each term, so highlights keep the outline. The \
+                cosine and the lobe are greater at that point than on average over the emitter, \
+                so the image is too bright.",
     },
     Family {
         id: "mrp-published",
         class: "series-5",
-        about: "The same points with the paper\u{2019}s weights: no specular light where the cone around the \
-                mirror direction misses the emitter, and far too much on smooth surfaces.",
+        about: "The same points with the paper\u{2019}s weights. Specular light is missing where \
+                the cone around the mirror direction misses the emitter. Smooth surfaces get far \
+                too much of it.",
     },
     Family {
         id: "ltc",
         class: "series-2",
-        about: "The BRDF\u{2019}s lobe is replaced by a transformed cosine, whose integral is exact: no noise, \
-                off where the fit is, most at grazing views.",
+        about: "A transformed cosine replaces the BRDF\u{2019}s lobe, and its integral is exact. \
+                There is no noise. The error is that of the fit, greatest at grazing views.",
     },
     Family {
         id: "ltc-hammon",
@@ -60,33 +65,35 @@ const FAMILIES: [Family; 11] = [
     Family {
         id: "ltc-unsplit",
         class: "series-8",
-        about: "The same without splitting long edges: noise where an edge spans nearly half the sphere.",
+        about: "The same without splitting long edges. Noise shows where an edge spans nearly half \
+                the sphere.",
     },
     Family {
         id: "ltc-per-light",
         class: "series-2",
-        about: "The image of ltc: each light looks the lobe up again.",
+        about: "The image equals that of ltc; each light looks up the lobe again.",
     },
     Family {
         id: "ltc-polynomial",
         class: "series-3",
-        about: "The same with polynomials for the table: off by their fit, too.",
+        about: "The same with polynomials instead of the table, which adds the error of their fit.",
     },
     Family {
         id: "ltc-polynomial-per-light",
         class: "series-3",
-        about: "The image of ltc-polynomial: each light evaluates the polynomials again.",
+        about: "The image equals that of ltc-polynomial; each light evaluates the polynomials \
+                again.",
     },
     Family {
         id: "monte-carlo",
         class: "series-4",
-        about: "Right on average, and noisy: highlights on smooth surfaces need the most samples.",
+        about: "Correct on average but noisy. Highlights on smooth surfaces need the most samples.",
     },
     Family {
         id: "monte-carlo-reflected",
         class: "series-7",
-        about: "Specular samples lie where the surface mirrors the emitter: less noise, and specular light \
-                from elsewhere is missing.",
+        about: "Specular samples lie where the surface mirrors the emitter. Noise falls, but \
+                specular light from elsewhere is missing.",
     },
 ];
 
@@ -116,7 +123,7 @@ fn error(record: &Record, id: &str) -> Option<f64> {
     record.image.truth_errors.get(id).copied().flatten()
 }
 
-/// Errors and times of all models, and what each gets wrong.
+/// Errors and times of all models, and the faults of each.
 pub(crate) fn models(
     done: &Done,
     scene: &str,
@@ -154,9 +161,10 @@ pub(crate) fn models(
     parts.push(Part::new(
         "model-times",
         "Speed against accuracy: models",
-        "The error of shading against the truth image; no light is culled. Left and low is good. Monte \
-         Carlo is a curve over its samples; the tip of a point says how many. The staircase joins the models \
-         that none beats in both. A point opens its picture beside the truth.",
+        "The error of shading against the truth image, without culling. Points at the lower left \
+         are best. The curve of Monte Carlo runs over its numbers of samples; hover over a point \
+         to see its number. The staircase joins the models that no other model beats in both time \
+         and error. Click a point to see its picture beside the truth.",
         plot.html(scene, charts, shots),
     ));
     parts
@@ -165,9 +173,9 @@ pub(crate) fn models(
 /// What the truth image is.
 fn about(truth: &TruthImage) -> String {
     format!(
-        "{} area lights at {} x {}, every light at every sample. The truth is integrated on the CPU in {} s, {} \
-         shadows, {} bounces; its own standard error is {} % of the mean luminance. All errors are those of \
-         the model, none of culling.",
+        "{} area lights at {} x {}; every light is evaluated at every sample. The CPU integrated \
+         the truth in {} s, {} shadows, {} bounces; its standard error is {} % of the mean \
+         luminance. All errors come from the model, none from culling.",
         truth.lights,
         truth.width,
         truth.height,
@@ -178,28 +186,38 @@ fn about(truth: &TruthImage) -> String {
     )
 }
 
-fn errors_table(entries: &[Entry<'_>], truth: &TruthImage) -> Html {
-    let mut heads: Vec<Html> = vec!["model".into(), unit("shade", "ms")];
-    heads.extend(ERROR_METRICS.iter().map(|metric| Html::from(metric.head)));
-    let cells = |of: &dyn Fn(&str) -> Option<f64>| -> Vec<Html> {
-        let cell = |id| of(id).map_or_else(|| ABSENT.to_owned(), difference);
-        ERROR_METRICS.iter().map(|metric| Html::from(cell(metric.id))).collect()
+/// A row of errors: of a model with its time, or of the G-buffer.
+struct ErrorRow<'a> {
+    class: String,
+    shade_ms: Option<f64>,
+    errors: &'a Errors,
+}
+
+fn errors_of<'r>(row: &'r ErrorRow<'_>) -> &'r Errors {
+    row.errors
+}
+
+fn errors_table<'a>(entries: &[Entry<'a>], truth: &'a TruthImage) -> Html {
+    let of_model = |Entry { record, .. }: &Entry<'a>| {
+        let model = model(record);
+        let shade_ms = Some(record.times.shade_ms);
+        let row = ErrorRow { class: class(model), shade_ms, errors: &record.image.truth_errors };
+        Row::new(model, row)
     };
-    let mut rows: Vec<Vec<Html>> = entries
-        .iter()
-        .map(|Entry { record, .. }| {
-            let mut row = vec![name(model(record)), significant(record.times.shade_ms).into()];
-            row.extend(cells(&|id| error(record, id)));
-            row
-        })
-        .collect();
-    // Every model reads the G-buffer: what its rounding costs is in all rows above.
+    let mut rows: Vec<Row<ErrorRow<'a>>> = entries.iter().map(of_model).collect();
+    // Every model reads the G-buffer, so the cost of its rounding is in all rows above.
     if !truth.gbuffer_errors.is_empty() {
-        let mut row: Vec<Html> = vec!["the G-buffer alone".into(), ABSENT.into()];
-        row.extend(cells(&|id| truth.gbuffer_errors.get(id).copied().flatten()));
-        rows.push(row);
+        let errors = &truth.gbuffer_errors;
+        let row = ErrorRow { class: String::new(), shade_ms: None, errors };
+        rows.push(Row::new("the G-buffer alone", row));
     }
-    table("Errors of models against the truth", &heads, &rows)
+    let shade = |row: &ErrorRow<'_>| row.shade_ms;
+    let mut columns = vec![Column::figure("shade", "ms", Better::Less, shade, significant)];
+    columns.extend(error_columns(errors_of));
+    Table::new("model", columns, rows)
+        .competing(|_| false)
+        .dotted(|row| row.class.clone())
+        .html("Errors of models against the truth", Look::Plain)
 }
 
 /// What each model leaves out, and what that comes to here.
@@ -210,10 +228,14 @@ fn words_table(entries: &[Entry<'_>]) -> Html {
             let known = FAMILIES.iter().find(|known| known.id == family(model(record)));
             let share = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), percent);
             let measured = format!(
-                "{} % too {} in all; {} % of the light lacks where it is too dark; worst tile off by {} % of \
-                 the mean",
+                "{} % too {} in total; {} % of the light is missing where it is too dark; the \
+                 worst tile is off by {} % of the mean",
                 error(record, "bias").map_or_else(|| ABSENT.to_owned(), |bias| percent(bias.abs())),
-                if error(record, "bias").is_some_and(|bias| bias < 0.0) { "dark" } else { "bright" },
+                if error(record, "bias").is_some_and(|bias| bias < 0.0) {
+                    "dark"
+                } else {
+                    "bright"
+                },
                 share("missing_energy"),
                 share("tile"),
             );
@@ -228,7 +250,7 @@ fn words_table(entries: &[Entry<'_>]) -> Html {
     table("What each model gets wrong", &heads, &rows)
 }
 
-/// Which models lie on the frontier of time and error, and the table against its polynomials.
+/// Names the models on the frontier of time and error, and compares the table with its polynomials.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let all = entries(done, scene, MODELS);
     let known: Vec<(&Record, f64)> = all
@@ -255,13 +277,14 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
         })
         .collect();
     let mut found = vec![format!(
-        "In {scene} no model is both faster and nearer to the truth by FLIP than {}.",
+        "In {scene} no model beats any of these in both time and FLIP: {}.",
         listed(&on)
     )];
     let of = |wanted: &str| known.iter().find(|(record, _)| model(record) == wanted);
     if let (Some((table, error)), Some((polynomial, other))) = (of("ltc"), of("ltc-polynomial")) {
         found.push(format!(
-            "In {scene} polynomials in place of the table take {} times as long, FLIP {} instead of {}.",
+            "In {scene} polynomials instead of the table take {} times as long and have a FLIP of \
+             {} instead of {}.",
             significant(polynomial.times.shade_ms / table.times.shade_ms),
             difference(*other),
             difference(*error)
@@ -280,7 +303,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         });
         let (record, error) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some(format!(
-            "Without noise, {} is nearest to the truth in {scene}: FLIP {} in {} ms.",
+            "Of the models without noise, {} is nearest to the truth in {scene}: FLIP {} in {} ms.",
             model(record),
             difference(error),
             significant(record.times.shade_ms)

@@ -16,10 +16,10 @@ use crate::study::page::part::Part;
 use crate::study::page::pictures::{figure, linear};
 use crate::study::page::shots::Shots;
 
-/// Gain of difference pictures over that of the images.
+/// Gain of difference pictures, relative to the images.
 const GAIN: f32 = 8.0;
 
-/// Side of what is cut out around the worst tile, pixels, and how much larger it is shown.
+/// Side of the cut-out around the worst tile in pixels, and its enlargement.
 const CUT_PX: u32 = 4 * TILE_PX as u32;
 const LARGER: u32 = 4;
 
@@ -51,13 +51,14 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
             + figure(
                 difference,
                 &format!("Difference \u{d7} {}", significant(f64::from(gain))),
-                "absolute, linear; black is none",
+                "absolute and linear; black means none",
             )
             + figure(
                 cut,
                 "The worst tile",
                 &format!(
-                    "of {TILE_PX} pixels, at {}, {}, and what is around it: the truth on the left, {name} on the right",
+                    "of {TILE_PX} pixels, at {}, {}, with its surroundings: truth on the left, \
+                     {name} on the right",
                     corner[0], corner[1]
                 ),
             );
@@ -66,12 +67,12 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
     Some(Part::new(
         "pictures",
         "What models look like",
-        "All under the exposure of the truth.",
+        "All pictures use the exposure of the truth.",
         panels("Model", &shown),
     ))
 }
 
-/// What is around a tile, in the truth and beside it in the image, enlarged.
+/// The enlarged surroundings of a tile: the truth on the left, the image on the right.
 fn beside(pair: &ImagePair<'_>, corner: [u32; 2]) -> Option<Vec<u8>> {
     let (width, height) = (pair.image.width, pair.image.height);
     let size = [CUT_PX.min(width), CUT_PX.min(height)];

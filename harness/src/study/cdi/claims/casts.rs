@@ -82,9 +82,9 @@ pub(crate) fn rays_linear(done: &Done, scene: &str) -> Answer {
     );
     let verdict = match (NEARLY.contains(&whole), NEARLY.contains(&end)) {
         (true, _) => Verdict::Holds,
-        (false, true) => {
-            Verdict::Differs("only between the largest maps: few rays do not fill this GPU".into())
-        }
+        (false, true) => Verdict::Differs(
+            "only between the largest maps, because few rays do not fill this GPU".into(),
+        ),
         (false, false) => Verdict::Fails,
     };
     Answer { figure, verdict }

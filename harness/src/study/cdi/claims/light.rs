@@ -70,7 +70,7 @@ impl<'a> Against<'a> {
     }
 
     /// `random 0.52 (0 to 11 m, 9,701 of 39,421 lights)`, and whether its sweep ended there.
-    fn said(&self, what: &str, record: &Record) -> String {
+    fn described(&self, what: &str, record: &Record) -> String {
         let end = match is_at_end(&self.all, record) {
             Some(true) => ", the end of its sweep",
             _ => "",
@@ -99,18 +99,18 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
     });
     let fewest = as_near.min_by_key(|record| kept(record));
     let own = kept(against.cast);
-    let mut figure = against.said("rays", against.cast);
+    let mut figure = against.described("rays", against.cast);
     figure += &match fewest {
         Some(record) => format!(
-            "; the fewest random lights that come as near: {} at {}",
+            "; the fewest random lights that are as near: {} at {}",
             number(kept(record) as f64),
             significant(error(record).unwrap_or(f64::NAN))
         ),
-        None => "; no random ranges come as near".to_owned(),
+        None => "; no random ranges are as near".to_owned(),
     };
     let same_lights = against.best("random-discard");
     if let Some(record) = same_lights {
-        figure += &format!("; {}", against.said("random, the same lights", record));
+        figure += &format!("; {}", against.described("random, the same lights", record));
     }
     if let Some(verdict) = stale(&[against.cast]) {
         return Answer { figure, verdict };
@@ -120,10 +120,10 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
         (false, _) => Verdict::Fails,
         (true, Some(Nearer::First)) => Verdict::Holds,
         (true, Some(_)) => Verdict::Differs(
-            "leaving out lights that meet nothing does it, not the length of the rays".into(),
+            "removing lights whose rays hit nothing explains it, not the length of the rays".into(),
         ),
         (true, None) => Verdict::Differs(
-            "whether for what rays leave out or for their lengths was not measured".into(),
+            "whether the removed lights or the lengths of rays explain it was not measured".into(),
         ),
     };
     Answer { figure, verdict }
@@ -140,12 +140,12 @@ pub(crate) fn visual_quality(done: &Done, scene: &str) -> Answer {
         ("constant-discard", "one range, the same lights"),
     ]
     .into_iter()
-    .filter_map(|(id, what)| Some(format!("; {}", against.said(what, against.best(id)?))))
+    .filter_map(|(id, what)| Some(format!("; {}", against.described(what, against.best(id)?))))
     .collect();
     let figure = format!(
         "{}; {}{}",
-        against.said("rays", against.cast),
-        against.said("random", random),
+        against.described("rays", against.cast),
+        against.described("random", random),
         others.concat()
     );
     if let Some(verdict) = stale(&[against.cast, random]) {
@@ -180,5 +180,5 @@ pub(crate) fn similar(done: &Done, scene: &str) -> Answer {
     if let Some(verdict) = stale(&[against.cast]) {
         return Answer { figure, verdict };
     }
-    Answer { figure, verdict: Verdict::undecided("the paper gives no measure to hold it against") }
+    Answer { figure, verdict: Verdict::undecided("the paper gives no measure to compare with") }
 }

@@ -13,9 +13,9 @@ use crate::study::claims::{Check, Paper};
 /// Archer, Leach and Knowles 2019.
 pub(crate) const PAPER: Paper = Paper {
     name: "the deep-image paper",
-    about: "Archer, Leach and Knowles 2019 timed a GTX 1060 at 1920 x 1080 in two scenes: the Sponza Atrium \
-            (280,000 triangles) and Rungholt (7 million). Scenes and GPU are others here. Times of a clock \
-            that was low or rising decide nothing.",
+    about: "Archer, Leach and Knowles 2019 timed a GTX 1060 at 1920 x 1080 in two scenes: the \
+            Sponza Atrium (280,000 triangles) and Rungholt (7 million). Here scenes and GPU \
+            differ. Times that were taken while the GPU clock was low or rising decide nothing.",
     checks: &CHECKS,
 };
 
@@ -25,8 +25,8 @@ const CHECKS: [Check; 16] = [
         place: "section 4",
         words: "One pass for all directions is 20 to 100 times as fast as a pass for each.",
         paper: "169 directions: 5.5 against 121 ms, 22.1 against 2,296 ms: 22 and 104 times",
-        departure: "brute force by compute, in a dispatch per direction and in one for all; it sorts once; holds \
-                    from 20 times against both",
+        departure: "brute force runs as compute, in a dispatch per direction and in one for all, \
+                    and sorts once; holds from 20 times against both",
         decide: one_pass,
     },
     Check {
@@ -50,8 +50,8 @@ const CHECKS: [Check; 16] = [
         place: "section 4",
         words: "Build time grows linearly with the number of directions.",
         paper: "table 2, 8 to 128 directions",
-        departure: "a line is straight where it misses no time by more than 10 %, a limit of ours; fitted with \
-                    relative weights through four numbers of directions or more",
+        departure: "a line counts as straight if no time is off by more than 10 %, our limit; its \
+                    fit uses relative weights and at least four numbers of directions",
         decide: build_linear,
     },
     Check {
@@ -59,7 +59,7 @@ const CHECKS: [Check; 16] = [
         place: "table 1",
         words: "Casting rays takes about 1 % of a frame.",
         paper: "with choosing lights 0.15 of 20.6 ms and 0.4 of 43.5 ms: 0.7 and 0.9 %",
-        departure: "no light is left out for lying close to another; holds from 0.5 to 2 %",
+        departure: "lights that lie close to others are kept; holds from 0.5 to 2 %",
         decide: cast_share,
     },
     Check {
@@ -67,7 +67,8 @@ const CHECKS: [Check; 16] = [
         place: "table 3",
         words: "Time of casting grows nearly linearly with the number of rays.",
         paper: "64 times the pixels take 40 and 39 times as long: an exponent of 0.89 and 0.88",
-        departure: "rays only from pixels that show a surface; nearly linear is an exponent of 0.8 to 1.2",
+        departure: "only pixels that show a surface cast rays; nearly linear means an exponent of \
+                    0.8 to 1.2",
         decide: rays_linear,
     },
     Check {
@@ -91,8 +92,8 @@ const CHECKS: [Check; 16] = [
         place: "section 4",
         words: "A town of 20 times the triangles is at most 10 % slower to cast through.",
         paper: "at most 10 %; its table 3 has 15 to 20 %",
-        departure: "time per ray, against the scene of this study with the fewest triangles; decided from 10 \
-                    times the triangles on",
+        departure: "time per ray, compared with the scene of this study that has the fewest \
+                    triangles; decided from 10 times the triangles upwards",
         decide: geometry,
     },
     Check {
@@ -100,8 +101,9 @@ const CHECKS: [Check; 16] = [
         place: "section 4",
         words: "Deep images of both scenes are about the same size.",
         paper: "18 MB at 169 directions",
-        departure: "all buffers of a build, against the scene of this study with the fewest triangles; decided \
-                    from 10 times the triangles on; about the same is within a factor of 1.25",
+        departure: "all buffers of a build, compared with the scene of this study that has the \
+                    fewest triangles; decided from 10 times the triangles upwards; about the same \
+                    means within a factor of 1.25",
         decide: size,
     },
     Check {
@@ -115,7 +117,8 @@ const CHECKS: [Check; 16] = [
     Check {
         id: "arrays",
         place: "section 3.1",
-        words: "Linked lists are quicker to build; arrays are quicker to cast through and in all.",
+        words: "Linked lists are quicker to build; arrays are quicker to cast through and in \
+                total.",
         paper: "no figures",
         departure: "169 directions and rays from the largest shadow map",
         decide: arrays,
@@ -125,13 +128,14 @@ const CHECKS: [Check; 16] = [
         place: "section 3.1",
         words: "Ranges need no conservative rasterisation.",
         paper: "no figures",
-        departure: "against exact rays, at 16 directions; holds where the median error grows by a tenth at most",
+        departure: "compared with exact rays, at 16 directions; holds where the median error grows \
+                    by at most a tenth",
         decide: coverage,
     },
     Check {
         id: "fewer-lights",
         place: "section 4",
-        words: "Ranges by rays need fewer lights than random ranges.",
+        words: "Ranges from rays need fewer lights than random ranges.",
         paper: "no figures",
         departure: "mean error against the path-traced image; random ranges of one seed at their best span",
         decide: fewer_lights,
@@ -139,7 +143,7 @@ const CHECKS: [Check; 16] = [
     Check {
         id: "quality",
         place: "section 1",
-        words: "Ranges by rays can look better than random ranges.",
+        words: "Ranges from rays can look better than random ranges.",
         paper: "no comparison",
         departure: "mean error against the path-traced image, the same shadow map, each rule at its best setting",
         decide: visual_quality,
@@ -149,7 +153,7 @@ const CHECKS: [Check; 16] = [
         place: "figure 7",
         words: "The image is similar to one bounce of path tracing, darker and brighter in places.",
         paper: "pictures, no measure",
-        departure: "there is nothing to decide it by: only figures are given",
+        departure: "nothing decides this claim; only figures are shown",
         decide: similar,
     },
 ];

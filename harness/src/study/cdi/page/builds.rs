@@ -20,7 +20,7 @@ const PAPER_BUILDS: [(u32, [f64; 2]); 6] = [
     (169, [5.5, 22.1]),
 ];
 
-/// The paper's factors of one pass over one a direction, at 169 directions: atrium and town.
+/// The paper's speed-up of one pass over one pass per direction, at 169 directions: atrium and town.
 const PAPER_FACTORS: [f64; 2] = [20.0, 100.0];
 
 /// Whether an image is of the size and sampling that directions and builds are compared at.
@@ -101,11 +101,12 @@ pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Option<Pa
         + passes(of("compute", counts.last().copied().unwrap_or(0)))
         + memory(&all, counts_as_time);
     let text = format!(
-        "{} triangles, {1} x {1} pixels a direction. All of a build is on the clock: sampling or drawing, \
-         counting, prefix sum, filling and sorting. Brute force visits all triangles for each direction, in one \
-         dispatch after another or in one for all directions; it shares the prefix sum and the sort. Clearing \
-         counters is on no clock. Times struck out were taken at a clock that was low or rising. A data-centre GPU draws fragments on a few of its processors: what \
-         is rasterised is slow there as on no other chip. The paper\u{2019}s figures: {2}.",
+        "{} triangles, {1} x {1} pixels per direction. Build times include sampling or drawing, \
+         counting, prefix sum, filling and sorting, but not clearing the counters. Brute force \
+         visits all triangles for each direction, in one dispatch per direction or in one for \
+         all; it shares the prefix sum and the sort. Struck-out times were taken while the GPU \
+         clock was low or rising. A data-centre GPU draws fragments on a few of its processors, \
+         so rasterised builds are unusually slow there. The paper\u{2019}s figures: {2}.",
         number(first.triangles as f64),
         first.deep.size_px,
         PAPER
@@ -278,8 +279,8 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Option<String> {
         return None;
     }
     Some(format!(
-        "In {scene} one pass over the triangles builds {} directions in {} ms: {}. The paper says {} times in \
-         its atrium and {} in its town.",
+        "In {scene} one pass over the triangles builds {} directions in {} ms: {}. The paper \
+         reports {} times in its atrium and {} in its town.",
         most.directions,
         significant(most.single_ms),
         both.join("; "),

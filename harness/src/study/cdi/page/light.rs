@@ -1,10 +1,11 @@
 //! Indirect light by virtual point lights against the path-traced image: errors by how ranges are found,
 //! and pictures. [`verdicts`](crate::study::cdi::verdicts) judges the errors.
 
-use crate::image_errors::ERROR_METRICS;
-use crate::report::format::{ABSENT, difference, number, percent, significant};
+use crate::report::column::{Better, Column};
+use crate::report::format::{ABSENT, number, percent, significant};
 use crate::report::markup::{Html, html};
-use crate::results::{Record, TruthImage, Vpls};
+use crate::report::table::{Look, Row, Table};
+use crate::results::{Errors, Record, TruthImage, Vpls};
 use crate::study::against_truth::{MODELS, truth_of};
 use crate::study::cdi::jobs;
 use crate::study::cdi::lights::{METRIC, RULES, rule, setting, total_ms};
@@ -13,13 +14,14 @@ use crate::study::cdi::times;
 use crate::study::cdi::verdicts::{about_ties, best};
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
+use crate::study::page::error_columns::error_columns;
 use crate::study::page::errors_plot::Plot;
-use crate::study::page::figure::{Charts, dotted, panels, table, unit};
+use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
 use crate::study::page::pictures::{figure, linear};
 use crate::study::page::shots::{Shots, Wanted};
 
-/// Gain of pictures of differences over that of the images.
+/// Gain of difference pictures, relative to the images.
 const GAIN: f32 = 4.0;
 
 /// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set
@@ -97,10 +99,11 @@ pub(crate) fn indirect(
 
 fn about(truth: &TruthImage) -> String {
     format!(
-        "One bounce of the primary light at {} x {}, without what comes straight from it: path-traced on the CPU \
-         in {} s, standard error {} % of the mean. Times are those of the shadow map, the deep images, the lights, \
-         their lists and shading; the number beside a point is the side of the shadow map, with a light a pixel. \
-         No brightness is compensated. {}",
+        "The truth is one bounce of the primary light at {} x {}, without its direct light. The \
+         CPU path-traced it in {} s, with a standard error of {} % of the mean. Times include the \
+         shadow map, the deep images, the lights, their lists and shading. The number beside a \
+         point is the side of the shadow map in pixels, with one light per pixel. Brightness is \
+         not compensated. {}",
         truth.width,
         truth.height,
         significant(truth.seconds),
@@ -109,39 +112,28 @@ fn about(truth: &TruthImage) -> String {
     )
 }
 
+fn truth_errors<'r>(record: &'r &Record) -> &'r Errors {
+    &record.image.truth_errors
+}
+
 fn errors_table(entries: &[Entry<'_>]) -> Html {
-    let mut heads: Vec<Html> = vec![
-        "ranges".into(),
-        unit("mean range", "m"),
-        unit("lights", "ms"),
-        unit("assign + shade", "ms"),
+    let lights_ms = |record: &&Record| match &record.setting.vpls {
+        Some(vpls) => times::shown(vpls.total_ms(), vpls.unsteady().is_none()),
+        None => ABSENT.into(),
+    };
+    let mean_range_m = |record: &&Record| Some(record.setting.vpls.as_ref()?.mean_range_m);
+    let both_ms = |record: &&Record| Some(record.assign_and_shade_ms());
+    let mut columns = vec![
+        Column::figure("mean range", "m", Better::Neither, mean_range_m, significant),
+        Column::markup("lights", "ms", lights_ms),
+        Column::figure("assign + shade", "ms", Better::Less, both_ms, significant),
     ];
-    heads.extend(ERROR_METRICS.iter().map(|metric| Html::from(metric.head)));
-    let rows: Vec<Vec<Html>> = entries
-        .iter()
-        .map(|Entry { record, .. }| {
-            let vpls = record.setting.vpls.as_ref();
-            let of = |value: fn(&Vpls) -> f64| -> Html {
-                vpls.map_or_else(|| ABSENT.into(), |vpls| significant(value(vpls)).into())
-            };
-            let mut row = vec![
-                dotted(&class(record), title(record)),
-                of(|vpls| vpls.mean_range_m),
-                vpls.map_or_else(
-                    || ABSENT.into(),
-                    |vpls| times::shown(vpls.total_ms(), vpls.unsteady().is_none()),
-                ),
-                significant(record.assign_and_shade_ms()).into(),
-            ];
-            let cell = |id: &str| {
-                let error = record.image.truth_errors.get(id).copied().flatten();
-                Html::from(error.map_or_else(|| ABSENT.to_owned(), difference))
-            };
-            row.extend(ERROR_METRICS.iter().map(|metric| cell(metric.id)));
-            row
-        })
-        .collect();
-    table("Errors of indirect light against the truth", &heads, &rows)
+    columns.extend(error_columns(truth_errors));
+    let rows = entries.iter().map(|entry| Row::new(title(entry.record), entry.record)).collect();
+    Table::new("ranges", columns, rows)
+        .competing(|_| false)
+        .dotted(|record| class(record))
+        .html("Errors of indirect light against the truth", Look::Plain)
 }
 
 /// The best of each rule, over all that was tried, beside the truth.
@@ -183,10 +175,11 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Option<Part> {
                 + figure(
                     apart,
                     &format!("Difference \u{d7} {}", significant(f64::from(gain))),
-                    &worse("absolute, linear; black is none; light behind walls is a leak"),
+                    &worse("absolute and linear; black means none; light behind walls is a leak"),
                 );
         shown.push((name.to_owned(), html!("<div class=\"views\">{}</div>\n", body)));
     }
-    let text = "Of each rule the setting of least mean error. Indirect images are under the exposure of the truth.";
+    let text = "Each rule is shown at its setting of least mean error. Indirect images use the \
+                exposure of the truth.";
     Some(Part::new("pictures", "What ranges look like", text, panels("Ranges", &shown)))
 }

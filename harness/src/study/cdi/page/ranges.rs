@@ -44,10 +44,10 @@ pub(crate) fn ranges(done: &Done, scene: &str, charts: &mut Charts) -> Option<Pa
     ) + charts.xy(&format!("{scene}-ranges-directions"), &directions)
         + charts.xy(&format!("{scene}-ranges-sizes"), &sizes)
         + errors_table(&all);
-    let text = "Rays from surfaces, along the normal and around it, as lights cast them; exact ones go through \
-                the same triangles in the direction that was asked for. A footprint is the side of a pixel. A ray \
-                is lost where it meets a surface and none in the deep images, invented where it is the other way \
-                round.";
+    let text = "Rays start on surfaces, along the normal and around it, as lights cast them. Exact \
+                rays intersect the same triangles, in the requested direction. A footprint is the \
+                side of a pixel. A ray is lost if it hits a surface but nothing in the deep \
+                images, and invented if it hits something only there.";
     Some(Part::new("ranges", "Ranges against exact rays", text, body))
 }
 
@@ -167,8 +167,8 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Option<String> {
     let (run, errors) = own.max_by_key(|(run, _)| run.deep.directions())?;
     errors.median().is_finite().then(|| {
         format!(
-            "In {scene} at {} directions the median error of a ray is {} of a pixel\u{2019}s footprint of {} m; \
-             {} % of rays are lost, {} % invented.",
+            "In {scene} at {} directions the median error of a ray is {} of a pixel\u{2019}s \
+             footprint of {} m; {} % of rays are lost and {} % invented.",
             run.deep.directions(),
             significant(errors.median()),
             significant(run.deep.footprint_m),

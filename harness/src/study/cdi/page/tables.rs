@@ -3,15 +3,17 @@
 use super::builds::{self, cast_chart};
 use super::light::indirect;
 use super::ranges;
+use crate::report::column::{Better, Column};
 use crate::report::format::{ABSENT, mebibytes, number, significant};
 use crate::report::markup::Html;
+use crate::report::table::{Look, Row, Table};
 use crate::results::{DeepImageRun, PassKind, Record, median};
 use crate::study::cdi::jobs;
 use crate::study::cdi::times::{PAPER, runs, shown, timed_casts};
 use crate::study::cdi::verdicts::{in_common, quietest, rays_against_random};
-use crate::study::data::entries;
+use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, name, table, unit};
+use crate::study::page::figure::{Charts, table, unit};
 use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
 
@@ -57,11 +59,8 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
     let all = entries(done, scene, jobs::STEPS);
     let record = all.first()?.record;
     let vpls = record.setting.vpls.as_ref()?;
-    let theirs = |ms: f64| if ms.is_finite() { significant(ms) } else { ABSENT.to_owned() };
-    let row = |name: &str, ms: f64, paper: [f64; 2]| {
-        vec![name.to_owned(), significant(ms), theirs(paper[0]), theirs(paper[1])]
-    };
-    let mut rows: Vec<Vec<String>> = STEPS
+    let row = |name: &str, ms: f64, paper: [f64; 2]| Row::new(name, (ms, paper));
+    let mut rows: Vec<Row<(f64, [f64; 2])>> = STEPS
         .iter()
         .map(|(name, is_own, paper)| {
             let own = vpls.passes.iter().filter(|(pass, _)| is_own(pass));
@@ -74,12 +73,27 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
     rows.push(row("apply lighting", record.times.shade_ms, [12.0, 6.1]));
     let total = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     rows.push(row("total", total, [20.6, 43.5]));
-    let ms = |head| unit(head, "ms");
-    let heads = ["step".into(), ms("here"), ms("paper, Atrium"), ms("paper, Rungholt")];
+    let paper = |head, scene: usize| {
+        let ms =
+            move |step: &(f64, [f64; 2])| step.1.get(scene).copied().filter(|ms| ms.is_finite());
+        Column::figure(head, "ms", Better::Less, ms, significant)
+    };
+    let columns = [
+        Column::figure(
+            "here",
+            "ms",
+            Better::Less,
+            |step: &(f64, [f64; 2])| Some(step.0),
+            significant,
+        ),
+        paper("paper, Atrium", 0),
+        paper("paper, Rungholt", 1),
+    ];
     let text = format!(
-        "{} at {} x {}: {} virtual point lights of a reflective shadow map of {} x {}, through {}. The \
-         paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after discarding. A data-centre GPU \
-         draws fragments on a few of its processors: what is rasterised is slow there as on no other chip.",
+        "{} at {} x {}: {} virtual point lights from a reflective shadow map of {} x {}, listed by \
+         {}. The paper\u{2019}s figures: {PAPER}, 1920 x 1080, 2,000 and 8,000 lights after \
+         discarding. A data-centre GPU draws fragments on a few of its processors, so rasterised \
+         passes are unusually slow there.",
         record.setting.scene,
         record.setting.width,
         record.setting.height,
@@ -88,7 +102,8 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
         vpls.rsm_px,
         record.strategy
     );
-    let table = table("Time of each step", &heads, &rows);
+    let table = Table::new("step", columns, rows).competing(|_| false);
+    let table = table.html("Time of each step", Look::Plain);
     Some(Part::new("steps", "Time of each step", text, table))
 }
 
@@ -167,9 +182,10 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
         "casts",
         "Rays from every pixel of the shadow map",
         format!(
-            "Every pixel that shows a surface is a virtual point light, none is discarded; about every one does in a \
-             map of the scene\u{2019}s middle, whose rays lie closer together; {} rays each through {} directions of \
-             {} x {} pixels. Times struck out were taken while the clock was still rising. The paper\u{2019}s \
+            "Every pixel that shows a surface becomes a virtual point light; none is discarded. In \
+             a map of the scene\u{2019}s middle nearly every pixel does, and rays lie closer \
+             together. Each light casts {} rays through {} directions of {} x {} pixels. \
+             Struck-out times were taken while the GPU clock was still rising. The paper\u{2019}s \
              figures: {PAPER}.",
             run.casts.first().map_or(0, |cast| cast.rays),
             run.deep.directions(),
@@ -181,39 +197,36 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
 }
 
 /// Every strategy under the same virtual point lights.
-fn strategies(done: &Done, scene: &str) -> Option<Part> {
+fn strategies<'a>(done: &'a Done, scene: &'a str) -> Option<Part> {
     let all = entries(done, scene, jobs::STRATEGIES);
-    let rows: Vec<Vec<Html>> = all.iter().map(|entry| row_of(entry.record)).collect();
     let first = all.first()?;
-    let heads = [
-        "strategy".into(),
-        unit("assign + shade", "ms"),
-        unit("assign", "ms"),
-        unit("shade", "ms"),
-        "differing channels".into(),
-        unit("lists", "MiB"),
+    let ms = |head, time: fn(&Record) -> f64| {
+        let value = move |record: &&Record| Some(time(record));
+        Column::figure(head, "ms", Better::Less, value, significant)
+    };
+    let differing = |record: &&Record| Some(record.image.differing_channels? as f64);
+    let bytes = |record: &&Record| Some(record.lists.bytes as f64);
+    let columns = [
+        ms("assign + shade", Record::assign_and_shade_ms),
+        ms("assign", |record| record.times.assign_ms),
+        ms("shade", |record| record.times.shade_ms),
+        Column::figure("differing channels", "", Better::Zero, differing, number),
+        Column::figure("lists", "MiB", Better::Less, bytes, mebibytes),
     ];
     let text = format!(
-        "{} virtual point lights at {} x {}, in the order of their map, from the list of all: lights of this frame \
-         have no hierarchy.",
+        "{} virtual point lights at {} x {}, in the order of their map. Strategies take them from \
+         the list of all lights, because lights made in this frame have no hierarchy.",
         number(first.record.setting.lights as f64),
         first.record.setting.width,
         first.record.setting.height
     );
     let title = "Strategies under virtual point lights";
-    Some(Part::new("vpl-strategies", title, text, table(title, &heads, &rows)))
-}
-
-fn row_of(record: &Record) -> Vec<Html> {
-    let differing = record.image.differing_channels.map(|count| number(count as f64));
-    vec![
-        name(&record.strategy),
-        significant(record.assign_and_shade_ms()).into(),
-        significant(record.times.assign_ms).into(),
-        significant(record.times.shade_ms).into(),
-        differing.unwrap_or_else(|| ABSENT.to_owned()).into(),
-        mebibytes(record.lists.bytes as f64).into(),
-    ]
+    let row = |entry: &Entry<'a>| Row::new(entry.record.strategy.to_string(), entry.record);
+    let table = Table::new("strategy", columns, all.iter().map(row).collect())
+        .competing(|_| false)
+        .dotted(|record| record.strategy.class())
+        .html(title, Look::Plain);
+    Some(Part::new("vpl-strategies", title, text, table))
 }
 
 /// What a scene found, a sentence each.

@@ -49,7 +49,7 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
         good += usize::from(within.holds());
         let beyond = lines.iter().find(|(known, _)| known == id);
         let whole = beyond.and_then(|(_, all)| straight(all, Record::assign_and_shade_ms));
-        figures.push(said(id, &within, whole, records));
+        figures.push(straightness(id, &within, whole, records));
     }
     if all == 0 {
         return Answer::unknown("scaling over four counts of lights");
@@ -60,7 +60,7 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
 
 /// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
 /// 30,000`. Both distances are of `records`, those of the paper's range.
-fn said(
+fn straightness(
     id: &StrategyId,
     within: &Straight,
     whole: Option<Straight>,

@@ -108,7 +108,7 @@ pub(crate) fn view_free(done: &Done, scene: &str) -> Answer {
     Answer { figure, verdict }
 }
 
-/// M whole, M in parts and G at the most lights: what is known of their lists, and their times.
+/// M whole, M in parts and G at the most lights: their lists and their times.
 struct Models<'a> {
     lights: u64,
     lists: Vec<&'a Record>,
@@ -136,7 +136,7 @@ impl<'a> Models<'a> {
         Self::of(&self.times, name).or_else(|| Self::of(&self.lists, name))
     }
 
-    /// The time of the grid, or of what stands in for it.
+    /// The time of the grid, or of its stand-in.
     fn grid(&self) -> Option<&'a Record> {
         self.timed("G").or_else(|| self.timed("G/supports"))
     }

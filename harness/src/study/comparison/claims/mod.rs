@@ -14,24 +14,25 @@ use crate::study::claims::{Check, Paper};
 /// Enhuber 2019.
 pub(crate) const PAPER: Paper = Paper {
     name: "the comparison paper",
-    about: "Enhuber 2019 timed these strategies on a GTX 780 along paths of 1,200 poses, in Robot Lab, \
-            Sponza and Viking Village, with forward shading and 10,000 lights where it names no count. \
-            Here surfaces are lit deferred, and the depth pre-pass, which all methods share, is on no \
-            bill but in the row on bounds. Times are those of assigning and shading. Claims are decided \
-            by the paper\u{2019}s own strategies, from the list of all lights; sizes and shapes of groups \
-            that were measured only through the hierarchy say so. Figures say over how many poses they are \
-            means. Of fewer than six rounds or laps, times less than 5 % apart decide nothing.",
+    about: "Enhuber 2019 timed these strategies on a GTX 780 along paths of 1,200 poses, in Robot \
+            Lab, Sponza and Viking Village, with forward shading and 10,000 lights where it names \
+            no count. Here lighting is deferred. All methods share the depth pre-pass, and only \
+            the row on bounds counts it. Times are those of assigning and shading. The \
+            paper\u{2019}s own strategies decide its claims; they take lights from the list of \
+            all lights. Rows whose sizes or shapes of groups were measured only through the \
+            hierarchy say so. Each figure states how many poses it averages. With fewer than six \
+            rounds or laps, times less than 5 % apart decide nothing.",
     checks: &CHECKS,
 };
 
 const NO_PRE_PASS: &str =
-    "the depth pre-pass is on no bill, so methods that need it lose less at few lights";
+    "no method pays for the depth pre-pass, so methods that need it lose less at few lights";
 
-const WHOLE_FRAMES: &str = "times are of assigning and shading; the paper\u{2019}s are of whole frames, whose \
-                            surfaces take more or less time to draw from each view";
+const WHOLE_FRAMES: &str = "times cover assigning and shading; the paper times whole frames, and \
+                            the time to draw surfaces varies with the view";
 
 const DEFERRED: &str =
-    "lighting is deferred, so hidden surfaces are not lit, and shading grows more slowly";
+    "lighting is deferred, so hidden surfaces are not lit and shading grows more slowly";
 
 const CHECKS: [Check; 28] = [
     Check {
@@ -41,7 +42,8 @@ const CHECKS: [Check; 28] = [
                 for SC-I and SC-E, and 20x20x20 cells for G.",
         paper: "T-I: best in all scenes. Others: best in two, near the best in the third. G: 18, 22 and 20 \
                 cells a side",
-        departure: "searched around the paper\u{2019}s sizes; a tie with the best counts as best",
+        departure: "the search covers sizes around the paper\u{2019}s; a tie with the best counts \
+                    as best",
         decide: search::sizes,
     },
     Check {
@@ -57,7 +59,7 @@ const CHECKS: [Check; 28] = [
         place: "table 4.3",
         words: "DC-E is a little faster than SC-E at 10,000 lights.",
         paper: "SC-E takes 1.07, 1.10 and 1.04 times as long",
-        departure: "a little is up to 1.2 times",
+        departure: "a little means up to 1.2 times",
         decide: speed::dense_before_sparse,
     },
     Check {
@@ -65,8 +67,9 @@ const CHECKS: [Check; 28] = [
         place: "section 4.3.1",
         words: "SC-E stores its lists in far less memory than DC-E.",
         paper: "no figures; the reason why SC-E is chosen",
-        departure: "lists share one pool that grows with what they hold, so dense clusters reserve no \
-                    room; at these sizes SC-E has 1.8 times as many clusters; far less is at most half",
+        departure: "lists share one pool that grows as they need, so dense clusters reserve no \
+                    memory; at these sizes SC-E has 1.8 times as many clusters; far less means at \
+                    most half",
         decide: speed::sparse_memory,
     },
     Check {
@@ -84,7 +87,7 @@ const CHECKS: [Check; 28] = [
         place: "figures 4.6 and 4.7",
         words: "HS+SAT-N is the best intersection test.",
         paper: "T-E: best in all scenes. SC-E: best in two, among the best in the third",
-        departure: "SC-E tests boxes here, not frusta: SC-I and DC-I stand in for it",
+        departure: "SC-E tests boxes here, not frusta, so SC-I and DC-I stand in for it",
         decide: search::tests,
     },
     Check {
@@ -92,7 +95,7 @@ const CHECKS: [Check; 28] = [
         place: "section 4.3.2",
         words: "HS+SAT-E+SAT-P+SAT-V shades about as fast as HS+SAT-N and assigns slower.",
         paper: "no figures",
-        departure: "about as fast is within 3 %, slower is by more than 5 %",
+        departure: "about as fast means within 3 %; slower means by more than 5 %",
         decide: search::full_union,
     },
     Check {
@@ -125,7 +128,7 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.1.1",
         words: "G and DC-I have similar SDs.",
         paper: "bars only",
-        departure: "similar is within a factor of 1.5; the paper\u{2019}s times are of whole frames",
+        departure: "similar means within a factor of 1.5; the paper times whole frames",
         decide: spread::grid_like_dense,
     },
     Check {
@@ -135,8 +138,8 @@ const CHECKS: [Check; 28] = [
                 than T-E\u{2019}s.",
         paper: "most groups at 0 to 25 lights; with high discontinuity many of T-E\u{2019}s at 25 to 75 and \
                 some above, few of SC-E\u{2019}s at 25 to 50",
-        departure: "decided by lights listed per sample, not by the paper\u{2019}s histograms; far less is at \
-                    most half the growth. This limit is ours and was set when the figures were known, so \
+        departure: "lights listed per sample decide, not the paper\u{2019}s histograms; far less \
+                    means at most half the growth. We set this limit after seeing the figures, so \
                     results within 10 % of it are not decided",
         decide: lists::discontinuity,
     },
@@ -145,7 +148,8 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.1.2, figure 4.11",
         words: "The lists of G and M do not depend on the view.",
         paper: "the same histograms in both views",
-        departure: "the same is within 0.1 % of the entries: rounding moves the edges of cells",
+        departure: "the same means within 0.1 % of the entries, because rounding moves the edges \
+                    of cells",
         decide: lists::view_free,
     },
     Check {
@@ -153,7 +157,7 @@ const CHECKS: [Check; 28] = [
         place: "sections 4.4.1.2 and 4.5",
         words: "M suffers from a few models with extremely long lists, and dividing them helps.",
         paper: "2,259.77 ms in Sponza, 1,700.07 in Viking Village; dividing is an expectation",
-        departure: "extremely long is a quarter of all lights; parts of 2 m",
+        departure: "extremely long means a quarter of all lights; parts are 2 m large",
         decide: lists::models,
     },
     Check {
@@ -161,7 +165,7 @@ const CHECKS: [Check; 28] = [
         place: "section 4.5",
         words: "M in parts can be at least as fast as the grid.",
         paper: "an expectation without figures",
-        departure: "parts of 2 m; M draws model ids in a pass of its own",
+        departure: "parts are 2 m large; M draws model ids in a separate pass",
         decide: lists::subdivision,
     },
     Check {
@@ -169,7 +173,7 @@ const CHECKS: [Check; 28] = [
         place: "section 4.5",
         words: "Grids shaped like their box are faster than grids with equal counts.",
         paper: "an expectation without figures",
-        departure: "one shaped grid, 40x12x20, against the best of equal counts",
+        departure: "one shaped grid, 40x12x20, competes with the best of equal counts",
         decide: search::grids,
     },
     Check {
@@ -217,9 +221,9 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.2.2, figure 4.13",
         words: "Time grows linearly with the number of lights.",
         paper: "lines by least squares from 100 to 10,000 lights, without residuals",
-        departure: "a line is straight where it misses no time by more than 10 %, a limit of ours; it is \
-                    fitted with relative weights, so that 100 lights count as much as 10,000, and plain \
-                    least squares over the same counts stand beside it",
+        departure: "a line counts as straight if no time is off by more than 10 %, our limit. Its \
+                    fit uses relative weights, so that 100 lights count as much as 10,000; plain \
+                    least squares over the same counts are shown too",
         decide: growth::linear,
     },
     Check {
@@ -228,8 +232,9 @@ const CHECKS: [Check; 28] = [
         words: "Explicit bounds lower the slope and raise the offset.",
         paper: "slope: SC-E lowest, T-E medium, T-I very high; offset: T-I, G and DC-I low, T-E medium, \
                 SC-I and SC-E high, because of the depth pre-pass and the bounds",
-        departure: "SC-I reads depth too, so both rows of SC pay for the pre-pass. The paper lights hidden \
-                    surfaces in spite of its pre-pass; here lighting is deferred. Less than 2 % apart is a tie.",
+        departure: "SC-I also reads depth, so both rows of SC pay for the pre-pass. The paper \
+                    lights hidden surfaces although it draws a pre-pass; here lighting is \
+                    deferred. Figures less than 2 % apart tie.",
         decide: bounds::explicit_against_implicit,
     },
     Check {
@@ -269,7 +274,7 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.2.2",
         words: "DC-I and G have similar slopes and offsets.",
         paper: "bars only",
-        departure: "similar is within a factor of 1.5; the paper\u{2019}s times are of whole frames",
+        departure: "similar means within a factor of 1.5; the paper times whole frames",
         decide: growth::grid_like_dense,
     },
 ];

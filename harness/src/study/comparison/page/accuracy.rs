@@ -38,7 +38,7 @@ pub(crate) fn accuracy(
     };
     let reuse = Plot {
         slug: "reuse",
-        title: "Culling error of lists used for several frames of the path",
+        title: "Culling error of lists that are reused for several frames of the path",
         entries: entries(done, scene, "reuse"),
         time: "Assign + shade, mean along the path",
         ..caps
@@ -48,9 +48,10 @@ pub(crate) fn accuracy(
     let culling = Part::new(
         "accuracy",
         "Speed against accuracy: culling error",
-        "The error against no culling with the same shader; left and low is good. The staircase joins \
-         the settings that none beats in both; the others are faded. Exact images lie in the lane of \
-         zeros. A point whose pictures were kept opens them.",
+        "The error against no culling with the same shader. Points at the lower left are best. The \
+         staircase joins the settings that no other setting beats in both time and error; the \
+         others are faded. Exact images lie in the lane of zeros. Click a point to see its \
+         pictures, if they were kept.",
         html,
     );
     let ranges = Plot {
@@ -74,10 +75,10 @@ pub(crate) fn accuracy(
     let ranges = Part::new(
         "ranges",
         "Speed against accuracy: the lights\u{2019} range",
-        "Another error, never to be mixed with the one above: that of ending lights at the distance at \
-         which their intensity falls to a threshold, against lights without a range. It does not \
-         depend on the strategy, whose lists are exact; the time does. Points are labelled with the \
-         threshold.",
+        "This error is separate from the one above. Lights end at the distance where their \
+         intensity falls to a threshold; the error compares with lights that have no range. It \
+         does not depend on the strategy, because lists are exact, but the time does. Each point \
+         is labelled with its threshold.",
         ranges.html(scene, charts, shots),
     );
     [culling, ranges]
@@ -107,8 +108,8 @@ pub(crate) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
     let is_faster = Ratio::between(lossy, lossless).is_some_and(|ratio| ratio.is_faster());
     Some(if is_faster {
         format!(
-            "A relMSE of {error} buys {} % of the time: {} takes {} ms, {}, the fastest exact one \
-             of the same run, {} ms.",
+            "A relMSE of {error} saves {} % of the time: {} takes {} ms, and {}, the fastest exact \
+             method of the same run, takes {} ms.",
             significant((1.0 - time / exact) * 100.0),
             lossy.strategy,
             significant(time),
@@ -117,7 +118,7 @@ pub(crate) fn cheapest(done: &Done, scene: &str, bound: f64) -> Option<String> {
         )
     } else {
         format!(
-            "No cap within relMSE {bound} beats the fastest exact method, {} with {} ms.",
+            "No cap with a relMSE up to {bound} beats the fastest exact method, {} with {} ms.",
             lossless.strategy,
             significant(exact)
         )

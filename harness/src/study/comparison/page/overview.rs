@@ -1,4 +1,4 @@
-//! The main comparison: what is best at each count of lights, and why.
+//! The main comparison: the best strategy at each count of lights, with its passes.
 
 use crate::chart::{BarChart, Scale};
 use crate::report::colours::Colours;
@@ -76,9 +76,10 @@ pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     Part::new(
         "main",
         "All strategies",
-        "At the comparison paper\u{2019}s parameters, from the list of all lights and through the hierarchy \
-         (/bvh). Times are means along the path where they were measured there: these rank. A table of \
-         one pose is an example, with pictures and lists. A heading sorts by its column.",
+        "All strategies run at the comparison paper\u{2019}s parameters, from the list of all \
+         lights and through the hierarchy (/bvh). Times that were measured along the path are \
+         means over it, and only these rank. A table of one pose is an example with pictures and \
+         lists. Click a heading to sort by its column.",
         panels("Lights", &shown),
     )
 }
@@ -130,7 +131,7 @@ fn passes(title: String, results: &Results, comparison: &Comparison<'_>) -> BarC
     pass_bars(title, scale, counted, &records, &Colours::new(results))
 }
 
-/// What a scene's comparison found, one sentence per count of lights, the most lights first.
+/// The findings of a scene: one sentence per count of lights, the most lights first.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let all = rankings(done, scene);
     all.iter().rev().filter_map(|results| sentence(scene, &comparison(results)?)).collect()

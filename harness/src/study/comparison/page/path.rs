@@ -1,13 +1,15 @@
 //! Times frame by frame along the camera's path.
 
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::report::column::{Better, Column};
 use crate::report::format::{number, percent, significant};
 use crate::report::markup::Html;
+use crate::report::table::{Look, Row, Table};
 use crate::results::{Record, mean, median, standard_deviation};
 use crate::study::claims::order::Order;
 use crate::study::data::{Entry, counts, entries, laps, lines, poses};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::figure::{Charts, panels};
 use crate::study::page::part::Part;
 
 /// From this ratio of the greatest to the least mean on, the axis of times is logarithmic.
@@ -65,9 +67,9 @@ pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     Part::new(
         "path",
         "Along the path",
-        "Assigning and shading at each pose of the camera, mean over laps. SD is the standard deviation \
-         over poses, by which the comparison paper ranks; SD / mean and worst / median stand beside it. \
-         Slow methods have fewer poses.",
+        "The time to assign and shade at each pose of the camera, mean over laps. SD is the \
+         standard deviation over poses; the comparison paper ranks by it. SD / mean and worst / \
+         median are shown too. Slow methods have fewer poses.",
         panels("Lights", &shown),
     )
 }
@@ -108,32 +110,45 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
     }
 }
 
-fn spreads(title: &str, entries: &[Entry<'_>]) -> Html {
-    let rows: Vec<Vec<Html>> = entries
-        .iter()
-        .filter_map(|entry| Some((entry.record, Spread::of(entry.record)?)))
-        .map(|(record, spread)| {
-            vec![
-                name(&record.strategy),
-                significant(spread.mean).into(),
-                significant(spread.deviation).into(),
-                percent(spread.relative).into(),
-                significant(spread.worst_over_median).into(),
-                significant(spread.worst).into(),
-                number(poses(record) as f64).into(),
-                number(laps(record).len() as f64).into(),
-            ]
-        })
-        .collect();
-    let heads = [
-        "strategy".into(),
-        unit("mean", "ms"),
-        unit("SD", "ms"),
-        unit("SD / mean", "%"),
-        unit("worst / median", "\u{d7}"),
-        unit("worst", "ms"),
-        "poses".into(),
-        "laps".into(),
+/// A strategy's record with how its times vary.
+type Varied<'a> = (&'a Record, Spread);
+
+/// A column of times.
+fn ms<'a>(head: &str, value: fn(&Spread) -> f64) -> Column<'a, Varied<'a>> {
+    let value = move |row: &Varied<'a>| Some(value(&row.1));
+    Column::figure(head, "ms", Better::Less, value, significant)
+}
+
+/// How the times of each strategy vary. Ranks stand in the main table, so no figure is marked as the best.
+fn spreads<'a>(title: &str, entries: &[Entry<'a>]) -> Html {
+    let row = |entry: &Entry<'a>| {
+        let record = entry.record;
+        Some(Row::new(record.strategy.to_string(), (record, Spread::of(record)?)))
+    };
+    let count = |of: fn(&Record) -> usize| move |row: &Varied<'_>| Some(of(row.0) as f64);
+    let columns = [
+        ms("mean", |spread| spread.mean),
+        ms("SD", |spread| spread.deviation),
+        Column::figure(
+            "SD / mean",
+            "%",
+            Better::Less,
+            |row: &Varied<'_>| Some(row.1.relative),
+            percent,
+        ),
+        Column::figure(
+            "worst / median",
+            "\u{d7}",
+            Better::Less,
+            |row: &Varied<'_>| Some(row.1.worst_over_median),
+            significant,
+        ),
+        ms("worst", |spread| spread.worst),
+        Column::figure("poses", "", Better::Neither, count(poses), number),
+        Column::figure("laps", "", Better::Neither, count(|record| laps(record).len()), number),
     ];
-    table(title, &heads, &rows)
+    Table::new("strategy", columns, entries.iter().filter_map(row).collect())
+        .competing(|_| false)
+        .dotted(|row| row.0.strategy.class())
+        .html(title, Look::Plain)
 }

@@ -1,10 +1,13 @@
 //! Times against the number of lights, with straight lines through them.
 
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::report::column::{Better, Column};
 use crate::report::fit::Fit;
 use crate::report::format::{ABSENT, number, percent, significant};
 use crate::report::markup::{Html, html};
+use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
+use crate::strategy::StrategyId;
 use crate::study::data::{Entry, Line, counts, entries, lines, poses, ranking, stand};
 use crate::study::manifest::Done;
 use crate::study::page::figure::{Charts, name, panels, table, unit};
@@ -39,8 +42,8 @@ impl Straight {
     }
 }
 
-/// How straight times are: through the line that takes every count's relative distance alike, so that
-/// the greatest counts do not decide alone. `None` of fewer than four counts.
+/// How straight times are: through the line that takes every count's relative distance alike, so that the
+/// greatest counts do not decide on their own. `None` with fewer than four counts.
 pub(crate) fn straight(records: &[&Record], time: Time) -> Option<Straight> {
     let points: Vec<(f64, f64)> =
         records.iter().map(|r| (r.setting.lights as f64, time(r))).collect();
@@ -76,9 +79,10 @@ pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3
         "scaling",
         "Scaling",
         format!(
-            "{} Whiskers are intervals; dashes are a least-squares line through each strategy\u{2019}s \
-             times: straight on linear axes, bent on these. How far times are off a line is told of \
-             another one, which takes relative distances, so that few lights count as much as many.",
+            "{} Whiskers are intervals. Dashes show the least-squares line through each \
+             strategy\u{2019}s times, which is curved on these logarithmic axes. The column \
+             \u{201c}off a straight line\u{201d} uses another line, fitted to relative distances, \
+             so that few lights count as much as many.",
             stands(&scaling)
         ),
         html,
@@ -86,15 +90,16 @@ pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3
     let density = Part::new(
         "density",
         "Many more lights",
-        "Growing density: more lights in the same box. Constant density: the scene grows with the cube \
-         root of their number, and lights keep their size. All through the hierarchy.",
+        "Growing density: more lights in the same box. Constant density: the scene grows with the \
+         cube root of the number of lights, and lights keep their size. All strategies use the \
+         hierarchy.",
         density(done, scene, charts),
     );
     let radii = Part::new(
         "radii",
         "Other radii",
-        "The same mean radius, distributed otherwise; in brackets the time over that with the gamma \
-         distribution.",
+        "The same mean radius with other distributions. Brackets hold the time over that with the \
+         gamma distribution.",
         radii(done, scene),
     );
     [scaled, density, radii]
@@ -173,60 +178,67 @@ fn time_axis(scale: Scale) -> Axis {
     Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale }
 }
 
+/// The lines through a strategy's times, and how straight these are.
+struct Fits<'a> {
+    id: &'a StrategyId,
+    both: Fit,
+    straight: Option<Straight>,
+    assign: Option<Fit>,
+    shade: Option<Fit>,
+}
+
 /// Slope, offset and goodness of the line through each strategy's times; slopes of its passes.
-fn fits_table(entries: &[Entry<'_>]) -> Html {
-    let mut rows = Vec::new();
-    for (id, records) in lines(entries) {
-        let Some(both) = fit(&records, Record::assign_and_shade_ms) else { continue };
-        let mut row: Vec<String> = Vec::new();
+fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
+    let row = |(id, records): Line<'a>| {
+        let both = fit(&records, Record::assign_and_shade_ms)?;
         let straight = straight(&records, Record::assign_and_shade_ms);
-        row.extend([
-            significant(both.slope * 1e6),
-            significant(both.offset),
-            r2(&both),
-            straight.map_or_else(|| ABSENT.to_owned(), |straight| percent(straight.worst)),
-            straight.and_then(|straight| straight.range).map_or_else(
-                || ABSENT.to_owned(),
-                |[low, high]| format!("{} to {}", number(low as f64), number(high as f64)),
-            ),
-        ]);
-        let parts: [Time; 2] = [|record| record.times.assign_ms, |record| record.times.shade_ms];
-        for time in parts {
+        let of_pass = |time: Time| {
             let is_there = records.iter().any(|record| time(record) != 0.0);
-            let fit = fit(&records, time).filter(|_| is_there);
-            row.extend([
-                fit.map_or_else(String::new, |fit| significant(fit.slope * 1e6)),
-                fit.map_or_else(String::new, |fit| significant(fit.offset)),
-                fit.map_or_else(String::new, |fit| r2(&fit)),
-            ]);
-        }
-        let cells = row.into_iter().map(Html::from);
-        rows.push(std::iter::once(name(id)).chain(cells).collect::<Vec<_>>());
-    }
+            fit(&records, time).filter(|_| is_there)
+        };
+        let (assign, shade) =
+            (of_pass(|record| record.times.assign_ms), of_pass(|record| record.times.shade_ms));
+        Some(Row::new(id.to_string(), Fits { id, both, straight, assign, shade }))
+    };
+    let rows: Vec<Row<Fits<'a>>> = lines(entries).into_iter().filter_map(row).collect();
     if rows.is_empty() {
         return Html::default();
     }
-    let slope = |head: &str| unit(head, "\u{b5}s per 1,000 lights");
-    let heads = [
-        "strategy".into(),
-        slope("slope"),
-        unit("offset", "ms"),
-        "R\u{b2}".into(),
-        unit("off a straight line by at most", "%"),
-        "straight within 10 %, lights".into(),
-        slope("assign: slope"),
-        unit("offset", "ms"),
-        "R\u{b2}".into(),
-        slope("shade: slope"),
-        unit("offset", "ms"),
-        "R\u{b2}".into(),
+    let off = |fits: &Fits<'_>| Some(fits.straight.as_ref()?.worst);
+    let straight_over = |fits: &Fits<'_>| match fits.straight.and_then(|found| found.range) {
+        Some([low, high]) => format!("{} to {}", number(low as f64), number(high as f64)),
+        None => ABSENT.to_owned(),
+    };
+    let [slope, offset, r2] = line_columns("slope", |fits| Some(&fits.both));
+    let mut columns = vec![
+        slope,
+        offset,
+        r2,
+        Column::figure("off a straight line by at most", "%", Better::Less, off, percent),
+        Column::words("straight within 10 %, lights", "", straight_over),
     ];
-    table("Straight lines through times against lights", &heads, &rows)
+    columns.extend(line_columns("assign: slope", |fits| fits.assign.as_ref()));
+    columns.extend(line_columns("shade: slope", |fits| fits.shade.as_ref()));
+    Table::new("strategy", columns, rows)
+        .competing(|_| false)
+        .dotted(|fits| fits.id.class())
+        .html("Straight lines through times against lights", Look::Plain)
 }
 
-/// Two points always lie on a line: nothing is said of it.
-fn r2(fit: &Fit) -> String {
-    if fit.points > 2 { format!("{:.3}", fit.r2) } else { "\u{2013}".to_owned() }
+/// The columns of one line: slope, offset and R².
+fn line_columns<'a>(
+    slope: &str,
+    line: for<'f> fn(&'f Fits<'a>) -> Option<&'f Fit>,
+) -> [Column<'a, Fits<'a>>; 3] {
+    // Two points always lie on a line, so their R² says nothing.
+    let r2 = move |fits: &Fits<'a>| line(fits).filter(|fit| fit.points > 2).map(|fit| fit.r2);
+    let slope_of = move |fits: &Fits<'a>| line(fits).map(|fit| fit.slope * 1e6);
+    let offset = move |fits: &Fits<'a>| line(fits).map(|fit| fit.offset);
+    [
+        Column::figure(slope, "\u{b5}s per 1,000 lights", Better::Less, slope_of, significant),
+        Column::figure("offset", "ms", Better::Less, offset, significant),
+        Column::figure("R\u{b2}", "", Better::More, r2, |r2| format!("{r2:.3}")),
+    ]
 }
 
 fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
@@ -236,7 +248,7 @@ fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
     let mut html = Html::default();
     for (section, title, base) in [
         ("growing", "More lights in the same box", &scaling),
-        ("constant", "More lights in a larger scene, as dense as before", &scaling),
+        ("constant", "More lights in a larger scene, at the same density", &scaling),
     ] {
         let own = entries(done, scene, section);
         if own.is_empty() {

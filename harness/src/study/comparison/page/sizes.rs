@@ -75,18 +75,20 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] 
     let sizes = Part::new(
         "sizes",
         "Group sizes",
-        "Sizes in pixels of a tile\u{2019}s sides and depth slices, in cells along the box\u{2019}s sides, \
-         in metres of a model\u{2019}s parts. Small groups cost assignment, large ones shading. Sizes are \
-         searched from each source of lights: the list of all lights, and the hierarchy (/bvh).",
+        "Sizes of tiles and clusters are in pixels and depth slices, those of grids in cells along \
+         each side of the box, and those of model parts in metres. Small groups cost more \
+         assignment, large groups more shading. Sizes are searched separately for both sources of \
+         lights: the list of all lights, and the hierarchy (/bvh).",
         body,
     );
     let tests = Part::new(
         "tests",
         "Intersection tests",
-        "Unions of tests of a light\u{2019}s bounds against a group\u{2019}s frustum: half-spaces (HS), and \
-         separating axes along its edges (SAT-E), towards its nearest corner (SAT-N), along its planes' normals \
-         (SAT-P) and towards every corner (SAT-V). \
-         Assign + shade in ms; the fastest of each family, and all that tie with it, stand out.",
+        "Each row combines tests of a light\u{2019}s bounds against a group\u{2019}s frustum: \
+         half-spaces (HS), and separating axes along its edges (SAT-E), towards its nearest \
+         corner (SAT-N), along its planes' normals (SAT-P) and towards every corner (SAT-V). \
+         Figures are assign + shade in ms. The fastest of each family, and all that tie with it, \
+         are bold.",
         tests_table(done, scene),
     );
     [sizes, tests]
@@ -232,9 +234,10 @@ pub(crate) fn best_overall(done: &Done) -> Html {
         unit("worst scene", "\u{d7}"),
     ];
     html!(
-        "<section aria-labelledby=\"overall\"><h2 id=\"overall\">The size for all scenes</h2>\n\
-         <p class=\"note\">The size whose time, over that of the best size of each scene, has the least \
-         geometric mean over the scenes.</p>\n{}</section>\n",
+        "<section aria-labelledby=\"overall\"><h2 id=\"overall\">The size for all scenes</h2>\n<p \
+         class=\"note\">Each size has a factor per scene: its time over that of the \
+         scene\u{2019}s best size. The size with the least geometric mean of these factors is \
+         shown.</p>\n{}</section>\n",
         table("The best size over all scenes", &heads, &rows)
     )
 }

@@ -57,15 +57,16 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     Part::new(
         "views",
         "Views of low and high depth discontinuity",
-        "Of the views along the path, the one in which the fewest neighbouring pixels are a tenth apart \
-         in depth, and the one in which the most are. A tile that holds near and far surfaces lists the \
-         lights between them too; a cluster does not. The lists of G and M are the same from everywhere. \
-         Heat maps show the lights in the list of each pixel: blue at none, red at 150, green above.",
+        "Two views along the path: the one in which the fewest neighbouring pixels differ by a \
+         tenth in depth, and the one in which the most do. A tile that holds near and far \
+         surfaces also lists the lights between them; a cluster does not. The lists of G and M do \
+         not depend on the view. Heat maps show how many lights each pixel\u{2019}s list holds: \
+         blue is none, red is 150, green is more.",
         panels("Strategy", &shown),
     )
 }
 
-/// The heat maps of records, each with what its lists come to.
+/// The heat maps of records, each with the mean length of its lists and its times.
 fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html {
     let mut figures = Html::default();
     for entry in entries {

@@ -45,7 +45,7 @@ pub(crate) fn range(done: &Done, scene: &str) -> Answer {
         let flip =
             error("flip").map_or_else(String::new, |flip| format!(", FLIP {}", significant(flip)));
         let figure = format!(
-            "{}, {} lights: {} % of the light of lights without a range is lost{flip}",
+            "{}, {} lights: the ranges lose {} % of the light{flip}",
             mode.name,
             number(sphere.setting.lights as f64),
             percent(lost)

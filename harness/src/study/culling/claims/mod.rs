@@ -16,10 +16,11 @@ use crate::study::claims::{Check, Paper};
 /// Watrous 2024.
 pub(crate) const PAPER: Paper = Paper {
     name: "the culling survey",
-    about: "Watrous 2024 timed four methods on an RTX 3080, in a scene and with light intensities of its \
-            own, mean over 1,000 frames. Claims are decided within each renderer by the mean time of a \
-            frame along the path. A data-centre GPU runs fragment shaders on a few of its processors, so \
-            forward rendering, Clay and RasterSphere are slower there than on the survey\u{2019}s GPU.",
+    about: "Watrous 2024 timed four methods on an RTX 3080, in a scene and with light intensities \
+            of its own, mean over 1,000 frames. Within each renderer the mean time of a frame \
+            along the path decides. A data-centre GPU runs fragment shaders on only a few of its \
+            processors, so forward rendering, Clay and RasterSphere are slower there than on the \
+            survey\u{2019}s GPU.",
     checks: &CHECKS,
 };
 
@@ -29,7 +30,8 @@ const CHECKS: [Check; 12] = [
         place: "evaluation, figure 2",
         words: "The frame time of each method grows linearly with the number of lights.",
         paper: "0 to 1,500 lights",
-        departure: "fewer counts of lights; straight where points are off by at most 5 % of the growth",
+        departure: "fewer counts of lights; straight means that points are off by at most 5 % of \
+                    the growth",
         decide: linear,
     },
     Check {
@@ -61,8 +63,8 @@ const CHECKS: [Check; 12] = [
         place: "evaluation",
         words: "The bounding sphere cuts the cost of lights nearly in half.",
         paper: "nearly half",
-        departure: "no culling here compares with the exit as well, which makes it 9 % slower; nearly half is \
-                    40 to 60 % left",
+        departure: "no culling also runs the test of the early exit here, which makes it 9 % \
+                    slower; nearly half means that 40 to 60 % is left",
         decide: sphere,
     },
     Check {
@@ -86,8 +88,8 @@ const CHECKS: [Check; 12] = [
         place: "evaluation",
         words: "Clusters greatly outperform all other methods, in both renderers.",
         paper: "",
-        departure: "\u{201c}greatly\u{201d} is read as half the frame or less; clusters are tested as frusta \
-                    (HS+SAT-N), the paper\u{2019}s as their boxes",
+        departure: "we take \u{201c}greatly\u{201d} to mean half the frame or less; we test \
+                    clusters as frusta (HS+SAT-N), the paper as boxes",
         decide: clusters,
     },
     Check {
@@ -109,7 +111,7 @@ const CHECKS: [Check; 12] = [
     Check {
         id: "survey-range",
         place: "failure modes, figure 3a",
-        words: "Ranges lose light that would be seen, on reflective surfaces most.",
+        words: "Ranges lose visible light, most of all on reflective surfaces.",
         paper: "pictures",
         departure: "the whole image of the path\u{2019}s first pose, not only its reflective surfaces",
         decide: range,
@@ -119,7 +121,7 @@ const CHECKS: [Check; 12] = [
         place: "failure modes, figure 3b",
         words: "Clusters show tiles on reflective surfaces.",
         paper: "a picture",
-        departure: "shading ends each light at its range, whatever list it stands in",
+        departure: "shading ends each light at its range, whatever list contains it",
         decide: tiles,
     },
 ];

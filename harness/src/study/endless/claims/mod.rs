@@ -14,13 +14,15 @@ use crate::study::claims::{Check, Paper};
 /// Swarbrick 2025.
 pub(crate) const PAPER: Paper = Paper {
     name: "the polygon-light paper",
-    about: "Swarbrick 2025 timed 126 and 2,016 polygon lights in Sun Temples, at 1280 x 720 on a GTX 1060, \
-            forward, with 16 x 9 x 24 clusters times normal cones. Here: another scene and GPU, deferred, \
-            and lists only for the clusters that hold samples. Claims are judged by the paper\u{2019}s \
-            settings: its clusters and its cone test without an early exit where they were measured, then its \
-            test in clusters of 48x48x40, then cones without a loss. One cone is not among them. Cases are a \
-            location and its lights. What loses light states its FLIP; for scale, linearly transformed cosines \
-            themselves are 0.018 and 0.037 from the true integral (h200-area).",
+    about: "Swarbrick 2025 timed 126 and 2,016 polygon lights in Sun Temples, at 1280 x 720 on a \
+            GTX 1060, forward, with 16 x 9 x 24 clusters times normal cones. Here scene and GPU \
+            differ, lighting is deferred, and only clusters that hold samples have lists. The \
+            paper\u{2019}s settings decide its claims: its clusters and its cone test without an \
+            early exit where they were measured, otherwise its test in clusters of 48x48x40, \
+            otherwise cones without a loss. One cone is not among them. A case is a location with \
+            its number of lights. Settings that lose light state their FLIP; for scale, linearly \
+            transformed cosines themselves are 0.018 and 0.037 from the true integral \
+            (h200-area).",
     checks: &CHECKS,
 };
 
@@ -71,7 +73,8 @@ const CHECKS: [Check; 21] = [
         place: "chapter 4",
         words: "Normal cones save shading that evaluates every listed light.",
         paper: "its shading has no early exit: \u{d7} 0.67 to 1.03 by 54 cones",
-        departure: "54 cones without a loss; with an early exit shading leaves out the same terms by itself",
+        departure: "54 cones without a loss; with an early exit, shading skips the same terms by \
+                    itself",
         decide: early_exit,
     },
     Check {
@@ -99,7 +102,8 @@ const CHECKS: [Check; 21] = [
         place: "section 5.2",
         words: "24 cones take about four times as long to assign as 6.",
         paper: "\u{d7} 3.6 to 4.0",
-        departure: "the paper culls every cluster and cone, we those that hold samples; holds from 3 to 5",
+        departure: "the paper culls for every cluster and cone, we only for those that hold \
+                    samples; holds from 3 to 5",
         decide: assignment,
     },
     Check {
@@ -148,8 +152,9 @@ const CHECKS: [Check; 21] = [
         place: "equations 5.4 to 5.7",
         words: "54 cones over the whole radius would list 1.25 terms for each that would be seen.",
         paper: "an estimate: 25.8 of 20.7 million, 31.5 of 21.4 by 24 cones",
-        departure: "our cut below a radiance stands for it, the mildest decides, up to 1.35; files that do not \
-                    tell which terms a list names count both of every light, and their ratios are lower bounds",
+        departure: "our cut below a radiance stands in for it; the mildest decides, up to 1.35. \
+                    Older files do not say which terms a list holds, so both terms of every light \
+                    are counted and the ratios are lower bounds",
         decide: inner,
     },
     Check {
@@ -173,7 +178,8 @@ const CHECKS: [Check; 21] = [
         place: "table 5.2, section 5.2",
         words: "Far fragments (C) cost several times the shading of near ones (A).",
         paper: "\u{d7} 2.5 on a GTX 1060, 5.1 on an RTX 4070",
-        departure: "half of C is background here, and slices follow the depth of the lights; holds from 2 on",
+        departure: "half of C is background here, and slices follow the depth of the lights; holds \
+                    from 2 upwards",
         decide: far,
     },
     Check {
@@ -195,7 +201,7 @@ const CHECKS: [Check; 21] = [
     Check {
         id: "flags",
         place: "section 3.4",
-        words: "Telling diffuse and specular terms apart halves shading where only one reaches.",
+        words: "Separating diffuse and specular terms halves shading where only one reaches.",
         paper: "without figures",
         departure: "",
         decide: flagless,

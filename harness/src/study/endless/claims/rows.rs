@@ -69,7 +69,7 @@ impl Outcome {
         if is_good { Self::Good } else { Self::Bad }
     }
 
-    /// Whether one record is faster than another, in assign + shade, as far as their rounds tell.
+    /// Whether one record is faster than another in assign + shade, if their rounds can decide it.
     pub(crate) fn faster(record: &Record, other: &Record) -> Self {
         match Order::of_times(record, other) {
             Order::Less => Self::Good,
@@ -99,7 +99,7 @@ pub(crate) fn by_case(done: &Done, scene: &str, needs_test: bool, judge: Judge<'
     }
     let figure = figures.join("; ");
     if needs_test && !is_published {
-        let why = "the paper\u{2019}s cone test; the figures are of cones without a loss";
+        let why = "the paper\u{2019}s cone test; the figures show cones without a loss";
         return Answer { figure, verdict: Verdict::unmeasured(why) };
     }
     Answer { figure, verdict: verdict(&outcomes) }
@@ -127,7 +127,7 @@ pub(crate) fn verdict(outcomes: &[Outcome]) -> Verdict {
 
 /// A setting with its time, and its error where it loses something: `54 cones, cut 0.01 2.99 ms (FLIP
 /// 0.106)`.
-pub(crate) fn told(record: &Record) -> String {
+pub(crate) fn with_time(record: &Record) -> String {
     let time = significant(record.assign_and_shade_ms());
     format!("{} {time} ms{}", setting(&record.strategy), error(record))
 }

@@ -5,14 +5,14 @@ use crate::report::rank::listed;
 use crate::results::Record;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::endless::cases::{Case, Cut, USUAL, cases, setting};
-use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, told, verdict};
+use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, verdict, with_time};
 use crate::study::manifest::Done;
 
 /// Cones against position in assign + shade.
 fn beats(done: &Done, scene: &str, count: u32) -> Answer {
     by_case(done, scene, false, &|_, rows| {
         let cones = rows.cones(count)?;
-        let figure = format!("{}, {}", told(cones), told(rows.position));
+        let figure = format!("{}, {}", with_time(cones), with_time(rows.position));
         Some((figure, Outcome::faster(cones, rows.position)))
     })
 }
@@ -40,7 +40,7 @@ pub(crate) fn balance(done: &Done, scene: &str) -> Answer {
             all if all.contains(&Outcome::Tie) => Outcome::Tie,
             _ => Outcome::Good,
         };
-        let said: Vec<String> = std::iter::once(six).chain(others).map(told).collect();
+        let said: Vec<String> = std::iter::once(six).chain(others).map(with_time).collect();
         Some((listed(&said), outcome))
     })
 }
@@ -54,7 +54,7 @@ pub(crate) fn dif(done: &Done, scene: &str) -> Answer {
         let fastest = others
             .iter()
             .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))?;
-        let figure = format!("{}, the fastest other {}", told(dif), told(fastest));
+        let figure = format!("{}, the fastest other {}", with_time(dif), with_time(fastest));
         Some((figure, Outcome::faster(dif, fastest)))
     });
     match answer.verdict {
@@ -63,7 +63,7 @@ pub(crate) fn dif(done: &Done, scene: &str) -> Answer {
     }
 }
 
-/// Up to this share of the time by position, shading is almost halved: the paper's own at A.
+/// Shading counts as almost halved up to this share of the time by position: the paper's own at A.
 const HALVED: f64 = 0.7;
 
 pub(crate) fn shading(done: &Done, scene: &str) -> Answer {
@@ -209,7 +209,8 @@ pub(crate) fn slices(done: &Done, scene: &str) -> Answer {
     Answer { figure: figures.join("; "), verdict }
 }
 
-/// The early exit, which the paper's shading lacks: what cones without a loss gain with it and without.
+/// The early exit, which the paper's shading lacks: the gain of cones without a loss, with and without
+/// it.
 pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
     for case in cases(done, scene) {
@@ -244,14 +245,14 @@ pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
     Answer { figure: figures.join("; "), verdict }
 }
 
-/// What nothing here can answer.
+/// Nothing here can answer this claim.
 pub(crate) fn thread_per_cluster(_: &Done, _: &str) -> Answer {
     Answer::unknown("one thread per cluster is not built")
 }
 
-/// What nothing here can answer.
+/// Nothing here can answer this claim.
 pub(crate) fn flagless(_: &Done, _: &str) -> Answer {
-    Answer::unknown("lists that do not tell their terms apart are not built")
+    Answer::unknown("lists that do not separate their terms are not built")
 }
 
 /// The rows of a case, for figures of other claims.
