@@ -119,7 +119,7 @@ fn models_are_held_against_the_truth_and_told_in_tables_charts_and_pictures() {
         let name = format!("atrium-{chart}.svg");
         assert!(charts.contains(&name), "{name} of {charts:?}");
     }
-    assert!(page.contains("the G-buffer alone"), "what the G-buffer costs has a row");
+    assert!(page.contains("G-buffer</span> alone"), "what the G-buffer costs has a row");
     assert!(text.contains("without noise, ltc is nearest to the truth in atrium"), "{text}");
     assert!(text.contains("no model beats any of these in both time and FLIP"), "{text}");
     // The polynomials are slower and further off.
