@@ -81,7 +81,7 @@ fn a_family_joins_by_its_row() {
     };
     let searched = strategies(&jobs, "atrium-sizes-Made-Up");
     assert_eq!(searched, "Made-Up/5,Made-Up/7,Made-Up/9");
-    for name in ["atrium-main", "atrium-views-low", "atrium-path-10000"] {
+    for name in ["atrium-main-10000", "atrium-views-low", "atrium-path-10000"] {
         let ids = strategies(&jobs, name);
         assert!(ids.split(',').any(|id| id == "Made-Up/7"), "{name}: {ids}");
     }
