@@ -13,7 +13,7 @@ use crate::{
     choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
     described::note_faults,
-    drift::note_drift,
+    drift::unsteady,
     error::HarnessError,
     image_errors::ImagePair,
     machine::machine,
@@ -23,7 +23,7 @@ use crate::{
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
-    results::{Results, Truth, TruthLevel, Untested},
+    results::{Clock, Record, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
@@ -287,6 +287,24 @@ impl Run<'_> {
         }
         Ok(())
     }
+}
+
+/// Adds a note to a record whose times drifted. Only for GPUs and still cameras: a software adapter has no
+/// clock to raise, and the poses of a path differ in their work.
+fn note_drift(record: &mut Record) {
+    if record.setting.along_path || record.times.clock != Clock::GpuTimestamps {
+        return;
+    }
+    let Some(why) = unsteady(&record.frames_ms()) else { return };
+    let drift = format!(
+        "{} in {}: its times are not steady, measure it again: {why}",
+        record.strategy,
+        record.setting.mode.name()
+    );
+    record.note = Some(match record.note.take() {
+        Some(note) => format!("{note}; {drift}"),
+        None => drift,
+    });
 }
 
 fn progress_bar(total: u64) -> ProgressBar {

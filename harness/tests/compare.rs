@@ -54,7 +54,7 @@ fn bad_input_leaves_an_earlier_report_untouched() {
     for (option, value, wanted) in [
         ("--scene", "gone.gltf", "gone.gltf"),
         ("--strategies", "M/-1", "--strategies M/-1: "),
-        ("--strategies", "T-I/hs+foo", "--strategies T-I/hs+foo: "),
+        ("--strategies", "T-I/hs+foo", "strategy T-I/hs+foo: "),
     ] {
         assert_refused(&[option, value, "--out", out], &[wanted]);
         for name in ["index.html", "results.json"] {
@@ -240,7 +240,7 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["--strategies", "SC-E/linear/bvh", "--out", &out], vec!["linear", "bvh"]),
         (vec!["advise", "--mode", "all", "--out", &out], vec!["all", "forward-no-prepass"]),
         (vec!["--strategies", "DC-I/0x64x24", "--out", &out], vec!["0", "tile"]),
-        (vec!["--strategies", "DC-I/1x1x1024", "--out", &out], vec!["clusters"]),
+        (vec!["--strategies", "DC-I/1x1x1024", "--out", &out], vec!["froxels"]),
         (vec!["--lights", "-1", "--out", &out], vec!["--lights", "-1"]),
         (vec!["--lights", "99999999", "--out", &out], vec!["--lights", "16,777,216"]),
         (vec!["--size", "0x10", "--out", &out], vec!["--size", "0x10"]),

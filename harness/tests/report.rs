@@ -202,8 +202,9 @@ fn odd_runs_still_read_well() {
 
     let orphan = finding(&of([record("DC-I", Mode::Forward, 10.0, 40.0)]));
     assert!(
-        orphan[0]
-            .contains("DC-I (dense clusters, implicit bounds) assigns and shades 1,000 lights in "),
+        orphan[0].contains(
+            "DC-I/128x128x64 (dense clusters, implicit bounds) assigns and shades 1,000 lights in "
+        ),
         "{}",
         orphan[0]
     );

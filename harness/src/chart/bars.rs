@@ -93,7 +93,7 @@ impl BarChart {
         if self.logarithmic() {
             let parts = self.rows.iter().flat_map(BarRow::parts).map(|segment| segment.value);
             let values = totals.chain(parts).filter(|&value| value > 0.0);
-            Domain::of(Scale::Log, values, std::iter::empty())
+            Domain::spanning(Scale::Log, values, std::iter::empty())
         } else {
             Domain::from_zero(totals)
         }

@@ -39,7 +39,7 @@ pub(super) fn check(scale: Scale, value: f64) -> Result<(), Misfit> {
 
 impl Domain {
     /// Spans the values, and their ranges as far as the values keep enough room.
-    pub(super) fn of(
+    pub(super) fn spanning(
         scale: Scale,
         values: impl Iterator<Item = f64>,
         ranges: impl Iterator<Item = f64>,

@@ -82,7 +82,7 @@ fn render(title: &str, histograms: &[Histogram], target: Target) -> String {
 }
 
 /// Draws one. Returns where it ends.
-fn draw(canvas: &mut Canvas, of: &Histogram, domain: &Domain, plot: &Area, first: bool) -> f64 {
+fn draw(canvas: &mut Canvas, shown: &Histogram, domain: &Domain, plot: &Area, first: bool) -> f64 {
     let track = Track::new(*domain, plot.bottom, plot.top);
     for tick in domain.ticks(TICKS) {
         let y = track.within(tick.value);
@@ -92,13 +92,13 @@ fn draw(canvas: &mut Canvas, of: &Histogram, domain: &Domain, plot: &Area, first
             canvas.text("soft", at, Anchor::End, &plain(tick.value));
         }
     }
-    let step = plot.width() / of.bins.len().max(1) as f64;
-    let total = of.total().max(1.0);
-    canvas.open(&format!("tint {}", of.class), "", "");
-    for (ix, (name, count)) in of.bins.iter().enumerate() {
+    let step = plot.width() / shown.bins.len().max(1) as f64;
+    let total = shown.total().max(1.0);
+    canvas.open(&format!("tint {}", shown.class), "", "");
+    for (ix, (name, count)) in shown.bins.iter().enumerate() {
         let left = plot.left + step * ix as f64;
         let share = *count as f64 / total * 100.0;
-        let heading = if of.title.is_empty() { "" } else { &of.title };
+        let heading = if shown.title.is_empty() { "" } else { &shown.title };
         let count_text = grouped(&count.to_string());
         let tip = format!("{heading}\n{name}: {count_text} ({}%)", significant(share));
         let column = Area { left, right: left + step, ..*plot };
@@ -116,13 +116,13 @@ fn draw(canvas: &mut Canvas, of: &Histogram, domain: &Domain, plot: &Area, first
     canvas.close();
     canvas.line("base", [plot.left, plot.bottom], [plot.right, plot.bottom]);
     let mut end = plot.bottom + LINE;
-    draw_bin_names(canvas, of, step, plot);
-    if !of.x_label.is_empty() {
+    draw_bin_names(canvas, shown, step, plot);
+    if !shown.x_label.is_empty() {
         end += LINE;
-        let text = shorten(&of.x_label, plot.width());
-        canvas.cut_text("soft", [plot.left, end - 2.0], Anchor::Start, &text, &of.x_label);
+        let text = shorten(&shown.x_label, plot.width());
+        canvas.cut_text("soft", [plot.left, end - 2.0], Anchor::Start, &text, &shown.x_label);
     }
-    for line in wrap(&of.note, plot.width()) {
+    for line in wrap(&shown.note, plot.width()) {
         end += LINE;
         canvas.text("soft", [plot.left, end - 2.0], Anchor::Start, &line);
     }
@@ -130,11 +130,11 @@ fn draw(canvas: &mut Canvas, of: &Histogram, domain: &Domain, plot: &Area, first
 }
 
 /// Names every bin, or every second, third … where there is no room.
-fn draw_bin_names(canvas: &mut Canvas, of: &Histogram, step: f64, plot: &Area) {
-    let widest = of.bins.iter().map(|(name, _)| width(name)).fold(0.0, f64::max);
+fn draw_bin_names(canvas: &mut Canvas, shown: &Histogram, step: f64, plot: &Area) {
+    let widest = shown.bins.iter().map(|(name, _)| width(name)).fold(0.0, f64::max);
     let most = plot.width() * 0.45;
     let stride = ((widest.min(most) + 10.0) / step.max(0.1)).ceil().max(1.0) as usize;
-    for (ix, (name, _)) in of.bins.iter().enumerate().step_by(stride) {
+    for (ix, (name, _)) in shown.bins.iter().enumerate().step_by(stride) {
         let text = shorten(name, most);
         let half = width(&text) * 0.5;
         let middle = plot.left + step * (ix as f64 + 0.5);

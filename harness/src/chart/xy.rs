@@ -39,12 +39,12 @@ impl XyChart {
         let shown = || self.points().filter(|point| self.misfit(point).is_none());
         let ends = |range: Option<[f64; 2]>| range.into_iter().flatten();
         [
-            Domain::of(
+            Domain::spanning(
                 self.x.scale,
                 shown().map(|point| point.x),
                 shown().flat_map(|point| ends(point.x_range)),
             ),
-            Domain::of(
+            Domain::spanning(
                 self.y.scale,
                 shown().map(|point| point.y),
                 shown().flat_map(|point| ends(point.y_range)),

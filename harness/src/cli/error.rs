@@ -1,6 +1,9 @@
 //! Errors of the command line, one line each.
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{
+    builder::PossibleValue,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
 use thiserror::Error;
 
 use super::names::did_you_mean;
@@ -111,7 +114,7 @@ fn missing(option: &str, program: &clap::Command) -> String {
         if let Some(argument) = command.get_positionals().find(|arg| arg.to_string() == option) {
             let name = command.get_name();
             let values = argument.get_possible_values();
-            let values: Vec<&str> = values.iter().map(|value| value.get_name()).collect();
+            let values: Vec<&str> = values.iter().map(PossibleValue::get_name).collect();
             return match argument.get_help() {
                 Some(help) if values.is_empty() => format!("{name} needs {option}: {help}"),
                 _ => format!("{name} needs {option}: one of {}", values.join(", ")),

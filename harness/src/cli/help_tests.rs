@@ -74,7 +74,8 @@ fn options_that_the_short_help_hides_stand_under_headings() {
 #[test]
 fn both_checks_find_a_planted_fault() {
     let hidden = Arg::new("rare").long("rare").hide_short_help(true);
-    let planted = Command::new("planted").arg(hidden);
+    let mut planted = Command::new("planted").arg(hidden);
+    planted.build();
     assert_eq!(heading_faults(&planted).len(), 2);
     let word = "x".repeat(MAX_COLUMNS + 1);
     let planted = Command::new("planted").about(word);

@@ -219,7 +219,7 @@ mod tests {
         }
     }
 
-    fn of(strategy: &str, time: impl Fn(u32) -> f64) -> Record {
+    fn timed(strategy: &str, time: impl Fn(u32) -> f64) -> Record {
         record(strategy, &(0..16).map(time).collect::<Vec<_>>())
     }
 
@@ -235,16 +235,16 @@ mod tests {
     fn shared_drift_cancels() {
         // 2 % apart, while the clock drifts by 50 %.
         let drift = |round: u32| 1.0 + f64::from(round) / 32.0;
-        let (a, b) = (of("A", |r| 10.0 * drift(r)), of("B", |r| 10.2 * drift(r)));
+        let (a, b) = (timed("A", |r| 10.0 * drift(r)), timed("B", |r| 10.2 * drift(r)));
         assert_eq!(places(&[b, a]), [place("A", 1), place("B", 2)]);
     }
 
     #[test]
     fn noise_hides_a_small_difference_and_not_a_large_one() {
         let (x, y) = (noise(1), noise(2));
-        let a = of("A", |r| 10.0 * (1.0 + 0.3 * x(r)));
-        let b = of("B", |r| 10.2 * (1.0 + 0.3 * y(r)));
-        let c = of("C", |r| 16.0 * (1.0 + 0.3 * y(r + 5)));
+        let a = timed("A", |r| 10.0 * (1.0 + 0.3 * x(r)));
+        let b = timed("B", |r| 10.2 * (1.0 + 0.3 * y(r)));
+        let c = timed("C", |r| 16.0 * (1.0 + 0.3 * y(r + 5)));
         let records = [a, b, c];
         let ranked = ranks(&records);
         let ranks: Vec<u32> = ranked.iter().map(|r| r.rank).collect();
@@ -257,10 +257,13 @@ mod tests {
     #[test]
     fn a_sure_difference_of_less_than_half_a_per_cent_is_a_tie() {
         assert_eq!(
-            places(&[of("A", |_| 10.0), of("B", |_| 10.03)]),
+            places(&[timed("A", |_| 10.0), timed("B", |_| 10.03)]),
             [place("A", 1), place("B", 1)]
         );
-        assert_eq!(places(&[of("A", |_| 10.0), of("B", |_| 10.1)]), [place("A", 1), place("B", 2)]);
+        assert_eq!(
+            places(&[timed("A", |_| 10.0), timed("B", |_| 10.1)]),
+            [place("A", 1), place("B", 2)]
+        );
     }
 
     #[test]
@@ -280,7 +283,7 @@ mod tests {
         assert_eq!(places(&few), [place("A", 1), place("B", 1)]);
         assert!(
             tie(&ranks(&few))
-                .is_some_and(|said| said.contains("5 rounds are too few to test ties"))
+                .is_some_and(|words| words.contains("5 rounds are too few to test ties"))
         );
     }
 
@@ -325,30 +328,30 @@ mod tests {
             assert_eq!((record.laps(), record.interval_ms()), (1, None));
             assert_eq!(Ratio::between(record, record), None);
         }
-        let said = tie(&ranks(&[one.clone(), old])).expect("one lap");
-        assert!(said.starts_with("one lap") && said.contains("--laps 6"), "{said}");
+        let words = tie(&ranks(&[one.clone(), old])).expect("one lap");
+        assert!(words.starts_with("one lap") && words.contains("--laps 6"), "{words}");
         let (a, b) = (along_path("A", 8, 4, |_, _| 1.0), along_path("B", 8, 5, |_, _| 1.0));
         assert_eq!(Ratio::between(&a, &b), None);
         let few = [along_path("A", 5, 4, |_, _| 1.0), along_path("B", 5, 4, |_, _| 2.0)];
-        let said = tie(&ranks(&few)).expect("five laps");
+        let words = tie(&ranks(&few)).expect("five laps");
         assert!(
-            said.starts_with(
+            words.starts_with(
                 "5 laps are too few to test ties, so A and B share rank 1; use --laps 6"
             ),
-            "{said}"
+            "{words}"
         );
     }
 
     #[test]
     fn lossy_strategies_and_those_without_culling_have_no_rank() {
-        let mut lossy = of("A", |_| 1.0);
+        let mut lossy = timed("A", |_| 1.0);
         lossy.lists.missed_pairs = Some(3);
-        let nan = of("E", |_| f64::NAN);
+        let nan = timed("E", |_| f64::NAN);
         // A knob that lost nothing in this view.
-        let mut capped = of("B/cap9", |_| 1.0);
+        let mut capped = timed("B/cap9", |_| 1.0);
         capped.is_lossy = true;
-        let none = of("None", |_| 1.0);
-        let records = [lossy, none, of("Clay", |_| 1.0), of("B", |_| 5.0), nan, capped];
+        let none = timed("None", |_| 1.0);
+        let records = [lossy, none, timed("Clay", |_| 1.0), timed("B", |_| 5.0), nan, capped];
         assert_eq!(places(&records), [place("B", 1)]);
         assert!(ranks([]).is_empty() && tie(&[]).is_none());
     }

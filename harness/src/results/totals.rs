@@ -112,6 +112,11 @@ impl Record {
         self.shows_no_loss() && self.lists.untested.is_none()
     }
 
+    /// Why its run tested no method; `None` if it tested them, and for records older than this field.
+    pub fn untested_words(&self) -> Option<&'static str> {
+        self.lists.untested.map(|why| why.words(self.setting.lights, self.setting.along_path))
+    }
+
     /// Whether no setting loses light and no loss is known, tested or not.
     pub fn shows_no_loss(&self) -> bool {
         !self.is_lossy && self.is_lossless()

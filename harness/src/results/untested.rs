@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Record;
-
 /// Why a run tested no list and no image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -31,12 +29,5 @@ impl Untested {
                 "only suns light the visible surfaces, and suns stand in no list"
             }
         }
-    }
-}
-
-impl Record {
-    /// Why its run tested no method; `None` if it tested them, and for records older than this field.
-    pub fn untested_words(&self) -> Option<&'static str> {
-        self.lists.untested.map(|why| why.words(self.setting.lights, self.setting.along_path))
     }
 }

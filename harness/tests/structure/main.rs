@@ -9,16 +9,12 @@
 //!
 //! A module and its own ancestor count as one side: a parent may re-export or call its children, and a child
 //! may use what its parent defines. Code under `#[cfg(test)]` does not count.
-//!
-//! Exceptions are named in [`WAITING`] and [`LONG`]. The tests also fail where an exception is no longer
-//! needed, so that the lists can only shrink.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 mod circles;
 mod module;
 mod tokens;
-mod waiting;
 
 use std::{
     fs,
@@ -26,7 +22,6 @@ use std::{
 };
 
 use circles::Crate;
-use waiting::{LONG, WAITING};
 
 /// The most lines of a Rust or WESL file.
 const MAX_LINES: usize = 400;
@@ -73,19 +68,9 @@ fn no_two_modules_import_each_other() {
             found.push((name.clone(), edge.to_string()));
         }
     }
-    let is_waiting = |(name, edge): &&(String, String)| {
-        WAITING.iter().any(|(crate_name, pair)| crate_name == name && pair == edge)
-    };
-    let new: Vec<String> = found
-        .iter()
-        .filter(|pair| !is_waiting(pair))
-        .map(|(name, edge)| format!("    ({name:?}, {edge:?}),"))
-        .collect();
-    assert!(new.is_empty(), "imports that lie on a circle:\n{}", new.join("\n"));
-    let is_found =
-        |pair: &(&str, &str)| found.iter().any(|(c, e)| (c.as_str(), e.as_str()) == *pair);
-    let stale: Vec<_> = WAITING.iter().filter(|pair| !is_found(pair)).collect();
-    assert!(stale.is_empty(), "remove from WAITING, these lie on no circle: {stale:#?}");
+    let lines: Vec<String> =
+        found.iter().map(|(name, edge)| format!("    {name}: {edge}")).collect();
+    assert!(lines.is_empty(), "imports that lie on a circle:\n{}", lines.join("\n"));
 }
 
 #[test]
@@ -148,26 +133,19 @@ fn parents_tests_comments_and_text_make_no_circle() {
 
 #[test]
 fn no_source_file_is_too_long() {
-    let (mut long, mut listed) = (Vec::new(), 0);
-    let mut count = 0;
+    let (mut long, mut count) = (Vec::new(), 0);
     for (_, folder) in crates() {
         for file in source_files(&folder) {
             count += 1;
             let lines = fs::read_to_string(&file).unwrap().lines().count();
             let name = file.strip_prefix(workspace()).unwrap().display().to_string();
-            if lines <= MAX_LINES {
-                continue;
-            }
-            if LONG.contains(&name.as_str()) {
-                listed += 1;
-            } else {
+            if lines > MAX_LINES {
                 long.push(format!("{name}: {lines} lines"));
             }
         }
     }
     assert!(count > 300, "found only {count} files");
     assert!(long.is_empty(), "at most {MAX_LINES} lines are accepted: {long:#?}");
-    assert_eq!(listed, LONG.len(), "remove from LONG what is no longer too long");
 }
 
 /// The Rust and WESL files of a crate, build outputs left out.

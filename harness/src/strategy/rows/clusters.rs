@@ -41,7 +41,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "SC-I",
         name: "sparse clusters, implicit bounds",
-        about: "only clusters that hold samples have a list of the lights that reach them",
+        about: "every cluster that holds samples has a list of the lights that reach the cluster",
         axes: FRUSTA,
         needs: NEEDS_DEPTH,
         colour: Colour { light: "#332288", dark: "#9a8bf0" },
@@ -51,7 +51,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "SC-E",
         name: "sparse clusters, explicit bounds",
-        about: "only clusters that hold samples have a list, of the lights that reach the box around these",
+        about: "every cluster that holds samples has a list of the lights that reach the box around them",
         axes: &[
             Axis::Normals,
             Axis::Specular,
