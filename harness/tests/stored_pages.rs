@@ -150,12 +150,15 @@ fn stored_results_give_the_same_figures() {
         return;
     }
     let known = std::fs::read_to_string(&file).expect("reads");
-    let changed: Vec<String> = known
-        .lines()
-        .zip(fresh.lines())
-        .filter(|(known, fresh)| known != fresh)
-        .map(|(known, fresh)| format!("{known}\n  now {fresh}"))
-        .collect();
-    assert!(changed.is_empty(), "figures changed:\n{}", changed.join("\n"));
-    assert_eq!(known.lines().count(), fresh.lines().count(), "tables were added or are gone");
+    let lines_only_in = |one: &str, other: &str| -> Vec<String> {
+        let others: Vec<&str> = other.lines().collect();
+        one.lines().filter(|line| !others.contains(line)).map(str::to_owned).collect()
+    };
+    let (gone, new) = (lines_only_in(&known, &fresh), lines_only_in(&fresh, &known));
+    assert!(
+        gone.is_empty() && new.is_empty(),
+        "figures changed; gone:\n{}\nnew:\n{}",
+        gone.join("\n"),
+        new.join("\n")
+    );
 }
