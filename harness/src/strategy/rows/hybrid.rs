@@ -8,7 +8,7 @@ use super::clusters::FEW;
 pub(super) const ROWS: &[Row] = &[Row {
     family: "HG",
     name: "the grid of hybrid lighting",
-    about: "lights add themselves to the clusters that hold samples",
+    about: "each light adds itself to the sparse clusters that it reaches",
     role: Role::OtherPaper,
     source: "Archer 2019, section 3.2",
     krate: "assign-clustered",

@@ -8,7 +8,7 @@ use super::super::{Axis, Colour, Method, Role, Row, Sizes, row::NEEDS_NOTHING};
 pub(super) const ROWS: &[Row] = &[Row {
     family: "M",
     name: "models",
-    about: "every model has a list, or, with a size, every part of a model has one",
+    about: "every model has a list; M/2 cuts models into parts of at most 2 m, with a list each",
     role: Role::ComparisonPaper,
     source: "Enhuber 2019, section 3.4",
     krate: "assign-model",

@@ -10,7 +10,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "T-I",
         name: "tiles, implicit bounds",
-        about: "every tile has a list of the lights between the near and the far plane",
+        about: "every tile has a list of the lights that reach it, from the near to the far plane",
         stand_ins: &[("hs", "T-I by HS only")],
         colour: Colour { light: "#0f8a77", dark: "#45bda9" },
         make: |gpu, options| make(gpu, options, Implicit),
@@ -19,7 +19,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "T-E",
         name: "tiles, explicit bounds",
-        about: "every tile has a list of the lights between its nearest and its farthest sample",
+        about: "every tile has a list of the lights that reach it from its nearest to its farthest sample",
         needs: NEEDS_DEPTH,
         colour: Colour { light: "#8b3a8f", dark: "#cf84d2" },
         make: |gpu, options| make(gpu, options, Explicit),
