@@ -19,6 +19,7 @@ import package::lists::{entries, list_of, ENTRY_LIGHT};
 import package::sample::ViewSample;
 import package::strategy::group_of;
 import package::view::{view, eye_world, ndc_of_pixel, position_view_at, world_of_view};
+import package::window::{fall_off, MIN_DISTANCE_2};
 
 @group(2) @binding(0) var<storage, read_write> image: array<vec4f>;
 
@@ -36,7 +37,9 @@ fn shade(@builtin(global_invocation_id) thread: vec3u) {
   var brightness = 0.0;
   for (var i = 0u; i < list.count; i++) {
     let sphere = light_spheres[entries[list.first + i] & ENTRY_LIGHT];
-    brightness += max(0.0, 1.0 - distance(sphere.position_world, position) / sphere.radius_m);
+    let to_light = sphere.position_world - position;
+    // The ball around a point light has the light's range as its radius.
+    brightness += fall_off(dot(to_light, to_light), sphere.radius_m, MIN_DISTANCE_2);
   }
   image[thread.x + thread.y * u32(view.viewport_size.x)] = vec4f(brightness, f32(list.count), 0.0, 1.0);
 }

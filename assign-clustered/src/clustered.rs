@@ -153,7 +153,7 @@ impl Assignment for Clustered {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.lights.bounds())?;
-        let count = group_count(self.size, &froxels, self.normals)?;
+        let count = group_count(self.size, &froxels, self.normals, frame.view.viewport)?;
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
         let id = self.id();

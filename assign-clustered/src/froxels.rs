@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use assign::{AssignError, FIRST_STRATEGY_BINDING, Projection, View};
+use assign::{AssignError, FIRST_STRATEGY_BINDING, Projection, View, intersect::UNBOUNDED};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -102,9 +102,6 @@ pub struct FroxelsUniform {
     /// Pads to 64 bytes.
     pub padding: [u32; 3],
 }
-
-/// The far end of a view without a far plane: `UNBOUNDED` of `bounds_frustum.wesl`.
-pub const UNBOUNDED: f32 = 3.4e38;
 
 impl FroxelsUniform {
     /// Cuts `view` into froxels; lists serve any depth.

@@ -20,14 +20,12 @@ const LIVE_GROUP: u32 = 2;
 const BLOCK_PX: u32 = 32;
 
 /// Words of the marks that one workgroup clears, at least. It clears more if the dispatch would be too wide.
-const CLEARED: u64 = 256;
-/// The most workgroups along one axis of a dispatch.
-const MAX_DISPATCH: u64 = 65_535;
+const CLEARED: u32 = 256;
 
 /// Reads the depth buffer once; also normals and base colours if it was made for them.
 #[derive(Debug)]
 pub(crate) struct Gather {
-    /// Words of the marks per group: `WORDS` of `marks.wesl`.
+    /// [`marks_words`].
     words: u64,
     frame: FrameBindings,
     layout: wgpu::BindGroupLayout,
@@ -74,12 +72,7 @@ impl Gather {
         let pipeline = |entry_point| kernel::pipeline(gpu, &module, entry_point, &layouts);
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
         Ok(Self {
-            words: match bounds {
-                Bounds::Implicit => 1,
-                Bounds::Explicit if glossy => 15,
-                Bounds::Explicit if normals.is_some() => 12,
-                Bounds::Explicit => 6,
-            },
+            words: marks_words(bounds, normals, glossy).into(),
             frame,
             layout,
             bind_group: None,
@@ -109,7 +102,7 @@ impl Gather {
             self.marks = gpu.storage("cluster marks", marks * 4)?;
         }
         // The kernel clears the whole buffer, which may have grown for a larger view.
-        self.clear_workgroups = (self.marks.size() / 4).div_ceil(CLEARED).min(MAX_DISPATCH) as u32;
+        self.clear_workgroups = kernel::workgroups(self.marks.size() / 4, CLEARED);
         self.live.prepare(gpu, count)?;
         let mut entries = vec![
             texture(0, images.depth),
@@ -120,16 +113,9 @@ impl Gather {
             entries.extend([texture(2, normals), entry(BINS_BINDING, uniforms[1])]);
         }
         entries.extend(images.base_color.map(|view| texture(3, view)));
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("gather"),
-            layout: &self.layout,
-            entries: &entries,
-        }));
-        self.live_bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("live groups"),
-            layout: &self.live_layout,
-            entries: &[entry(0, self.live.buffer())],
-        }));
+        self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
+        let live = [self.live.buffer()];
+        self.live_bind_group = Some(kernel::bind_buffers(gpu, &self.live_layout, &live));
         Ok(())
     }
 
@@ -160,6 +146,16 @@ impl Gather {
     /// What it found in each group: `marks.wesl` says what the words hold.
     pub(crate) fn marks(&self) -> &wgpu::Buffer {
         &self.marks
+    }
+}
+
+/// Words of the marks per group: `WORDS` of `marks.wesl`.
+pub fn marks_words(bounds: Bounds, normals: Normals, glossy: bool) -> u32 {
+    match bounds {
+        Bounds::Implicit => 1,
+        Bounds::Explicit if glossy => 15,
+        Bounds::Explicit if normals.is_some() => 12,
+        Bounds::Explicit => 6,
     }
 }
 

@@ -57,8 +57,8 @@
 //! | memory | bytes |
 //! |---|---|
 //! | per cluster | 8 |
-//! | more per cluster, explicit bounds | 24 |
-//! | more per cluster, sparse with implicit bounds | 4 |
+//! | more per cluster, explicit bounds | 28 |
+//! | more per cluster, sparse with implicit bounds | 8 |
 //! | per cluster and bin, with normals, whether it holds samples or not | 60 |
 //! | per cluster and bin, with a specular threshold | 72 |
 //! | per listed light | 4 |
@@ -102,9 +102,9 @@ mod specular_cut;
 
 pub use cluster_wesl::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL};
 pub use clustered::Clustered;
-pub use froxels::{FroxelSize, FroxelsUniform, UNBOUNDED};
-pub use gather::gather_source;
-pub use hybrid::{HYBRID_WESL, HybridGrid, HybridShader};
+pub use froxels::{FroxelSize, FroxelsUniform};
+pub use gather::{gather_source, marks_words};
+pub use hybrid::{HYBRID_WESL, HybridGrid, HybridParts, HybridShader};
 pub use normal_bins::NormalBinsUniform;
 pub use normals::Normals;
 pub use occupancy::Occupancy;

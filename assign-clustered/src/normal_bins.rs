@@ -1,6 +1,6 @@
 //! Groups of clusters that are split by normals: their number, and the bins as shaders read them.
 
-use assign::AssignError;
+use assign::{AssignError, Viewport};
 use bytemuck::{Pod, Zeroable};
 
 use crate::{
@@ -33,13 +33,17 @@ pub(crate) fn group_count(
     size: FroxelSize,
     froxels: &FroxelsUniform,
     normals: Normals,
+    viewport: Viewport,
 ) -> Result<u32, AssignError> {
     let (clusters, bins) = (froxels.froxel_count(), normals.bins());
     let groups = u64::from(clusters) * u64::from(bins);
     if groups > MAX_GROUPS {
+        let Viewport { width, height, .. } = viewport;
         return Err(AssignError::Parameter {
             field: "froxel size".into(),
-            value: format!("{size}, {clusters} clusters of {bins} bins, {groups} groups"),
+            value: format!(
+                "{size} at {width}x{height} pixels, {clusters} clusters of {bins} bins, {groups} groups"
+            ),
             accepted: format!(
                 "at most {MAX_GROUPS} groups: use larger tiles, fewer slices or fewer bins of normals"
             ),
@@ -60,11 +64,17 @@ mod tests {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [16_384, 16_384]);
         let groups = |size: &str, normals| {
             let size = size.parse().unwrap();
-            group_count(size, &FroxelsUniform::new(size, &view, None).unwrap(), normals)
+            let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+            group_count(size, &froxels, normals, view.viewport)
         };
         assert_eq!(groups("16x16x8", Normals::None).unwrap(), 1 << 23);
         let error = groups("16x16x8", Normals::Bins(6)).unwrap_err().to_string();
-        assert!(error.contains("8388608 clusters of 6 bins, 50331648 groups"), "{error}");
+        assert!(
+            error.contains(
+                "16x16x8 at 16384x16384 pixels, 8388608 clusters of 6 bins, 50331648 groups"
+            ),
+            "{error}"
+        );
         assert_eq!(groups("128x128x8", Normals::Bins(54)).unwrap(), 54 << 17);
     }
 }

@@ -4,10 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use assign::{
-    LightKinds, LiveGroups,
+    FIRST_STRATEGY_BINDING, LightKinds, LiveGroups,
     conformance::{LinkedModule, StructLayout},
+    struct_layout,
 };
-use assign_clustered::HybridShader;
+use assign_clustered::{HybridParts, HybridShader};
 
 fn validated(shader: HybridShader, kinds: LightKinds) -> LinkedModule {
     let source = shader.source(kinds).unwrap_or_else(|e| panic!("{shader:?}, {kinds:?}: {e}"));
@@ -50,4 +51,15 @@ fn live_cells_have_one_layout() {
     };
     assert_eq!(offsets(written), [0, 12, 16]);
     assert_eq!(offsets(read), [0, 12, 16]);
+}
+
+/// `occupancy` and `scatter` read the words of a mask and the tiles of a part from one uniform.
+#[test]
+fn parts_have_one_layout_in_wesl_and_rust() {
+    let rust = struct_layout!(HybridParts: mask_words, tiles_per_part);
+    for shader in [HybridShader::Occupancy, HybridShader::Scatter] {
+        let module = validated(shader, LightKinds::default());
+        let wesl = module.uniform_at(FIRST_STRATEGY_BINDING + 4);
+        assert_eq!(wesl, rust, "{shader:?}: WESL, then Rust");
+    }
 }

@@ -9,7 +9,7 @@ use assign::{
 };
 use assign_clustered::{
     BINS_WESL, EXPLICIT_WESL, FroxelsUniform, GLOSSY_BINS_WESL, HybridShader, IMPLICIT_WESL,
-    NormalBinsUniform, Normals, Occupancy, gather_source,
+    NormalBinsUniform, Normals, Occupancy, gather_source, marks_words,
 };
 
 /// The culling kernel of clusters, validated.
@@ -115,4 +115,20 @@ fn normal_bins_have_one_layout_in_wesl_and_rust() {
     let source = gather_source(bounds, occupancy, normals, true).unwrap();
     let module = LinkedModule::new("bounds", &source);
     assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING + 2), rust, "WESL, then Rust");
+}
+
+/// Rust sizes the buffer of marks, WESL indexes it.
+#[test]
+fn marks_have_as_many_words_in_wesl_as_in_rust() {
+    for (bounds, normals, glossy) in [
+        (Bounds::Implicit, Normals::None, false),
+        (Bounds::Explicit, Normals::None, false),
+        (Bounds::Explicit, Normals::Bins(6), false),
+        (Bounds::Explicit, Normals::Bins(6), true),
+    ] {
+        let what = format!("{bounds:?}, {normals:?}, glossy {glossy}");
+        let source = gather_source(bounds, Occupancy::Sparse, normals, glossy).unwrap();
+        let wesl = LinkedModule::new(&what, &source).constant("WORDS");
+        assert_eq!(wesl, marks_words(bounds, normals, glossy), "{what}: WESL, then Rust");
+    }
 }

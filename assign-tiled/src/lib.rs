@@ -47,4 +47,4 @@ mod tiles;
 pub use tile_bounds::bounds_source;
 pub use tile_wesl::{EXPLICIT_WESL, IMPLICIT_WESL};
 pub use tiled::Tiled;
-pub use tiles::{TileSize, TilesUniform, UNBOUNDED};
+pub use tiles::{TileSize, TilesUniform};

@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use assign::{AssignError, View};
+use assign::{AssignError, View, intersect::UNBOUNDED};
 use bytemuck::{Pod, Zeroable};
 
 /// Width and height of a tile, pixels.
@@ -71,9 +71,6 @@ pub struct TilesUniform {
     /// Pads to 40 bytes.
     pub padding: u32,
 }
-
-/// The far end of a view without a far plane: `UNBOUNDED` of `bounds_frustum.wesl`.
-pub const UNBOUNDED: f32 = 3.4e38;
 
 impl TilesUniform {
     /// Cuts `view` into tiles; lists serve any depth.

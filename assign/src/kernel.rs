@@ -76,15 +76,16 @@ pub fn bind_entries(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
 }
 
-/// The pipeline of an entry point over bind groups 0, 1, 2 and so on. Its workgroup memory starts
-/// undefined: the kernel writes what it reads.
-pub fn pipeline(
+/// The pipeline of an entry point over bind groups 0, 1, 2 and so on. A kernel that leaves some groups
+/// unused takes `Option`s, `None` for each of those. Its workgroup memory starts undefined: the kernel
+/// writes what it reads.
+pub fn pipeline<'a, L: Copy + Into<Option<&'a wgpu::BindGroupLayout>>>(
     gpu: &Gpu,
     module: &wgpu::ShaderModule,
     entry_point: &str,
-    layouts: &[&wgpu::BindGroupLayout],
+    layouts: &[L],
 ) -> wgpu::ComputePipeline {
-    let layouts: Vec<_> = layouts.iter().copied().map(Some).collect();
+    let layouts: Vec<_> = layouts.iter().copied().map(Into::into).collect();
     gpu.compute_pipeline(module, entry_point, &layouts, false)
 }
 

@@ -12,7 +12,8 @@
 //!    passes, which are timed.
 //! 3. Shading calls `list_of(group_of(sample))`, which [`Lookup`] supplies, and sums the list's
 //!    lights in ascending index. The order is the same for every strategy, so images can be
-//!    compared bit for bit.
+//!    compared bit for bit. Take the fall-off from the WESL module `package::window`: a light's support
+//!    ends where that window does, so a list may lack lights that another fall-off would still show.
 //!
 //! # Promises
 //!

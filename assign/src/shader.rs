@@ -11,11 +11,13 @@ use crate::{AssignError, Gpu, LightKinds, StrategyWesl, compiled::ModuleKey};
 ///
 /// It starts with the contract's modules: `package::view`, `package::sample`, `package::lights`,
 /// `package::volume`, `package::window`, `package::lists` and, for kernels that make lists,
-/// `package::reserve`.
+/// `package::keys` and `package::reserve`.
 #[derive(Clone, Debug)]
 pub struct Shader<'a> {
     modules: Vec<(String, Cow<'a, str>)>,
     flags: Vec<(String, bool)>,
+    /// The flags of the mounted strategy.
+    strategy_flags: &'a [(&'a str, bool)],
 }
 
 impl<'a> Shader<'a> {
@@ -27,13 +29,14 @@ impl<'a> Shader<'a> {
     /// - `hard_cut`: with it, lights end at their range without a window (`package::window`).
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
-        Self { modules: Vec::new(), flags: Vec::new() }
+        Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] }
             .module("package::slots", slots)
             .module("package::view", include_str!("shaders/view.wesl"))
             .module("package::sample", include_str!("shaders/sample.wesl"))
             .module("package::lights", include_str!("shaders/lights.wesl"))
             .module("package::volume", include_str!("shaders/volume.wesl"))
             .module("package::window", include_str!("shaders/window.wesl"))
+            .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
@@ -53,13 +56,12 @@ impl<'a> Shader<'a> {
         self
     }
 
-    /// Mounts a strategy: its modules, the main one as `package::strategy`, and its flags.
+    /// Mounts a strategy: its modules, the main one as `package::strategy`, and its flags. Linking fails
+    /// if [`flag`](Self::flag) sets one of these flags too, before or after.
     pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
         let StrategyWesl { main, imports, flags } = wesl.into();
-        let shader = self.module("package::strategy", main);
-        let shader =
-            imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source));
-        flags.iter().fold(shader, |shader, (name, value)| shader.flag(name, *value))
+        let shader = Self { strategy_flags: flags, ..self.module("package::strategy", main) };
+        imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source))
     }
 
     /// Sets a flag that `@if` reads. Linking fails if a module reads a flag that is not set.
@@ -69,9 +71,21 @@ impl<'a> Shader<'a> {
         self
     }
 
+    /// The flags of the renderer and of the strategy.
+    fn all_flags(&self) -> Vec<(String, bool)> {
+        let strategy = self.strategy_flags.iter().map(|&(name, value)| (name.to_owned(), value));
+        self.flags.iter().cloned().chain(strategy).collect()
+    }
+
     /// Links `root` and everything that it imports. Keeps all its entry points.
     pub fn link(&self, root: &str) -> Result<String, AssignError> {
         let fail = |reason: String| AssignError::Shader { module: root.to_owned(), reason };
+        let is_taken = |name: &str| self.flags.iter().any(|(known, _)| known == name);
+        if let Some((name, _)) = self.strategy_flags.iter().find(|(name, _)| is_taken(name)) {
+            return Err(fail(format!(
+                "flag {name:?} is set by the strategy and by the renderer: give the renderer's another name"
+            )));
+        }
         let mut resolver = VirtualResolver::new();
         for (path, source) in &self.modules {
             let path = path.parse().map_err(|e| fail(format!("module path {path}: {e:?}")))?;
@@ -81,8 +95,8 @@ impl<'a> Shader<'a> {
         let mut options = CompileOptions::default();
         options.features.default = Feature::Error;
         compiler.set_options(options);
-        for (name, value) in &self.flags {
-            compiler.set_feature(name, *value);
+        for (name, value) in self.all_flags() {
+            compiler.set_feature(&name, value);
         }
         compiler.keep_all_entrypoints();
         compiler.use_sourcemap(true);
@@ -130,7 +144,7 @@ impl<'a> Shader<'a> {
         let modules = self.modules.iter();
         let key = ModuleKey {
             modules: modules.map(|(path, source)| (path.clone(), source.to_string())).collect(),
-            flags: self.flags.clone(),
+            flags: self.all_flags(),
             root: root.to_owned(),
             counted,
         };
@@ -153,7 +167,7 @@ impl<'a> Shader<'a> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Gpu, Shader, storage_entry, uniform_entry};
+    use crate::{Gpu, Shader, StrategyWesl, storage_entry, uniform_entry};
 
     fn shader(constant: u32) -> Shader<'static> {
         let source = format!(
@@ -198,5 +212,25 @@ mod tests {
         assert_ne!(one, pipeline(&module, "one", &wider, true));
         assert_ne!(one, pipeline(&module, "one", &layout, false));
         assert_ne!(one, pipeline(&make(&gpu, 2), "one", &layout, true));
+    }
+
+    #[test]
+    fn a_flag_of_both_strategy_and_renderer_is_an_error() {
+        const ON: &[(&str, bool)] = &[("glossy", true)];
+        const OFF: &[(&str, bool)] = &[("glossy", false)];
+        const ROOT: &str = "import package::strategy::GLOSSY;
+            @compute @workgroup_size(GLOSSY) fn run() {}";
+        let main = "@if(glossy) const GLOSSY: u32 = 2u; @if(!glossy) const GLOSSY: u32 = 1u;";
+        let strategy = |flags| StrategyWesl { main, imports: &[], flags };
+        let shader = Shader::new(1).module("package::root", ROOT);
+        let link = |shader: Shader<'_>| shader.link("package::root").map_err(|e| e.to_string());
+        let [on, off] = [ON, OFF].map(|flags| link(shader.clone().strategy(strategy(flags))));
+        assert_ne!(on.expect("links"), off.expect("links"), "the strategy reads its flag");
+        let before = shader.clone().flag("glossy", false).strategy(strategy(ON));
+        let after = shader.strategy(strategy(ON)).flag("glossy", false);
+        for clash in [before, after] {
+            let error = link(clash).expect_err("both set a flag");
+            assert!(error.contains("flag \"glossy\" is set by the strategy and by"), "{error}");
+        }
     }
 }

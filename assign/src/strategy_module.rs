@@ -1,9 +1,10 @@
-//! A strategy's shader text: what kernels and renderers mount to look lists up.
+//! Holds a strategy's shader text, which kernels and renderers mount to look lists up.
 
 /// WESL of a strategy: its main module, the modules that this one imports, and the flags that both read.
 ///
-/// [`Shader::strategy`](crate::Shader::strategy) mounts all of it. A renderer with a linker of its own mounts
-/// `main` as `package::strategy`, mounts `imports` at their paths, and sets `flags`.
+/// [`Shader::strategy`](crate::Shader::strategy) mounts all of it. These modules import modules of the
+/// contract, such as `package::view`, which only [`Shader`](crate::Shader) holds. So link with `Shader`; a
+/// renderer that makes its own shader modules takes the WGSL from [`Shader::link`](crate::Shader::link).
 #[derive(Clone, Copy, Debug)]
 pub struct StrategyWesl<'a> {
     /// The main module. It defines `fn group_of(sample: ViewSample) -> u32`.
@@ -11,7 +12,8 @@ pub struct StrategyWesl<'a> {
     /// Path and source of each module that the main one imports, without the contract's own. Paths start
     /// with `package::strategy::`, so that they meet no module of a renderer.
     pub imports: &'a [(&'a str, &'a str)],
-    /// Name and value of each flag that these modules read with `@if`.
+    /// Name and value of each flag that these modules read with `@if`, without the contract's own (`spots`,
+    /// `areas`, `hard_cut`, `lanes_reserve`). The renderer must have no flag of the same name.
     pub flags: &'a [(&'a str, bool)],
 }
 
@@ -22,7 +24,7 @@ impl<'a> From<&'a str> for StrategyWesl<'a> {
     }
 }
 
-/// A strategy's WESL, and its author's word that every loop in it ends.
+/// A strategy's WESL, and a promise by its author that every loop in it ends.
 #[derive(Clone, Copy, Debug)]
 pub struct StrategyModule(StrategyWesl<'static>);
 
@@ -31,7 +33,7 @@ impl StrategyModule {
     ///
     /// Every loop must end by itself, whatever the buffers hold: shaders that mount the module do not count
     /// loops ([`Shader::create_uncounted`](crate::Shader::create_uncounted)).
-    #[allow(unsafe_code, reason = "the author's word")]
+    #[allow(unsafe_code, reason = "the author promises it")]
     pub unsafe fn new(wesl: impl Into<StrategyWesl<'static>>) -> Self {
         Self(wesl.into())
     }

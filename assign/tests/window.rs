@@ -15,22 +15,35 @@ import package::window::{MIN_DISTANCE_2, fall_off, range_window};
 
 @group(0) @binding(0) var<storage, read> distances_m: array<f32>;
 @group(0) @binding(1) var<storage, read_write> found: array<vec2f>;
+// Range, metres, and the least squared distance, square metres.
+@group(0) @binding(2) var<uniform> parameters: vec4f;
 
 @compute @workgroup_size(64)
 fn evaluate(@builtin(global_invocation_id) thread: vec3u) {
   if thread.x < arrayLength(&distances_m) {
     let distance_2 = distances_m[thread.x] * distances_m[thread.x];
+    let least_2 = max(parameters.y, MIN_DISTANCE_2);
     found[thread.x] =
-      vec2f(range_window(distance_2, RANGE_M), fall_off(distance_2, RANGE_M, MIN_DISTANCE_2));
+      vec2f(range_window(distance_2, parameters.x), fall_off(distance_2, parameters.x, least_2));
   }
 }
-const RANGE_M: f32 = 2.0;
 ";
 
-const RANGE_M: f64 = 2.0;
+/// Ranges, metres, and least squared distances, square metres: a point light's, and one as a VPL has it.
+const PARAMETERS: [(f64, f64); 2] = [(2.0, MIN_DISTANCE_2), (0.75, 0.25)];
+
+/// The largest difference between WESL and Rust, from the value in Rust.
+fn tolerance(expected: f64) -> f64 {
+    1e-5 * expected + 1e-6
+}
 
 /// Window and fall-off at each distance.
-fn on_the_gpu(gpu: &Gpu, hard_cut: bool, distances_m: &[f32]) -> Vec<[f32; 2]> {
+fn on_the_gpu(
+    gpu: &Gpu,
+    hard_cut: bool,
+    (range_m, least_2): (f64, f64),
+    distances_m: &[f32],
+) -> Vec<[f32; 2]> {
     let module = Shader::new(1)
         .module("package::kernel", KERNEL)
         .flag("hard_cut", hard_cut)
@@ -38,7 +51,13 @@ fn on_the_gpu(gpu: &Gpu, hard_cut: bool, distances_m: &[f32]) -> Vec<[f32; 2]> {
         .unwrap();
     let input = upload(gpu, "distances", distances_m).unwrap();
     let output = upload(gpu, "found", &vec![[0.0_f32; 2]; distances_m.len()]).unwrap();
-    let groups = [Bound::Buffers(&[(0, Slot::Read, &input), (1, Slot::Write, &output)])];
+    let parameters = [range_m as f32, least_2 as f32, 0.0, 0.0];
+    let parameters = upload(gpu, "parameters", &parameters).unwrap();
+    let groups = [Bound::Buffers(&[
+        (0, Slot::Read, &input),
+        (1, Slot::Write, &output),
+        (2, Slot::Uniform, &parameters),
+    ])];
     run_kernel(gpu, &module, "evaluate", &groups, distances_m.len().div_ceil(64) as u32);
     download(gpu, &output, distances_m.len()).unwrap()
 }
@@ -47,24 +66,45 @@ fn on_the_gpu(gpu: &Gpu, hard_cut: bool, distances_m: &[f32]) -> Vec<[f32; 2]> {
 fn wesl_window_and_fall_off_equal_rust() {
     let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
     let distances_m: Vec<f32> = (0..=250).map(|ix| 0.01 * ix as f32).collect();
-    let smooth = on_the_gpu(&gpu, false, &distances_m);
-    let hard = on_the_gpu(&gpu, true, &distances_m);
-    for ((&distance_m, smooth), hard) in distances_m.iter().zip(smooth).zip(hard) {
-        let distance_2 = f64::from(distance_m).powi(2);
-        let check = |what: &str, found: f32, expected: f64| {
-            let error = (f64::from(found) - expected).abs();
-            assert!(
-                error <= 1e-5 * expected + 1e-6,
-                "{what} at {distance_m} m: WESL {found}, Rust {expected}"
-            );
-        };
-        check("window", smooth[0], range_window(distance_2, RANGE_M));
-        check("fall-off", smooth[1], fall_off(distance_2, RANGE_M, MIN_DISTANCE_2));
-        // At the range itself rounding decides on which side of the cut a sample lies.
-        if (f64::from(distance_m) - RANGE_M).abs() > 1e-3 {
-            let inside = if f64::from(distance_m) < RANGE_M { 1.0 } else { 0.0 };
-            check("hard window", hard[0], inside);
-            check("hard fall-off", hard[1], inside / distance_2.max(MIN_DISTANCE_2));
+    for (range_m, least_2) in PARAMETERS {
+        let found = [false, true]
+            .map(|hard_cut| on_the_gpu(&gpu, hard_cut, (range_m, least_2), &distances_m));
+        let [smooth, hard] = found;
+        for ((&distance_m, smooth), hard) in distances_m.iter().zip(smooth).zip(hard) {
+            let distance_m = f64::from(distance_m);
+            let distance_2 = distance_m.powi(2);
+            let check = |what: &str, found: f32, expected: f64| {
+                assert!(
+                    (f64::from(found) - expected).abs() <= tolerance(expected),
+                    "{what} of range {range_m} m at {distance_m} m: WESL {found}, Rust {expected}"
+                );
+            };
+            check("window", smooth[0], range_window(distance_2, range_m));
+            check("fall-off", smooth[1], fall_off(distance_2, range_m, least_2));
+            // At the range itself rounding decides on which side of the cut a sample lies.
+            if (distance_m - range_m).abs() > 1e-3 {
+                let inside = if distance_m < range_m { 1.0 } else { 0.0 };
+                check("hard window", hard[0], inside);
+                check("hard fall-off", hard[1], inside / distance_2.max(least_2));
+            }
         }
+    }
+}
+
+/// The tolerance tells the window from the hard cut and from a window 0.1 % wider, and one least distance from
+/// the other.
+#[test]
+fn the_tolerance_rejects_another_window_or_least_distance() {
+    let [(range_m, least_2), (_, other_least_2)] = PARAMETERS;
+    // At 0.4 m.
+    let distance_2 = 0.16;
+    let expected = fall_off(distance_2, range_m, least_2);
+    for wrong in [
+        1.0 / distance_2,
+        fall_off(distance_2, range_m, other_least_2),
+        fall_off(distance_2, 1.001 * range_m, least_2),
+    ] {
+        let error = (wrong - expected).abs();
+        assert!(error > tolerance(expected), "{wrong} passes for {expected}");
     }
 }

@@ -48,7 +48,7 @@ pub enum SceneError {
     },
     /// The file requires a glTF extension that this importer does not support.
     #[error(
-        "{}: extensionsRequired names {}: the supported extensions are {supported}",
+        "{}: extensionsRequired is {}: it must be one of {supported}",
         one_line(file.display()), quoted(extension)
     )]
     Extension {

@@ -1,6 +1,6 @@
 //! Binds depth and G-buffer for the passes that read drawn pixels with `gbuffer.wesl`.
 
-use assign::Shader;
+use assign::{Shader, UNFILTERED, texture, texture_entry};
 
 use crate::{geometry::SceneGpu, targets::Targets};
 
@@ -15,7 +15,7 @@ const EMISSIVE: u32 = 3;
 const MODEL: u32 = 5;
 const DIELECTRIC: u32 = 11;
 
-/// The images that a pass reads beside depth, base colour and normal.
+/// The images that a pass reads besides depth, base colour and normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GBufferInputs {
     pub(crate) emissive: bool,
@@ -45,25 +45,15 @@ impl GBufferInputs {
 
     /// Layout entries of [`PIXELS_GROUP`].
     pub(crate) fn layout(self, stages: wgpu::ShaderStages) -> Vec<wgpu::BindGroupLayoutEntry> {
-        let texels = wgpu::TextureSampleType::Float { filterable: false };
         let images = [
             (DEPTH, wgpu::TextureSampleType::Depth, true),
-            (BASE_COLOR, texels, true),
-            (NORMAL, texels, true),
-            (EMISSIVE, texels, self.emissive),
+            (BASE_COLOR, UNFILTERED, true),
+            (NORMAL, UNFILTERED, true),
+            (EMISSIVE, UNFILTERED, self.emissive),
             (MODEL, wgpu::TextureSampleType::Uint, self.model_ids),
-            (DIELECTRIC, texels, self.dielectrics),
+            (DIELECTRIC, UNFILTERED, self.dielectrics),
         ];
-        let entry = |(binding, sample_type, _)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: stages,
-            ty: wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
+        let entry = |(binding, sample_type, _)| texture_entry(binding, stages, sample_type);
         images.into_iter().filter(|&(.., is_read)| is_read).map(entry).collect()
     }
 
@@ -77,13 +67,7 @@ impl GBufferInputs {
             (MODEL, self.model_ids.then_some(&targets.model_ids)),
             (DIELECTRIC, targets.dielectric.as_ref().filter(|_| self.dielectrics)),
         ];
-        let entry =
-            |(binding, image): (u32, Option<_>)| image.map(|image| texture_binding(binding, image));
+        let entry = |(binding, image): (u32, Option<_>)| Some(texture(binding, image?));
         images.into_iter().filter_map(entry).collect()
     }
-}
-
-/// A bind group entry of an image.
-pub(crate) fn texture_binding(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
 }

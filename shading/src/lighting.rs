@@ -1,10 +1,10 @@
 //! The lighting pass: shades all pixels with one strategy's lists, in one mode.
 
-use assign::{AssignError, Assignment, Gpu, Passes, View};
+use assign::{AssignError, Assignment, Gpu, Passes, View, texture};
 
 use crate::{
     LightingOptions, Mode, Renderer, ShadingError,
-    gbuffer_inputs::{GBufferInputs, PIXELS_GROUP, texture_binding},
+    gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     lighting_inputs::{Bound, LightingInputs},
     raster::{Lists, RasterPass, RasterPipelines},
     shaders::{LISTS_GROUP, lighting_modules},
@@ -155,7 +155,7 @@ impl Deferred {
     ) {
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);
-        entries.push(texture_binding(RADIANCE_BINDING, &targets.radiance));
+        entries.push(texture(RADIANCE_BINDING, &targets.radiance));
         entries.extend(self.inputs.entries());
         let group = renderer.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shade"),

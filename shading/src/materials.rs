@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use assign::Gpu;
+use assign::{Gpu, texture_entry};
 use bytemuck::{Pod, Zeroable, cast_slice};
 use scenes::{Dielectric, Encoding, Filter, Image, Material, Sampler, Scene, TextureRef, Wrap};
 use wgpu::util::DeviceExt;
@@ -151,20 +151,16 @@ fn layout(gpu: &Gpu, textures: [bool; 4]) -> wgpu::BindGroupLayout {
     let entries: Vec<wgpu::BindGroupLayoutEntry> = (0..4)
         .filter(|&slot| textures[slot])
         .flat_map(|slot| {
-            let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty,
+            let stages = wgpu::ShaderStages::FRAGMENT;
+            let filtered = wgpu::TextureSampleType::Float { filterable: true };
+            let first = 2 * slot as u32;
+            let sampler = wgpu::BindGroupLayoutEntry {
+                binding: first + 1,
+                visibility: stages,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                 count: None,
             };
-            let texture = wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            };
-            let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-            let first = 2 * slot as u32;
-            [entry(first, texture), entry(first + 1, sampler)]
+            [texture_entry(first, stages, filtered), sampler]
         })
         .collect();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

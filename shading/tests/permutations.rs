@@ -22,9 +22,6 @@ const LOOK_UPS: [LookUp; 2] =
 const TEXTURES: [&str; 4] =
     ["base_color_texture", "metallic_roughness_texture", "normal_texture", "emissive_texture"];
 
-/// Bindings of `gbuffer.wesl`, in group 2.
-const G_BUFFER: [u32; 6] = [0, 1, 2, 3, 5, 11];
-
 type Flags = BTreeSet<&'static str>;
 
 /// Every subset of the flags of a material and of `more`. The flag `pass` is always on.
@@ -72,6 +69,7 @@ fn with_areas(sets: Vec<Flags>) -> Vec<Flags> {
 /// The properties of a linked and validated shader.
 #[derive(Debug, PartialEq)]
 struct Linked {
+    what: String,
     entry_points: BTreeSet<String>,
     /// Group and binding of the resources that the entry points use.
     bindings: BTreeSet<(u32, u32)>,
@@ -91,7 +89,24 @@ fn link(root: &str, flags: &Flags, look_up: Option<LookUp>) -> Linked {
     let linked = LinkedModule::new(&what, &source);
     let bindings = linked.used_bindings();
     let entry_points = linked.module().entry_points.iter().map(|e| e.name.clone()).collect();
-    Linked { entry_points, bindings, source }
+    Linked { what, entry_points, bindings, source }
+}
+
+impl Linked {
+    /// The bindings that are used in a group.
+    fn used(&self, group: u32) -> Vec<u32> {
+        self.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
+    }
+
+    /// Checks a pass over pixels that reads no list: group 1 is unused, and group 2 has `always` and those of
+    /// `more` that are on.
+    fn check_pixels(&self, always: &[u32], more: &[(u32, bool)]) {
+        let more = more.iter().filter(|(_, is_used)| *is_used).map(|&(binding, _)| binding);
+        let mut expected: Vec<u32> = always.iter().copied().chain(more).collect();
+        expected.sort_unstable();
+        assert_eq!(self.used(2), expected, "{}: bindings of group 2", self.what);
+        assert_eq!(self.used(1), [0; 0], "{}: group 1 is not bound", self.what);
+    }
 }
 
 /// Links a pass over the triangles. Checks its entry points, and that it reads only the textures of
@@ -133,13 +148,10 @@ fn raster_spheres() {
         let linked = link("package::raster_spheres", &flags, None);
         let emissive = flags.contains("emissive");
         let has_suns = flags.contains("suns");
-        let expected = if emissive { vec![0, 1, 2, 3] } else { vec![0, 1, 2] };
-        let images = linked.bindings.iter().filter(|b| b.0 == 2 && G_BUFFER.contains(&b.1));
-        let images: Vec<u32> = images.map(|b| b.1).collect();
-        assert_eq!(images, expected, "{flags:?}");
+        let more = [(3, emissive), (7, flags.contains("area_ltc_table")), (10, has_suns)];
+        linked.check_pixels(&[0, 1, 2, 6], &more);
         let entry_points = if emissive || has_suns { 4 } else { 2 };
         assert_eq!(linked.entry_points.len(), entry_points, "{flags:?}");
-        assert_eq!(linked.bindings.contains(&(2, 10)), has_suns, "{flags:?}");
     }
 }
 
@@ -187,15 +199,12 @@ fn check_compute(root: &str, flags: &Flags, look_up: LookUp, lists: &[u32], imag
         _ => root,
     };
     assert_eq!(linked.entry_points, [entry_point.to_owned()].into(), "{root} {flags:?}");
-    let of_group = |group| -> Vec<u32> {
-        linked.bindings.iter().filter(|b| b.0 == group).map(|b| b.1).collect()
-    };
-    assert_eq!(of_group(1), lists, "{root} {flags:?} {}", look_up.0);
+    assert_eq!(linked.used(1), lists, "{root} {flags:?} {}", look_up.0);
     let mut images = images.to_vec();
     images.extend(flags.contains("area_ltc_table").then_some(7));
     images.extend((root == "deferred" && flags.contains("suns")).then_some(10));
     images.sort_unstable();
-    assert_eq!(of_group(2), images, "{root} {flags:?} {}", look_up.0);
+    assert_eq!(linked.used(2), images, "{root} {flags:?} {}", look_up.0);
 }
 
 #[test]
@@ -240,11 +249,7 @@ fn surfaces() {
     for flags in subsets(&["emissive"]) {
         let linked = link("package::surfaces", &flags, None);
         let emissive = flags.contains("emissive");
-        let mut expected = vec![0, 1, 2, 12, 13, 14];
-        expected.extend(if emissive { vec![3, 15] } else { Vec::new() });
-        expected.sort_unstable();
-        let images: Vec<u32> = linked.bindings.iter().filter(|b| b.0 == 2).map(|b| b.1).collect();
-        assert_eq!(images, expected, "{flags:?}");
+        linked.check_pixels(&[0, 1, 2, 12, 13, 14], &[(3, emissive), (15, emissive)]);
         assert_eq!(linked.entry_points, ["surfaces".to_owned()].into(), "{flags:?}");
     }
 }
@@ -320,9 +325,10 @@ fn flags_of_rare_materials() {
     }
     for flags in with_suns(with_areas(vec![["dielectrics"].into()])) {
         check_compute("deferred", &flags, LOOK_UPS[0], LOOK_UPS[0].2, &[0, 1, 2, 4, 6, 11]);
+        let more = [(7, flags.contains("area_ltc_table")), (10, flags.contains("suns"))];
         let spheres = link("package::raster_spheres", &flags, None);
-        assert!(spheres.bindings.contains(&(2, 11)), "{flags:?}");
+        spheres.check_pixels(&[0, 1, 2, 6, 11], &more);
     }
     let surfaces = link("package::surfaces", &["dielectrics"].into(), None);
-    assert!(surfaces.bindings.contains(&(2, 11)) && surfaces.bindings.contains(&(2, 16)));
+    surfaces.check_pixels(&[0, 1, 2, 11, 12, 13, 14, 16], &[]);
 }

@@ -55,8 +55,10 @@
 
 mod buffers;
 mod grid;
+mod parts;
 mod passes;
 mod shader;
 
 pub use grid::HybridGrid;
+pub use parts::HybridParts;
 pub use shader::{HYBRID_WESL, HybridShader};

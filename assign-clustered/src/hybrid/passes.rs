@@ -7,6 +7,7 @@ use assign::{
 
 use super::{
     buffers::{Buffers, Sizes},
+    parts::HybridParts,
     shader::{HybridShader, LISTS_GROUP},
 };
 use crate::froxels::{FROXELS_BINDING, FroxelsUniform};
@@ -15,6 +16,7 @@ use crate::froxels::{FROXELS_BINDING, FroxelsUniform};
 const MASKS: u32 = FROXELS_BINDING + 1;
 const CURSORS: u32 = FROXELS_BINDING + 2;
 const UNSORTED: u32 = FROXELS_BINDING + 3;
+const PARTS: u32 = FROXELS_BINDING + 4;
 
 /// Everything between the depth buffer and the lists.
 #[derive(Debug)]
@@ -48,9 +50,9 @@ impl HybridPasses {
             storage_entry(CURSORS, stages, false),
             storage_entry(UNSORTED, stages, false),
         ];
-        let with_cull = [&[uniform_entry(3, stages)], &cells[..]].concat();
+        let uniforms = [uniform_entry(3, stages), uniform_entry(PARTS, stages)];
         let frame = FrameBindings::new(gpu);
-        let cells_layout = gpu.bind_group_layout("hybrid cells", &with_cull);
+        let cells_layout = gpu.bind_group_layout("hybrid cells", &[&uniforms, &cells[..]].concat());
         let depth_layout = gpu.bind_group_layout(
             "hybrid depth",
             &[texture_entry(0, stages, wgpu::TextureSampleType::Depth)],
@@ -69,10 +71,9 @@ impl HybridPasses {
         let sort_groups = [None, Some(bound_lists.layout()), Some(read_only)];
         Ok(Self {
             occupancy: kernel::pipeline(gpu, &occupancy, "occupancy", &depth_groups),
-            // Workgroup memory need not start as zero: `sort` writes it before it reads it.
-            clear: gpu.compute_pipeline(&reserve, "clear", &reserve_groups, false),
-            reserve: gpu.compute_pipeline(&reserve, "reserve_lists", &reserve_groups, false),
-            sort: gpu.compute_pipeline(&sort, "sort_lists", &sort_groups, false),
+            clear: kernel::pipeline(gpu, &reserve, "clear", &reserve_groups),
+            reserve: kernel::pipeline(gpu, &reserve, "reserve_lists", &reserve_groups),
+            sort: kernel::pipeline(gpu, &sort, "sort_lists", &sort_groups),
             frame,
             cells_layout,
             cells_bind_group: None,
@@ -99,9 +100,10 @@ impl HybridPasses {
         depth: Option<&wgpu::TextureView>,
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
-        self.buffers.grow(gpu, froxels, lists)?;
+        let parts = HybridParts::new(froxels);
+        self.buffers.grow(gpu, froxels, parts, lists)?;
         self.bind(gpu, uniform, lists, depth);
-        self.sizes = Sizes::new(frame, froxels, &self.buffers);
+        self.sizes = Sizes::new(frame, froxels, parts, &self.buffers);
         let kinds = frame.lights.kinds();
         if self.scatter.as_ref().is_none_or(|(known, _)| *known != kinds) {
             let module = HybridShader::Scatter.create(gpu, kinds)?;
@@ -119,7 +121,7 @@ impl HybridPasses {
         lists: &LightLists,
         depth: Option<&wgpu::TextureView>,
     ) {
-        let Buffers { masks, cursors, unsorted, live } = &self.buffers;
+        let Buffers { parts, masks, cursors, unsorted, live } = &self.buffers;
         let cells = [
             entry(FROXELS_BINDING, uniform),
             entry(MASKS, masks),
@@ -127,15 +129,14 @@ impl HybridPasses {
             entry(UNSORTED, unsorted),
         ];
         self.lists.bind(gpu, lists, &cells);
-        let with_cull = [&[entry(3, lists.uniform())], &cells[..]].concat();
-        self.cells_bind_group =
-            Some(bind_group(gpu, "hybrid cells", &self.cells_layout, &with_cull));
-        let live = [entry(0, live.buffer())];
+        let uniforms = [entry(3, lists.uniform()), entry(PARTS, parts)];
+        let cells = [&uniforms, &cells[..]].concat();
+        self.cells_bind_group = Some(kernel::bind_entries(gpu, &self.cells_layout, &cells));
         let [written, read] = &self.live_layouts;
         self.live_bind_groups =
-            Some([written, read].map(|layout| bind_group(gpu, "hybrid live", layout, &live)));
-        self.depth_bind_group = depth
-            .map(|view| bind_group(gpu, "hybrid depth", &self.depth_layout, &[texture(0, view)]));
+            Some([written, read].map(|layout| kernel::bind_buffers(gpu, layout, &[live.buffer()])));
+        self.depth_bind_group =
+            depth.map(|view| kernel::bind_entries(gpu, &self.depth_layout, &[texture(0, view)]));
     }
 
     /// Records the passes: inside the clock, after [`prepare`](Self::prepare).
@@ -196,13 +197,4 @@ impl HybridPasses {
         let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
         pass.set_bind_group(2, live, &[]);
     }
-}
-
-fn bind_group(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    entries: &[wgpu::BindGroupEntry<'_>],
-) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
 }

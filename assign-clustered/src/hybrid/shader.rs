@@ -46,7 +46,10 @@ impl HybridShader {
     }
 
     fn shader(self, kinds: LightKinds) -> Shader<'static> {
-        let shader = Shader::new(LISTS_GROUP).strategy(HYBRID_WESL).light_kinds(kinds);
+        let shader = Shader::new(LISTS_GROUP)
+            .strategy(HYBRID_WESL)
+            .module("package::hybrid_parts", include_str!("../shaders/hybrid_parts.wesl"))
+            .light_kinds(kinds);
         match self {
             Self::Occupancy => {
                 shader.module(self.root(), include_str!("../shaders/hybrid_occupancy.wesl"))

@@ -4,7 +4,8 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
 
 use super::stage::Stage;
 use crate::{
-    AssignError, Assignment, FrameBindings, Gpu, Shader, entry, storage_entry, uniform_entry,
+    AssignError, Assignment, FrameBindings, Gpu, Shader, entry, kernel::bind_entries,
+    storage_entry, texture, texture_entry, uniform_entry,
 };
 
 /// Bind group of the lists in the probe shader.
@@ -49,20 +50,11 @@ pub(super) struct Rig {
 
 impl Rig {
     pub(super) fn new(gpu: Gpu) -> Self {
-        let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
+        let stages = wgpu::ShaderStages::COMPUTE;
         let entries = [
-            storage_entry(0, wgpu::ShaderStages::COMPUTE, false),
-            texture(1, wgpu::TextureSampleType::Depth),
-            texture(2, wgpu::TextureSampleType::Float { filterable: true }),
+            storage_entry(0, stages, false),
+            texture_entry(1, stages, wgpu::TextureSampleType::Depth),
+            texture_entry(2, stages, wgpu::TextureSampleType::Float { filterable: true }),
         ];
         let probe_layout = gpu.bind_group_layout("probe", &entries);
         Self { draw: draw_pipeline(&gpu), gpu, probe_layout }
@@ -90,21 +82,8 @@ impl Rig {
         let depth = target(device, "depth", DEPTH_FORMAT, stage.target);
         let normals = target(device, "normals", NORMAL_FORMAT, stage.target);
         self.draw(stage, &depth, &normals)?;
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("probe"),
-            layout: &self.probe_layout,
-            entries: &[
-                entry(0, &buffer),
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&depth),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::TextureView(&normals),
-                },
-            ],
-        });
+        let entries = [entry(0, &buffer), texture(1, &depth), texture(2, &normals)];
+        let bind_group = bind_entries(&self.gpu, &self.probe_layout, &entries);
         Ok(Surfaces { depth, normals, probes: buffer, bind_group, count: probes.len() as u32 })
     }
 
