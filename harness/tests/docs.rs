@@ -165,6 +165,9 @@ fn the_verdicts_of_the_results_are_those_of_the_reports() {
     check_fresh(&path, &judged_anew(&document, &root()));
 }
 
+/// The study that was run with `--only`, so some of its jobs are missing.
+const PARTIAL: &str = "h200-comparison";
+
 /// Charts of the H200 studies that documents show.
 const CHARTS: [(&str, &[&str]); 6] = [
     ("h200-comparison", &["sponza-scaling-linear.svg"]),
@@ -185,7 +188,8 @@ fn the_charts_of_the_documents_are_those_of_the_studies() {
     for (study, charts) in CHARTS {
         let folder = tempfile::tempdir().expect("a folder");
         let done = Done::read(&[root().join("results").join(study)]).expect("the study");
-        assert!(done.missing().is_empty(), "missing: {:?}", done.missing());
+        let is_whole = done.missing().is_empty() || study == PARTIAL;
+        assert!(is_whole, "{study} lacks {:?}", done.missing());
         write_study(&done, folder.path()).expect("writes");
         for chart in charts {
             let fresh = std::fs::read_to_string(folder.path().join("charts").join(chart));
