@@ -7,8 +7,8 @@ use super::super::{Axis, Colour, Method, Role, Row, Sizes};
 pub(super) const ROWS: &[Row] = &[Row {
     family: "G",
     name: "a grid of cells in world space",
-    about: "every cell has a list; the cells fill the box of the lights' positions, of their supports, \
-            or of the surfaces",
+    about: "every cell has a list; the cells divide the box around the lights' positions, around all \
+            that lights reach, or around the surfaces",
     role: Role::ComparisonPaper,
     source: "Enhuber 2019, section 3.3, table 4.3",
     krate: "assign-grid",
