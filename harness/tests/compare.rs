@@ -262,7 +262,10 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         (vec!["--scene", "two\nlines.gltf", "--out", &out], vec!["lines.gltf"]),
         (vec!["--strategies", "DC-I/a\nb", "--out", &out], vec!["a\\nb"]),
         (vec!["--strategies", "DC-E,dc-e/64x64x40", "--out", &out], vec!["DC-E/64x64x40", "once"]),
-        (vec!["--strategies", "DC-E/reuse4", "--out", &out], vec!["DC-E/reuse4", "--path"]),
+        (
+            vec!["--strategies", "DC-E/reuse4", "--out", &out],
+            vec!["DC-E/64x64x40/reuse4", "--path"],
+        ),
         (vec!["--strategies", "DC-E/hs", "--out", &out], vec!["hs", "linear or bvh"]),
         (vec!["--test", "sat", "--out", &out], vec!["--test", "hs+sat-n"]),
         (vec!["--light-order", "zigzag", "--out", &out], vec!["--light-order", "morton"]),
