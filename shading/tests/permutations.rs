@@ -237,10 +237,11 @@ fn operations() {
 fn probe() {
     for look_up in LOOK_UPS {
         // It computes the group and reads no list.
-        let own: Vec<u32> = look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
-        check_compute("probe", &Flags::new(), look_up, &own, &[0, 2, 8, 9]);
+        let group_only: Vec<u32> =
+            look_up.2.iter().copied().filter(|&binding| binding > 1).collect();
+        check_compute("probe", &Flags::new(), look_up, &group_only, &[0, 2, 8, 9]);
         let model_ids = ["model_ids"].into();
-        check_compute("probe", &model_ids, look_up, &own, &[0, 2, 5, 8, 9]);
+        check_compute("probe", &model_ids, look_up, &group_only, &[0, 2, 5, 8, 9]);
     }
 }
 
