@@ -1,4 +1,5 @@
-//! Short forms of wgpu's descriptors for this crate's many small kernels.
+//! Collects what this crate's many small kernels use: the short forms of `assign::kernel`, layouts of pipelines
+//! that are made here, and shader modules without loop counters.
 
 pub(crate) use assign::kernel::{Slot, bind_buffers, bind_entries, layout, pipeline, workgroups};
 use assign::{AssignError, Gpu, Shader};

@@ -2,20 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
-use assign::{EncoderPasses, Gpu};
+use assign::{EncoderPasses, Gpu, conformance};
 use assign_cdi::{ListSort, PrefixSum, SortInput, SortWork};
-use bytemuck::{cast_slice, pod_collect_to_vec};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 fn upload(gpu: &Gpu, words: &[u32]) -> wgpu::Buffer {
-    let buffer = gpu.storage("words", words.len() as u64 * 4).unwrap();
-    gpu.queue.write_buffer(&buffer, 0, cast_slice(words));
-    buffer
+    conformance::upload(gpu, "words", words).unwrap()
 }
 
 fn download(gpu: &Gpu, buffer: &wgpu::Buffer, count: usize) -> Vec<u32> {
-    pod_collect_to_vec(&gpu.read(buffer, count as u64 * 4).unwrap())
+    conformance::download(gpu, buffer, count).unwrap()
 }
 
 /// Lists of keys, one after the other.

@@ -4,7 +4,7 @@ use assign::{Bounds, StrategyWesl};
 
 use crate::Normals;
 
-/// The shared froxel grid, to mount beside a main module that imports it.
+/// The shared froxel grid, to mount next to a main module that imports it.
 pub(crate) const FROXELS: (&str, &str) =
     ("package::strategy::froxels", include_str!("shaders/froxels.wesl"));
 
@@ -27,7 +27,7 @@ pub const EXPLICIT_WESL: StrategyWesl<'static> =
 pub const BINS_WESL: StrategyWesl<'static> =
     clusters(&[("explicit_bounds", true), ("split_by_normals", true), ("glossy", false)]);
 
-/// [`BINS_WESL`] for clusters that also know how their samples reflect: `group_gloss`.
+/// [`BINS_WESL`] for clusters that also know how their samples reflect: `group_gloss` too.
 pub const GLOSSY_BINS_WESL: StrategyWesl<'static> =
     clusters(&[("explicit_bounds", true), ("split_by_normals", true), ("glossy", true)]);
 

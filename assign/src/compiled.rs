@@ -103,7 +103,7 @@ impl Compiled {
         // pipelines.
         let is_known = lock(&self.modules).values().any(|known| known == module) && {
             let known = lock(&self.layouts);
-            layouts.iter().flatten().all(|layout| known.values().any(|own| own == *layout))
+            layouts.iter().flatten().all(|layout| known.values().any(|stored| stored == *layout))
         };
         if !is_known {
             return make();

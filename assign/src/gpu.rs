@@ -46,8 +46,7 @@ impl Gpu {
         Self::from_adapter(adapter)
     }
 
-    /// Every adapter that can be opened. The first is the one that [`open`](Self::open) prefers
-    /// first.
+    /// Every adapter that can be opened, in the order in which [`open`](Self::open) prefers them.
     pub fn adapters() -> Result<Vec<wgpu::AdapterInfo>, AssignError> {
         Ok(enumerate()?.iter().map(wgpu::Adapter::get_info).collect())
     }

@@ -1,4 +1,4 @@
-//! Short forms for compute kernels: bind group layouts, bind groups and pipelines over whole buffers.
+//! Makes what compute kernels need: bind group layouts, bind groups and pipelines over whole buffers.
 //!
 //! A kernel is an entry point of a module that [`Shader`](crate::Shader) linked. Layouts and pipelines
 //! come from the device's store ([`Gpu::bind_group_layout`], [`Gpu::compute_pipeline`]), so equal ones

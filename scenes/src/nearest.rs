@@ -271,14 +271,14 @@ mod tests {
     fn depths_are_those_of_the_window() {
         let scene = floor();
         let mut down = view(Vec3::new(0.0, 8.0, 0.0), Vec3::ZERO);
-        let of = |view: &View| scene.depths_shown(view).expect("ground");
-        let span = of(&down);
+        let depths = |view: &View| scene.depths_shown(view).expect("ground");
+        let span = depths(&down);
         assert!((span.nearest_m - 8.0).abs() < 1e-5 && (span.farthest_m - 8.0).abs() < 1e-5);
         down.projection = Projection::Orthographic { min: Vec2::splat(-3.0), max: Vec2::ONE };
-        let span = of(&down);
+        let span = depths(&down);
         assert!((span.nearest_m - 8.0).abs() < 1e-5 && (span.farthest_m - 8.0).abs() < 1e-5);
         // The farthest point lies along the axis, at the edge of the window.
         let level = view(Vec3::new(0.0, 1.6, 0.0), Vec3::new(1.0, 1.6, 0.0));
-        assert!((of(&level).farthest_m - 100.0).abs() < 1e-3, "{:?}", of(&level));
+        assert!((depths(&level).farthest_m - 100.0).abs() < 1e-3, "{:?}", depths(&level));
     }
 }

@@ -86,12 +86,12 @@ impl SceneGpu {
         let instances = buffer("instances", cast_slice(&records), wgpu::BufferUsages::STORAGE)?;
         let layout = |bound| {
             let stages = wgpu::ShaderStages::FRAGMENT;
-            let own = [
+            let geometry = [
                 storage_entry(0, wgpu::ShaderStages::VERTEX, true),
                 storage_entry(1, stages, true),
             ];
             let entries: Vec<_> =
-                own.into_iter().chain(LightingInputs::layout(bound, stages)).collect();
+                geometry.into_iter().chain(LightingInputs::layout(bound, stages)).collect();
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("scene"),
                 entries: &entries,
@@ -108,8 +108,8 @@ impl SceneGpu {
 
     /// Bind group 2, together with the inputs of lighting.
     pub(crate) fn bind_group(&self, gpu: &Gpu, inputs: &LightingInputs) -> wgpu::BindGroup {
-        let own = [entry(0, &self.instances), entry(1, &self.materials.factors)];
-        let entries: Vec<_> = own.into_iter().chain(inputs.entries()).collect();
+        let geometry = [entry(0, &self.instances), entry(1, &self.materials.factors)];
+        let entries: Vec<_> = geometry.into_iter().chain(inputs.entries()).collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
             layout: self.layout(inputs.bound()),

@@ -1,4 +1,4 @@
-//! The inputs of lighting beside surfaces, lights and lists: its numbers, the suns if there are
+//! The inputs of lighting besides surfaces, lights and lists: its numbers, the suns if there are
 //! any, and the table of linearly transformed cosines if the model of area lights uses it.
 
 use assign::{Gpu, MAX_SUNS, Sun, Suns, entry, storage_entry, uniform_entry};
@@ -60,7 +60,7 @@ impl From<&Suns> for SunsRecord {
     }
 }
 
-/// Which resources a set of options binds beside its numbers.
+/// Which resources a set of options binds besides its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Bound {
     pub(crate) table: bool,

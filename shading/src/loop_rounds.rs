@@ -22,7 +22,7 @@ pub(crate) struct LightTotals {
 const PUBLISHED_ROUNDS: u64 = 5 + 4 * 3;
 
 impl LightTotals {
-    pub(crate) fn count(lights: &[Light]) -> Self {
+    pub(crate) fn new(lights: &[Light]) -> Self {
         let areas = lights.iter().filter_map(|light| match &light.shape {
             LightShape::Area(emitter) => Some(emitter.vertices().len() as u64),
             LightShape::Point | LightShape::Spot { .. } | LightShape::Vpl { .. } => None,
@@ -109,7 +109,7 @@ mod tests {
         let point = Light::point(Vec3::ZERO, 1.0, Vec3::ONE);
         let square = Emitter::rectangle(Vec3::X, Vec3::Y);
         let area = Light::area(square, Vec3::ZERO, 1.0, Vec3::ONE);
-        let rounds = |lights: &[Light], model| LightTotals::count(lights).rounds(model);
+        let rounds = |lights: &[Light], model| LightTotals::new(lights).rounds(model);
         assert_eq!(rounds(&[point; 7], AreaModel::LtcTable), 7);
         assert_eq!(rounds(&[point, area], AreaModel::Point), 2 + 10);
         assert_eq!(rounds(&[area], AreaModel::LtcTable), 1 + 10 + 12);

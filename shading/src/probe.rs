@@ -27,7 +27,7 @@ pub struct Samples {
     pub pixels: Vec<u32>,
 }
 
-/// Records the passes that [`probe`] reads beside depth: the G-buffer, and model ids if the
+/// Records the passes that [`probe`] reads besides depth: the G-buffer, and model ids if the
 /// strategy needs them. Forward shading draws neither.
 pub fn record_for_probe(
     renderer: &Renderer,

@@ -103,7 +103,7 @@ impl RasterSpheres {
         }
         // Each fragment adds only one light, so each is checked separately.
         for light in lights.lights() {
-            LightTotals::count(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
+            LightTotals::new(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);

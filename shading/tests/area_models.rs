@@ -152,7 +152,7 @@ fn the_two_weightings_of_the_most_representative_point_err_in_different_terms() 
     let (white_truth, black_truth) = (truth_of(&buffer, &white), truth_of(&buffer, &black));
     let diffuse_truth: f64 = white_truth.iter().zip(&black_truth).map(|(a, b)| a.x - b.x).sum();
     let specular_truth: f64 = black_truth.iter().map(|t| t.x).sum();
-    let of = |model| {
+    let biases = |model| {
         let (white, black) =
             (evaluate(&gpu, &buffer, &white, model), evaluate(&gpu, &buffer, &black, model));
         let diffuse = (sum(&white) - sum(&black)) / diffuse_truth - 1.0;
@@ -166,7 +166,8 @@ fn the_two_weightings_of_the_most_representative_point_err_in_different_terms() 
         [diffuse, specular]
     };
     let [derived, published, point, ltc] =
-        [AreaModel::Mrp, AreaModel::MrpPublished, AreaModel::Point, AreaModel::LtcTable].map(of);
+        [AreaModel::Mrp, AreaModel::MrpPublished, AreaModel::Point, AreaModel::LtcTable]
+            .map(biases);
     // The biases by term in METHODOLOGY's table.
     let stated = [[0.15, 0.96], [0.47, 40.8], [1.05, 0.51], [-0.001, -0.009]];
     for (found, stated) in [derived, published, point, ltc].iter().zip(stated) {

@@ -66,11 +66,11 @@ fn lobes_of_a_neighbouring_roughness_or_view_are_told_from_the_fit() {
 #[test]
 fn the_table_of_the_approximate_masking_is_another_and_farther_off() {
     let cases = accuracy_cases(1500, 1, ACCURACY_DEGREES);
-    let of = |masking| {
+    let accuracy = |masking| {
         let table = Table::load(masking).unwrap();
         Accuracy::measure(&cases, |roughness, cos| table.look_up(roughness, cos))
     };
-    let (exact, hammon) = (of(Masking::Correlated), of(Masking::Hammon));
+    let (exact, hammon) = (accuracy(Masking::Correlated), accuracy(Masking::Hammon));
     println!("correlated {exact:.4?}, Hammon {hammon:.4?}");
     assert!(exact.median < hammon.median && hammon.median < 3.0 * exact.median);
 }

@@ -263,7 +263,7 @@ fn operation_counts_match_f64() {
 /// One light must light exactly the pixels at which a term is counted as evaluated. Its diffuse
 /// light reaches as far as the specular one, whose lobe may be exactly 0.
 #[test]
-fn a_pixel_is_lit_only_where_a_term_is_evaluated() {
+fn a_pixel_is_lit_exactly_where_a_term_is_evaluated() {
     let gpu = common::gpu();
     for mut light in lights() {
         if let LightShape::Area(emitter) = &mut light.shape {

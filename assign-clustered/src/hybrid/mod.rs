@@ -36,7 +36,8 @@
 //! - `reserve` grows with cells, `sort` with entries.
 //!
 //! A hierarchy of lights would save no work, because no light is tested against cells that it does not touch.
-//! Memory is 16 bytes and one bit per cell, and 8 bytes per listed light: twice what other strategies take.
+//! Memory is 16 bytes and one bit per cell, and 8 bytes per listed light. Other strategies take 4 bytes per
+//! listed light.
 //!
 //! Of all listed pairs of a light and a cell, at most 0.7 % do not meet. This holds for point lights with ranges
 //! of 0.2 to 40 m in perspective views, and of 0.2 to 6 m in orthographic ones (`tests/hybrid_rates.rs`).

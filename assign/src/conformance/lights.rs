@@ -85,7 +85,7 @@ pub(super) fn reaching(rng: &mut Rng, point: DVec3, range_m: f64) -> Light {
     Light::point(center.as_vec3(), range as f32, Vec3::ONE)
 }
 
-/// How far beyond the sample a grazing light reaches, as a share of its range.
+/// A small random share, 1e-5 to 1e-1, by which a case misses its edge.
 fn edge(rng: &mut Rng) -> f64 {
     rng.log_range(1e-5, 1e-1)
 }

@@ -1,4 +1,4 @@
-//! Linked shaders without a GPU: they validate, and their structs are laid out as in Rust.
+//! Checks linked shaders without a GPU: they validate, and their structs are laid out as in Rust.
 //!
 //! A layout test links a shader, takes a WESL struct apart, and compares it with the Rust struct:
 //!
@@ -55,7 +55,7 @@ impl LinkedModule {
     ///
     /// # Panics
     ///
-    /// Where the source is not valid.
+    /// Panics if the source is not valid.
     #[track_caller]
     pub fn new(what: &str, source: &str) -> Self {
         match Self::validate(what, source) {
@@ -107,7 +107,7 @@ impl LinkedModule {
     ///
     /// # Panics
     ///
-    /// Where there is no struct of that name.
+    /// Panics if the module has no struct of that name.
     #[track_caller]
     pub fn layout_of(&self, name: &str) -> StructLayout {
         self.layout(self.type_of(name))
@@ -117,14 +117,15 @@ impl LinkedModule {
     ///
     /// # Panics
     ///
-    /// Where there is none, or it is no struct.
+    /// Panics if no uniform has that binding, or if its type is not a struct.
     #[track_caller]
     pub fn uniform_at(&self, binding: u32) -> StructLayout {
-        let is_it = |v: &naga::GlobalVariable| {
+        let is_at_binding = |v: &naga::GlobalVariable| {
             v.space == naga::AddressSpace::Uniform
                 && v.binding.is_some_and(|at| at.binding == binding)
         };
-        let Some((_, found)) = self.module.global_variables.iter().find(|(_, v)| is_it(v)) else {
+        let Some((_, found)) = self.module.global_variables.iter().find(|(_, v)| is_at_binding(v))
+        else {
             panic!("{}: no uniform at binding {binding}", self.what);
         };
         self.layout(found.ty)
@@ -134,7 +135,7 @@ impl LinkedModule {
     ///
     /// # Panics
     ///
-    /// Where there is no struct of that name.
+    /// Panics if the module has no struct of that name.
     #[track_caller]
     pub fn strides_of(&self, name: &str) -> Vec<usize> {
         let element = self.type_of(name);
@@ -149,7 +150,7 @@ impl LinkedModule {
     ///
     /// # Panics
     ///
-    /// Where there is no such constant, or it is no `u32` literal.
+    /// Panics if the module has no such constant, or if it is not a `u32` literal.
     #[track_caller]
     pub fn constant(&self, name: &str) -> u32 {
         let constants = &mut self.module.constants.iter();
@@ -173,7 +174,7 @@ impl LinkedModule {
     #[track_caller]
     fn layout(&self, ty: Handle<Type>) -> StructLayout {
         let TypeInner::Struct { members, span } = &self.module.types[ty].inner else {
-            panic!("{}: {:?} is no struct", self.what, self.module.types[ty].name);
+            panic!("{}: {:?} is not a struct", self.what, self.module.types[ty].name);
         };
         let field =
             |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize);

@@ -1,4 +1,4 @@
-//! Runs a compute kernel once, for tests and examples: buffers up, one dispatch, values down.
+//! Runs a compute kernel once, for tests and examples: uploads buffers, dispatches, and reads values back.
 //!
 //! ```no_run
 //! # use assign::{Gpu, Shader, conformance::{Bound, download, run_kernel, upload}, kernel::Slot};

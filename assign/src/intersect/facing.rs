@@ -28,10 +28,10 @@ impl NormalCone {
     /// All directions.
     pub const ALL: Self = Self { axis: Vec3::Z, cos_half: -1.0, sin_half: 0.0 };
 
-    /// A cone around the unit normals in a box. If the box's centre is c and its corners are at
-    /// distance r from it, the normals lie in the tangent cone of the ball around the box, sin = r
-    /// / |c|. They also lie beyond the plane through the box's nearest corner along c. The narrower
-    /// cone counts.
+    /// A cone around the unit normals in a box, whose centre is c and whose corners are at distance r
+    /// from c. The normals lie in the tangent cone of the ball around the box: its sine is r / |c|.
+    /// They also lie beyond the plane through the box's nearest corner along c. The narrower cone
+    /// counts.
     pub fn of_box(low: Vec3, high: Vec3) -> Self {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let distance = middle.length();

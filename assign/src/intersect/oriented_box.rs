@@ -44,10 +44,10 @@ impl OrientedBox {
         let offset = 0.5 * (min_world + max_world) - self.center_world;
         let half_size = 0.5 * (max_world - min_world);
         let [x, y, z] = self.axes;
-        let own = x.abs() * self.half_extents_m.x
+        let reach = x.abs() * self.half_extents_m.x
             + y.abs() * self.half_extents_m.y
             + z.abs() * self.half_extents_m.z;
-        let along_world = offset.abs() - half_size - own;
+        let along_world = offset.abs() - half_size - reach;
         let local = Vec3::from_array(self.axes.map(|axis| offset.dot(axis).abs()));
         let reach = Vec3::from_array(self.axes.map(|axis| axis.abs().dot(half_size)));
         let along_own = local - self.half_extents_m - reach;
@@ -72,7 +72,7 @@ impl OrientedBox {
             self.center_world + x * near.x + y * near.y + z * near.z
         };
         let extent = |axis: Vec3| {
-            let along = Vec3::from_array(self.axes.map(|own| own.dot(axis).abs()));
+            let along = Vec3::from_array(self.axes.map(|box_axis| box_axis.dot(axis).abs()));
             along.dot(self.half_extents_m)
         };
         let highest = |axis: Vec3| extent(axis) - axis.dot(offset);

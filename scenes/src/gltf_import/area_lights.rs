@@ -102,7 +102,7 @@ fn of_extras(
     let text = value.to_string();
     let refuse = |accepted: String| file.invalid(field(), text.clone(), accepted);
     let json: Json = serde_json::from_value(value)
-        .map_err(|error| refuse(format!("a valid area light, but {error}")))?;
+        .map_err(|error| refuse(format!("a valid area light: {error}")))?;
     // A mirroring transform reverses the outline.
     let mirrored = to_world.determinant() < 0.0;
     let (emitter, position) = match (json.shape, json.width, json.height, json.vertices) {
@@ -189,9 +189,8 @@ fn of_extension(
     })?;
     let field = || format!("extensions.{EXTENSION}.lights[{number}]");
     // The JSON is borrowed because many nodes may name one light with a long name.
-    let json = ExtensionJson::deserialize(value).map_err(|error| {
-        file.invalid(field(), value, format!("a valid area light, but {error}"))
-    })?;
+    let json = ExtensionJson::deserialize(value)
+        .map_err(|error| file.invalid(field(), value, format!("a valid area light: {error}")))?;
     let (width, height) = (json.size * json.rect.aspect, json.size);
     if !(width > 0.0 && height > 0.0 && width.is_finite()) {
         return Err(file.invalid(field(), value, "a light with size and aspect above 0"));

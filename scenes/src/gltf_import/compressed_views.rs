@@ -23,7 +23,7 @@ pub(super) fn decode(file: &File) -> Result<HashMap<usize, Vec<u8>>, SceneError>
         match serde_json::from_value::<Compressed>(json.clone()) {
             Ok(view) => Ok((ix, field, view)),
             Err(error) => {
-                Err(file.invalid(field, json, format!("a valid compressed view, but {error}")))
+                Err(file.invalid(field, json, format!("a valid compressed view: {error}")))
             }
         }
     };

@@ -45,15 +45,14 @@ impl DracoMesh {
         let field = format!("{field}.extensions.{NAME}");
         let Json { buffer_view, attributes } =
             serde_json::from_value(json.clone()).map_err(|error| {
-                file.invalid(&field, json, format!("a valid compressed primitive, but {error}"))
+                file.invalid(&field, json, format!("a valid compressed primitive: {error}"))
             })?;
         let bytes = file.view(buffer_view)?;
         let refuse = |reason: String| file.invalid(&field, "not decodable", reason);
         // A panic of the decoder counts as a fault of the file.
         let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes, vertices)));
         let decoded = decoded.map_err(|_| refuse("a valid Draco mesh".into()))?;
-        let decoded =
-            decoded.map_err(|error| refuse(format!("a valid Draco mesh, but {error}")))?;
+        let decoded = decoded.map_err(|error| refuse(format!("a valid Draco mesh: {error}")))?;
         for (name, id) in &attributes {
             if decoded.attribute_by_unique_id(*id).is_none() {
                 let field = format!("{field}.attributes.{name}");

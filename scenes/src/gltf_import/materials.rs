@@ -194,7 +194,7 @@ impl Reader<'_> {
             self.file.invalid(field, value, accepted)
         };
         let glossy: Glossy = serde_json::from_value(value.clone())
-            .map_err(|error| fail(format!("diffuse, specular and glossiness, but {error}")))?;
+            .map_err(|error| fail(format!("diffuse, specular and glossiness: {error}")))?;
         let factors = [&glossy.diffuse_factor[..], &glossy.specular_factor].concat();
         if !factors.iter().chain([&glossy.glossiness_factor]).all(|x| (0.0..=1.0).contains(x)) {
             return Err(fail("factors between 0 and 1".into()));
@@ -213,7 +213,7 @@ impl Reader<'_> {
             material.dielectric = Dielectric::default();
             material.roughness = GLOSSY_ROUGHNESS;
             self.warnings.add(format!(
-                "material {:?}: specularGlossinessTexture is ignored; it is drawn with \
+                "material {:?}: specularGlossinessTexture is ignored; the material is drawn with \
                  roughness {GLOSSY_ROUGHNESS} and glTF's default reflectance",
                 self.name
             ));

@@ -63,8 +63,8 @@ impl Need {
             bytes = bytes.saturating_add(indices.saturating_mul(VERTEX + 4));
         }
         self.bytes = self.bytes.saturating_add(bytes);
-        let own = primitive.indices.map_or(0, |_| corners);
-        self.elements = self.elements.saturating_add(positions).saturating_add(own);
+        let indices = primitive.indices.map_or(0, |_| corners);
+        self.elements = self.elements.saturating_add(positions).saturating_add(indices);
         let accessors = primitive.attributes.values().copied().chain(primitive.indices);
         for accessor in accessors {
             let is_zeroed = |a: &Accessor| a.buffer_view.is_none();

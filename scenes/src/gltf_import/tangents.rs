@@ -18,8 +18,8 @@ pub(super) fn flatten(mesh: &mut Mesh) -> Vec<u32> {
         }
     }
     mesh.vertices = vertices;
-    let own = (0..mesh.vertices.len() as u32).collect();
-    std::mem::replace(&mut mesh.indices, own)
+    let indices = (0..mesh.vertices.len() as u32).collect();
+    std::mem::replace(&mut mesh.indices, indices)
 }
 
 /// The unit normal of a triangle, or zero where it has no area. It is computed in f64, because the

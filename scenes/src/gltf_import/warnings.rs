@@ -190,13 +190,13 @@ mod tests {
     fn warnings_are_counted_capped_and_short() {
         let mut warnings = Warnings::default();
         for ix in 0..80_000 {
-            let mut of_a_job = Warnings::default();
-            of_a_job.add(format!(
+            let mut job_warnings = Warnings::default();
+            job_warnings.add(format!(
                 "mesh {:?}: {ix} normals of length 0 were replaced",
                 format!("m\"{ix}")
             ));
-            of_a_job.add("vertex colours (COLOR_0) are ignored".into());
-            warnings.append(of_a_job);
+            job_warnings.add("vertex colours (COLOR_0) are ignored".into());
+            warnings.append(job_warnings);
         }
         warnings.add(format!("node {:?}: not drawn", "n\u{1b}[31m\u{202e}".repeat(1_000_000)));
         warnings.add("x".repeat(1_000_000));

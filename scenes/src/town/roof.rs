@@ -102,7 +102,7 @@ impl Roof {
         let (width, height, front) = (1.5, 1.5, 0.5 * self.depth_m - 0.5);
         let low = self.eaves_m + 0.5 * self.pitch.tan();
         let depth = 1.1 * height / self.pitch.tan() + 0.8;
-        let mut own = Parts::default();
+        let mut dormer = Parts::default();
         let window = Opening {
             middle_m: 0.0,
             foot_m: 0.25,
@@ -112,8 +112,8 @@ impl Roof {
             has_flowers: false,
         };
         let trim = Trim { shutters: false, ..trim };
-        storey(&mut own, &Mat4::IDENTITY, width, [-0.4, height], &[window], trim);
-        let cheeks = own.mesh(trim.wall);
+        storey(&mut dormer, &Mat4::IDENTITY, width, [-0.4, height], &[window], trim);
+        let cheeks = dormer.mesh(trim.wall);
         let half = 0.5 * width;
         let sides = Vec3::Y * (height + 0.4);
         cheeks.quad(Vec3::new(half, -0.4, 0.0), Vec3::NEG_Z * depth, sides);
@@ -129,8 +129,8 @@ impl Roof {
         };
         let turn =
             Mat4::from_translation(Vec3::Z * (-0.5 * depth)) * Mat4::from_rotation_y(FRAC_PI_2);
-        own.append(&roof.build(trim.wall), &turn);
-        parts.append(&own, &Mat4::from_translation(Vec3::new(x, low, front)));
+        dormer.append(&roof.build(trim.wall), &turn);
+        parts.append(&dormer, &Mat4::from_translation(Vec3::new(x, low, front)));
     }
 }
 

@@ -46,8 +46,8 @@ pub(super) fn storey(
     openings: &[Opening],
     trim: Trim,
 ) {
-    let mut own = Parts::default();
-    let wall = own.mesh(trim.wall);
+    let mut added = Parts::default();
+    let wall = added.mesh(trim.wall);
     let mut quad = |x0: f32, x1: f32, y0: f32, y1: f32| {
         if x1 > x0 + 1e-3 && y1 > y0 + 1e-3 {
             wall.quad(Vec3::new(x0, y0, 0.0), Vec3::X * (x1 - x0), Vec3::Y * (y1 - y0));
@@ -66,9 +66,9 @@ pub(super) fn storey(
     for opening in openings {
         let at = Mat4::from_translation(Vec3::new(opening.middle_m, opening.foot_m, 0.0));
         let parts = if opening.is_door { door(*opening, trim) } else { window(*opening, trim) };
-        own.append(&parts, &at);
+        added.append(&parts, &at);
     }
-    parts.append(&own, face);
+    parts.append(&added, face);
 }
 
 /// The sides of an opening, seen from the front: left, right, top, and bottom.

@@ -42,7 +42,7 @@ pub struct TableDifference {
     pub covered: f64,
 }
 
-/// Fits tables of `size` texels each way for both maskings, and polynomials for the first. Writes
+/// Fits tables of `size` texels on each side for both maskings, and polynomials for the first. Writes
 /// `ggx.bin`, `ggx_hammon.bin`, `polynomial_coefficients.rs` and `ltc_polynomial.wesl` to a folder,
 /// if one is given. Calls `progress` with the number of entries just done, of `2 * size * size`,
 /// from several threads.
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn sizes_and_folders_that_fail_are_named() {
         let refusal = generate(None, 1, |_| ()).unwrap_err().to_string();
-        assert_eq!(refusal, "LTC table: size is 1: it must be 2 to 1024 texels each way");
+        assert_eq!(refusal, "LTC table: size is 1: it must be 2 to 1024 texels on each side");
         let file = tempfile::NamedTempFile::new().unwrap();
         let refusal = generate(Some(file.path()), 2, |_| ()).unwrap_err();
         assert!(matches!(refusal, ShadingError::Write { .. }), "{refusal}");

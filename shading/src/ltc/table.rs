@@ -27,7 +27,7 @@ use crate::ShadingError;
 const MAGIC: [u8; 4] = *b"LTCT";
 const VERSION: u32 = 1;
 const HEADER_BYTES: usize = 12;
-/// The least and the most texels each way.
+/// The least and the most texels on each side.
 const SIZES: (usize, usize) = (2, 1024);
 /// Texels each way of the committed table.
 pub const TABLE_SIZE: usize = 64;
@@ -112,7 +112,7 @@ impl Table {
         })
     }
 
-    /// Fits a table of `size` texels each way, 2 to 1,024, to GGX with the given masking. Calls
+    /// Fits a table of `size` texels on each side, 2 to 1,024, to GGX with the given masking. Calls
     /// `progress` with the number of entries done after every row of roughness, from several
     /// threads.
     ///
@@ -255,7 +255,7 @@ pub(super) fn unit(value: f64) -> f64 {
 
 fn check_size(size: usize) -> Result<(), ShadingError> {
     let (least, most) = SIZES;
-    let accepted = format!("{least} to {most} texels each way");
+    let accepted = format!("{least} to {most} texels on each side");
     if (least..=most).contains(&size) { Ok(()) } else { Err(refused("size", size, accepted)) }
 }
 
@@ -291,8 +291,8 @@ mod tests {
         for (file, refusal) in [
             (with(0, b"DDS "), "magic is DDS : it must be LTCT"),
             (with(4, &[2]), "version is 2: it must be 1"),
-            (with(8, &[0]), "size is 0: it must be 2 to 1024 texels each way"),
-            (with(8, &[255; 4]), "size is 4294967295: it must be 2 to 1024 texels each way"),
+            (with(8, &[0]), "size is 0: it must be 2 to 1024 texels on each side"),
+            (with(8, &[255; 4]), "size is 4294967295: it must be 2 to 1024 texels on each side"),
             (with(8, &[3]), "length is 140: it must be 300 bytes"),
             (with(12, &[255; 4]), "entry is NaN: it must be finite"),
             (good[..11].to_vec(), "length is 11: it must be a header and all entries, in bytes"),

@@ -43,8 +43,8 @@ impl EmissiveTriangles {
     pub(super) fn add(&mut self, triangle: u32, corners: [DVec3; 3], emitted: DVec3, texel: DVec3) {
         let [a, b, c] = corners;
         let area_m2 = 0.5 * (b - a).cross(c - a).length();
-        let of = |color: DVec3| luminance(&color.as_vec3().to_array());
-        let brightness = of(emitted) * of(texel).max(LEAST_TEXEL);
+        let brightness_of = |color: DVec3| luminance(&color.as_vec3().to_array());
+        let brightness = brightness_of(emitted) * brightness_of(texel).max(LEAST_TEXEL);
         let weight = area_m2 * brightness;
         if weight > 0.0 && weight.is_finite() {
             self.triangles.push(triangle);

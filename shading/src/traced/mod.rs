@@ -5,7 +5,7 @@
 //! The samples are those of rays from the eye: positions, normals and materials come from the
 //! triangles and textures themselves ([`TracedScene::primary`]). So the distance between an image
 //! and the truth includes all errors of rendering. With samples of the G-buffer
-//! ([`GBufferSamples`]), it shows the error of the G-buffer's formats alone.
+//! ([`GBufferSamples`]), it shows only the error of the G-buffer's formats.
 //!
 //! At each sample, the formulas of [`reference`](crate::reference) evaluate every light that
 //! reaches it, summed in f64 in ascending light index. Rays against all of the scene's triangles

@@ -28,10 +28,10 @@ impl Rays {
     /// The ray through the middle of a pixel of the viewport: origin, unit direction, and view
     /// depth per metre along it.
     fn through(&self, pixel: DVec2) -> (DVec3, DVec3, f64) {
-        let of = |pair: [f32; 2]| Vec2::from(pair).as_dvec2();
-        let uv = (pixel + 0.5) / of(self.uniform.viewport_size);
+        let to_f64 = |pair: [f32; 2]| Vec2::from(pair).as_dvec2();
+        let uv = (pixel + 0.5) / to_f64(self.uniform.viewport_size);
         let ndc = DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
-        let at = of(self.uniform.ray_scale) * ndc + of(self.uniform.ray_offset);
+        let at = to_f64(self.uniform.ray_scale) * ndc + to_f64(self.uniform.ray_offset);
         let (origin, direction) = if self.is_perspective {
             (DVec3::ZERO, at.extend(-1.0))
         } else {
