@@ -103,8 +103,8 @@ pub(crate) fn table(caption: &str, records: &[&Record], machine: &Machine) -> Ht
 /// What a cell holds.
 pub(crate) const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
     passes of the frame, and the span from the first pass to the last with the gaps between them, where it is \
-    known. A figure is derived if another kind of frame was measured instead. Then the depth pre-pass is moved \
-    onto the bill of a strategy that reads depth, or the pass of M\u{2019}s model ids is left out.";
+    known. A figure is derived if another kind of frame was measured instead. Such a \
+    figure adds the depth pre-pass to a strategy that reads depth, or leaves out M\u{2019}s pass of model ids.";
 
 /// A section per set of lights that was measured in several modes; empty where there is none.
 pub(crate) fn sections(results: &Results) -> Html {

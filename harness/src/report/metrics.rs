@@ -215,8 +215,8 @@ fn memory<'a>() -> Vec<Metric<'a>> {
             .terminal("lists")
             .optional()
             .about(
-                "GPU memory of groups and lists only. These results are older than the count of all memory: \
-                 a strategy\u{2019}s marks, bounds and second pools are missing.",
+                "GPU memory of groups and lists only. When these results were measured, lightbench did not count a \
+                 strategy\u{2019}s marks, bounds and second pools.",
             ),
         figure(
             "overflow",

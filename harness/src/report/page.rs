@@ -87,7 +87,7 @@ pub(crate) fn provenance(results: &Results) -> Html {
         (
             "Frames",
             distinct(results, |r| {
-                format!("{} after {} to warm up", r.times.frames, r.times.warmup_frames)
+                format!("{} timed, after {} frames of warm-up", r.times.frames, r.times.warmup_frames)
             }),
         ),
         ("Truth", truth(results)),
@@ -135,7 +135,7 @@ fn clock(clock: Clock) -> &'static str {
 fn truth(results: &Results) -> String {
     match results.truth.level {
         TruthLevel::Full => format!(
-            "every (light, sample) pair, on the CPU in f64, except pairs closer to the edge of the range than {:e} of it",
+            "every pair of a light and a sample, on the CPU in f64, except samples that lie within {:e} of the range from its edge",
             results.truth.edge_tolerance
         ),
         TruthLevel::None => "images only: the lists were not checked".to_owned(),

@@ -59,7 +59,7 @@ pub(crate) fn notice<'a>(
     (!parts.is_empty()).then(|| {
         format!(
             "{MARK} {chip} runs fragment shaders on only a few of its processors. Do not compare marked figures \
-             across chips. Marked are: {}.",
+             across chips. These passes are marked: {}.",
             parts.join("; ")
         )
     })

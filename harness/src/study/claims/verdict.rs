@@ -30,7 +30,7 @@ impl Verdict {
             (_, 0) => Self::unmeasured(&format!("no {what}")),
             (good, all) if good == all => Self::Holds,
             (0, _) => Self::Fails,
-            (good, all) => Self::Differs(format!("{good} of {all} {what}")),
+            (good, all) => Self::Differs(format!("holds for {good} of {all} {what}")),
         }
     }
 

@@ -204,7 +204,7 @@ pub(crate) fn subdivision(done: &Done, scene: &str) -> Answer {
         (_, Some(what)) => Verdict::Differs(format!("with {what}")),
         (Order::Less | Order::Tie, None) => Verdict::Holds,
         (Order::More, None) if ms[0] - ids <= ms[1] => {
-            Verdict::Differs("only with ids in the G-buffer".to_owned())
+            Verdict::Differs("holds only if the G-buffer has the model ids".to_owned())
         }
         (Order::More, None) => Verdict::Fails,
     };

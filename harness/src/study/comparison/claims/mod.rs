@@ -14,19 +14,20 @@ use crate::study::claims::{Check, Paper};
 /// Enhuber 2019.
 pub(crate) const PAPER: Paper = Paper {
     name: "the comparison paper",
-    about: "Enhuber 2019 timed these strategies on a GTX 780 along paths of 1,200 poses, in Robot \
-            Lab, Sponza and Viking Village, with forward shading and 10,000 lights where it names \
-            no count. Here lighting is deferred. All methods share the depth pre-pass, and only \
-            the row on bounds counts it. Times are those of assigning and shading. The \
-            paper\u{2019}s own strategies decide its claims; they take lights from the list of \
-            all lights. Rows whose sizes or shapes of groups were measured only through the \
-            hierarchy say so. Each figure states how many poses it averages. With fewer than six \
-            rounds or laps, times less than 5 % apart decide nothing.",
+    about: "Enhuber 2019 timed these strategies on a GTX 780 with forward shading, along paths of 1,200 \
+            poses in Robot Lab, Sponza and Viking Village. Where it names no number of lights, it has \
+            10,000. Here lighting is deferred. All methods share the depth pre-pass, and only the row on \
+            slope and offset of explicit bounds counts its time. Times are those of assigning and \
+            shading. The paper\u{2019}s own strategies decide its claims; they take lights from the list \
+            of all lights. If the group sizes or shapes of a row were measured only through the \
+            hierarchy, the row says so. Each figure states how many poses it averages. With fewer than \
+            six rounds or laps, times less than 5 % apart decide nothing.",
     checks: &CHECKS,
 };
 
 const NO_PRE_PASS: &str =
-    "no method pays for the depth pre-pass, so methods that need it lose less at few lights";
+    "here no method pays for the depth pre-pass, so at few lights the methods that need it fall behind less \
+     than in the paper";
 
 const WHOLE_FRAMES: &str = "times cover assigning and shading; the paper times whole frames, and \
                             the time to draw surfaces varies with the view";
@@ -95,15 +96,15 @@ const CHECKS: [Check; 28] = [
         place: "section 4.3.2",
         words: "HS+SAT-E+SAT-P+SAT-V shades about as fast as HS+SAT-N and assigns slower.",
         paper: "no figures",
-        departure: "about as fast means within 3 %; slower means by more than 5 %",
+        departure: "we call times about as fast if they are within 3 %, and slower if they are more than 5 % longer",
         decide: search::full_union,
     },
     Check {
         id: "steady",
         place: "table 4.4",
         words: "SC-E depends least on the view: its standard deviation (SD) along the path is the least.",
-        paper: "by SD, which the paper calls the more important value: SC-E, SC-I, then T-E, DC-I, G, then \
-                T-I, M; by SD / mean: G, M, SC-E, SC-I, then DC-I, then T-E, T-I",
+        paper: "order by SD: SC-E, SC-I, then T-E, DC-I, G, then T-I, M; order by SD / mean: G, M, SC-E, SC-I, \
+                then DC-I, then T-E, T-I. The paper calls SD the more important value",
         departure: WHOLE_FRAMES,
         decide: spread::steadiest,
     },
@@ -111,7 +112,7 @@ const CHECKS: [Check; 28] = [
         id: "spread",
         place: "table 4.4",
         words: "By SD, SC-E and SC-I come before T-E, DC-I and G, and these before T-I and M.",
-        paper: "M 84.43 ms in Sponza and 403.30 ms in Viking Village; of the others the paper draws bars",
+        paper: "M 84.43 ms in Sponza and 403.30 ms in Viking Village; the paper shows the others only as bars",
         departure: WHOLE_FRAMES,
         decide: spread::groups,
     },
@@ -128,16 +129,16 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.1.1",
         words: "G and DC-I have similar SDs.",
         paper: "bars only",
-        departure: "similar means within a factor of 1.5; the paper times whole frames",
+        departure: "we call values similar if they are within a factor of 1.5; the paper times whole frames",
         decide: spread::grid_like_dense,
     },
     Check {
         id: "discontinuity",
         place: "section 4.4.1.2, figure 4.10",
-        words: "From a view of low to one of high depth discontinuity, SC-E\u{2019}s lists grow far less \
-                than T-E\u{2019}s.",
-        paper: "most groups at 0 to 25 lights; with high discontinuity many of T-E\u{2019}s at 25 to 75 and \
-                some above, few of SC-E\u{2019}s at 25 to 50",
+        words: "If depth discontinuity rises from low to high, SC-E\u{2019}s lists grow far less than \
+                T-E\u{2019}s.",
+        paper: "most groups list 0 to 25 lights. With high discontinuity, many groups of T-E list 25 to 75 and \
+                some list more; few of SC-E list 25 to 50",
         departure: "lights listed per sample decide, not the paper\u{2019}s histograms; far less \
                     means at most half the growth. We set this limit after seeing the figures, so \
                     results within 10 % of it are not decided",
@@ -148,16 +149,16 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.1.2, figure 4.11",
         words: "The lists of G and M do not depend on the view.",
         paper: "the same histograms in both views",
-        departure: "the same means within 0.1 % of the entries, because rounding moves the edges \
-                    of cells",
+        departure: "we call lists the same if at most 0.1 % of their entries differ, because rounding moves \
+                    the edges of cells",
         decide: lists::view_free,
     },
     Check {
         id: "models",
         place: "sections 4.4.1.2 and 4.5",
         words: "M suffers from a few models with extremely long lists, and dividing them helps.",
-        paper: "2,259.77 ms in Sponza, 1,700.07 in Viking Village; dividing is an expectation",
-        departure: "extremely long means a quarter of all lights; parts are 2 m large",
+        paper: "2,259.77 ms in Sponza, 1,700.07 in Viking Village; the paper expects that dividing helps and did not measure it",
+        departure: "we call a list extremely long if it holds a quarter of all lights; parts are 2 m large",
         decide: lists::models,
     },
     Check {
@@ -171,7 +172,7 @@ const CHECKS: [Check; 28] = [
     Check {
         id: "grids",
         place: "section 4.5",
-        words: "Grids shaped like their box are faster than grids with equal counts.",
+        words: "Grids whose cell counts follow the shape of the box are faster than grids with equal counts.",
         paper: "an expectation without figures",
         departure: "one shaped grid, 40x12x20, competes with the best of equal counts",
         decide: search::grids,
@@ -180,7 +181,7 @@ const CHECKS: [Check; 28] = [
         id: "few",
         place: "table 4.5",
         words: "DC-I is best at 100 lights.",
-        paper: "fast DC-I, G, T-I, in this order; bars only",
+        paper: "it calls DC-I, G and T-I fast, in this order; bars only",
         departure: NO_PRE_PASS,
         decide: speed::best_at_few,
     },
@@ -196,7 +197,7 @@ const CHECKS: [Check; 28] = [
         id: "medium",
         place: "table 4.5",
         words: "T-E is best at 1,000 lights.",
-        paper: "fast T-E, SC-I, SC-E, DC-I, G, in this order; bars only",
+        paper: "it calls T-E, SC-I, SC-E, DC-I and G fast, in this order; bars only",
         departure: NO_PRE_PASS,
         decide: speed::best_at_medium,
     },
@@ -241,7 +242,7 @@ const CHECKS: [Check; 28] = [
         id: "dominates",
         place: "section 4.4.2.2, figure 4.13",
         words: "Shading grows faster with the lights than assignment.",
-        paper: "bars; M 226.07 of 226.13 \u{b5}s a light in Sponza",
+        paper: "bars; for M in Sponza, shading takes 226.07 of 226.13 \u{b5}s a light",
         departure: DEFERRED,
         decide: growth::shading_dominates,
     },
@@ -274,7 +275,7 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.2.2",
         words: "DC-I and G have similar slopes and offsets.",
         paper: "bars only",
-        departure: "similar means within a factor of 1.5; the paper times whole frames",
+        departure: "we call values similar if they are within a factor of 1.5; the paper times whole frames",
         decide: growth::grid_like_dense,
     },
 ];

@@ -129,9 +129,9 @@ impl Pairs {
             parts.push(match (all, self.unsure.len(), self.ties.len()) {
                 (1, 1, _) => "too few laps for so small a difference".to_owned(),
                 (1, _, 1) => "a tie".to_owned(),
-                (all, 0, _) => format!("{} of {all} pairs", self.good),
+                (all, 0, _) => format!("holds for {} of {all} pairs", self.good),
                 (all, unsure, _) => {
-                    format!("{} of {all} pairs, too few laps for {unsure}", self.good)
+                    format!("holds for {} of {all} pairs, too few laps for {unsure}", self.good)
                 }
             });
         }
@@ -224,7 +224,7 @@ mod tests {
         let few = Verdict::Differs("too few laps for so small a difference".to_owned());
         assert_eq!((pairs.verdict(), pairs.leader_verdict()), (few.clone(), few));
         pairs.add("A", "C", Order::Less);
-        let part = Verdict::Differs("1 of 2 pairs, too few laps for 1".to_owned());
+        let part = Verdict::Differs("holds for 1 of 2 pairs, too few laps for 1".to_owned());
         assert_eq!(pairs.verdict(), part);
         assert!(pairs.exceptions().contains("too few laps to order: A and B"));
     }

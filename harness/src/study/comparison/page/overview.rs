@@ -137,7 +137,7 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     all.iter().rev().filter_map(|results| sentence(scene, &comparison(results)?)).collect()
 }
 
-/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0; 240 poses); next is B ...`, or
+/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0; 240 poses). Next is B ...`, or
 /// `A and B tie for fastest with 6.9 to 7.0 ms (240 poses)`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = comparison.ranks();
@@ -161,7 +161,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
             format!(", {range} times as long")
         });
         text += &format!(
-            "; next is {} with {}{slower}",
+            ". Next is {} with {}{slower}",
             comparison.name(next.record),
             timed(next.record)
         );
