@@ -87,7 +87,10 @@ pub(crate) fn provenance(results: &Results) -> Html {
         (
             "Frames",
             distinct(results, |r| {
-                format!("{} timed, after {} frames of warm-up", r.times.frames, r.times.warmup_frames)
+                format!(
+                    "{} timed, after {} frames of warm-up",
+                    r.times.frames, r.times.warmup_frames
+                )
             }),
         ),
         ("Truth", truth(results)),

@@ -166,7 +166,10 @@ mod tests {
     fn parts_decide() {
         assert_eq!(Verdict::of_parts(3, 3, "pairs"), Verdict::Holds);
         assert_eq!(Verdict::of_parts(0, 3, "pairs"), Verdict::Fails);
-        assert_eq!(Verdict::of_parts(1, 3, "pairs"), Verdict::Differs("holds for 1 of 3 pairs".to_owned()));
+        assert_eq!(
+            Verdict::of_parts(1, 3, "pairs"),
+            Verdict::Differs("holds for 1 of 3 pairs".to_owned())
+        );
         assert!(matches!(Verdict::of_parts(0, 0, "pairs"), Verdict::Unknown(_)));
     }
 }
