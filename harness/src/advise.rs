@@ -86,15 +86,15 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
 
     let families = search.round("families", &first_ids(), &["--source", "both"], 0)?;
     let best = fastest_by_family(&families);
-    let finalists: Vec<String> =
+    let finalists: Vec<StrategyId> =
         best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
     if finalists.is_empty() {
         return Err(CliError::new("advise: no strategy gave the image of no culling").into());
     }
-    let parameters = search.round("parameters", &finalists.join(","), &[], 0)?;
+    let parameters = search.round("parameters", &listed(&finalists), &[], 0)?;
 
     let ids = last_ids(&families, &parameters, args.error_budget);
-    let mut finals = search.round("final", &ids.join(","), &["--truth", "full"], 1)?;
+    let mut finals = search.round("final", &listed(&ids), &["--truth", "full"], 1)?;
     finals.command = command;
     let text = answer(&finals, args.error_budget);
     let table = report::render_table(&finals);
@@ -213,6 +213,11 @@ fn fastest_by_family(results: &Results) -> Vec<&Record> {
     best
 }
 
+/// Ids as the command line takes them: `None,Sphere`.
+fn listed(ids: &[StrategyId]) -> String {
+    ids.iter().map(StrategyId::as_str).collect::<Vec<_>>().join(",")
+}
+
 /// What the first round compares: no culling, without and with the early exit, and every family with
 /// groups at its default parameters.
 fn first_ids() -> String {
@@ -222,15 +227,15 @@ fn first_ids() -> String {
 }
 
 /// The same strategy at the other group sizes of its row, from the same source.
-fn variants(id: &StrategyId) -> Vec<String> {
-    let source = if id.is_bvh() { "/bvh" } else { "" };
+fn variants(id: &StrategyId) -> Vec<StrategyId> {
     let sizes = id.row().map_or(&[][..], |row| row.sizes.few);
-    sizes.iter().map(|size| format!("{}/{size}{source}", id.family())).collect()
+    let sized = |size: &&str| id.with(|options| options.parameters = (*size).to_owned()).ok();
+    sizes.iter().filter_map(sized).collect()
 }
 
 /// What the last round compares: the fastest exact methods, some of them without a hierarchy; no
 /// culling where it is near; and, where the budget allows an error, shorter lists.
-fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<String> {
+fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<StrategyId> {
     let all = || families.records.iter().chain(&parameters.records);
     let exact = by_time(all().filter(|record| record.culls() && record.is_exact()));
     let mut last: Vec<&Record> = Vec::new();
@@ -249,18 +254,19 @@ fn last_ids(families: &Results, parameters: &Results, error_budget: f64) -> Vec<
             last.push(record);
         }
     }
-    let mut ids: Vec<String> = Vec::new();
+    let mut ids: Vec<StrategyId> = Vec::new();
     let limit = NEAR * last.first().map_or(f64::INFINITY, |record| record.assign_and_shade_ms());
     let near = |id: &str| {
         all().any(|record| record.strategy == id && record.assign_and_shade_ms() <= limit)
     };
-    ids.extend([BASELINE, EARLY_EXIT].iter().filter(|id| near(id)).map(|id| (*id).to_owned()));
-    ids.extend(last.iter().map(|record| record.strategy.to_string()));
+    ids.extend([BASELINE, EARLY_EXIT].iter().filter(|id| near(id)).map(|id| StrategyId::from(*id)));
+    ids.extend(last.iter().map(|record| record.strategy.clone()));
     if error_budget > 0.0 {
         for record in last.iter().take(CAPPED) {
             // A longer list loses nothing and gains nothing.
             let shorter = CAPS.iter().filter(|cap| u64::from(**cap) < record.lists.longest);
-            ids.extend(shorter.map(|cap| format!("{}/cap{cap}", record.strategy)));
+            let capped = |cap: &u32| record.strategy.with(|options| options.cap = Some(*cap)).ok();
+            ids.extend(shorter.filter_map(capped));
         }
     }
     ids

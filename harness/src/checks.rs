@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use assign::{AssignError, Gpu};
-use shading::Cut;
+use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
@@ -45,10 +45,20 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     }
     let modes = args.mode.modes();
     let is_served = |choice: &Choice| modes.iter().any(|&mode| choice.refuses_mode(mode).is_none());
-    if let Some(choice) = choices.first().filter(|_| !choices.iter().any(is_served)) {
-        let family = choice.row().family;
-        let accepted = format!("deferred for {family}, which has no other mode");
+    if !choices.is_empty() && !choices.iter().any(is_served) {
+        let mut accepted: Vec<String> = Vec::new();
+        for row in choices.iter().map(Choice::row) {
+            let served = Mode::ALL.into_iter().filter(|mode| row.refuses_mode(*mode).is_none());
+            let served: Vec<&str> = served.map(Mode::name).collect();
+            let why = modes.iter().find_map(|mode| row.refuses_mode(*mode)).unwrap_or_default();
+            let accepted_here =
+                format!("{} for {}, because {why}", served.join(" or "), row.family);
+            if !accepted.contains(&accepted_here) {
+                accepted.push(accepted_here);
+            }
+        }
         let names: Vec<&str> = modes.iter().map(|mode| mode.name()).collect();
+        let accepted = accepted.join("; ");
         return Err(CliError::out_of_range("--mode", &names.join(" and "), &accepted));
     }
     Ok(())

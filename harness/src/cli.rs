@@ -51,8 +51,8 @@ const LONG_ABOUT: &str = "\
 Compare ways of assigning many lights to pixels.
 
 Draws one scene with each strategy through the same pipeline, so that only the light lists differ. The \
-reference, None, evaluates every light at every sample. All other strategies skip a light early where it \
-adds nothing; Sphere is None with this skip. The program times every pass, compares every list and every \
+reference, None, evaluates every light at every sample. Others skip a light early where it adds \
+nothing, unless their id says no-exit; Sphere is None with this skip. The program times every pass, compares every list and every \
 image with no culling, and writes a report: DIR/index.html to read, DIR/results.json to compute with.";
 
 const EXAMPLES: &str = "\
@@ -72,7 +72,8 @@ How to read the result:
   listed         mean number of lights in the list that a pixel reads
   contributing   mean number of lights that reach a pixel: the length of a perfect list
   missed         (light, pixel) pairs missing from the lists: above 0 the image is wrong
-  max diff       largest difference to the image of no culling: 0 means identical in every bit
+  max diff       largest difference to the image of no culling: 0 means identical in every bit,
+                 light volumes may differ by a stated tolerance
   memory         GPU memory that assignment needs, MiB
   overflow       groups whose list did not fit; they use all lights, which is slow and correct
 

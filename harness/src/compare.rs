@@ -23,6 +23,7 @@ use crate::{
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
     report,
+    report::listed,
     results::{Clock, Record, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
     sight::untested,
@@ -172,12 +173,18 @@ impl Run<'_> {
                 self.results.warnings.push(format!("{words}: {none}"));
             }
         }
-        if self.stage.view.far_m.is_none() && choices.iter().any(Choice::tests_corners) {
-            self.results.warnings.push(
-                "the view has no far plane: the tiles of T-I and the last slices of DC-I and SC-I have no \
-                 far corners, so only HS tests lights against them"
-                    .to_owned(),
-            );
+        let mut corners: Vec<&str> = choices
+            .iter()
+            .filter(|choice| choice.tests_corners())
+            .map(|choice| choice.row().family)
+            .collect();
+        corners.dedup();
+        if self.stage.view.far_m.is_none() && !corners.is_empty() {
+            self.results.warnings.push(format!(
+                "the view has no far plane: the farthest groups of {} have no far corners, so only HS tests \
+                 lights against them",
+                listed(&corners)
+            ));
         }
         let name = &self.stage.scene.name;
         if self.args.path && !self.stage.scene.path.moves() {

@@ -55,8 +55,8 @@ impl PassSamples {
             |name: &str| matches!(pass_kind(name, mode), PassKind::Assign | PassKind::Shade);
         match (&mut self.spans, times.span_ms(is_billed), times.span_ms(|_| true)) {
             (Some(spans), Some(billed), Some(frame)) => {
-                spans.assign_and_shade_ms.push(billed);
-                spans.frame_ms.push(frame);
+                spans.assign_and_shade_samples_ms.push(billed);
+                spans.frame_samples_ms.push(frame);
             }
             _ => self.spans = None,
         }
@@ -71,7 +71,7 @@ impl PassSamples {
     /// The passes with their statistics, and the spans if every frame has them.
     pub fn finish_frames(self) -> (Passes, Option<Spans>) {
         let times = |(name, kind, samples)| (name, PassTimes::new(kind, samples));
-        let spans = self.spans.filter(|spans| spans.frame_ms.len() == self.frames);
+        let spans = self.spans.filter(|spans| spans.frame_samples_ms.len() == self.frames);
         (self.passes.into_iter().map(times).collect(), spans)
     }
 }
@@ -95,8 +95,8 @@ mod tests {
         samples.collect_frame(frame(Some([2.0, 3.0])));
         let (passes, spans) = samples.clone().finish_frames();
         let spans = spans.expect("two frames with spans");
-        assert_eq!(spans.assign_and_shade_ms, [2.5, 2.0]);
-        assert_eq!(spans.frame_ms, [4.0, 4.0]);
+        assert_eq!(spans.assign_and_shade_samples_ms, [2.5, 2.0]);
+        assert_eq!(spans.frame_samples_ms, [4.0, 4.0]);
         assert_eq!(passes.per_frame_ms(None), [3.0, 3.0]);
         samples.collect_frame(frame(None));
         assert_eq!(samples.finish_frames().1, None);
@@ -108,7 +108,7 @@ mod tests {
             let mut samples = PassSamples::new(mode);
             samples.collect_frame(frame(Some([1.5, 3.0])));
             let (passes, spans) = samples.finish_frames();
-            let spans = spans.expect("spans").assign_and_shade_ms;
+            let spans = spans.expect("spans").assign_and_shade_samples_ms;
             (passes.get("depth").expect("depth").kind, spans)
         };
         assert_eq!(kind(Mode::Forward), (PassKind::Scene, vec![2.5]));

@@ -121,13 +121,13 @@ pub(crate) fn see(
     let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
     if is_same {
         // An identical image is kept once.
-        (images.image, images.raw) = (Some(baseline.clone()), raw(baseline));
+        (images.tone_mapped, images.raw) = (Some(baseline.clone()), raw(baseline));
     } else {
         let name = format!("{stem}.png");
         let exposure = if is_control { 1.0 } else { exposure };
         pictures.push(keep(&args.out, &name, image.to_png(exposure)?, Some(&image))?);
         images.raw = raw(&name);
-        images.image = Some(name);
+        images.tone_mapped = Some(name);
     }
     if !is_same && !is_control {
         let name = format!("{stem}-difference.png");

@@ -121,7 +121,6 @@ pub fn record(
             light_places: Some(name_of(&args.stage.light_box)),
             threshold: args.stage.threshold,
             cut: Some(plan.cut.name().to_owned()),
-            vpls: stage.vpls.clone(),
             compensation: args.compensate,
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
@@ -155,10 +154,10 @@ pub fn record(
             checked_pairs: truth.map(|t| t.contributing),
             samples: truth.map_or(0, |t| t.samples),
             untested: None,
-            bytes: lists.bytes,
-            memory_bytes: has_lists.then_some(lists.memory_bytes),
-            histogram: lists.lengths.histogram,
-            all_groups: lists.lengths.all_groups,
+            list_bytes: lists.bytes,
+            assignment_bytes: has_lists.then_some(lists.memory_bytes),
+            lengths_read: lists.lengths.histogram,
+            lengths_all: lists.lengths.all_groups,
             overflowed_groups: u64::from(lists.counters.overflowed_groups),
         },
         image: ImageFigures {
@@ -171,6 +170,7 @@ pub fn record(
             tolerance: choice.tolerance(),
             files: images,
         },
+        indirect: stage.vpls.clone(),
         note: note(timed.overflowed_frames),
     };
     record.set_times();

@@ -19,6 +19,8 @@ mod flat;
 mod image;
 mod indirect;
 mod lack;
+#[cfg(test)]
+mod largest_numbers;
 mod lists;
 mod machine;
 mod metrics;
@@ -36,7 +38,7 @@ mod totals;
 mod truth_image;
 mod untested;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 pub use shading::Mode;
 
 pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
@@ -65,7 +67,8 @@ pub const SCHEMA_VERSION: u32 = 2;
 /// One run of `lightbench compare`: the root of `results.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// [`SCHEMA_VERSION`].
+    /// The version of the file that these results come from. Files are written in [`SCHEMA_VERSION`].
+    #[serde(serialize_with = "write_version")]
     pub schema_version: u32,
     /// The machine that it ran on.
     pub machine: Machine,
@@ -87,6 +90,11 @@ pub struct Results {
     /// Warnings for readers of the figures, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
+}
+
+/// Writes this program's version, whatever version the results were read from.
+fn write_version<S: Serializer>(_: &u32, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_u32(SCHEMA_VERSION)
 }
 
 /// The truth that the lists of all records are checked against.
@@ -120,7 +128,7 @@ pub enum Clock {
     #[serde(rename = "gpu-timestamps")]
     GpuTimestamps,
     /// Each pass submitted alone and waited for, timed by the host.
-    #[serde(rename = "wall-clock per pass")]
+    #[serde(rename = "wall-clock-per-pass", alias = "wall-clock per pass")]
     WallClock,
 }
 
@@ -129,7 +137,7 @@ impl Clock {
     pub fn name(self) -> &'static str {
         match self {
             Self::GpuTimestamps => "gpu-timestamps",
-            Self::WallClock => "wall-clock per pass",
+            Self::WallClock => "wall-clock-per-pass",
         }
     }
 }

@@ -121,7 +121,7 @@ pub fn pictures(results: &Results, folder: &Path) -> Pictures {
     let mut pictures = Pictures::new();
     for record in &results.records {
         let images = &record.image.files;
-        let names = [&images.image, &images.baseline, &images.difference, &images.heat_map];
+        let names = [&images.tone_mapped, &images.baseline, &images.difference, &images.heat_map];
         for name in names.into_iter().flatten() {
             if pictures.iter().all(|(known, _)| known != name)
                 && is_plain(name)

@@ -17,7 +17,10 @@
 //! | `bvh` | lights come from the hierarchy |
 //! | `cap32` | lists keep 32 lights at most: a lossy knob |
 //!
-//! To add a family, write its crate and one row.
+//! To add a family, write its crate and one row. A new file of rows also needs its `mod` line and its entry
+//! among the files in `strategy/rows.rs`; a new crate its line in `harness/Cargo.toml` and among the sources
+//! of `build.rs`, which tell whether a commit is clean. A new axis needs its arms in [`Axis`] and its field
+//! in [`Options`].
 
 mod axis;
 mod id;
@@ -34,12 +37,12 @@ pub use id::StrategyId;
 pub use method::{Method, Options};
 pub use parse::IdError;
 pub use refusal::Refusal;
-pub use row::{Colour, GREY, Role, Row, Sizes};
-pub use rows::{BASELINE, CONTROL, EARLY_EXIT, RASTER_SPHERE, row, rows};
+pub use row::{Colour, GREY, Role, Row, Sizes, StandIn};
+pub use rows::{BASELINE, CONTROL, EARLY_EXIT, RASTER_SPHERE, default_ids, row, rows};
 pub use table::{list, markdown};
 
 #[cfg(test)]
-use rows::made_up;
+pub(crate) use rows::made_up;
 
 #[cfg(test)]
 mod tests;

@@ -106,7 +106,7 @@ impl VplMaker {
             is_reflected: casts && args.bounce.primary_ray == Primary::Reflected,
             is_corrected: casts && args.bounce.correct_rays,
             range_scale: f64::from(set.range_scale),
-            random_m: drawn_span(scene, &args.bounce).map(|span| [span.low_m, span.high_m]),
+            given_ranges_m: drawn_span(scene, &args.bounce).map(|span| [span.low_m, span.high_m]),
             has_fresnel: true,
             build_errors: results::Errors::new(),
             spacing_m: f64::from(set.spacing_m),

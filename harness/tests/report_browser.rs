@@ -50,7 +50,7 @@ fn the_table_shows_the_data() {
             ("contributing", record.lists.contributing_per_sample.expect("measured")),
             ("missed", record.lists.missed_pairs.expect("measured") as f64),
             ("max_diff", record.image.max_abs_diff.expect("measured")),
-            ("lists_bytes", record.lists.bytes as f64),
+            ("lists_bytes", record.lists.list_bytes as f64),
             ("overflow", record.lists.overflowed_groups as f64),
         ];
         for (metric, expected) in values {

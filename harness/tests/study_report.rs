@@ -149,7 +149,7 @@ fn odd_records_do_no_harm() {
                 for record in &mut results.records {
                     (record.times.assign_ms, record.times.shade_ms) = (f64::NAN, f64::INFINITY);
                     record.strategy = "</script><script>throw 1</script>/\u{1f4a1}".into();
-                    record.image.files.image = Some("../../etc/passwd".into());
+                    record.image.files.tone_mapped = Some("../../etc/passwd".into());
                 }
             }
             _ => {}

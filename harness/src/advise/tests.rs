@@ -12,7 +12,7 @@ fn record(strategy: &str, times_ms: &[f64], bytes: u64) -> Record {
     record.times.frames = times_ms.len() as u32;
     record.times.rounds = record.times.frames;
     record.setting.along_path = false;
-    (record.lists.bytes, record.lists.memory_bytes) = (bytes, Some(bytes));
+    (record.lists.list_bytes, record.lists.assignment_bytes) = (bytes, Some(bytes));
     record.times.light_build_ms = Some(9.7);
     (record.lists.missed_pairs, record.image.max_abs_diff, record.image.differing_channels) =
         (Some(0), Some(0.0), Some(0));
@@ -62,8 +62,11 @@ fn variants_keep_family_and_source() {
         let all = variants(&id);
         assert!(all.len() >= 4);
         for variant in all {
-            assert_eq!(StrategyId::read(&variant).family(), id.family());
-            assert_eq!(variant.ends_with("/bvh"), id.ends_with("/bvh"), "{variant}");
+            assert_eq!(
+                (variant.family(), variant.is_bvh()),
+                (id.family(), id.is_bvh()),
+                "{variant}"
+            );
         }
     }
 }
@@ -208,11 +211,19 @@ fn the_last_round_holds_what_the_answer_needs() {
     all.iter_mut().chain(&mut other).for_each(|record| record.lists.longest = 20);
     let (families, parameters) = (of(all), of(other));
     let exact = last_ids(&families, &parameters, 0.0);
-    assert!(exact.contains(&"Sphere".to_owned()) && !exact.contains(&"None".to_owned()));
+    assert!(exact.contains(&"Sphere".into()) && !exact.contains(&"None".into()));
     let linear = exact.iter().filter(|id| !id.ends_with("/bvh") && *id != "Sphere").count();
     assert_eq!(linear, 2, "{exact:?}");
     assert!(exact.iter().all(|id| !id.contains("cap")));
     let lossy = last_ids(&families, &parameters, 0.001);
-    assert!(lossy.contains(&"T-E/28x28/bvh/cap16".to_owned()), "{lossy:?}");
+    assert!(lossy.contains(&"T-E/28x28/bvh/cap16".into()), "{lossy:?}");
     assert!(!lossy.iter().any(|id| id.ends_with("cap32")), "longer than any list: {lossy:?}");
+}
+
+#[test]
+fn a_new_row_joins_the_search() {
+    let family = crate::strategy::made_up::FAMILY;
+    let id = StrategyId::read(family);
+    assert!(first_ids().split(',').any(|first| first == id.as_str()), "{}", first_ids());
+    assert_eq!(variants(&id), ["Made-Up/5", "Made-Up/9"]);
 }

@@ -113,7 +113,8 @@ fn choose<'a>(within: &[&'a Record]) -> Option<(&'a Record, Vec<&'static str>)> 
         };
     keep(&mut left, "it loses nothing", &|record| f64::from(u8::from(!record.is_exact())), 1.0);
     keep(&mut left, "it errs less", &|record| error_of(record).unwrap_or(f64::INFINITY), 1.0);
-    let memory = |record: &Record| record.lists.memory_bytes.unwrap_or(record.lists.bytes) as f64;
+    let memory =
+        |record: &Record| record.lists.assignment_bytes.unwrap_or(record.lists.list_bytes) as f64;
     keep(&mut left, "it needs less memory", &memory, ALIKE_MEMORY);
     keep(&mut left, "it is simpler", &complexity, 1.0);
     left.first().map(|best| (*best, reasons))

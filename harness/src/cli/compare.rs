@@ -13,7 +13,7 @@ use super::{
     stage::StageArgs,
     values::{self, Strategies},
 };
-use crate::truth_level::TruthLevel;
+use crate::{strategy::default_ids, truth_level::TruthLevel};
 
 /// The options of `lightbench compare`.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub struct CompareArgs {
         long,
         display_order = 6,
         value_name = "A,B,C",
-        default_value = "None,Sphere,DC-I,SC-E/bvh"
+        default_value = default_ids()
     )]
     pub strategies: Strategies,
 

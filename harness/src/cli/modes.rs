@@ -9,7 +9,7 @@ use super::named::named;
 pub(super) const MODES: [(Mode, &str); 4] = [
     (Mode::Deferred, "From a G-buffer, in a compute pass"),
     (Mode::Forward, "In the fragment shader that draws the surfaces"),
-    (Mode::DeferredIds, "From a G-buffer that also holds the model of each pixel, which M reads"),
+    (Mode::DeferredIds, "From a G-buffer that also holds the model of each pixel"),
     (
         Mode::ForwardNoPrepass,
         "As forward, without a depth pre-pass; strategies that read depth draw one, in their time",
@@ -54,7 +54,7 @@ impl Modes {
     pub(super) fn parser() -> impl TypedValueParser<Value = Self> {
         let single = MODES.map(|(mode, help)| (Self::One(mode), help));
         let several = [
-            (Self::Both, "deferred, then forward"),
+            (Self::Both, "Deferred, then forward"),
             (
                 Self::Frames,
                 "The three frames of a renderer: forward-no-prepass, forward and deferred-ids",

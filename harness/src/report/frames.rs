@@ -22,11 +22,12 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
         ),
         FrameKind::Deferred => (
             "deferred",
-            "The renderer draws depth and a G-buffer anyway. M pays for a pass that draws the model id of each pixel.",
+            "The renderer draws depth and a G-buffer anyway. A strategy that needs \
+             the model of each pixel pays for a pass that draws it.",
         ),
         FrameKind::DeferredIds => (
             "deferred, ids",
-            "The G-buffer also holds the model id of each pixel, so M pays for no extra pass.",
+            "The G-buffer also holds the model of each pixel, so no strategy pays for a pass that draws it.",
         ),
     }
 }
@@ -104,7 +105,7 @@ pub(crate) fn table(caption: &str, records: &[&Record], machine: &Machine) -> Ht
 pub(crate) const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
     passes of the frame, and the span from the first pass to the last with the gaps between them, where it is \
     known. A figure is derived if another kind of frame was measured instead. Such a \
-    figure adds the depth pre-pass to a strategy that reads depth, or leaves out M\u{2019}s pass of model ids.";
+    figure adds the depth pre-pass to a strategy that reads depth, or leaves out the pass that draws model ids.";
 
 /// A section per set of lights that was measured in several modes; empty where there is none.
 pub(crate) fn sections(results: &Results) -> Html {

@@ -64,7 +64,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
             ("columns", page::columns()),
             ("terms", terms()),
             ("reading", Html::default()),
-            ("file", "results.json".into()),
+            ("file", "report-data.json".into()),
             ("link", "#from".into()),
             ("provenance", page::provenance(results)),
             ("data", in_script(&results.to_json())),

@@ -17,12 +17,14 @@ const MOST_OPEN: usize = 6;
 pub(crate) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Html {
     let known =
         |name: &Option<String>| name.as_deref().filter(|name| kept.contains(name)).is_some();
-    let has_one =
-        |record: &Record| known(&record.image.files.image) || known(&record.image.files.difference);
+    let has_one = |record: &Record| {
+        known(&record.image.files.tone_mapped) || known(&record.image.files.difference)
+    };
     if !comparison.records.iter().any(|(_, record)| has_one(record)) {
         return html!("<p class=\"note\">No pictures were kept.</p>\n");
     }
-    let baseline = comparison.baseline().and_then(|record| record.image.files.image.as_deref());
+    let baseline =
+        comparison.baseline().and_then(|record| record.image.files.tone_mapped.as_deref());
     let all = || comparison.records.iter().map(|(_, record)| *record);
     let mut shown: Vec<&Record> = all().filter(|record| !record.is_baseline()).collect();
     if shown.is_empty() {
@@ -43,7 +45,7 @@ pub(crate) fn pictures(comparison: &Comparison<'_>, kept: &BTreeSet<&str>) -> Ht
 fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Html {
     let images = &record.image.files;
     let known = |name: Option<&'_ str>| name.filter(|name| kept.contains(name)).map(str::to_owned);
-    let image = known(images.image.as_deref());
+    let image = known(images.tone_mapped.as_deref());
     let reference = known(baseline).or_else(|| known(images.baseline.as_deref()));
     let difference = known(images.difference.as_deref());
     let pair = PicturePair {
@@ -94,11 +96,11 @@ fn heat_map(record: &Record, heat: Option<&str>) -> Html {
 pub(crate) fn list_lengths(comparison: &Comparison<'_>) -> Html {
     let records = comparison.records.iter().map(|(_, record)| *record);
     let all: Vec<Histogram> = records
-        .filter(|record| record.lists.histogram.iter().any(|groups| *groups > 0))
+        .filter(|record| record.lists.lengths_read.iter().any(|groups| *groups > 0))
         .map(|record| Histogram {
             title: record.strategy.to_string(),
             x_label: "Lights in a list".to_owned(),
-            bins: bins(&record.lists.histogram),
+            bins: bins(&record.lists.lengths_read),
             class: record.strategy.class(),
             note: String::new(),
         })

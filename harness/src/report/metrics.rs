@@ -96,8 +96,8 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
             .terminal("faster")
             .best(Measured::leads)
             .about(
-                "How many times as fast as None. None evaluates every light at every sample; the other \
-                 strategies exit early where a light adds nothing.",
+                "How many times as fast as None. None evaluates every light at every sample; others \
+                 exit early where a light adds nothing, unless their id says no-exit.",
             ),
         figure(
             "speedup_sphere",
@@ -200,11 +200,11 @@ fn losses<'a>() -> Vec<Metric<'a>> {
 
 fn memory<'a>() -> Vec<Metric<'a>> {
     let lists_only = |m: &Measured<'_>| {
-        let is_stored = m.record.lists.memory_bytes.is_none() && m.record.lists.bytes > 0;
-        is_stored.then(|| count(m.record.lists.bytes))
+        let is_stored = m.record.lists.assignment_bytes.is_none() && m.record.lists.list_bytes > 0;
+        is_stored.then(|| count(m.record.lists.list_bytes))
     };
     vec![
-        figure("memory_bytes", "memory", "MiB", Less, |m| m.record.lists.memory_bytes.map(count), mebibytes)
+        figure("memory_bytes", "memory", "MiB", Less, |m| m.record.lists.assignment_bytes.map(count), mebibytes)
             .terminal("memory")
             .optional()
             .about(

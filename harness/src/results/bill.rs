@@ -9,13 +9,13 @@
 //! |---|---|---|
 //! | forward, no pre-pass | pays for a depth pre-pass | also light hidden surfaces that are drawn first |
 //! | forward | the frame has a depth pre-pass | the same |
-//! | deferred | the frame has depth and G-buffer; M pays for `model-ids` | the same |
+//! | deferred | the frame has depth and G-buffer; one that needs models pays for `model-ids` | the same |
 //! | deferred, ids in the G-buffer | the frame has everything | the same |
 
 use shading::Mode;
 
 use super::{PassKind, Record};
-use crate::strategy::{RASTER_SPHERE, StrategyId};
+use crate::strategy::StrategyId;
 
 /// The kind of a pass, which decides its bill. A pass that the pipeline does not know belongs to the strategy.
 /// In forward shading, the G-buffer is drawn only for a strategy that reads normals. Without a pre-pass, depth
@@ -34,7 +34,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
 pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
         "depth" | "gbuffer" | "model-ids" | "clay" => true,
-        "shade" => mode.is_forward() || strategy.family() == RASTER_SPHERE,
+        "shade" => mode.is_forward() || strategy.shade_rasterises(),
         _ => false,
     }
 }

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::{
     Record, Results, SCHEMA_VERSION,
-    flat::FlatResults,
+    flat::{FlatResults, fault},
     lack::lack,
     seal::{sealed, unsealed},
 };
@@ -107,7 +107,13 @@ impl Results {
         let (value, checksum) = unsealed(&bytes).map_err(fail)?;
         // From the text: the order of passes counts.
         let results = match value.get("schema_version").and_then(serde_json::Value::as_u64) {
-            Some(1) => serde_json::from_slice::<FlatResults>(&bytes).map(Self::from),
+            Some(1) => {
+                let flat = serde_json::from_slice::<FlatResults>(&bytes);
+                return match flat {
+                    Ok(flat) => Ok((flat.into(), checksum)),
+                    Err(error) => Err(fail(fault(&value).unwrap_or_else(|| error.to_string()))),
+                };
+            }
             Some(found) if found != u64::from(SCHEMA_VERSION) => {
                 return Err(ResultsError::Version { path: path.to_owned(), found });
             }

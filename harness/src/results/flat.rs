@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 
 use super::{
-    DeepImageRun, ImageFigures, ListFigures, Machine, Record, RejectedLight, Results,
-    SCHEMA_VERSION, Setting, Times, Truth, TruthImage, renamed::named_today,
+    DeepImageRun, ImageFigures, ListFigures, Machine, Record, RejectedLight, Results, Setting,
+    Times, Truth, TruthImage, Vpls, renamed::named_today,
 };
 
 /// The root of a file of schema 1.
@@ -44,13 +44,15 @@ struct FlatRecord {
     #[serde(flatten)]
     image: ImageFigures,
     #[serde(default)]
+    vpls: Option<Vpls>,
+    #[serde(default)]
     note: Option<String>,
 }
 
 impl From<FlatResults> for Results {
     fn from(flat: FlatResults) -> Self {
         Self {
-            schema_version: SCHEMA_VERSION,
+            schema_version: 1,
             machine: flat.machine,
             command: flat.command,
             truth: flat.truth,
@@ -73,15 +75,42 @@ impl From<FlatRecord> for Record {
             times,
             lists,
             image,
+            vpls,
             note,
         } = flat;
         let strategy = named_today(&strategy, &strategy_parameters, &setting);
-        Self { strategy, is_lossy, setting, times, lists, image, note }
+        Self { strategy, is_lossy, setting, times, lists, image, indirect: vpls, note }
     }
+}
+
+/// The record and the field at which a file of schema 1 cannot be read. The parser does not know the place of
+/// flattened fields.
+pub(super) fn fault(file: &Value) -> Option<String> {
+    let records = file.get("records")?.as_array()?;
+    records.iter().enumerate().find_map(|(ix, record)| {
+        let error = FlatRecord::deserialize(record).err()?;
+        let fields = record.as_object().into_iter().flatten();
+        let at_field = fields.into_iter().find_map(|(name, value)| {
+            let field = Value::Object([(name.clone(), value.clone())].into_iter().collect());
+            let error = field_error::<Setting>(&field)
+                .or_else(|| field_error::<Times>(&field))
+                .or_else(|| field_error::<ListFigures>(&field))
+                .or_else(|| field_error::<ImageFigures>(&field))?;
+            Some(format!("records[{ix}].{name}: {error}"))
+        });
+        Some(at_field.unwrap_or_else(|| format!("records[{ix}]: {error}")))
+    })
+}
+
+/// Why a section of a record cannot be read from a field; `None` where other fields are missing.
+fn field_error<T: DeserializeOwned>(field: &Value) -> Option<String> {
+    let error = T::deserialize(field).err()?.to_string();
+    (!error.starts_with("missing field")).then_some(error)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::SCHEMA_VERSION;
     use super::*;
 
     #[test]
@@ -92,11 +121,32 @@ mod tests {
             std::fs::write(&path, text).unwrap();
             Results::read(&path).unwrap()
         };
-        let flat = read(include_str!("example_schema_1.json"));
+        let mut flat = read(include_str!("example_schema_1.json"));
+        assert_eq!(flat.schema_version, 1, "pages say what they read");
+        let written: Value = serde_json::from_str(&flat.to_json()).unwrap();
+        assert_eq!(written["schema_version"], SCHEMA_VERSION);
+        flat.schema_version = SCHEMA_VERSION;
         assert_eq!(flat, read(include_str!("example.json")));
         let record = &flat.records[0];
         assert_eq!(record.lists.entries, 412_345);
         let passes: Vec<&str> = record.times.passes.iter().map(|(name, _)| name).collect();
         assert_eq!(passes, ["depth", "cull", "shade"], "passes keep their order");
+    }
+
+    #[test]
+    fn an_error_names_the_record_and_the_field() {
+        let example = include_str!("example_schema_1.json");
+        for (name, wrong, reason) in [
+            ("triangles", Value::from("many"), "expected u64"),
+            ("clock", Value::from("sundial"), "unknown variant `sundial`"),
+            ("longest_list", Value::from(-1), "expected u64"),
+            ("max_abs_diff", Value::from("x"), "expected f64"),
+        ] {
+            let mut file: Value = serde_json::from_str(example).unwrap();
+            file["records"][0][name] = wrong;
+            let fault = fault(&file).expect("a fault");
+            assert!(fault.starts_with(&format!("records[0].{name}: ")), "{fault}");
+            assert!(fault.contains(reason), "{fault}");
+        }
     }
 }

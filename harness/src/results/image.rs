@@ -44,8 +44,8 @@ pub type Errors = BTreeMap<String, Option<f64>>;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Images {
     /// The tone-mapped image.
-    #[serde(default)]
-    pub image: Option<String>,
+    #[serde(default, alias = "image")]
+    pub tone_mapped: Option<String>,
     /// The linear image, an EXR file of 32-bit floats.
     #[serde(default)]
     pub raw: Option<String>,

@@ -24,8 +24,8 @@ pub struct Vpls {
     /// Factor on the measured ranges.
     pub range_scale: f64,
     /// Bounds of ranges that do not come from rays, metres. Both are equal for a constant range.
-    #[serde(default)]
-    pub random_m: Option<[f64; 2]>,
+    #[serde(default, alias = "random_m")]
+    pub given_ranges_m: Option<[f64; 2]>,
     /// The largest width of blocks of merged pixels, metres; 0 without merging.
     pub spacing_m: f64,
     /// Distance below which a light gets no brighter, metres.
@@ -93,7 +93,8 @@ pub struct DeepImages {
     pub size_px: u32,
     /// Samples of surfaces along each side of a pixel.
     pub oversampling: u32,
-    /// How they were built: `compute`, `fragment`, `per-direction`, `linked-lists`, `conservative`.
+    /// How they were built: `compute`, `fragment`, `per-direction`,
+    /// `per-direction-batched`, `linked-lists`, `conservative`.
     pub build: String,
     /// Side of a pixel, metres.
     pub footprint_m: f64,
@@ -110,7 +111,7 @@ pub struct DeepImages {
 impl DeepImages {
     /// Directions over the hemisphere.
     pub fn directions(&self) -> u32 {
-        self.stacks * self.slices
+        self.stacks.saturating_mul(self.slices)
     }
 }
 

@@ -39,7 +39,7 @@ fn lack_of_comparison(args: &CompareArgs, records: &[Record]) -> Option<String> 
     }
     let Ok(asked) = args.choices() else { return None };
     // Unknown strategies come from another version, and cannot be compared.
-    if records.iter().any(|record| StrategyId::parse(&record.strategy).is_err()) {
+    if records.iter().any(|record| !record.strategy.is_runnable()) {
         return None;
     }
     let mut is_asked = vec![false; records.len()];

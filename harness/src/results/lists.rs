@@ -21,19 +21,19 @@ pub struct ListFigures {
     pub overflowed_groups: u64,
     /// Number of groups that samples read, per bin of list length: 0, 1, 2 to 3, 4 to 7 and so on. Empty if
     /// lists were not checked.
-    #[serde(default)]
-    pub histogram: Vec<u64>,
+    #[serde(default, alias = "histogram")]
+    pub lengths_read: Vec<u64>,
     /// Number of all groups, read or not, in the same bins. Empty if lists were not checked.
-    #[serde(default)]
-    pub all_groups: Vec<u64>,
+    #[serde(default, alias = "all_groups")]
+    pub lengths_all: Vec<u64>,
     /// GPU memory of groups and lists, bytes.
     #[serde(alias = "lists_bytes")]
-    pub bytes: u64,
+    pub list_bytes: u64,
     /// GPU memory of everything that assignment needs, bytes: lists, marks, bounds, pools, the
     /// hierarchy over the lights, and images that the renderer draws only for this method. `null` in older
     /// results and for methods without lists.
-    #[serde(default)]
-    pub memory_bytes: Option<u64>,
+    #[serde(default, alias = "memory_bytes")]
+    pub assignment_bytes: Option<u64>,
     /// View samples: pixels that show a surface; 0 if lists were not checked.
     pub samples: u64,
     /// Mean number of lights in the list that a sample reads.

@@ -22,7 +22,8 @@ const RESULTS: &str = "results.json";
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Metrics {
     /// The checksum of the results that they belong to.
-    of: String,
+    #[serde(alias = "of")]
+    results_checksum: String,
     records: Vec<RecordMetrics>,
 }
 
@@ -38,25 +39,25 @@ struct RecordMetrics {
 }
 
 impl Results {
-    fn metrics(&self, of: String) -> Metrics {
+    fn metrics(&self, results_checksum: String) -> Metrics {
         let one = |record: &super::Record| RecordMetrics {
             strategy: record.strategy.to_string(),
             mode: record.setting.mode,
             errors: record.image.errors.clone(),
             unbounded_errors: record.image.unbounded_errors.clone(),
             truth_errors: record.image.truth_errors.clone(),
-            build_errors: record.setting.vpls.as_ref().map(|vpls| vpls.build_errors.clone()),
+            build_errors: record.indirect.as_ref().map(|vpls| vpls.build_errors.clone()),
         };
-        Metrics { of, records: self.records.iter().map(one).collect() }
+        Metrics { results_checksum, records: self.records.iter().map(one).collect() }
     }
 
-    /// Reads the errors from the file beside a `results.json` with the checksum `of`, if the file exists.
-    pub(super) fn take_metrics(&mut self, results: &Path, of: &str) {
+    /// Reads the errors from the file beside a `results.json` with this checksum, if the file exists.
+    pub(super) fn take_metrics(&mut self, results: &Path, checksum: &str) {
         let known = beside(results)
             .and_then(|path| std::fs::read(path).ok())
             .filter(|bytes| unsealed(bytes).is_ok())
             .and_then(|bytes| serde_json::from_slice::<Metrics>(&bytes).ok());
-        let Some(known) = known.filter(|known| known.of == of) else { return };
+        let Some(known) = known.filter(|known| known.results_checksum == checksum) else { return };
         for (record, metrics) in self.records.iter_mut().zip(known.records) {
             if record.strategy != metrics.strategy.as_str() || record.setting.mode != metrics.mode {
                 continue;
@@ -64,7 +65,7 @@ impl Results {
             record.image.errors = metrics.errors;
             record.image.unbounded_errors = metrics.unbounded_errors;
             record.image.truth_errors = metrics.truth_errors;
-            if let (Some(vpls), Some(errors)) = (&mut record.setting.vpls, metrics.build_errors) {
+            if let (Some(vpls), Some(errors)) = (&mut record.indirect, metrics.build_errors) {
                 vpls.build_errors = errors;
             }
         }
@@ -78,14 +79,14 @@ impl Results {
     /// [`ResultsError`] names the file that cannot be read or written.
     pub fn write_metrics(&self, results: &Path) -> Result<(), ResultsError> {
         let Some(path) = beside(results) else { return Ok(()) };
-        let (mut known, of) = Self::read_raw(results)?;
+        let (mut known, checksum) = Self::read_raw(results)?;
         known.bill_as_today();
-        let own = self.metrics(of.clone());
-        if own == known.metrics(of.clone()) && !path.exists() {
+        let own = self.metrics(checksum.clone());
+        if own == known.metrics(checksum.clone()) && !path.exists() {
             return Ok(());
         }
-        known.take_metrics(results, &of);
-        if own == known.metrics(of) {
+        known.take_metrics(results, &checksum);
+        if own == known.metrics(checksum) {
             return Ok(());
         }
         let text = sealed(&own).map_err(|error| ResultsError::Parse {

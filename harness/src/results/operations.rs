@@ -56,6 +56,6 @@ impl From<shading::Operations> for Operations {
 impl Operations {
     /// Listed terms of both kinds.
     pub fn listed(&self) -> u64 {
-        self.diffuse + self.specular
+        self.diffuse.saturating_add(self.specular)
     }
 }

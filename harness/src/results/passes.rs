@@ -51,11 +51,11 @@ impl PassTimes {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spans {
     /// Of the passes that assign lights and light pixels, ms.
-    #[serde(deserialize_with = "nans_from_nulls")]
-    pub assign_and_shade_ms: Vec<f64>,
+    #[serde(deserialize_with = "nans_from_nulls", alias = "assign_and_shade_ms")]
+    pub assign_and_shade_samples_ms: Vec<f64>,
     /// Of all passes, ms.
-    #[serde(deserialize_with = "nans_from_nulls")]
-    pub frame_ms: Vec<f64>,
+    #[serde(deserialize_with = "nans_from_nulls", alias = "frame_ms")]
+    pub frame_samples_ms: Vec<f64>,
 }
 
 /// The passes of a frame by name, in the order in which they run. A map in JSON.

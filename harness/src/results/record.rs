@@ -1,8 +1,8 @@
-//! One measured method: its setting, times, lists and image.
+//! One measured method: its setting, times, lists, image and indirect light.
 
 use serde::{Deserialize, Serialize};
 
-use super::{ImageFigures, ListFigures, Setting, Times};
+use super::{ImageFigures, ListFigures, Setting, Times, Vpls};
 use crate::strategy::StrategyId;
 
 /// One strategy on one scene in one mode.
@@ -13,7 +13,7 @@ pub struct Record {
     /// Whether a setting of the method loses light on purpose.
     #[serde(default)]
     pub is_lossy: bool,
-    /// The scene, the lights and the camera, equal for all methods of a run.
+    /// The scene, the lights, the camera and the mode.
     pub setting: Setting,
     /// Its times.
     pub times: Times,
@@ -21,6 +21,9 @@ pub struct Record {
     pub lists: ListFigures,
     /// The differences and errors of its image.
     pub image: ImageFigures,
+    /// The virtual point lights, if there are any: how they were made, their number and their times.
+    #[serde(default)]
+    pub indirect: Option<Vpls>,
     /// A note for readers of this record.
     #[serde(default)]
     pub note: Option<String>,

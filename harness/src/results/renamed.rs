@@ -1,50 +1,15 @@
 //! Records of schema 1, under the ids that say today what they were.
 //!
-//! Two ids have changed their meaning. `G/20x20x20` cut the box of the lights' supports, which is
+//! Ids that have changed their meaning stand in their rows of the registry, as [`StandIn`]s. `G/20x20x20` cut the box of the lights' supports, which is
 //! `G/20x20x20/supports` now. `T-I/28x28` asked for HS+SAT-N, but stages had no far plane then, and
 //! without far corners the shader ran HS only: that is `T-I/28x28/hs`.
 
 use std::collections::BTreeMap;
 
-use assign::FrustumTests;
-use assign_grid::GridBox;
 use serde_json::Value;
 
 use super::Setting;
-use crate::strategy::{Options, StrategyId};
-
-/// An id that has changed its meaning.
-struct Renaming {
-    family: &'static str,
-    /// The parameter that tells an old record, and its value.
-    told_by: (&'static str, &'static str),
-    /// Whether the setting lets the record be an old one.
-    may_be_old: fn(&Setting) -> bool,
-    /// Names what the record was.
-    to_today: fn(&mut Options),
-    /// Undoes that.
-    to_then: fn(&mut Options),
-}
-
-const RENAMINGS: [Renaming; 2] = [
-    Renaming {
-        family: "G",
-        told_by: ("box", "lights"),
-        may_be_old: |_| true,
-        to_today: |options| options.grid_box = GridBox::Supports,
-        to_then: |options| options.grid_box = GridBox::default(),
-    },
-    Renaming {
-        family: "T-I",
-        told_by: ("tests", "hs+sat-n"),
-        may_be_old: |setting| setting.planes.is_none(),
-        to_today: |options| options.tests = Some(HS),
-        to_then: |options| options.tests = None,
-    },
-];
-
-const HS: FrustumTests =
-    FrustumTests { hs: true, sat_e: false, sat_n: false, sat_p: false, sat_v: false };
+use crate::strategy::{StandIn, StrategyId};
 
 /// The id that says today what a record of schema 1 was.
 pub(super) fn named_today(
@@ -53,20 +18,19 @@ pub(super) fn named_today(
     setting: &Setting,
 ) -> StrategyId {
     let id = StrategyId::read(id);
-    let is_old = |renaming: &&Renaming| {
-        let (name, value) = renaming.told_by;
+    let is_old = |stand_in: &&StandIn| {
+        let (name, value) = stand_in.told_by;
         let has_value = parameters.get(name).and_then(Value::as_str) == Some(value);
-        renaming.family == id.family() && has_value && (renaming.may_be_old)(setting)
+        has_value && (setting.planes.is_none() || !stand_in.needs_no_planes)
     };
-    let renaming = RENAMINGS.iter().find(is_old);
-    renaming.and_then(|renaming| id.with(renaming.to_today).ok()).unwrap_or(id)
+    let stand_in = id.row().and_then(|row| row.stand_ins.iter().find(is_old));
+    stand_in.and_then(|stand_in| id.with(stand_in.to_today).ok()).unwrap_or(id)
 }
 
 /// The id under which an old command asked for what is called `id` today: its own where it kept it.
 pub(super) fn named_then(id: &StrategyId) -> StrategyId {
-    let renaming = RENAMINGS.iter().find(|renaming| renaming.family == id.family());
-    let renaming = renaming.filter(|_| id.stand_in().is_some());
-    renaming.and_then(|renaming| id.with(renaming.to_then).ok()).unwrap_or_else(|| id.clone())
+    let then = id.row_of_stand_in().and_then(|stand_in| id.with(stand_in.to_then).ok());
+    then.unwrap_or_else(|| id.clone())
 }
 
 #[cfg(test)]

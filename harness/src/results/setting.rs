@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Mode, Planes, Vpls};
+use super::{Mode, Planes};
 
-/// The scene, the lights and the camera, equal for all methods of a run.
+/// The scene, the lights and the camera: the same in all records of a run, except [`mode`](Self::mode), of
+/// which a run may have several.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// The scene's id, or its file's name.
@@ -66,9 +67,6 @@ pub struct Setting {
     pub light_order: Option<String>,
     /// The seed of the scattered lights.
     pub seed: u64,
-    /// The virtual point lights, if there are any.
-    #[serde(default)]
-    pub vpls: Option<Vpls>,
     /// The camera's position, world space, metres.
     #[serde(default)]
     pub eye: [f64; 3],

@@ -27,9 +27,7 @@ impl Results {
             all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);
         }
         for record in &mut self.records {
-            if let std::borrow::Cow::Owned(shown) = visible(&record.strategy) {
-                record.strategy = shown.into();
-            }
+            record.strategy.show_hidden();
             all.extend([&mut record.setting.scene, &mut record.setting.scene_hash]);
             let known = [
                 &mut record.setting.path_hash,
@@ -41,7 +39,7 @@ impl Results {
                 &mut record.note,
             ];
             all.extend(known.into_iter().flatten());
-            if let Some(vpls) = &mut record.setting.vpls {
+            if let Some(vpls) = &mut record.indirect {
                 all.push(&mut vpls.ranges);
                 let deep = vpls.deep.iter_mut();
                 all.extend(deep.flat_map(|deep| [&mut deep.build, &mut deep.spread]));

@@ -19,7 +19,7 @@ impl Record {
             (!samples.is_empty()).then(|| self.middle_ms(samples))
         };
         [self.times.span_ms, self.times.frame_span_ms] =
-            [of(|spans| &spans.assign_and_shade_ms), of(|spans| &spans.frame_ms)];
+            [of(|spans| &spans.assign_and_shade_samples_ms), of(|spans| &spans.frame_samples_ms)];
     }
 
     /// The time of the selected passes, summed per frame, ms: median, or mean along a path. 0 without such a

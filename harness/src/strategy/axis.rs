@@ -165,8 +165,8 @@ impl Axis {
             },
             Self::Specular => match options.specular {
                 SpecularCut::None => return None,
-                SpecularCut::Below(radiance) => ("specular_threshold", radiance.into()),
-                SpecularCut::ReflectedCone(degrees) => ("lobe_degrees", degrees.into()),
+                SpecularCut::Below(radiance) => ("specular_threshold", shortest(radiance)),
+                SpecularCut::ReflectedCone(degrees) => ("lobe_degrees", shortest(degrees)),
                 SpecularCut::WhereDiffuse => ("specular_where_diffuse", true.into()),
             },
             Self::Cap => ("list_cap", options.cap?.into()),
@@ -175,6 +175,11 @@ impl Axis {
             Self::Exit => return None,
         })
     }
+}
+
+/// The shortest decimal of a number of 32 bits: 0.001, not 0.0010000000474974513.
+fn shortest(number: f32) -> Value {
+    number.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
 /// The number after a prefix, from 1.

@@ -1,5 +1,7 @@
 //! The id of a strategy: a family, and a point on its axes.
 
+mod stored;
+
 use std::{
     cmp::Ordering,
     collections::BTreeMap,
@@ -11,10 +13,9 @@ use std::{
 use assign::{FrustumTests, LightSource};
 use assign_clustered::SpecularCut;
 use assign_grid::GridBox;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Axis, IdError, Options, Role, Row, parse};
+use super::{Axis, IdError, Options, Role, Row, StandIn, parse};
 
 /// The id of a strategy, such as `SC-E/48x48x40/bvh`.
 ///
@@ -22,12 +23,14 @@ use super::{Axis, IdError, Options, Role, Row, parse};
 /// segment per axis that is not at its default, in the order of [`Axis::ALL`]. Ids are equal where their
 /// texts are. Stored results may hold ids that this program cannot run. These keep their text, have no
 /// row where the family is unknown, and say what their segments say.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(from = "Stored", into = "StoredParts")]
+#[derive(Clone, Debug)]
 pub struct StrategyId {
     text: String,
     row: Option<&'static Row>,
     options: Options,
+    is_runnable: bool,
+    /// Parameters of a stored result that the id does not say.
+    unread: BTreeMap<String, Value>,
 }
 
 impl StrategyId {
@@ -42,7 +45,7 @@ impl StrategyId {
     pub fn read(id: &str) -> Self {
         Self::parse(id).unwrap_or_else(|_| {
             let (row, options) = parse::read_foreign(id);
-            Self { text: id.to_owned(), row, options }
+            Self { is_runnable: false, text: id.to_owned(), row, options, unread: BTreeMap::new() }
         })
     }
 
@@ -54,20 +57,28 @@ impl StrategyId {
             text += "/";
             text += &segment;
         }
-        Self { text, row: Some(row), options }
+        Self { text, row: Some(row), options, is_runnable: true, unread: BTreeMap::new() }
     }
 
     /// The same family with other options.
     ///
     /// # Errors
     ///
-    /// Options that contradict each other.
+    /// An id that this program cannot run, an option that the family does not have, and options that
+    /// contradict each other.
     pub fn with(&self, change: impl FnOnce(&mut Options)) -> Result<Self, IdError> {
-        let row = self.row.ok_or_else(|| IdError::Unknown { id: self.text.clone() })?;
+        let (row, _) = parse::parse(&self.text)?;
         let mut options = self.options.clone();
         change(&mut options);
+        let mut lacking = Axis::ALL.iter().filter(|axis| !row.has_axis(**axis));
+        if let Some(segment) = lacking.find_map(|axis| axis.segment(&options)) {
+            return Err(parse::refuse(&self.text, row, &segment));
+        }
         parse::check_pairs(&self.text, row, &options)?;
-        Ok(Self::new(row, options))
+        let changed = Self::new(row, options);
+        // What the text says is what the options say.
+        Self::parse(&changed.text)?;
+        Ok(changed)
     }
 
     /// The id as text.
@@ -83,6 +94,11 @@ impl StrategyId {
     /// The family's row; `None` where this program does not know the family.
     pub fn row(&self) -> Option<&'static Row> {
         self.row
+    }
+
+    /// Whether this program can run it.
+    pub fn is_runnable(&self) -> bool {
+        self.is_runnable
     }
 
     /// The point on the axes.
@@ -104,6 +120,11 @@ impl StrategyId {
     /// a depth pre-pass must draw one for it.
     pub fn reads_depth(&self) -> bool {
         self.row.is_some_and(|row| row.needs.depth)
+    }
+
+    /// Whether the pass that lights pixels rasterises triangles in every mode.
+    pub fn shade_rasterises(&self) -> bool {
+        self.row.is_some_and(|row| row.shade_rasterises)
     }
 
     /// Whether it finds lights through the hierarchy.
@@ -151,7 +172,7 @@ impl StrategyId {
         let mut short = self.family().to_owned();
         let Some(row) = self.row else { return short };
         let is_stand_in =
-            |segment: &String| row.stand_ins.iter().any(|(known, _)| known == segment);
+            |segment: &String| row.stand_ins.iter().any(|known| known.segment == segment);
         let segments = [
             self.is_parted().then(|| self.size().to_owned()),
             Axis::Box.segment(&self.options),
@@ -167,17 +188,25 @@ impl StrategyId {
     /// What it is instead of the comparison paper's strategy that it stands in for: `G over supports`.
     /// `None` where it stands in for none.
     pub fn stand_in(&self) -> Option<&'static str> {
-        let has = |segment: &str| self.text.split('/').skip(1).any(|known| known == segment);
-        self.row?.stand_ins.iter().find(|(segment, _)| has(segment)).map(|(_, what)| *what)
+        self.row_of_stand_in().map(|stand_in| stand_in.what)
     }
 
-    /// Whether the comparison paper has it: lists without a hierarchy, whole models, grids that do not
-    /// look at the surfaces. Its stand-ins count too.
+    /// How it stands in for the comparison paper's strategy; `None` where it stands in for none.
+    pub(crate) fn row_of_stand_in(&self) -> Option<&'static StandIn> {
+        let has = |segment: &str| self.text.split('/').skip(1).any(|known| known == segment);
+        self.row?.stand_ins.iter().find(|known| has(known.segment))
+    }
+
+    /// Whether the comparison paper has it: whole models, and grids that do not look at the surfaces. Only
+    /// sizes, tests and the box of a grid may differ from their defaults. Its stand-ins count too.
     pub fn is_of_the_paper(&self) -> bool {
+        let free = [Axis::Tests, Axis::Box];
+        let mut fixed = Axis::ALL.iter().filter(|axis| !free.contains(axis));
         self.role() == Some(Role::ComparisonPaper)
-            && !self.is_bvh()
+            && self.is_runnable
             && !self.is_parted()
             && self.options.grid_box != GridBox::Surfaces
+            && fixed.all(|axis| axis.segment(&self.options).is_none())
     }
 
     /// The style class that colours it: the same for a family in every table and chart, grey where the
@@ -186,9 +215,10 @@ impl StrategyId {
         self.row.map_or_else(|| "strategy-none".to_owned(), Row::class)
     }
 
-    /// Parameters and settings by name, as results store them. Empty for an unknown family.
+    /// Parameters and settings by name, as results store them: those of the id, and stored ones that it
+    /// does not say, such as those of an unknown family.
     pub fn parameters(&self) -> BTreeMap<String, Value> {
-        let Some(row) = self.row else { return BTreeMap::new() };
+        let Some(row) = self.row else { return self.unread.clone() };
         let number = |text: &str| {
             let whole = text.parse::<u64>().map(Value::from);
             whole.or_else(|_| text.parse::<f64>().map(Value::from)).unwrap_or_else(|_| text.into())
@@ -196,7 +226,8 @@ impl StrategyId {
         let values = self.size().split('x').filter(|value| !value.is_empty()).map(number);
         let parameters = row.parameters.iter().copied().zip(values);
         let settings = row.axes.iter().filter_map(|axis| axis.parameter(&self.options));
-        parameters.chain(settings).map(|(name, value)| (name.to_owned(), value)).collect()
+        let said = parameters.chain(settings).map(|(name, value)| (name.to_owned(), value));
+        said.chain(self.unread.clone()).collect()
     }
 }
 
@@ -261,39 +292,6 @@ impl From<&str> for StrategyId {
 impl From<String> for StrategyId {
     fn from(id: String) -> Self {
         Self::read(&id)
-    }
-}
-
-/// A strategy in a file of results: its id alone in schema 1, its parts since.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Stored {
-    Id(String),
-    Parts(StoredParts),
-}
-
-/// A strategy in a file of results. The id says everything; the other fields save readers a parser.
-#[derive(Serialize, Deserialize)]
-struct StoredParts {
-    id: String,
-    #[serde(default)]
-    family: String,
-    #[serde(default)]
-    parameters: BTreeMap<String, Value>,
-}
-
-impl From<Stored> for StrategyId {
-    fn from(stored: Stored) -> Self {
-        match stored {
-            Stored::Id(id) | Stored::Parts(StoredParts { id, .. }) => Self::read(&id),
-        }
-    }
-}
-
-impl From<StrategyId> for StoredParts {
-    fn from(id: StrategyId) -> Self {
-        let (family, parameters) = (id.family().to_owned(), id.parameters());
-        Self { id: id.text, family, parameters }
     }
 }
 

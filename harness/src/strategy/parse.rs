@@ -101,13 +101,13 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn set_axis(&mut self, axis: Axis, segment: String) -> Result<(), IdError> {
         if !self.row.has_axis(axis) {
-            return Err(self.refuse(&segment));
+            return Err(refuse(self.id, self.row, &segment));
         }
         if let Some((_, earlier)) = self.set.iter().find(|(known, _)| *known == axis) {
             let reason = format!("only one segment may be {}", axis.accepted());
             return Err(contradiction(self.id, earlier, &segment, &reason));
         }
-        axis.set(&mut self.options, &segment).ok_or_else(|| self.refuse(&segment))?;
+        axis.set(&mut self.options, &segment).ok_or_else(|| refuse(self.id, self.row, &segment))?;
         self.set.push((axis, segment));
         Ok(())
     }
@@ -121,25 +121,25 @@ impl Reader<'_> {
         }
         let parameters = numbers(&segment, self.row.parameters.len());
         let parameters = parameters.filter(|_| earlier.is_empty());
-        self.options.parameters = parameters.ok_or_else(|| self.refuse(&segment))?;
+        self.options.parameters = parameters.ok_or_else(|| refuse(self.id, self.row, &segment))?;
         Ok(())
     }
+}
 
-    fn refuse(&self, segment: &str) -> IdError {
-        let row = self.row;
-        let mut accepted: Vec<String> = Vec::new();
-        if !row.parameters.is_empty() {
-            accepted.push(row.parameters.join(" x "));
-        }
-        accepted.extend(row.axes.iter().map(|axis| axis.accepted().to_owned()));
-        let accepted = if accepted.is_empty() {
-            "nothing after a slash".to_owned()
-        } else {
-            format!("segments that are {}", accepted.join(", or "))
-        };
-        let reason = format!("{segment:?} is unknown: {} takes {accepted}", row.family);
-        IdError::Segment { id: self.id.to_owned(), reason }
+/// The error of a segment that a family does not have.
+pub(super) fn refuse(id: &str, row: &Row, segment: &str) -> IdError {
+    let mut accepted: Vec<String> = Vec::new();
+    if !row.parameters.is_empty() {
+        accepted.push(row.parameters.join(" x "));
     }
+    accepted.extend(row.axes.iter().map(|axis| axis.accepted().to_owned()));
+    let accepted = if accepted.is_empty() {
+        "nothing after a slash".to_owned()
+    } else {
+        format!("segments that are {}", accepted.join(", or "))
+    };
+    let reason = format!("{segment:?} is unknown: {} takes {accepted}", row.family);
+    IdError::Segment { id: id.to_owned(), reason }
 }
 
 /// Two segments that cannot stand in one id.

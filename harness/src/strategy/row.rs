@@ -48,6 +48,24 @@ pub struct Colour {
 /// The grey of families that compete with none, and of those that this program does not know.
 pub const GREY: Colour = Colour { light: "#8a8f93", dark: "#8d9398" };
 
+/// An id that stands in for the comparison paper's strategy, because earlier versions measured it under the
+/// id that the paper's strategy has today.
+#[derive(Clone, Copy, Debug)]
+pub struct StandIn {
+    /// The segment of the id: `hs`.
+    pub segment: &'static str,
+    /// What it is instead of the paper's strategy: `T-I by HS only`.
+    pub what: &'static str,
+    /// The parameter by which schema 1 tells an old record, and its value.
+    pub told_by: (&'static str, &'static str),
+    /// Whether only records that store no planes can be old.
+    pub needs_no_planes: bool,
+    /// Turns the old id into that of today.
+    pub to_today: fn(&mut Options),
+    /// Undoes that.
+    pub to_then: fn(&mut Options),
+}
+
 /// The parameters that searches try.
 #[derive(Clone, Copy, Debug)]
 pub struct Sizes {
@@ -91,9 +109,12 @@ pub struct Row {
     /// The largest relative difference of a channel that it states about itself; `None` where no bit
     /// may differ.
     pub tolerance: Option<f64>,
-    /// Segments by which an id of this family stands in for the comparison paper's strategy, because
-    /// earlier versions measured it, each with what to say of it.
-    pub stand_ins: &'static [(&'static str, &'static str)],
+    /// Ids that stand in for the comparison paper's strategy.
+    pub stand_ins: &'static [StandIn],
+    /// Whether the pass that lights pixels rasterises triangles in every mode.
+    pub shade_rasterises: bool,
+    /// The id under which `compare` measures it where the command line names no strategies.
+    pub in_default: Option<&'static str>,
     /// Its colour in tables and charts.
     pub colour: Colour,
     /// Makes it on a device.
@@ -108,7 +129,7 @@ pub(super) const NEEDS_NOTHING: Needs =
 pub(super) const NEEDS_DEPTH: Needs = Needs { depth: true, ..NEEDS_NOTHING };
 
 impl Row {
-    /// A family without groups, parameters or needs: a start for rows.
+    /// A family without groups, parameters or needs: a start for rows. It cannot be made.
     pub(super) const PLAIN: Self = Self {
         family: "",
         name: "",
@@ -126,8 +147,16 @@ impl Row {
         refuses: &[],
         tolerance: None,
         stand_ins: &[],
+        shade_rasterises: false,
+        in_default: None,
         colour: GREY,
-        make: |_, _| Ok(Method::Clay),
+        make: |_, _| {
+            Err(AssignError::Parameter {
+                field: "make".into(),
+                value: "missing in a row of the registry".into(),
+                accepted: "the function that makes the strategy".into(),
+            })
+        },
     };
 
     /// The id with the parameters that it takes where none are given.

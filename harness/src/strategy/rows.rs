@@ -9,6 +9,8 @@ pub(crate) mod made_up;
 mod models;
 mod tiles;
 
+use std::sync::LazyLock;
+
 use super::Row;
 
 /// The id of no culling, which the others are compared with.
@@ -39,6 +41,13 @@ const FILES: &[&[Row]] = &[
 /// All rows, from the simple strategies to the involved.
 pub fn rows() -> impl DoubleEndedIterator<Item = &'static Row> + Clone {
     FILES.iter().copied().flatten()
+}
+
+/// What `compare` measures where the command line names no strategies: `None,Sphere`.
+pub fn default_ids() -> &'static str {
+    static IDS: LazyLock<String> =
+        LazyLock::new(|| rows().filter_map(|row| row.in_default).collect::<Vec<_>>().join(","));
+    &IDS
 }
 
 /// The row of a family.

@@ -11,9 +11,16 @@ fn results() -> Results {
     let mut results: Results = serde_json::from_str(example).expect("the example");
     let mut record = results.records[0].clone();
     record.strategy = FAMILY.into();
-    record.setting.vpls = None;
+    record.indirect = None;
     results.records.push(record);
     results
+}
+
+/// A page without its style sheets, which name every family.
+fn without_styles(page: &str) -> String {
+    page.split("<style")
+        .map(|part| part.split_once("</style>").map_or(part, |(_, rest)| rest))
+        .collect()
 }
 
 #[test]
@@ -37,8 +44,15 @@ fn the_command_line_runs_it() {
 
 #[test]
 fn a_page_shows_it_in_a_colour_of_its_own() {
-    let page = render_html(&results(), &[]);
-    assert!(page.contains("strategy-made-up"), "a row of the table has its class");
+    let with = results();
+    let page = render_html(&with, &[]);
+    let row = "<i class=\"dot strategy-made-up\"></i>Made-Up/7";
+    assert!(page.contains(row), "its row of the table has its colour");
+    let marks = |page: &str| without_styles(page).matches("strategy-made-up").count();
+    assert!(marks(&page) > page.matches(row).count(), "a mark of a chart has its colour");
+    let mut without = with;
+    without.records.pop();
+    assert_eq!(marks(&render_html(&without, &[])), 0, "only its record brings its class");
     let rule = ".strategy-made-up { --colour: light-dark(#00594f, #d4ff5c); }";
     assert!(page.contains(rule) && page_colours().contains(rule), "the style colours it");
     let same = rows().filter(|row| row.colour.light == "#00594f");
@@ -47,7 +61,8 @@ fn a_page_shows_it_in_a_colour_of_its_own() {
 
 #[test]
 fn it_is_not_counted_among_the_comparison_papers() {
-    let id = StrategyId::read(FAMILY);
-    assert!(id.has_groups() && !id.is_of_the_paper());
-    assert!(StrategyId::read("SC-E").is_of_the_paper());
+    let mut record = results().records.pop().expect("its record");
+    assert!(record.strategy.has_groups() && !record.strategy.is_of_the_paper());
+    record.strategy = "SC-E".into();
+    assert!(record.strategy.is_of_the_paper());
 }

@@ -80,7 +80,7 @@ fn ranges_that_rays_do_not_measure_keep_the_lights_that_rays_keep() {
     let made = |name: &str, rule: &[&str]| {
         let out = folder.path().join(name);
         let (_, results) = run(&out, &[&drawn[..], &timed, rule].concat());
-        results.records[0].setting.vpls.clone().expect("virtual point lights")
+        results.records[0].indirect.clone().expect("virtual point lights")
     };
     let cast = made("cast", &["--ranges", "average"]);
     let all = made("all", &["--ranges", "random", "--random-ranges", "4,20"]);
@@ -97,7 +97,10 @@ fn ranges_that_rays_do_not_measure_keep_the_lights_that_rays_keep() {
     let within = 4.0 * 4.62 / (random.kept as f64).sqrt();
     assert!((random.mean_range_m - 12.0).abs() < within, "{random:?}");
     assert!((constant.mean_range_m - 7.0).abs() < 1e-3, "{constant:?}");
-    assert_eq!((random.random_m, constant.random_m), (Some([4.0, 20.0]), Some([7.0, 7.0])));
+    assert_eq!(
+        (random.given_ranges_m, constant.given_ranges_m),
+        (Some([4.0, 20.0]), Some([7.0, 7.0]))
+    );
 }
 
 #[test]
@@ -112,7 +115,7 @@ fn every_strategy_shows_the_same_indirect_light() {
         let what = format!("{} {}", record.strategy, record.setting.mode.name());
         assert_eq!(record.lists.missed_pairs, Some(0), "{what}");
         assert_eq!(record.image.differing_channels, Some(0), "{what}");
-        let vpls = record.setting.vpls.as_ref().expect("virtual point lights");
+        let vpls = record.indirect.as_ref().expect("virtual point lights");
         assert_eq!(
             (vpls.kept, record.setting.light_kinds.get("vpl").copied()),
             (record.setting.lights, Some(record.setting.lights))
@@ -332,7 +335,7 @@ fn a_quick_study_has_all_parts() {
     let page = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     // Brute force was compared with the single pass, image by image.
     let brute = &done.results["town-small-models-per-direction"].records[0];
-    let errors = &brute.setting.vpls.as_ref().expect("virtual point lights").build_errors;
+    let errors = &brute.indirect.as_ref().expect("virtual point lights").build_errors;
     assert!(errors["mean_error"].is_some_and(|error| error > 0.0 && error < 0.5), "{errors:?}");
     for claim in ["one-pass", "same-image", "fewer-lights"] {
         assert!(page.contains(&format!("data-claim=\"{claim}\"")), "{claim}");

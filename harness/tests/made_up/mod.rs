@@ -128,12 +128,12 @@ impl Maker {
         let shade = offset * 0.5 + (1.0 - in_assignment) * slope * count + bend;
         let mut record = record(id, Mode::Deferred, assign, shade);
         record.setting.lights = lights;
-        record.lists.bytes = match (of(&["DC-E"]), self.turned) {
+        record.lists.list_bytes = match (of(&["DC-E"]), self.turned) {
             (true, "memory") => 1_000,
             (true, _) => 9_000_000,
             _ => 1_310_720,
         };
-        record.lists.memory_bytes = Some(record.lists.bytes);
+        record.lists.assignment_bytes = Some(record.lists.list_bytes);
         let is_extreme = id == "M" && self.turned != "models";
         record.lists.longest = if is_extreme { lights * 3 / 4 } else { 96 };
         record.lists.listed_per_sample = Some(match (id, self.turned) {

@@ -60,9 +60,9 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
     let mut record = Record {
         strategy: strategy.into(),
         is_lossy: false,
+        indirect: None,
         note: None,
         setting: Setting {
-            vpls: None,
             compensation: None,
             scene: "atrium".to_owned(),
             scene_hash: "5f0c1b7e9ad24410".to_owned(),
@@ -118,11 +118,11 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             checked_pairs: Some(3_275_827),
             samples: 230_400,
             untested: None,
-            bytes: if is_none { 4_016 } else { 1_310_720 },
-            memory_bytes: None,
+            list_bytes: if is_none { 4_016 } else { 1_310_720 },
+            assignment_bytes: None,
             overflowed_groups: 0,
-            all_groups: vec![],
-            histogram: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
+            lengths_all: vec![],
+            lengths_read: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
         },
         image: ImageFigures {
             max_abs_diff: Some(0.0),
@@ -133,7 +133,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             truth_errors: BTreeMap::new(),
             tolerance: None,
             files: Images {
-                image: Some(format!("{stem}.png")),
+                tone_mapped: Some(format!("{stem}.png")),
                 baseline: None,
                 difference: (!is_none).then(|| format!("{stem}-difference.png")),
                 heat_map: (!is_none).then(|| format!("{stem}-heat.png")),
@@ -175,7 +175,7 @@ pub(crate) fn pictures(results: &Results) -> Vec<(String, Vec<u8>)> {
         // Smaller than the record says, to be quick: the page scales them.
         let (width, height) = (record.setting.width / 2, record.setting.height / 2);
         for (name, png) in [
-            (&record.image.files.image, scene(width, height, lossy)),
+            (&record.image.files.tone_mapped, scene(width, height, lossy)),
             (&record.image.files.baseline, scene(width, height, false)),
             (&record.image.files.difference, difference(width, height, lossy)),
             (&record.image.files.heat_map, scene(width, height, !lossy)),

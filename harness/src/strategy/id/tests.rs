@@ -75,9 +75,25 @@ fn only_the_comparison_papers_strategies_are_counted_as_its_own() {
     {
         assert!(id(of_the_paper).is_of_the_paper(), "{of_the_paper}");
     }
-    for other in ["None", "Clay", "Sphere", "RasterSphere", "HG", "M/2", "G/surfaces", "SC-E/bvh"] {
+    for other in [
+        "None",
+        "Clay",
+        "Sphere",
+        "RasterSphere",
+        "HG",
+        "M/2",
+        "G/surfaces",
+        "SC-E/bvh",
+        "SC-E/n24",
+        "SC-E/no-exit",
+        "SC-E/ball",
+        "SC-E/cap8",
+        "T-E/reuse2",
+    ] {
         assert!(!id(other).is_of_the_paper(), "{other}");
     }
+    let later = StrategyId::read("SC-E/48x48x40/warp3");
+    assert!(!later.is_of_the_paper() && !later.is_runnable(), "what warp3 is, nobody knows");
 }
 
 #[test]
@@ -134,6 +150,54 @@ fn results_store_the_id_with_its_parts_and_older_ones_the_id_alone() {
     let other = StrategyId::read("Their-Way/x");
     let json = serde_json::to_string(&other).expect("JSON");
     assert_eq!(serde_json::from_str::<StrategyId>(&json).expect("an id"), other);
+}
+
+#[test]
+fn stored_parts_that_contradict_the_id_are_errors() {
+    let read = |json: Value| serde_json::from_value::<StrategyId>(json);
+    for (stored, reason) in [
+        (serde_json::json!({ "id": "T-I", "family": "SC-E" }), "strategy.family is \"SC-E\""),
+        (serde_json::json!({ "id": 5 }), "strategy.id is 5"),
+        (serde_json::json!({ "family": "SC-E" }), "strategy.id is missing"),
+        (serde_json::json!({ "id": "T-I", "parameters": [] }), "strategy.parameters is []"),
+        (
+            serde_json::json!({ "id": "SC-E/48x48x40", "parameters": { "slices": 3 } }),
+            "strategy.parameters.slices is 3: it must be 40",
+        ),
+        (7.into(), "expected as strategy an id such as \"SC-E/48x48x40\""),
+    ] {
+        let error = read(stored).expect_err(reason).to_string();
+        assert!(error.contains(reason), "{error}");
+    }
+    let rounded = serde_json::json!({ "id": "SC-E/s0.001", "parameters": { "specular_threshold": 0.0010000000474974513 } });
+    let id = read(rounded).expect("a rounded number");
+    assert_eq!(id.parameters()["specular_threshold"], 0.001);
+}
+
+#[test]
+fn parameters_that_an_id_does_not_say_survive_a_rewrite() {
+    for id in ["Their-Way/64", "SC-E/48x48x40/warp3", "SC-E/48x48x40", "Odd\u{1b}"] {
+        let stored = serde_json::json!({ "id": id, "parameters": { "warp": [3, "x"] } });
+        let mut read: StrategyId = serde_json::from_value(stored).expect("an id");
+        read.show_hidden();
+        let written = serde_json::to_value(&read).expect("JSON");
+        assert_eq!(written["parameters"]["warp"], serde_json::json!([3, "x"]), "{written}");
+    }
+}
+
+#[test]
+fn an_id_takes_only_options_of_its_family() {
+    let refused = |family: &str, change: fn(&mut Options)| {
+        id(family).with(change).expect_err("no such axis").to_string()
+    };
+    assert!(refused("None", |options| options.cap = Some(8)).contains("\"cap8\""));
+    let source = refused("HG", |options| options.source = Some(LightSource::Hierarchy));
+    assert!(source.contains("\"bvh\""), "{source}");
+    assert!(refused("None", |options| options.parameters = "3".into()).contains("\"3\""));
+    let later = StrategyId::read("SC-E/48x48x40/warp3");
+    assert!(later.with(|options| options.cap = Some(8)).is_err(), "nobody knows what it keeps");
+    let capped = id("T-E").with(|options| options.cap = Some(8)).expect("an id");
+    assert_eq!((capped.as_str(), capped.is_lossy(9)), ("T-E/28x28/cap8", true));
 }
 
 #[test]

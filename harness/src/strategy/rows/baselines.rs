@@ -14,6 +14,7 @@ pub(super) const NONE: Row = Row {
     role: Role::Baseline,
     source: "Watrous 2024, Methods (no light culling)",
     krate: "assign",
+    in_default: Some("None"),
     make: |gpu, _| {
         Ok(Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false })
     },
@@ -42,6 +43,7 @@ pub(super) const SPHERE: Row = Row {
     role: Role::EarlyExit,
     source: "Watrous 2024, Methods (bounding sphere)",
     krate: "assign",
+    in_default: Some("Sphere"),
     colour: Colour { light: "#4b67fa", dark: "#5f7bff" },
     make: |gpu, _| Ok(Method::lists(Everything::new(gpu)?)),
     ..Row::PLAIN
@@ -58,6 +60,7 @@ pub(super) const RASTER_SPHERE: Row = Row {
         modes: &[Mode::Forward, Mode::ForwardNoPrepass],
         why: "light volumes read a G-buffer",
     }],
+    shade_rasterises: true,
     tolerance: Some(RASTER_SPHERE_TOLERANCE),
     colour: Colour { light: "#a83a00", dark: "#d2691e" },
     make: |_, _| Ok(Method::RasterSphere),

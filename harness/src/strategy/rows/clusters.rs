@@ -19,6 +19,7 @@ pub(super) const ROWS: &[Row] = &[
         about: "every depth slice of every tile has a list of the lights that reach it",
         source: "Enhuber 2019, section 3.2.2, table 4.3",
         default: "128x128x64",
+        in_default: Some("DC-I"),
         axes: FRUSTA,
         sizes: Sizes { many: AROUND_128, ..CLUSTERS.sizes },
         colour: Colour { light: "#8a8420", dark: "#c7c05a" },
@@ -52,6 +53,7 @@ pub(super) const ROWS: &[Row] = &[
         family: "SC-E",
         name: "sparse clusters, explicit bounds",
         about: "every cluster that holds samples has a list of the lights that reach the box around them",
+        in_default: Some("SC-E/bvh"),
         axes: &[
             Axis::Normals,
             Axis::Specular,

@@ -1,8 +1,8 @@
 //! A grid in world space (`assign-grid`).
 
-use assign_grid::Grid;
+use assign_grid::{Grid, GridBox};
 
-use super::super::{Axis, Colour, Method, Role, Row, Sizes};
+use super::super::{Axis, Colour, Method, Role, Row, Sizes, StandIn};
 
 pub(super) const ROWS: &[Row] = &[Row {
     family: "G",
@@ -20,7 +20,14 @@ pub(super) const ROWS: &[Row] = &[Row {
         many: &["12x12x12", "16x16x16", "20x20x20", "24x24x24", "28x28x28", "40x12x20"],
     },
     has_groups: true,
-    stand_ins: &[("supports", "G over supports")],
+    stand_ins: &[StandIn {
+        segment: "supports",
+        what: "G over supports",
+        told_by: ("box", "lights"),
+        needs_no_planes: false,
+        to_today: |options| options.grid_box = GridBox::Supports,
+        to_then: |options| options.grid_box = GridBox::default(),
+    }],
     colour: Colour { light: "#c25a66", dark: "#ee949e" },
     make: |gpu, options| {
         let counts = options.parameters.parse()?;

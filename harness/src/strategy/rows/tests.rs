@@ -69,6 +69,38 @@ fn ids_are_those_of_the_strategies() {
     }
 }
 
+/// Whether a name can end a CSS class and an HTML id: `strategy-sc-e`.
+fn is_class(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-')
+}
+
+#[test]
+fn families_can_name_classes() {
+    for bad in ["2.5D", "Z+", "A B", "a/b", "", "\u{e9}"] {
+        assert!(!is_class(bad), "{bad:?}");
+    }
+    for row in rows() {
+        assert!(is_class(row.family) && is_class(&row.class()), "{}", row.family);
+    }
+}
+
+#[test]
+fn a_row_that_forgets_how_it_is_made_cannot_be_made() {
+    let gpu = Gpu::noop().expect("a device");
+    let made = (Row::PLAIN.make)(&gpu, &Default::default());
+    assert!(made.is_err_and(|error| error.to_string().starts_with("make is missing")));
+}
+
+#[test]
+fn the_default_comparison_is_in_the_rows() {
+    assert_eq!(default_ids(), "None,Sphere,DC-I,SC-E/bvh");
+    for row in rows() {
+        let family = row.in_default.map(|id| StrategyId::read(id).family().to_owned());
+        assert!(family.is_none_or(|family| family == row.family), "{}", row.family);
+    }
+}
+
 #[test]
 fn rows_are_complete() {
     for row in rows() {

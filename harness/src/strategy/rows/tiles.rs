@@ -1,17 +1,24 @@
 //! Tiles of the screen (`assign-tiled`).
 
 use assign::Bounds::{self, Explicit, Implicit};
-use assign::{AssignError, Gpu};
+use assign::{AssignError, FrustumTests, Gpu};
 use assign_tiled::Tiled;
 
-use super::super::{Axis, Colour, Method, Options, Role, Row, Sizes, row::NEEDS_DEPTH};
+use super::super::{Axis, Colour, Method, Options, Role, Row, Sizes, StandIn, row::NEEDS_DEPTH};
 
 pub(super) const ROWS: &[Row] = &[
     Row {
         family: "T-I",
         name: "tiles, implicit bounds",
         about: "every tile has a list of the lights that reach it, from the near to the far plane",
-        stand_ins: &[("hs", "T-I by HS only")],
+        stand_ins: &[StandIn {
+            segment: "hs",
+            what: "T-I by HS only",
+            told_by: ("tests", "hs+sat-n"),
+            needs_no_planes: true,
+            to_today: |options| options.tests = Some(HS),
+            to_then: |options| options.tests = None,
+        }],
         colour: Colour { light: "#0f8a77", dark: "#45bda9" },
         make: |gpu, options| make(gpu, options, Implicit),
         ..TILES
@@ -26,6 +33,10 @@ pub(super) const ROWS: &[Row] = &[
         ..TILES
     },
 ];
+
+/// The only test of earlier versions, whose stages had no far plane and so no far corners.
+const HS: FrustumTests =
+    FrustumTests { hs: true, sat_e: false, sat_n: false, sat_p: false, sat_v: false };
 
 const TILES: Row = Row {
     role: Role::ComparisonPaper,

@@ -60,7 +60,7 @@ pub(crate) fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
         let found = stored(errors(&ImagePair { image: &image, reference: &reference, exposure }));
         let records = done.results.get_mut(name).map(|results| &mut results.records);
         for record in records.into_iter().flatten() {
-            if let Some(vpls) = &mut record.setting.vpls {
+            if let Some(vpls) = &mut record.indirect {
                 vpls.build_errors.clone_from(&found);
             }
         }
@@ -69,7 +69,7 @@ pub(crate) fn compare_builds(done: &mut Done) -> Result<(), HarnessError> {
 }
 
 fn vpls_of(results: &Results) -> Option<&Vpls> {
-    results.records.last()?.setting.vpls.as_ref()
+    results.records.last()?.indirect.as_ref()
 }
 
 /// Whether two sets of lights differ in nothing but the build of their deep images, the second being
@@ -79,7 +79,7 @@ fn differs_by_build(own: &Vpls, reference: &Vpls) -> bool {
         let deep = vpls.deep.as_ref()?;
         Some((
             (vpls.rsm_px, vpls.ranges.clone(), vpls.rays, vpls.is_reflected, vpls.is_corrected),
-            (vpls.range_scale, vpls.random_m, vpls.spacing_m, vpls.clamp_m),
+            (vpls.range_scale, vpls.given_ranges_m, vpls.spacing_m, vpls.clamp_m),
             (deep.stacks, deep.slices, deep.spread.clone(), deep.size_px, deep.oversampling),
         ))
     };

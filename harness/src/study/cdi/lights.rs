@@ -18,23 +18,23 @@ pub(crate) const RULES: [(&str, &str, &str); 6] = [
 
 /// The name of the rule by which ranges were found.
 pub(crate) fn rule(record: &Record) -> &'static str {
-    let ranges = record.setting.vpls.as_ref().map(|vpls| vpls.ranges.as_str());
+    let ranges = record.indirect.as_ref().map(|vpls| vpls.ranges.as_str());
     RULES.iter().find(|(id, ..)| Some(*id) == ranges).map_or("", |(_, _, name)| name)
 }
 
 /// The time of making lights, lists and shading, ms. NaN where the clock was not steady.
 pub(crate) fn total_ms(record: &Record) -> f64 {
-    if record.setting.vpls.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
+    if record.indirect.as_ref().is_some_and(|vpls| vpls.unsteady().is_some()) {
         return f64::NAN;
     }
-    record.setting.vpls.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
+    record.indirect.as_ref().map_or(0.0, Vpls::total_ms) + record.assign_and_shade_ms()
 }
 
 /// The settings that differ from the usual ones: `× 3`, `0.4 to 8 m`, `8 directions`.
 pub(crate) fn setting(record: &Record) -> String {
-    let Some(vpls) = &record.setting.vpls else { return String::new() };
+    let Some(vpls) = &record.indirect else { return String::new() };
     let mut parts = Vec::new();
-    match vpls.random_m {
+    match vpls.given_ranges_m {
         Some([low, high]) if low == high => parts.push(format!("{} m", significant(low))),
         Some([low, high]) => parts.push(format!("{} to {} m", significant(low), significant(high))),
         None if vpls.ranges != "infinite" => {

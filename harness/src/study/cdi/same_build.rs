@@ -12,7 +12,7 @@ use crate::study::page::error_columns::error_columns;
 /// A table of how much the build of the deep images changes the image; the paper sees no change.
 pub(crate) fn by_build<'a>(entries: &[Entry<'a>]) -> Html {
     let row = |entry: &Entry<'a>| {
-        let vpls = entry.record.setting.vpls.as_ref()?;
+        let vpls = entry.record.indirect.as_ref()?;
         let build = &vpls.deep.as_ref()?.build;
         (!vpls.build_errors.is_empty()).then(|| Row::new(build, &vpls.build_errors))
     };
@@ -34,7 +34,7 @@ fn own_errors<'r>(errors: &'r &Errors) -> &'r Errors {
 /// of one pass: mean error, and the share of pixels that differ by more than a twentieth.
 pub(crate) fn image_by_build(done: &Done, scene: &str) -> Option<(f64, f64)> {
     entries(done, scene, MODELS).iter().find_map(|entry| {
-        let vpls = entry.record.setting.vpls.as_ref()?;
+        let vpls = entry.record.indirect.as_ref()?;
         let is_brute = vpls.deep.as_ref()?.build.starts_with("per-direction");
         let of = |id: &str| vpls.build_errors.get(id).copied().flatten();
         Some((of(METRIC)?, of("pixels_off")?)).filter(|_| is_brute)

@@ -105,7 +105,7 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
     let lights = || {
         done.results.iter().flat_map(|(job, results)| {
             let of = move |record| Some((job, Option::as_ref(record)?));
-            results.records.iter().map(|record| &record.setting.vpls).filter_map(of)
+            results.records.iter().map(|record| &record.indirect).filter_map(of)
         })
     };
     for (job, vpls) in lights() {

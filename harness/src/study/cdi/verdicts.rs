@@ -87,10 +87,9 @@ fn least<'a>(entries: impl Iterator<Item = Entry<'a>>) -> Option<Entry<'a>> {
 pub(crate) fn best_cast<'a>(entries: &[Entry<'a>]) -> Option<Entry<'a>> {
     let is_usual = |record: &Record| {
         record
-            .setting
-            .vpls
+            .indirect
             .as_ref()
-            .is_some_and(|vpls| jobs::is_usual(vpls) && vpls.random_m.is_none())
+            .is_some_and(|vpls| jobs::is_usual(vpls) && vpls.given_ranges_m.is_none())
     };
     least(entries.iter().copied().filter(|entry| is_usual(entry.record)))
 }
@@ -102,13 +101,13 @@ fn named(id: &str) -> &'static str {
 
 /// The parameter that a sweep varies: the factor on lengths of rays, or the longest range.
 fn parameter(vpls: &Vpls) -> f64 {
-    vpls.random_m.map_or(vpls.range_scale, |[_, high]| high)
+    vpls.given_ranges_m.map_or(vpls.range_scale, |[_, high]| high)
 }
 
 /// Whether the best of a rule's sweep is its first or its last setting, `None` of fewer than three:
 /// then a better one may lie beyond.
 pub(crate) fn is_at_end(entries: &[Entry<'_>], best: &Record) -> Option<bool> {
-    let own = best.setting.vpls.as_ref()?;
+    let own = best.indirect.as_ref()?;
     let of_sweep = |vpls: &&Vpls| {
         let deep =
             |vpls: &Vpls| vpls.deep.as_ref().map(|d| (d.build.clone(), d.directions(), d.size_px));
@@ -117,8 +116,7 @@ pub(crate) fn is_at_end(entries: &[Entry<'_>], best: &Record) -> Option<bool> {
                 == (own.rays, own.is_reflected, own.is_corrected)
             && deep(vpls) == deep(own)
     };
-    let all =
-        entries.iter().filter_map(|entry| entry.record.setting.vpls.as_ref()).filter(of_sweep);
+    let all = entries.iter().filter_map(|entry| entry.record.indirect.as_ref()).filter(of_sweep);
     let values: Vec<f64> = all.map(parameter).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(0.0, f64::max);
@@ -134,7 +132,7 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let (Some(cast), Some((_, truth))) = (best_cast(&all), truth_of(done, scene)) else {
         return found;
     };
-    let (Some(own), Some(vpls)) = (error(cast.record), cast.record.setting.vpls.as_ref()) else {
+    let (Some(own), Some(vpls)) = (error(cast.record), cast.record.indirect.as_ref()) else {
         return found;
     };
     let noise = noise_of(truth);
@@ -163,9 +161,9 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
             }
         )
     };
-    let kept = |record: &Record| record.setting.vpls.as_ref().map_or(0, |other| other.kept);
+    let kept = |record: &Record| record.indirect.as_ref().map_or(0, |other| other.kept);
     let of_map = |record: &Record| {
-        record.setting.vpls.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
+        record.indirect.as_ref().is_some_and(|other| other.candidates == vpls.candidates)
     };
     let random = named("random");
     let same_map = best(&all, random, of_map);
@@ -202,7 +200,7 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
 
 /// Whether a record's lights lack Fresnel's term. If so, its errors decide nothing.
 fn is_stale(record: &Record) -> bool {
-    record.setting.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel)
+    record.indirect.as_ref().is_some_and(|vpls| !vpls.has_fresnel)
 }
 
 /// ` in 3.2 ms`; nothing where the clock was not steady.
@@ -216,9 +214,9 @@ pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let all = entries(done, scene, MODELS);
         let cast = best_cast(&all)?;
-        let candidates = cast.record.setting.vpls.as_ref()?.candidates;
+        let candidates = cast.record.indirect.as_ref()?.candidates;
         let random = best(&all, named("random"), |record| {
-            record.setting.vpls.as_ref().is_some_and(|other| other.candidates == candidates)
+            record.indirect.as_ref().is_some_and(|other| other.candidates == candidates)
         })?;
         let (own, theirs) = (error(cast.record)?, error(random.record)?);
         let (_, truth) = truth_of(done, scene)?;

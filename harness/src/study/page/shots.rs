@@ -75,7 +75,7 @@ impl<'a> Shots<'a> {
                 let exposure = truth_of(self.done, &job.scene)?.1.exposure;
                 self.linear(&job.name, images.raw.as_deref()?, exposure)?
             }
-            _ => self.file(&job.name, images.image.as_deref()?)?,
+            _ => self.file(&job.name, images.tone_mapped.as_deref()?)?,
         };
         let (reference, difference, text) = match wanted {
             Wanted::Pair => {

@@ -20,8 +20,7 @@ pub(crate) fn cast_share(done: &Done, scene: &str) -> Answer {
     /// Half and twice the paper's 1 %.
     const ABOUT: std::ops::RangeInclusive<f64> = 0.005..=0.02;
     let all = entries(done, scene, jobs::STEPS);
-    let steps =
-        all.first().and_then(|entry| Some((entry.record, entry.record.setting.vpls.as_ref()?)));
+    let steps = all.first().and_then(|entry| Some((entry.record, entry.record.indirect.as_ref()?)));
     let Some((record, vpls)) = steps.filter(|(_, vpls)| vpls.unsteady().is_none()) else {
         return Answer::unknown("the steps of a frame at a steady clock");
     };

@@ -51,7 +51,7 @@ impl<'a> Against<'a> {
     }
 
     fn vpls(record: &Record) -> Option<&Vpls> {
-        record.setting.vpls.as_ref()
+        record.indirect.as_ref()
     }
 
     /// The best of a rule from the same map.
@@ -83,7 +83,7 @@ impl<'a> Against<'a> {
 /// Lights that are 4 to 7 % too bright decide nothing.
 fn stale(records: &[&Record]) -> Option<Verdict> {
     let is_stale =
-        |record: &&Record| record.setting.vpls.as_ref().is_some_and(|vpls| !vpls.has_fresnel);
+        |record: &&Record| record.indirect.as_ref().is_some_and(|vpls| !vpls.has_fresnel);
     let any = records.iter().any(is_stale);
     any.then(|| Verdict::undecided("these lights were 4 to 7 % too bright: measure again"))
 }
@@ -93,7 +93,7 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
     let Some(against) = Against::new(done, scene) else {
         return Answer::unknown("errors of rays against the truth");
     };
-    let kept = |record: &Record| record.setting.vpls.as_ref().map_or(0, |vpls| vpls.kept);
+    let kept = |record: &Record| record.indirect.as_ref().map_or(0, |vpls| vpls.kept);
     let as_near = against.all.iter().map(|entry| entry.record).filter(|record| {
         rule(record) == "random" && against.nearer(record).is_some_and(|who| who != Nearer::First)
     });

@@ -27,7 +27,7 @@ const GAIN: f32 = 4.0;
 /// The curve that a record is on: over factors and spans, each size of the map by itself; rays that are set
 /// otherwise by themselves.
 fn series(record: &Record) -> String {
-    let Some(vpls) = &record.setting.vpls else { return String::new() };
+    let Some(vpls) = &record.indirect else { return String::new() };
     let side = vpls.rsm_px;
     match vpls.ranges.as_str() {
         "random" => format!("random, {side}\u{b2}"),
@@ -39,7 +39,7 @@ fn series(record: &Record) -> String {
 
 fn class(record: &Record) -> String {
     let is_cast = |vpls: &Vpls| vpls.rays > 0 && !jobs::is_usual(vpls);
-    if record.setting.vpls.as_ref().is_some_and(is_cast) {
+    if record.indirect.as_ref().is_some_and(is_cast) {
         return "series-5".to_owned();
     }
     RULES
@@ -76,16 +76,12 @@ pub(crate) fn indirect(
         class,
         // A mark for each size of the map.
         shape: |record| {
-            let side = record.setting.vpls.as_ref()?.rsm_px;
+            let side = record.indirect.as_ref()?.rsm_px;
             [256, 128, 64, 512].iter().position(|known| *known == side)
         },
         name: title,
         label: |record| {
-            record
-                .setting
-                .vpls
-                .as_ref()
-                .map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
+            record.indirect.as_ref().map_or(String::new(), |vpls| number(f64::from(vpls.rsm_px)))
         },
         wanted: Wanted::Truth,
         time: "Lights, assign and shade",
@@ -117,11 +113,11 @@ fn truth_errors<'r>(record: &'r &Record) -> &'r Errors {
 }
 
 fn errors_table(entries: &[Entry<'_>]) -> Html {
-    let lights_ms = |record: &&Record| match &record.setting.vpls {
+    let lights_ms = |record: &&Record| match &record.indirect {
         Some(vpls) => times::shown(vpls.total_ms(), vpls.unsteady().is_none()),
         None => ABSENT.into(),
     };
-    let mean_range_m = |record: &&Record| Some(record.setting.vpls.as_ref()?.mean_range_m);
+    let mean_range_m = |record: &&Record| Some(record.indirect.as_ref()?.mean_range_m);
     let both_ms = |record: &&Record| Some(record.assign_and_shade_ms());
     let mut columns = vec![
         Column::figure("mean range", "m", Better::Neither, mean_range_m, significant),

@@ -58,7 +58,7 @@ const STEPS: [Step; 6] = [
 fn steps(done: &Done, scene: &str) -> Option<Part> {
     let all = entries(done, scene, jobs::STEPS);
     let record = all.first()?.record;
-    let vpls = record.setting.vpls.as_ref()?;
+    let vpls = record.indirect.as_ref()?;
     let row = |name: &str, ms: f64, paper: [f64; 2]| Row::new(name, (ms, paper));
     let mut rows: Vec<Row<(f64, [f64; 2])>> = STEPS
         .iter()
@@ -205,7 +205,7 @@ fn strategies<'a>(done: &'a Done, scene: &'a str) -> Option<Part> {
         Column::figure(head, "ms", Better::Less, value, significant)
     };
     let differing = |record: &&Record| Some(record.image.differing_channels? as f64);
-    let bytes = |record: &&Record| Some(record.lists.bytes as f64);
+    let bytes = |record: &&Record| Some(record.lists.list_bytes as f64);
     let columns = [
         ms("assign + shade", Record::assign_and_shade_ms),
         ms("assign", |record| record.times.assign_ms),

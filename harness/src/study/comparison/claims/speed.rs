@@ -56,10 +56,12 @@ pub(crate) fn sparse_memory(done: &Done, scene: &str) -> Answer {
         let lights = number(field.lights as f64);
         format!("at {lights} lights, {what}: DC-E {dense} MiB, SC-E {sparse} MiB")
     };
-    let (Some(all_dense), Some(all_sparse)) = (dense.lists.memory_bytes, sparse.lists.memory_bytes)
+    let (Some(all_dense), Some(all_sparse)) =
+        (dense.lists.assignment_bytes, sparse.lists.assignment_bytes)
     else {
         // The lists are only a part of the memory: they decide nothing.
-        let figure = told("groups and lists only", [dense.lists.bytes, sparse.lists.bytes]);
+        let figure =
+            told("groups and lists only", [dense.lists.list_bytes, sparse.lists.list_bytes]);
         return Answer { figure, verdict: Verdict::unmeasured("all memory that assignment needs") };
     };
     let (dense, sparse) = (all_dense, all_sparse);

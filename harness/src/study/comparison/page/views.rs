@@ -101,15 +101,15 @@ fn heat_maps(entries: &[Entry<'_>], class: &str, shots: &mut Shots<'_>) -> Html 
 /// The lists that histograms count: those of all groups, as in the comparison paper, or in older results
 /// those that a pixel reads.
 fn lengths(record: &Record) -> &[u64] {
-    if record.lists.all_groups.is_empty() {
-        &record.lists.histogram
+    if record.lists.lengths_all.is_empty() {
+        &record.lists.lengths_read
     } else {
-        &record.lists.all_groups
+        &record.lists.lengths_all
     }
 }
 
 fn counted(entries: &[Entry<'_>]) -> &'static str {
-    match entries.iter().all(|entry| entry.record.lists.all_groups.is_empty()) {
+    match entries.iter().all(|entry| entry.record.lists.lengths_all.is_empty()) {
         true => "groups that some pixel reads",
         false => "all groups with lights",
     }
@@ -144,7 +144,7 @@ fn histogram(record: &Record, view: &str) -> Histogram {
     };
     // Most cells of a dense grid hold no light: their bar would hide all others.
     let lengths = lengths(record);
-    let without = usize::from(!record.lists.all_groups.is_empty());
+    let without = usize::from(!record.lists.lengths_all.is_empty());
     let note = match lengths.first().filter(|_| without > 0) {
         Some(empty) => format!("{} groups hold no light", number(*empty as f64)),
         None => String::new(),
