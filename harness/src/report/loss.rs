@@ -26,7 +26,8 @@ pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
         figure("rel_mse", "relMSE", "", Better::Zero, |m| error(m.record, "rel_mse"), difference)
             .terminal("relMSE")
             .about(
-                "Mean over channels of the squared difference from no culling, divided by the squared value.",
+                "Mean over channels of the squared difference from no culling, divided by the squared value plus the \
+                 square of a tenth of the mean value.",
             ),
         figure("flip", "FLIP", "", Better::Zero, |m| error(m.record, "flip"), difference)
             .terminal("FLIP")

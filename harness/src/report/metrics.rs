@@ -164,7 +164,7 @@ fn lists<'a>() -> Vec<Metric<'a>> {
         )
         .terminal("contrib.")
         .about(
-            "Mean number of lights whose range reaches a sample. A perfect list holds these lights only.",
+            "Mean number of lights whose support holds a sample. A perfect list holds these lights only.",
         ),
     ]
 }

@@ -88,7 +88,7 @@ pub(crate) fn provenance(results: &Results) -> Html {
             "Frames",
             distinct(results, |r| {
                 format!(
-                    "{} timed, after {} frames of warm-up",
+                    "{} timed, after at least {} frames of warm-up",
                     r.times.frames, r.times.warmup_frames
                 )
             }),

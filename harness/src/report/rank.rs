@@ -3,7 +3,7 @@
 //! Every round draws frames of all strategies in turn, so drift hits all of them alike, and the ratio of two
 //! strategies' times *in one round* is free of it. Along a path a round is a lap, and its time is the mean
 //! over the poses. Two records tie if the interval of the median ratio contains 1, or if the median ratio is
-//! within half a per cent of 1.
+//! within half a per cent of 1. Two to five rounds always tie.
 
 use super::format::significant;
 use crate::results::{Record, median, median_interval};

@@ -11,7 +11,7 @@ pub struct Times {
     pub clock: Clock,
     /// Timed frames: the number of samples of each pass.
     pub frames: u32,
-    /// Frames drawn before timing started.
+    /// The least number of frames drawn before timing started.
     pub warmup_frames: u32,
     /// Rounds in which the frames were drawn, each with all methods in turn; along a path its laps.
     /// See [`round_times_ms`](Self::round_times_ms). 0 where unknown.

@@ -104,14 +104,15 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     Page { html, charts, data, words }
 }
 
-const READING: &str = "<p>Frames are drawn in rounds. Each round draws every method once, in \
-                       random order, so that drift affects all methods alike. Whiskers and small \
-                       figures are intervals of the median over rounds. Two methods <b>tie</b> if \
-                       the interval of their ratio, round by round, contains 1. A <b>lossy</b> \
-                       setting is shown with its error. Culling error compares with no culling \
-                       under the same shader. Range error compares with lights that have no \
-                       range. Model error compares a model of area lights with a truth image. \
-                       Every chart is also a file in <code>charts/</code>.</p>";
+const READING: &str = "<p>Frames are drawn in rounds. Each round draws a few frames of every method, the \
+                       methods in random order, so that drift affects all methods alike. Whiskers \
+                       and small figures are intervals of the median over rounds. Two methods \
+                       <b>tie</b> if the interval of their ratio, round by round, contains 1, or if \
+                       their median ratio is within 0.5 % of 1. Two to five rounds always tie. A \
+                       <b>lossy</b> setting is shown with its error. Culling error compares with no \
+                       culling under the same shader. Range error compares with lights that have no \
+                       range. Model error compares a model of area lights with a truth image. Every \
+                       chart is also a file in <code>charts/</code>.</p>";
 
 /// The section of a scene: what it found, links to its parts, and the parts.
 fn section(scene: &str, texts: &Html, parts: &[Part]) -> Html {
