@@ -33,14 +33,24 @@ pub(crate) struct Crate {
 }
 
 impl Crate {
-    /// Reads every Rust file below `src`.
-    pub(crate) fn read(src: &FilePath) -> io::Result<Self> {
-        let mut files = Vec::new();
-        collect_files(src, &[], &mut files)?;
-        Ok(Self::from_files(&files))
+    /// Reads every Rust file below `src`: a crate for each of `lib.rs` and `main.rs` that is there, with all
+    /// other files in both.
+    pub(crate) fn read(src: &FilePath) -> io::Result<Vec<Self>> {
+        let roots = ["lib.rs", "main.rs"].map(|name| src.join(name));
+        let mut crates = Vec::new();
+        for root in roots.iter().filter(|root| root.is_file()) {
+            let mut files = vec![(Path::new(), fs::read_to_string(root)?)];
+            collect_files(src, &[], &mut files)?;
+            crates.push(Self::from_files(&files));
+        }
+        Ok(crates)
     }
 
     /// Reads sources, each with the path of its module.
+    ///
+    /// # Panics
+    ///
+    /// Where two sources have the same path.
     pub(crate) fn from_files(files: &[(Path, String)]) -> Self {
         let mut modules = BTreeMap::new();
         for (path, source) in files {
@@ -48,7 +58,8 @@ impl Crate {
             let others = files.iter().map(|(other, _)| other);
             let children: Vec<String> =
                 others.filter(is_child).filter_map(|c| c.last().cloned()).collect();
-            modules.insert(path.clone(), read_module(path, &children, source));
+            let known = modules.insert(path.clone(), read_module(path, &children, source));
+            assert!(known.is_none(), "two files are the module {path:?}");
         }
         let of_tests: Vec<Path> = modules
             .iter()
@@ -71,10 +82,7 @@ impl Crate {
                 if let Some(import) = module.imports.get(name) {
                     return Some(import.clone());
                 }
-                let defines = |glob: &&Path| {
-                    **glob != inside
-                        && self.modules.get(*glob).is_some_and(|m| m.items.contains(name))
-                };
+                let defines = |glob: &&Path| **glob != inside && self.offers(glob, name, steps - 1);
                 let glob = module.globs.iter().find(defines)?;
                 Some(child_of(glob, name))
             });
@@ -88,13 +96,36 @@ impl Crate {
         inside
     }
 
-    /// Every use of one module by another that is neither its ancestor nor below it.
+    /// Whether a module defines or imports a name, or gets it through a glob.
+    fn offers(&self, module: &[String], name: &str, steps: usize) -> bool {
+        self.modules.get(module).is_some_and(|module| {
+            module.items.contains(name)
+                || module.imports.contains_key(name)
+                || (steps > 0 && module.globs.iter().any(|glob| self.offers(glob, name, steps - 1)))
+        })
+    }
+
+    /// The paths that a module names, those behind the names that a glob gives it included.
+    fn named(&self, module: &Module) -> Vec<Path> {
+        let mut named = module.named.clone();
+        for glob in &module.globs {
+            let is_foreign = |word: &&String| {
+                !module.items.contains(*word) && !module.imports.contains_key(*word)
+            };
+            let offered = |word: &&String| self.offers(glob, word, MAX_STEPS);
+            let words = module.words.iter().filter(is_foreign).filter(offered);
+            named.extend(words.map(|word| child_of(glob, word)));
+        }
+        named
+    }
+
+    /// Every use of one module by another.
     pub(crate) fn edges(&self) -> BTreeSet<Edge> {
         let mut edges = BTreeSet::new();
         for (from, module) in &self.modules {
-            for path in &module.named {
-                let to = self.definition(path, MAX_STEPS);
-                if !from.starts_with(&to) && !to.starts_with(from) {
+            for path in self.named(module) {
+                let to = self.definition(&path, MAX_STEPS);
+                if *from != to {
                     edges.insert(Edge { from: from.clone(), to });
                 }
             }
@@ -105,16 +136,43 @@ impl Crate {
     /// The edges that lie on a circle.
     pub(crate) fn edges_of_circles(&self) -> BTreeSet<Edge> {
         let edges = self.edges();
-        let mut used: BTreeMap<&Path, Vec<&Path>> = BTreeMap::new();
-        for Edge { from, to } in &edges {
-            used.entry(from).or_default().push(to);
-        }
-        let reached: BTreeMap<&Path, BTreeSet<&Path>> =
-            used.keys().map(|from| (*from, reachable(&used, from))).collect();
-        let is_on_circle =
-            |edge: &&Edge| reached.get(&edge.to).is_some_and(|all| all.contains(&edge.from));
-        edges.iter().filter(is_on_circle).cloned().collect()
+        let mut found = BTreeSet::new();
+        collect_circles(&edges.iter().collect(), &mut found);
+        found
     }
+}
+
+/// Adds the edges of every circle. A circle whose modules all lie below one of them is that module and its
+/// parts: without that module, the parts must have no circle.
+fn collect_circles(edges: &BTreeSet<&Edge>, found: &mut BTreeSet<Edge>) {
+    for circle in circles(edges) {
+        let inside = |edge: &&&Edge| circle.contains(&edge.from) && circle.contains(&edge.to);
+        let within: BTreeSet<&Edge> = edges.iter().filter(inside).copied().collect();
+        let is_top = |module: &&&Path| circle.iter().all(|other| other.starts_with(module));
+        match circle.iter().find(is_top) {
+            None => found.extend(within.into_iter().cloned()),
+            Some(top) => {
+                let is_below = |edge: &&Edge| edge.from != **top && edge.to != **top;
+                collect_circles(&within.into_iter().filter(is_below).collect(), found);
+            }
+        }
+    }
+}
+
+/// The sets of modules each of which reaches all others of its set.
+fn circles<'a>(edges: &BTreeSet<&'a Edge>) -> BTreeSet<BTreeSet<&'a Path>> {
+    let mut used: BTreeMap<&Path, Vec<&Path>> = BTreeMap::new();
+    for Edge { from, to } in edges.iter().copied() {
+        used.entry(from).or_default().push(to);
+    }
+    let reached: BTreeMap<&Path, BTreeSet<&Path>> =
+        used.keys().map(|from| (*from, reachable(&used, from))).collect();
+    let reaches = |from: &Path, to: &Path| reached.get(from).is_some_and(|all| all.contains(to));
+    let circle_of = |module: &&'a Path| -> BTreeSet<&'a Path> {
+        let is_with = |other: &&&'a Path| reaches(module, other) && reaches(other, module);
+        reached.keys().filter(is_with).copied().collect()
+    };
+    reached.keys().map(circle_of).filter(|circle| circle.len() > 1).collect()
 }
 
 fn child_of(parent: &[String], name: &str) -> Path {
@@ -133,7 +191,7 @@ fn reachable<'a>(used: &BTreeMap<&'a Path, Vec<&'a Path>>, start: &Path) -> BTre
     reached
 }
 
-/// Collects paths and sources of the modules below a folder.
+/// Collects paths and sources of the modules below a folder, except the root.
 fn collect_files(
     folder: &FilePath,
     path: &[String],
@@ -146,9 +204,11 @@ fn collect_files(
         if file.is_dir() {
             collect_files(&file, &child, files)?;
         } else if file.extension().is_some_and(|extension| extension == "rs") {
-            let is_parent = matches!(stem, "lib" | "main" | "mod");
-            let path = if is_parent { path.to_vec() } else { child };
-            files.push((path, fs::read_to_string(&file)?));
+            let is_root = path.is_empty() && matches!(stem, "lib" | "main");
+            if !is_root {
+                let path = if stem == "mod" { path.to_vec() } else { child };
+                files.push((path, fs::read_to_string(&file)?));
+            }
         }
     }
     Ok(())

@@ -3,12 +3,14 @@
 //! # The rule about imports
 //!
 //! Each Rust file below a crate's `src` is a module. Module A uses module B where A names an item of B by a
-//! `use` line or by a path with `crate`, `super` or `self`. Re-exports are followed: `use crate::Pose` uses
-//! the file that defines `Pose`, not `lib.rs`. A circle is a set of modules each of which uses another of
-//! the set, directly or through others.
+//! `use` line, by a path with `crate`, `super` or `self`, or by a name that `use other::*` gives it.
+//! Re-exports are followed: `use crate::Pose` uses the file that defines `Pose`, not `lib.rs`. A circle is a
+//! set of modules each of which uses all others of the set, directly or through others.
 //!
-//! A module and its own ancestor count as one side: a parent may re-export or call its children, and a child
-//! may use what its parent defines. Code under `#[cfg(test)]` does not count.
+//! A module may form a circle with its own parts: a parent may re-export or call its children, and a child
+//! may use what its parent defines. All modules of such a circle lie below one of them, and without that
+//! one they must have no circle. `lib.rs` and `main.rs` are roots of two crates. Code under `#[cfg(test)]`
+//! does not count. Files are modules by their place: `#[path]` and `include!` are refused.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
@@ -62,10 +64,19 @@ fn no_two_modules_import_each_other() {
     let mut found = Vec::new();
     for (name, folder) in &crates {
         let read = Crate::read(&folder.join("src")).unwrap();
-        // One of every crate's imports is seen at least: a reader that sees nothing finds no circle.
-        assert!(!read.edges().is_empty(), "{name}: no import was found");
-        for edge in read.edges_of_circles() {
-            found.push((name.clone(), edge.to_string()));
+        assert!(!read.is_empty(), "{name}: neither lib.rs nor main.rs was found");
+        for read in read {
+            // One of every crate's imports is seen at least: a reader that sees nothing finds no circle.
+            assert!(!read.edges().is_empty(), "{name}: no import was found");
+            for edge in read.edges_of_circles() {
+                found.push((name.clone(), edge.to_string()));
+            }
+        }
+        for file in source_files(&folder.join("src")) {
+            let source = fs::read_to_string(&file).unwrap();
+            for hidden in ["#[path", "include!("] {
+                assert!(!source.contains(hidden), "{}: {hidden} hides a module", file.display());
+            }
         }
     }
     let lines: Vec<String> =
@@ -88,17 +99,58 @@ fn a_planted_circle_is_found() {
 }
 
 #[test]
+fn a_circle_through_a_parent_is_found() {
+    let circle = [
+        ("", "mod a; mod b;"),
+        ("a", "mod x; pub struct A; pub fn f() { x::g() }"),
+        ("a::x", "use crate::b::B; pub fn g() {}"),
+        ("b", "use crate::a::A; pub struct B;"),
+    ];
+    assert_eq!(edges(&circle), ["a -> a::x", "a::x -> b", "b -> a"]);
+    let mut cut = circle;
+    cut[1].1 = "mod x; pub struct A;";
+    assert!(edges(&cut).is_empty(), "a does not need its child");
+    // A circle below a module that takes part itself.
+    let below = [
+        ("", "mod a;"),
+        ("a", "mod x; mod y; pub struct A; pub fn f() { x::g() }"),
+        ("a::x", "use super::A; use super::y::Y; pub fn g() {} pub struct X;"),
+        ("a::y", "use super::x::X; pub struct Y;"),
+    ];
+    assert_eq!(edges(&below), ["a::x -> a::y", "a::y -> a::x"]);
+}
+
+#[test]
+fn a_circle_through_a_glob_is_found() {
+    let circle = [
+        ("", "mod c;"),
+        ("c", "mod a; mod b; pub use b::B;"),
+        ("c::a", "use super::*; pub struct A(B);"),
+        ("c::b", "use super::a::A; pub struct B;"),
+    ];
+    assert_eq!(edges(&circle), ["c::a -> c::b", "c::b -> c::a"]);
+    let mut cut = circle;
+    cut[2].1 = "use super::*; pub struct A(u32);";
+    assert!(edges(&cut).is_empty(), "c::a does not name B");
+}
+
+#[test]
 fn a_planted_circle_on_disk_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let write = |file: &str, source: &str| fs::write(folder.path().join(file), source).unwrap();
     fs::create_dir(folder.path().join("inner")).unwrap();
-    write("lib.rs", "mod inner; mod outer;");
     write("outer.rs", "use crate::inner::leaf::Leaf; pub struct Outer;");
     write("inner/mod.rs", "pub mod leaf;");
-    write("inner/leaf.rs", "use crate::outer::Outer; pub struct Leaf;");
-    let edges = Crate::read(folder.path()).unwrap().edges_of_circles();
-    let edges: Vec<String> = edges.iter().map(ToString::to_string).collect();
-    assert_eq!(edges, ["inner::leaf -> outer", "outer -> inner::leaf"]);
+    write("inner/leaf.rs", "use crate::Outer; pub struct Leaf;");
+    // A re-export of `lib.rs` is followed where `main.rs` stands beside it.
+    write("lib.rs", "mod inner; mod outer; pub use outer::Outer;");
+    write("main.rs", "fn main() {}");
+    let edges_of = |read: &Crate| -> Vec<String> {
+        read.edges_of_circles().iter().map(ToString::to_string).collect()
+    };
+    let crates = Crate::read(folder.path()).unwrap();
+    assert_eq!(crates.len(), 2, "lib.rs and main.rs");
+    assert_eq!(edges_of(&crates[0]), ["inner::leaf -> outer", "outer -> inner::leaf"]);
 }
 
 #[test]

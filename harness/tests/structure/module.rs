@@ -18,6 +18,8 @@ pub(crate) struct Module {
     pub(crate) globs: Vec<Path>,
     /// Names of the items that the file defines.
     pub(crate) items: BTreeSet<String>,
+    /// Names that stand alone or begin a path, outside of imports.
+    pub(crate) words: BTreeSet<String>,
     /// Child modules that only tests have.
     pub(crate) test_modules: Vec<String>,
 }
@@ -97,6 +99,16 @@ impl Reader<'_> {
                         let is_macro = self.mark(1) == Some('!');
                         self.module.items.extend(self.word(if is_macro { 2 } else { 1 }));
                     }
+                    // A name after a path or a dot belongs to what stands before it.
+                    name if !self.is_after_path_or_dot() => {
+                        self.module.words.insert(name.to_owned());
+                        let is_child = self.children.iter().any(|child| child == name);
+                        if is_child && self.is_separator(1) {
+                            let path = self.read_path();
+                            self.module.named.extend(self.absolute(&path));
+                            continue;
+                        }
+                    }
                     _ => {}
                 },
                 _ => {}
@@ -117,6 +129,11 @@ impl Reader<'_> {
             Some(Token::Mark(mark)) => Some(*mark),
             _ => None,
         }
+    }
+
+    fn is_after_path_or_dot(&self) -> bool {
+        let before = self.ix.checked_sub(1).and_then(|ix| self.tokens.get(ix));
+        matches!(before, Some(Token::PathSeparator | Token::Mark('.')))
     }
 
     fn is_separator(&self, ahead: usize) -> bool {
