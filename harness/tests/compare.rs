@@ -54,7 +54,7 @@ fn bad_input_leaves_an_earlier_report_untouched() {
     for (option, value, wanted) in [
         ("--scene", "gone.gltf", "gone.gltf"),
         ("--strategies", "M/-1", "--strategies M/-1: "),
-        ("--strategies", "T-I/hs+foo", "strategy T-I/hs+foo: "),
+        ("--strategies", "T-I/hs+foo", "--strategies T-I/hs+foo: "),
     ] {
         assert_refused(&[option, value, "--out", out], &[wanted]);
         for name in ["index.html", "results.json"] {

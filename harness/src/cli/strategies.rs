@@ -48,7 +48,7 @@ impl From<IdError> for CliError {
                 let known: Vec<&str> = families.chain([ALL]).collect();
                 Self::unknown("strategy", &id, &known)
             }
-            IdError::Segment { .. } => Self::new(error.to_string()),
+            IdError::Segment { id, reason } => Self::new(format!("--strategies {id}: {reason}")),
         }
     }
 }
