@@ -195,6 +195,16 @@ fn a_damaged_study_is_refused_by_name() {
     std::fs::write(folder.path().join("study.json"), text).expect("writes");
     let error = Manifest::find(folder.path()).expect_err("refused").to_string();
     assert!(error.contains("version is 99") && error.contains("1 to 2"), "{error}");
+    assert!(error.contains("newer") && !error.contains("remove"), "{error}");
+    // Jobs of version 2 have settings, even if there are none: without them a view has no name.
+    for (settings, is_whole) in [("", false), (r#","settings":{}"#, true)] {
+        let job = format!(r#"{{"name":"a","scene":"a","section":"b","command":[]{settings}}}"#);
+        let text = format!(r#"{{"version":2,"identity":[],"study":"culling","jobs":[{job}]}}"#);
+        std::fs::write(folder.path().join("study.json"), text).expect("writes");
+        let found = Manifest::find(folder.path()).map_err(|error| error.to_string());
+        let names = |error: &String| error.contains("jobs[0].settings is missing");
+        assert!(found.as_ref().map_or_else(names, |_| is_whole), "{found:?}");
+    }
     // A job's name is the name of a folder that may be deleted.
     for name in ["../victim", "..", "", "/tmp/x", "a/b"] {
         let job = format!(r#"{{"name":"{name}","scene":"a","section":"b","command":[]}}"#);

@@ -8,14 +8,20 @@ use serde_json::Value;
 
 use super::scene::StudyScene;
 
-/// What a job varies, by name: `lights`, `view`, `ranges`. Pages and claims read these; they never read a
-/// job's name for its meaning.
+/// What pages and claims need to know of a job beyond its section and its records. They never read a job's
+/// name for its meaning. A job has only the settings that its study reads:
+///
+/// - `depth_discontinuity`: `low` or `high`, of the views of `comparison`.
+/// - `sweep`: the rule of ranges that the jobs of a sweep of `cdi` share, such as `random-discard`.
+/// - `range_scale`: the factor on ranges, within a sweep of rules that find them by rays.
+/// - `range_share`: the longest range as a share of the scene's diagonal, within the other sweeps. One range
+///   for all lights is half as long.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Settings(BTreeMap<String, Value>);
 
 impl Settings {
-    /// A setting that is text.
+    /// A setting that is text; `None` where there is none of that name, or where it is a number.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.0.get(name)?.as_str()
     }
@@ -52,7 +58,7 @@ pub struct Job {
     pub scene: String,
     /// The part of the report that it belongs to.
     pub section: String,
-    /// What it varies.
+    /// What its study reads of it. Files of version 1 have none.
     #[serde(default)]
     pub settings: Settings,
     /// Its command, program name first, without `--out`.
@@ -60,15 +66,9 @@ pub struct Job {
 }
 
 impl Job {
-    /// A job of a scene: its section, what tells its name from others of the section, what it varies, and
+    /// A job of a scene without settings: its section, what tells its name from others of the section, and
     /// its command without the program's name.
-    pub(crate) fn new(
-        scene: &StudyScene,
-        section: &str,
-        variant: &str,
-        settings: Settings,
-        words: &[&str],
-    ) -> Self {
+    pub(crate) fn new(scene: &StudyScene, section: &str, variant: &str, words: &[&str]) -> Self {
         let parts = [scene.name.as_str(), section, variant];
         let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         let command = std::iter::once("lightbench").chain(words.iter().copied());
@@ -76,9 +76,15 @@ impl Job {
             name: parts.join("-"),
             scene: scene.name.clone(),
             section: section.to_owned(),
-            settings,
+            settings: Settings::default(),
             command: command.map(str::to_owned).collect(),
         }
+    }
+
+    /// The job with a setting: a number where the text is one.
+    pub(crate) fn with(mut self, name: &str, text: &str) -> Self {
+        self.settings.set(name, text);
+        self
     }
 
     /// The job's folder in that of its study.
@@ -103,14 +109,8 @@ impl Job {
         let prefix = format!("{}-{}-", self.scene, self.section);
         let variant = self.name.strip_prefix(&prefix).unwrap_or_default().to_owned();
         let mut settings = Settings::default();
-        for (option, name) in [("--lights", "lights"), ("--ranges", "ranges"), ("--vpls", "rsm_px")]
-        {
-            if let Some(value) = self.option(option) {
-                settings.set(name, value);
-            }
-        }
         if ["low", "high"].contains(&variant.as_str()) {
-            settings.set("view", &variant);
+            settings.set("depth_discontinuity", &variant);
         }
         // `average-x2`, `random-discard-0.5`: of a sweep. Jobs with another map start with `rsm`.
         for rule in ["average", "maximum", "random-discard", "constant-discard", "random"] {
@@ -120,8 +120,8 @@ impl Job {
             };
             settings.set("sweep", rule);
             match rest.strip_prefix('x') {
-                Some(scale) => settings.set("scale", scale),
-                None => settings.set("share", rest),
+                Some(scale) => settings.set("range_scale", scale),
+                None => settings.set("range_share", rest),
             }
             break;
         }
@@ -135,7 +135,7 @@ mod tests {
 
     fn old(section: &str, variant: &str, words: &[&str]) -> Settings {
         let scene = StudyScene { scene: "a.glb".into(), name: "a".into(), scale: 1.0 };
-        let mut job = Job::new(&scene, section, variant, Settings::default(), words);
+        let mut job = Job::new(&scene, section, variant, words);
         job.derive_settings();
         job.settings
     }
@@ -143,22 +143,26 @@ mod tests {
     #[test]
     fn settings_of_old_jobs_come_from_their_names_and_commands() {
         let view = old("views", "low", &["compare", "--lights", "500"]);
-        assert_eq!((view.text("view"), view.number("lights")), (Some("low"), Some(500.0)));
+        assert_eq!(view.text("depth_discontinuity"), Some("low"));
         let sweep = old("models", "average-x2", &["--ranges", "average"]);
-        assert_eq!((sweep.text("sweep"), sweep.number("scale")), (Some("average"), Some(2.0)));
+        assert_eq!(
+            (sweep.text("sweep"), sweep.number("range_scale")),
+            (Some("average"), Some(2.0))
+        );
         let random = old("models", "random-discard-0.5", &["--ranges", "random-discard"]);
-        assert_eq!(random.number("share"), Some(0.5));
+        assert_eq!(random.number("range_share"), Some(0.5));
         assert_eq!(random.text("sweep"), Some("random-discard"));
         let other = old("models", "rsm64-random-0.5", &["--ranges", "random"]);
-        assert_eq!((other.text("sweep"), other.text("ranges")), (None, Some("random")));
+        assert_eq!(other, Settings::default());
         assert_eq!(old("models", "infinite", &[]).text("sweep"), None);
     }
 
     #[test]
     fn settings_are_plain_fields_of_the_file() {
-        let settings = Settings::from([("lights", "500"), ("view", "low"), ("share", "0.15")]);
+        let settings =
+            Settings::from([("sweep", "random"), ("range_scale", "2"), ("range_share", "0.15")]);
         let text = serde_json::to_string(&settings).unwrap();
-        assert_eq!(text, r#"{"lights":500,"share":0.15,"view":"low"}"#);
+        assert_eq!(text, r#"{"range_scale":2,"range_share":0.15,"sweep":"random"}"#);
         assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::study::job::Job;
 use crate::{
@@ -36,6 +37,18 @@ fn first_version() -> u32 {
     1
 }
 
+/// Checks that the jobs of a file have settings, which files of version 1 lack.
+fn check_settings(file: &Value, version: u64) -> Result<(), String> {
+    let jobs = file.get("jobs").and_then(Value::as_array).filter(|_| version > 1);
+    let lacks = |job: &Value| job.get("settings").is_none();
+    match jobs.and_then(|jobs| jobs.iter().position(lacks)) {
+        Some(ix) => Err(format!(
+            "jobs[{ix}].settings is missing: a file of version {version} must have it, also where it is {{}}"
+        )),
+        None => Ok(()),
+    }
+}
+
 impl Manifest {
     /// The manifest of a new study: the command that was asked for, the study's name and its jobs.
     pub fn new(identity: Vec<String>, study: &str, jobs: Vec<Job>) -> Self {
@@ -50,19 +63,29 @@ impl Manifest {
         }
         let bytes = std::fs::read(&path)
             .map_err(|source| ResultsError::Read { path: path.clone(), source })?;
+        let damaged = |reason: String| {
+            format!(
+                "{reason}: remove this file; the study then lists its jobs again and keeps the \
+                 finished ones"
+            )
+        };
         let manifest = || -> Result<Self, String> {
-            unsealed(&bytes)?;
-            let mut manifest: Self = serde_json::from_slice(&bytes).map_err(|e| e.to_string())?;
-            manifest.check()?;
+            let (file, _) = unsealed(&bytes).map_err(damaged)?;
+            let version = file.get("version").and_then(Value::as_u64).unwrap_or(1);
+            if version > u64::from(VERSION) {
+                return Err(format!(
+                    "version is {version}: this program reads versions 1 to {VERSION}: use a newer lightbench"
+                ));
+            }
+            check_settings(&file, version).map_err(damaged)?;
+            let mut manifest: Self =
+                serde_json::from_slice(&bytes).map_err(|e| damaged(e.to_string()))?;
+            manifest.check().map_err(damaged)?;
             manifest.upgrade();
             Ok(manifest)
         };
-        let manifest = manifest().map_err(|reason| {
-            let help =
-                "remove this file; the study then lists its jobs again and keeps the finished ones";
-            ResultsError::Study { path: path.clone(), reason: format!("{reason}: {help}") }
-        })?;
-        Ok(Some(manifest))
+        let fail = |reason| ResultsError::Study { path: path.clone(), reason };
+        manifest().map(Some).map_err(fail)
     }
 
     /// Gives the jobs of version 1 the settings that their names and commands imply.
@@ -75,11 +98,8 @@ impl Manifest {
 
     /// Names of jobs are names of folders: the file may come from anywhere.
     fn check(&self) -> Result<(), String> {
-        if !(1..=VERSION).contains(&self.version) {
-            return Err(format!(
-                "version is {}: this program reads versions 1 to {VERSION}",
-                self.version
-            ));
+        if self.version == 0 {
+            return Err(format!("version is 0: it must be 1 to {VERSION}"));
         }
         if self.jobs.is_empty() {
             return Err("jobs is empty: it must list at least one job".to_owned());

@@ -315,7 +315,12 @@ pub(crate) fn study_of(turned: &'static str, folder: &Path, laps: u32) -> Done {
     }
     maker.add("path", "10000", maker.path(10_000, 40, laps));
     for view in ["low", "high"] {
-        maker.add_with("views", view, Settings::from([("view", view)]), maker.view(view));
+        maker.add_with(
+            "views",
+            view,
+            Settings::from([("depth_discontinuity", view)]),
+            maker.view(view),
+        );
     }
     for (section, lights) in [("growing", 30_000), ("constant", 30_000)] {
         let mut records = maker.all(lights);

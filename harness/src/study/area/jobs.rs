@@ -5,7 +5,7 @@
 //! assignment. Lights are rectangles, as in the paper.
 
 use crate::study::against_truth::{MODELS, TRUTH};
-use crate::study::job::{Job, Settings};
+use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 use crate::{
     bench::Bench,
@@ -137,20 +137,18 @@ pub(crate) fn jobs(
     let timed = [&["--strategies", BASELINE], &frames[..]].concat();
     let view = [&common[..], &["--lights", FEW, "--areas", "1"]].concat();
     let mut jobs = Vec::new();
-    jobs.push(Job::new(scene, TRUTH, "", Settings::default(), &[&["truth"], &view[..]].concat()));
+    jobs.push(Job::new(scene, TRUTH, "", &[&["truth"], &view[..]].concat()));
     for model in extent.models {
         let words = [&["compare"], &view[..], &timed, &["--area-model", model]].concat();
-        let settings = Settings::from([("lights", FEW), ("model", model)]);
-        jobs.push(Job::new(scene, MODELS, &plain(model), settings, &words));
+        jobs.push(Job::new(scene, MODELS, &plain(model), &words));
     }
     for (count, models) in extent.costs {
         let count = count.to_string();
         let mut cost = |what: &str, drawn: &[&str], options: &[&str]| {
             let words = [&["compare"], drawn, &timed, &["--lights", &count], options];
             let words = [&words.concat()[..], &["--pictures", "none"]].concat();
-            let settings = Settings::from([("lights", count.as_str()), ("model", what)]);
             let name = format!("{count}-{}", plain(what));
-            jobs.push(Job::new(scene, "cost", &name, settings, &words));
+            jobs.push(Job::new(scene, "cost", &name, &words));
         };
         cost("spots", &scaled, &["--spots", "1"]);
         for model in *models {
@@ -164,8 +162,7 @@ pub(crate) fn jobs(
     let culled = ["--lights", extent.culled, "--areas", "1", "--radius-scale", &near];
     let own = ["--strategies", &ids, "--pictures", "none"];
     let words = [&["compare"], &alike[..], &outlines, &culled, &frames, &own].concat();
-    let settings = Settings::from([("lights", extent.culled)]);
-    jobs.push(Job::new(scene, BOUNDS, extent.culled, settings, &words));
+    jobs.push(Job::new(scene, BOUNDS, extent.culled, &words));
     Ok(jobs)
 }
 

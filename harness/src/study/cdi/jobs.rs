@@ -2,7 +2,7 @@
 //! and indirect light by virtual point lights against a path-traced image.
 
 use crate::study::against_truth::{MODELS, TRUTH};
-use crate::study::job::{Job, Settings};
+use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 use crate::{
     bench::Bench,
@@ -152,24 +152,24 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     let traced = [&["truth"], &drawn[..], &["--primary", "--shadows"]].concat();
     let bounced = ["--bounces", "1", "--indirect", "--samples", extent.samples];
     let mut jobs = vec![
-        Job::new(scene, TRUTH, "", Settings::default(), &[&traced[..], &bounced].concat()),
-        Job::new(scene, DIRECT, "", Settings::default(), &traced),
+        Job::new(scene, TRUTH, "", &[&traced[..], &bounced].concat()),
+        Job::new(scene, DIRECT, "", &traced),
     ];
     let timed = ["--strategies", GRID, "--frames", extent.frames, "--warmup", extent.warmup];
     let timed = [&timed[..], &["--light-order", "given"]].concat();
     let common = [&["compare"], &drawn[..], &timed, &["--truth", "none"]].concat();
-    let mut add = |name: &str, rsm: &str, varied: &[(&str, &str)], words: &[&str]| {
+    let mut add = |name: &str, rsm: &str, settings: &[(&str, &str)], words: &[&str]| {
         let words = [&common[..], &["--vpls", rsm], words].concat();
-        let mut settings = Settings::from([("rsm_px", rsm)]);
-        varied.iter().for_each(|(name, value)| settings.set(name, value));
-        jobs.push(Job::new(scene, MODELS, name, settings, &words));
+        let job = Job::new(scene, MODELS, name, &words);
+        let with = |job: Job, (name, value): &(&str, &str)| job.with(name, value);
+        jobs.push(settings.iter().fold(job, with));
     };
     // How ranges are found.
     for (rule, scales) in [("average", extent.scales), ("maximum", extent.longest_scales)] {
         for scale in scales {
             let words = [&extent.deep(None, None)[..], &["--ranges", rule, "--range-scale", scale]];
-            let varied = [("sweep", rule), ("scale", scale)];
-            add(&format!("{rule}-x{scale}"), extent.rsm, &varied, &words.concat());
+            let swept = [("sweep", rule), ("range_scale", scale)];
+            add(&format!("{rule}-x{scale}"), extent.rsm, &swept, &words.concat());
         }
     }
     let random: Vec<String> =
@@ -177,51 +177,48 @@ fn images(args: &StudyArgs, scene: &StudyScene, extent: &Extent, diagonal_m: f32
     let random_words = |span| ["--ranges", "random", "--random-ranges", span];
     for (share, span) in extent.random.iter().zip(&random) {
         let text = share.to_string();
-        let swept = |rule| [("sweep", rule), ("share", text.as_str())];
+        let swept = |rule| [("sweep", rule), ("range_share", text.as_str())];
         add(&format!("random-{share}"), extent.rsm, &swept("random"), &random_words(span));
         // What rays leave out, without what they say of the others.
         let deep = extent.deep(None, None);
         let words = ["--ranges", "random-discard", "--random-ranges", span];
         let words = [&deep[..], &words].concat();
-        let varied = swept("random-discard");
-        add(&format!("random-discard-{share}"), extent.rsm, &varied, &words);
+        let settings = swept("random-discard");
+        add(&format!("random-discard-{share}"), extent.rsm, &settings, &words);
         let range_m = (0.5 * share * diagonal_m).to_string();
         let words = ["--ranges", "constant-discard", "--constant-range", &range_m];
         let words = [&deep[..], &words].concat();
-        let varied = swept("constant-discard");
-        add(&format!("constant-discard-{share}"), extent.rsm, &varied, &words);
+        let settings = swept("constant-discard");
+        add(&format!("constant-discard-{share}"), extent.rsm, &settings, &words);
     }
-    add("infinite", extent.rsm, &[("ranges", "infinite")], &["--ranges", "infinite"]);
+    add("infinite", extent.rsm, &[], &["--ranges", "infinite"]);
     // The paper sees no difference between the two builds in the image.
     let each = [&extent.deep(None, None)[..], &["--build", "per-direction-batched"]].concat();
-    add("per-direction", extent.rsm, &[("build", "per-direction-batched")], &each);
+    add("per-direction", extent.rsm, &[], &each);
     let corrected = [&extent.deep(None, None)[..], &["--correct-rays"]].concat();
-    add("corrected", extent.rsm, &[("primary_ray", "corrected")], &corrected);
+    add("corrected", extent.rsm, &[], &corrected);
     let reflected = [&extent.deep(None, None)[..], &["--primary-ray", "reflected"]].concat();
-    add("reflected", extent.rsm, &[("primary_ray", "reflected")], &reflected);
+    add("reflected", extent.rsm, &[], &reflected);
     // More and fewer lights.
     for rsm in extent.rsms.iter().filter(|rsm| **rsm != extent.rsm) {
         add(&format!("rsm{rsm}-average"), rsm, &[], &extent.deep(None, None));
         // Every other span.
         for (share, span) in extent.random.iter().zip(&random).skip(1).step_by(2) {
-            let text = share.to_string();
-            let varied = [("ranges", "random"), ("share", text.as_str())];
-            add(&format!("rsm{rsm}-random-{share}"), rsm, &varied, &random_words(span));
+            add(&format!("rsm{rsm}-random-{share}"), rsm, &[], &random_words(span));
         }
     }
     // What the deep images are like, and how many rays go through them.
     for directions in extent.directions.iter().rev().skip(1) {
         let deep = extent.deep(Some(directions), None);
-        let varied = [("directions", *directions)];
-        add(&format!("directions-{directions}"), extent.rsm, &varied, &deep);
+        add(&format!("directions-{directions}"), extent.rsm, &[], &deep);
     }
     for size in extent.deep_sizes.iter().skip(1) {
         let deep = extent.deep(None, Some(size));
-        add(&format!("size-{size}"), extent.rsm, &[("deep_px", size)], &deep);
+        add(&format!("size-{size}"), extent.rsm, &[], &deep);
     }
     for rays in extent.rays.iter().skip(1) {
         let words = [&extent.deep(None, None)[..], &["--rays", rays]].concat();
-        add(&format!("rays-{rays}"), extent.rsm, &[("rays", rays)], &words);
+        add(&format!("rays-{rays}"), extent.rsm, &[], &words);
     }
     jobs
 }
@@ -238,8 +235,8 @@ fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
     // frame have the order of their map and no hierarchy.
     let all = ["--strategies", extent.strategies, "--light-order", "given", "--truth", "none"];
     vec![
-        Job::new(scene, STEPS, "", Settings::default(), &[&common[..], &own].concat()),
-        Job::new(scene, STRATEGIES, "", Settings::default(), &[&common[..], &all].concat()),
+        Job::new(scene, STEPS, "", &[&common[..], &own].concat()),
+        Job::new(scene, STRATEGIES, "", &[&common[..], &all].concat()),
     ]
 }
 
@@ -249,48 +246,43 @@ fn deep_images(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job
     let drawn = ["cdi", "--scene", &scene.scene, "--scene-scale", &scale, "--seed", &seed];
     let common = [&drawn[..], &["--frames", extent.frames]].concat();
     let mut jobs = Vec::new();
-    let mut add = |name: &str, varied: &[(&str, &str)], words: &[&str]| {
-        let words = [&common[..], words].concat();
-        let mut settings = Settings::default();
-        varied.iter().for_each(|(name, value)| settings.set(name, value));
-        jobs.push(Job::new(scene, BUILDS, name, settings, &words));
+    let mut add = |name: &str, words: &[&str]| {
+        jobs.push(Job::new(scene, BUILDS, name, &[&common[..], words].concat()));
     };
     let compared = ["--casts", "none", "--compared", extent.compared];
     let only_built = ["--casts", "none", "--compared", "0"];
     for directions in extent.directions {
         let deep = extent.deep(Some(directions), None);
-        let varied = |build| [("build", build), ("directions", *directions)];
         let words = [&deep[..], &compared].concat();
-        add(&format!("compute-{directions}"), &varied("compute"), &words);
+        add(&format!("compute-{directions}"), &words);
         for build in ["fragment", "per-direction", "per-direction-batched"] {
             // Rays through both builds of most directions are compared: the paper sees no difference.
             let is_usual = extent.directions.last() == Some(directions);
             let rays = if is_usual && build == "per-direction" { compared } else { only_built };
             let words = [&deep[..], &["--build", build], &rays].concat();
-            add(&format!("{build}-{directions}"), &varied(build), &words);
+            add(&format!("{build}-{directions}"), &words);
         }
     }
     for size in extent.deep_sizes.iter().skip(1) {
         let deep = extent.deep(None, Some(size));
-        add(&format!("size-{size}"), &[("deep_px", size)], &[&deep[..], &compared].concat());
+        add(&format!("size-{size}"), &[&deep[..], &compared].concat());
     }
     let usual = extent.deep(None, None);
     let oversampled = [&usual[..], &["--oversampling", "2"], &compared].concat();
-    add("oversampled", &[("oversampling", "2")], &oversampled);
+    add("oversampled", &oversampled);
     let squares = [&usual[..], &["--spread", "squares"], &compared].concat();
-    add("squares", &[("spread", "squares")], &squares);
+    add("squares", &squares);
     let linked = [&usual[..], &["--build", "linked-lists"], &compared].concat();
-    add("linked-lists", &[("build", "linked-lists")], &linked);
+    add("linked-lists", &linked);
     let deep = extent.deep(Some(extent.conservative), None);
     let conservative = [&deep[..], &["--build", "conservative"], &compared].concat();
-    add("conservative", &[("build", "conservative")], &conservative);
+    add("conservative", &conservative);
     let cast = [&usual[..], &["--casts", extent.casts, "--compared", "0"]].concat();
     let words = [&common[..], &cast].concat();
-    jobs.push(Job::new(scene, CASTS, "", Settings::default(), &words));
+    jobs.push(Job::new(scene, CASTS, "", &words));
     let linked = [&cast[..], &["--build", "linked-lists"]].concat();
     let words = [&common[..], &linked].concat();
-    let settings = Settings::from([("build", "linked-lists")]);
-    jobs.push(Job::new(scene, CASTS, "linked-lists", settings, &words));
+    jobs.push(Job::new(scene, CASTS, "linked-lists", &words));
     jobs
 }
 

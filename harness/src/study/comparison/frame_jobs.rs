@@ -2,7 +2,7 @@
 //! with one, deferred shading without and with models in the G-buffer.
 
 use crate::cli::Size;
-use crate::study::job::{Job, Settings};
+use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 
 /// Strategies at the paper's parameters, and one of each kind through the hierarchy.
@@ -33,8 +33,7 @@ pub(crate) fn jobs(
         words.extend(["--strategies", strategies, "--mode", "all"]);
         words.extend(["--path", "--frames", poses, "--laps", laps, "--checks", "1"]);
         words.extend(["--truth", "none", "--pictures", "none"]);
-        let settings = Settings::from([("lights", lights.as_str())]);
-        Job::new(scene, "frames", &lights, settings, &words)
+        Job::new(scene, "frames", &lights, &words)
     };
     counts.iter().map(job).collect()
 }

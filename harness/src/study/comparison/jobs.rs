@@ -8,7 +8,7 @@
 use super::depth_views::Views;
 use super::extent::{self, Extent};
 use super::frame_jobs;
-use crate::study::job::{Job, Settings};
+use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 use crate::{
     bench::Bench,
@@ -62,43 +62,28 @@ fn look(bench: &mut Bench, scene: &StudyScene) -> Result<(Option<Views>, u64), H
 }
 
 impl Plan<'_> {
-    /// Adds a job: its section, what it varies beside the number of lights, and its options. The values of
-    /// what it varies are its name within the section; where it varies nothing else, the number of lights
-    /// is.
-    fn add(&mut self, section: &str, varied: &[(&str, &str)], lights: u32, options: &[&str]) {
-        let scale = self.scene.scale.to_string();
-        let name = match varied {
-            [] => lights.to_string(),
-            _ => varied.iter().map(|(_, value)| *value).collect::<Vec<_>>().join("-"),
-        };
-        self.add_scaled(section, &name, varied, lights, &scale, options);
+    /// Adds a job: its section, its number of lights, and its options. Its name within the section is the
+    /// values of what it varies; where it varies nothing else, its number of lights.
+    fn add(&mut self, section: &str, varied: &[&str], lights: u32, options: &[&str]) {
+        let name = if varied.is_empty() { lights.to_string() } else { varied.join("-") };
+        self.jobs.push(self.job(section, &name, lights, self.scene.scale, options));
     }
 
     /// Adds the only job of its section.
     fn add_named(&mut self, section: &str, lights: u32, options: &[&str]) {
-        let scale = self.scene.scale.to_string();
-        self.add_scaled(section, "", &[], lights, &scale, options);
+        self.jobs.push(self.job(section, "", lights, self.scene.scale, options));
     }
 
-    fn add_scaled(
-        &mut self,
-        section: &str,
-        name: &str,
-        varied: &[(&str, &str)],
-        lights: u32,
-        scale: &str,
-        options: &[&str],
-    ) {
+    /// A job of the scene at a scale.
+    fn job(&self, section: &str, name: &str, lights: u32, scale: f64, options: &[&str]) -> Job {
         let Size { width, height } = self.extent.size;
-        let (lights, size, seed) =
-            (lights.to_string(), format!("{width}x{height}"), self.seed.to_string());
+        let (lights, size) = (lights.to_string(), format!("{width}x{height}"));
+        let (scale, seed) = (scale.to_string(), self.seed.to_string());
         let mut words = vec!["compare", "--scene", self.scene.scene.as_str()];
-        words.extend(["--scene-scale", scale, "--lights", &lights, "--size", &size]);
+        words.extend(["--scene-scale", &scale, "--lights", &lights, "--size", &size]);
         words.extend(["--seed", &seed, "--warmup", self.extent.warmup]);
         words.extend(options);
-        let mut settings = Settings::from([("lights", lights.as_str()), ("scale", scale)]);
-        varied.iter().for_each(|(name, value)| settings.set(name, value));
-        self.jobs.push(Job::new(self.scene, section, name, settings, &words));
+        Job::new(self.scene, section, name, &words)
     }
 
     /// Options of strategies along the path, with that many poses a lap.
@@ -113,14 +98,7 @@ impl Plan<'_> {
     }
 
     /// Adds a job along the path.
-    fn add_along(
-        &mut self,
-        section: &str,
-        varied: &[(&str, &str)],
-        lights: u32,
-        poses: u32,
-        ids: &str,
-    ) {
+    fn add_along(&mut self, section: &str, varied: &[&str], lights: u32, poses: u32, ids: &str) {
         let options = self.along(poses, ids);
         let options: Vec<&str> = options.iter().map(String::as_str).collect();
         self.add(section, varied, lights, &options);
@@ -140,18 +118,18 @@ impl Plan<'_> {
         let (most, poses) = (self.extent.most, self.extent.search_poses);
         for (family, sizes) in self.extent.linear_sizes.sizes() {
             let ids: Vec<String> = sizes.iter().map(|size| format!("{family}/{size}")).collect();
-            self.add_along("sizes", &[("family", family)], most, poses, &ids.join(","));
+            self.add_along("sizes", &[family], most, poses, &ids.join(","));
         }
         for (family, sizes) in self.extent.bvh_sizes.sizes() {
             let ids: Vec<String> =
                 sizes.iter().map(|size| format!("{family}/{size}/bvh")).collect();
-            let varied = [("family", family), ("source", "bvh")];
+            let varied = [family, "bvh"];
             self.add_along("sizes", &varied, most, poses, &ids.join(","));
         }
         for family in self.extent.tested {
             let ids: Vec<String> =
                 self.extent.tests.iter().map(|tests| format!("{family}/{tests}")).collect();
-            self.add_along("tests", &[("family", *family)], most, poses, &ids.join(","));
+            self.add_along("tests", &[family], most, poses, &ids.join(","));
         }
     }
 
@@ -163,7 +141,8 @@ impl Plan<'_> {
         for (name, frame) in [("low", views.low), ("high", views.high)] {
             let camera = format!("path:{frame}/{}", views.count);
             let options = ["--strategies", &strategies, "--camera", &camera, "--frames", &frames];
-            self.add("views", &[("view", name)], self.extent.most, &options);
+            let job = self.job("views", name, self.extent.most, self.scene.scale, &options);
+            self.jobs.push(job.with("depth_discontinuity", name));
         }
     }
 
@@ -180,7 +159,7 @@ impl Plan<'_> {
             if !self.extent.slow.is_empty() {
                 let (poses, ids) = (self.extent.slow_poses, self.extent.slow);
                 let lights = count.to_string();
-                let varied = [("lights", lights.as_str()), ("methods", "slow")];
+                let varied = [lights.as_str(), "slow"];
                 self.add_along("path", &varied, count, poses, ids);
             }
         }
@@ -204,15 +183,15 @@ impl Plan<'_> {
         let options: Vec<&str> = options.iter().map(String::as_str).collect();
         for &count in self.extent.many {
             let factor = (f64::from(count) / f64::from(self.extent.most)).cbrt();
-            let scale = (self.scene.scale * factor).to_string();
-            self.add_scaled("constant", &count.to_string(), &[], count, &scale, &options);
+            let scale = self.scene.scale * factor;
+            self.jobs.push(self.job("constant", &count.to_string(), count, scale, &options));
             if count <= 100_000 {
                 self.add("growing", &[], count, &options);
             }
         }
         for radii in self.extent.radii {
             let options = [&options[..], &["--radii", radii]].concat();
-            self.add("radii", &[("radii", *radii)], self.extent.most, &options);
+            self.add("radii", &[radii], self.extent.most, &options);
         }
     }
 
@@ -247,7 +226,7 @@ impl Plan<'_> {
                 let options = ["--strategies", &lossless, "--threshold", threshold, "--cut", cut];
                 let options = [&options[..], &["--unbounded", "--frames", &frames]].concat();
                 let options = [&options[..], &["--truth", "none"]].concat();
-                let varied = [("cut", cut), ("threshold", threshold)];
+                let varied = [cut, threshold];
                 self.add("ranges", &varied, most, &options);
             }
         }

@@ -13,7 +13,7 @@
 use crate::bench::Bench;
 use crate::cli::{Size, StudyArgs};
 use crate::error::HarnessError;
-use crate::study::job::{Job, Settings};
+use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 
 /// Clay, no culling, bounding spheres, rasterised spheres, the paper's clusters, the same without a cap,
@@ -73,8 +73,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Vec<Job> {
             let words = command(args, scene, extent, *count, size, is_last);
             let words: Vec<&str> = words.iter().map(String::as_str).collect();
             let lights = count.to_string();
-            let settings = Settings::from([("mode", extent.mode), ("lights", lights.as_str())]);
-            jobs.push(Job::new(scene, extent.mode, &lights, settings, &words));
+            jobs.push(Job::new(scene, extent.mode, &lights, &words));
         }
     }
     jobs

@@ -19,6 +19,12 @@ pub(crate) const PLACES: [(&str, &str); 3] = [
 pub(crate) const RULED: (&str, &str) =
     ("influence", "Location A: ranges from the paper\u{2019}s influence radius, with a hard cut");
 
+/// Depth slices of the paper's clusters.
+pub(crate) const PAPER_SLICES: u64 = 24;
+
+/// Half as many, with which the paper compares them.
+pub(crate) const HALF_SLICES: u64 = 12;
+
 /// The clusters of all settings except the paper's.
 pub(crate) const USUAL: &str = "48x48x40";
 
@@ -40,6 +46,8 @@ pub(crate) enum Cut {
 pub(crate) struct Setting<'a> {
     /// The clusters: `48x48x40`; empty where there are none.
     pub(crate) grid: &'a str,
+    /// The depth slices of the clusters.
+    pub(crate) slices: Option<u64>,
     /// Normal cones that a cluster is split by; `None` where lights are assigned by position only.
     pub(crate) cones: Option<u32>,
     pub(crate) cut: Cut,
@@ -52,6 +60,7 @@ impl<'a> Setting<'a> {
         let options = id.options();
         Self {
             grid: id.size(),
+            slices: id.parameters().get("slices").and_then(serde_json::Value::as_u64),
             cones: options.normals.is_some().then(|| options.normals.bins()),
             cut: match options.specular {
                 SpecularCut::None => Cut::None,
@@ -261,7 +270,13 @@ mod tests {
         assert_eq!((read.cones, read.cut), (Some(54), Cut::Below(0.001)));
         assert_eq!(setting(&cut), "54 cones, cut 0.001");
         let plain = id("SC-E/48x48x40/bvh");
-        let expected = Setting { grid: "48x48x40", cones: None, cut: Cut::None, exits: true };
+        let expected = Setting {
+            grid: "48x48x40",
+            slices: Some(40),
+            cones: None,
+            cut: Cut::None,
+            exits: true,
+        };
         assert_eq!(Setting::of(&plain), expected);
         assert_eq!(
             (setting(&plain).as_str(), setting(&id("None")).as_str()),

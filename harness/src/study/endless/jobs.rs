@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use scenes::Aabb;
 
-use crate::study::job::{Job, Settings};
+use crate::study::job::Job;
 use crate::study::scene::StudyScene;
 use crate::{
     bench::Bench,
@@ -99,8 +99,7 @@ pub(crate) fn jobs(
     let mut jobs = Vec::new();
     let mut add = |place: &str, count: &str, strategies: &str, own: &[&str]| {
         let words = [&common[..], &["--strategies", strategies], own].concat();
-        let settings = Settings::from([("place", place), ("lights", count)]);
-        jobs.push(Job::new(scene, place, count, settings, &words));
+        jobs.push(Job::new(scene, place, count, &words));
     };
     let [(_, few), (_, many)] = extent.copies;
     for (side, count) in extent.copies {

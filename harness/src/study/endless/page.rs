@@ -10,8 +10,8 @@ use crate::report::table::{Look, Row, Table};
 use crate::results::{Errors, Operations, Record};
 use crate::study::data::Entry;
 use crate::study::endless::cases::{
-    Case, Cut, PLACES, Published, RULED, Setting, USUAL, cases, cases_at, lost, paper, seen,
-    setting,
+    Case, Cut, HALF_SLICES, PAPER_SLICES, PLACES, Published, RULED, Setting, USUAL, cases,
+    cases_at, lost, paper, seen, setting,
 };
 use crate::study::endless::charts::charts_of;
 use crate::study::manifest::Done;
@@ -158,16 +158,16 @@ fn of_the_paper(case: &Case<'_>, record: &Record) -> Option<Published> {
 fn stands_for_the_paper(case: &Case<'_>, record: &Record) -> bool {
     let faith = |setting: &Setting<'_>| {
         let is_test = matches!(setting.cut, Cut::ConeTest(_));
-        (is_test, setting.grid.ends_with("x24"), !setting.exits)
+        (is_test, setting.slices == Some(PAPER_SLICES), !setting.exits)
     };
     let own = Setting::of(&record.strategy);
     let kind = |setting: &Setting<'_>| (setting.cones, setting.cut == Cut::Diffuse);
     let is_better = |other: &Record| {
         let other = Setting::of(&other.strategy);
-        let is_published = !matches!(other.cut, Cut::Below(_)) && !other.grid.ends_with("x12");
+        let is_published = !matches!(other.cut, Cut::Below(_)) && other.slices != Some(HALF_SLICES);
         kind(&other) == kind(&own) && is_published && faith(&other) > faith(&own)
     };
-    record.culls() && !own.grid.ends_with("x12") && !case.culled().any(is_better)
+    record.culls() && own.slices != Some(HALF_SLICES) && !case.culled().any(is_better)
 }
 
 /// Terms that would be seen and that a lossy setting loses: a number, or the least that it may be.

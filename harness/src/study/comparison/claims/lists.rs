@@ -4,7 +4,7 @@ use crate::report::format::{number, percent, significant};
 use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
-use crate::study::comparison::page::views::is_low;
+use crate::study::comparison::page::views::is_of_view;
 use crate::study::data::{Entry, counts, entries, is_of_the_paper, nearest_count, ranking, stand};
 use crate::study::manifest::Done;
 
@@ -31,7 +31,7 @@ fn in_both<'a>(done: &'a Done, scene: &'a str, name: &str) -> Option<[&'a Record
     let of = |low: bool| {
         let own = |entry: &&Entry<'_>| {
             let id = &entry.record.strategy;
-            is_low(entry) == low && id.family() == name && is_of_the_paper(entry.record)
+            is_of_view(entry, low) && id.family() == name && is_of_the_paper(entry.record)
         };
         views.iter().find(own).map(|entry| entry.record)
     };

@@ -26,7 +26,7 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     ids.sort_by_key(|id| FIRST.iter().position(|first| *first == id.short()).unwrap_or(usize::MAX));
     let of = |ids: &[&StrategyId], view: Option<bool>| -> Vec<Entry<'_>> {
         let own = |entry: &&Entry<'_>| ids.contains(&&entry.record.strategy);
-        let seen = |entry: &&Entry<'_>| view.is_none_or(|low| is_low(entry) == low);
+        let seen = |entry: &&Entry<'_>| view.is_none_or(|low| is_of_view(entry, low));
         let mut own: Vec<Entry<'_>> = all.iter().filter(own).filter(seen).copied().collect();
         own.sort_by_key(|entry| ids.iter().position(|id| **id == entry.record.strategy));
         own
@@ -125,13 +125,19 @@ fn histograms(slug: &str, title: &str, entries: &[Entry<'_>], charts: &mut Chart
     if all.is_empty() { Html::default() } else { charts.histograms(slug, title, &all) }
 }
 
-/// Whether a record is of the view with the least discontinuity.
-pub(crate) fn is_low(entry: &Entry<'_>) -> bool {
-    entry.job.settings.text("view") == Some("low")
+/// Whether a record is of the view with the least or the most discontinuity in depth. A record without that
+/// setting is of neither.
+pub(crate) fn is_of_view(entry: &Entry<'_>, is_low: bool) -> bool {
+    let wanted = if is_low { "low" } else { "high" };
+    entry.job.settings.text("depth_discontinuity") == Some(wanted)
 }
 
 fn view(entry: &Entry<'_>) -> &'static str {
-    if is_low(entry) { "low discontinuity" } else { "high discontinuity" }
+    match entry.job.settings.text("depth_discontinuity") {
+        Some("low") => "low discontinuity",
+        Some("high") => "high discontinuity",
+        _ => "unknown discontinuity",
+    }
 }
 
 fn histogram(record: &Record, view: &str) -> Histogram {

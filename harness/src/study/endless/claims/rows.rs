@@ -4,7 +4,7 @@ use crate::report::format::significant;
 use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
-use crate::study::endless::cases::{Case, Cut, Setting, USUAL, cases, setting};
+use crate::study::endless::cases::{Case, Cut, PAPER_SLICES, Setting, USUAL, cases, setting};
 use crate::study::manifest::Done;
 
 /// The rows of one case: the paper's own settings where they were measured, that is its clusters and its
@@ -22,7 +22,7 @@ type Wanted<'f> = &'f dyn Fn(&Setting<'_>) -> bool;
 
 impl<'a> Rows<'a> {
     fn of(case: &Case<'a>) -> Option<Self> {
-        let published = |s: &Setting<'_>| s.grid.ends_with("x24") && !s.exits;
+        let published = |s: &Setting<'_>| s.slices == Some(PAPER_SLICES) && !s.exits;
         let usual = |s: &Setting<'_>| s.grid == USUAL && s.exits;
         let test = |s: &Setting<'_>| matches!(s.cut, Cut::ConeTest(_));
         let plain = |s: &Setting<'_>| s.cut == Cut::None;

@@ -4,7 +4,7 @@ use crate::report::format::{percent, significant};
 use crate::report::rank::listed;
 use crate::results::Record;
 use crate::study::claims::{Answer, Verdict};
-use crate::study::endless::cases::{Case, Cut, USUAL, cases, setting};
+use crate::study::endless::cases::{Case, Cut, HALF_SLICES, PAPER_SLICES, USUAL, cases, setting};
 use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, verdict, with_time};
 use crate::study::manifest::Done;
 
@@ -186,8 +186,10 @@ pub(crate) fn far(done: &Done, scene: &str) -> Answer {
 pub(crate) fn slices(done: &Done, scene: &str) -> Answer {
     let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
     for case in cases(done, scene) {
-        let of = |slices: &str| case.find(|s| s.is_position() && s.grid.ends_with(slices));
-        let (Some(half), Some(full)) = (of("x12"), of("x24")) else { continue };
+        let by_position = |slices| case.find(|s| s.is_position() && s.slices == Some(slices));
+        let (Some(half), Some(full)) = (by_position(HALF_SLICES), by_position(PAPER_SLICES)) else {
+            continue;
+        };
         let (Some(many), Some(few)) = (half.lists.operations, full.lists.operations) else {
             continue;
         };
