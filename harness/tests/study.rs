@@ -97,7 +97,7 @@ fn an_interrupted_study_and_two_shards_equal_one_run() {
     let ended = child.wait_with_output().expect("ends");
     let stderr = String::from_utf8_lossy(&ended.stderr);
     assert!(!ended.status.success(), "{stderr}");
-    assert!(stderr.contains("interrupted: ") && stderr.contains("goes on"), "{stderr}");
+    assert!(stderr.contains("interrupted: ") && stderr.contains("the same command"), "{stderr}");
     assert!(!cut.join("lightbench.lock").exists());
     let before = results_in(&cut);
     assert!((2..6).contains(&before), "{before} jobs before it was interrupted");
