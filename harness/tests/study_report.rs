@@ -13,7 +13,7 @@ use report_data::record;
 #[test]
 fn the_words_name_the_best_with_its_interval_and_every_chart_is_a_file() {
     let Written { text, page, charts } = whole("");
-    assert!(text.contains("On llvmpipe at 10,000 lights, DC-E/64x64x40 is fastest"), "{text}");
+    assert!(text.contains("On llvmpipe at 10,000 lights, DC-E/64x64x40 (dense clusters, explicit bounds) is fastest"), "{text}");
     assert!(text.contains("In atrium at 100 lights, DC-I/128x128x64 is fastest with 1."), "{text}");
     assert!(text.contains("Next is G/20x20x20 with"), "{text}");
     assert!(text.contains("A relMSE of"), "{text}");

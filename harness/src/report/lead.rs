@@ -78,9 +78,14 @@ impl<'a> Lead<'a> {
         format!("{} {verb}", self.names())
     }
 
-    /// As [`is_fastest`](Self::is_fastest), with all limits that are not figures: for a headline.
+    /// As [`is_fastest`](Self::is_fastest), with the plain name of a single leader and all limits that are not
+    /// figures: for a headline.
     pub(crate) fn headline(&self) -> String {
-        format!("{}{}{}", self.is_fastest(), self.still_lights(), self.doubt())
+        let limits = format!("{}{}", self.still_lights(), self.doubt());
+        match (self.is_tie(), self.leader().strategy.row()) {
+            (false, Some(row)) => format!("{} ({}) is fastest{limits}", self.names(), row.name),
+            _ => format!("{}{limits}", self.is_fastest()),
+        }
     }
 
     /// Why the lead is not sure, to follow its sentence; empty where it is sure.
