@@ -113,7 +113,7 @@ pub(crate) fn verdict(outcomes: &[Outcome]) -> Verdict {
     if ties + unsure == 0 {
         return Verdict::of_parts(good, outcomes.len(), "cases");
     }
-    let mut text = format!("{good} of {} cases", outcomes.len());
+    let mut text = format!("holds for {good} of {} cases", outcomes.len());
     text += &match ties {
         0 => String::new(),
         1 => ", a tie in 1".to_owned(),
@@ -149,12 +149,12 @@ mod tests {
         use Outcome::{Bad, Good, Tie};
         assert_eq!(verdict(&[Good, Good]), Verdict::Holds);
         assert_eq!(verdict(&[Bad, Bad]), Verdict::Fails);
-        assert_eq!(verdict(&[Good, Bad]), Verdict::Differs("1 of 2 cases".to_owned()));
-        let tied = Verdict::Differs("2 of 4 cases, a tie in 1".to_owned());
+        assert_eq!(verdict(&[Good, Bad]), Verdict::Differs("holds for 1 of 2 cases".to_owned()));
+        let tied = Verdict::Differs("holds for 2 of 4 cases, a tie in 1".to_owned());
         assert_eq!(verdict(&[Good, Tie, Good, Bad]), tied);
-        let all = Verdict::Differs("0 of 2 cases, ties in 2".to_owned());
+        let all = Verdict::Differs("holds for 0 of 2 cases, ties in 2".to_owned());
         assert_eq!(verdict(&[Tie, Tie]), all);
-        let few = Verdict::Differs("1 of 2 cases, too few rounds in 1".to_owned());
+        let few = Verdict::Differs("holds for 1 of 2 cases, too few rounds in 1".to_owned());
         assert_eq!(verdict(&[Good, Outcome::Unsure]), few);
     }
 }
