@@ -138,7 +138,7 @@ impl Tally {
             true => Verdict::of_parts(self.good, self.all, parts),
             false => {
                 let (good, all) = (self.good, self.all);
-                Verdict::Differs(format!("{good} of {all} {parts}; {}", notes.join("; ")))
+                Verdict::Differs(format!("holds for {good} of {all} {parts}; {}", notes.join("; ")))
             }
         };
         Answer { figure: self.figures.join("; "), verdict }
