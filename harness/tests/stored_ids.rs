@@ -34,6 +34,17 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// A number with the fewest digits that give its single precision: earlier versions stored `0.001` as
+/// `0.0010000000474974513`.
+fn shortest(value: Value) -> Value {
+    match value.as_f64() {
+        Some(number) if value.is_f64() => {
+            (number as f32).to_string().parse().map_or(value, |n: f64| n.into())
+        }
+        _ => value,
+    }
+}
+
 /// The id says everything that stored results say of a strategy's parameters. Records whose id has
 /// changed its meaning differ in the box of a grid and in the tests of tiles, and nothing else.
 #[test]
@@ -54,7 +65,9 @@ fn the_ids_of_stored_results_say_their_parameters() {
             assert!(record.strategy.row().is_some(), "{file}: {}", record.strategy);
             let mut parameters = record.strategy.parameters();
             if record.strategy == old.strategy.as_str() {
-                assert_eq!(parameters, old.strategy_parameters, "{file}: {}", record.strategy);
+                let stored = old.strategy_parameters.clone().into_iter();
+                let stored = stored.map(|(name, value)| (name, shortest(value))).collect();
+                assert_eq!(parameters, stored, "{file}: {}", record.strategy);
                 same += 1;
             } else {
                 for (name, value) in &old.strategy_parameters {
