@@ -14,7 +14,7 @@ pub struct Times {
     /// The least number of frames drawn before timing started.
     pub warmup_frames: u32,
     /// Rounds in which the frames were drawn, each with all methods in turn; along a path its laps.
-    /// See [`round_times_ms`](Self::round_times_ms). 0 where unknown.
+    /// See [`Record::round_times_ms`](super::Record::round_times_ms). 0 where unknown.
     #[serde(default)]
     pub rounds: u32,
     /// The passes of a frame, in the order in which they ran.

@@ -19,7 +19,7 @@ const FILE: &str = "study.json";
 /// All jobs of a study: `study.json`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// Version of the file: [`VERSION`]. Files without it are of version 1, whose jobs have no settings.
+    /// Version of the file: `VERSION`. Files without it are of version 1, whose jobs have no settings.
     #[serde(default = "first_version")]
     pub version: u32,
     /// The command that was asked for, without its folder and its shard.

@@ -6,7 +6,7 @@
 //! command. `study.json` beside `jobs` lists all jobs, also those of other shards.
 //!
 //! Each study is a folder here that holds its jobs, its page and its claims behind one trait,
-//! [`Study`](slice::Study). Adding a study takes its folder, its `mod` line below, and its place in
+//! `Study` (`slice.rs`). Adding a study takes its folder, its `mod` line below, and its place in
 //! `list.rs`. Everything else asks the list: the command line, the report and the tests of all pages.
 
 mod against_truth;
