@@ -214,5 +214,5 @@ fn both_bills_of_explicit_bounds_are_shown() {
     assert!((implicit - implicit_without).abs() < 0.1, "{of_tiles}");
     assert!((explicit - explicit_without - 21.4).abs() < 1.0, "{of_tiles}");
     assert!((0.8..1.0).contains(&implicit) && (1.8..2.2).contains(&explicit_without), "{of_tiles}");
-    assert!(of_tiles.contains("with the depth pre-pass on the bill"), "{of_tiles}");
+    assert!(of_tiles.contains("with the depth pre-pass counted"), "{of_tiles}");
 }

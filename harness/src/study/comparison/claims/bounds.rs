@@ -51,7 +51,7 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
                 pairs.add(&format!("{} ({what})", names[0]), &names[1], order);
             }
             figures.push(format!(
-                "{group}{source}: slope times {}; offset from {} to {} ms{mark} with the depth pre-pass counted, from {} to {} ms without",
+                "{group}{source}: slope times {}, offset from {} to {} ms{mark} with the depth pre-pass counted, from {} to {} ms without",
                 significant(explicit.slope / implicit.slope),
                 significant(implicit.offset),
                 significant(explicit.offset),
