@@ -25,7 +25,7 @@ pub(crate) const PAPER: Paper = Paper {
     checks: &CHECKS,
 };
 
-const NO_PRE_PASS: &str = "here no method pays for the depth pre-pass, so at few lights the methods that need it fall behind less \
+const NO_PRE_PASS: &str = "no method pays for the depth pre-pass, so at few lights the methods that need it fall behind less \
      than in the paper";
 
 const WHOLE_FRAMES: &str = "times cover assigning and shading; the paper times whole frames, and \
