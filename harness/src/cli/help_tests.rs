@@ -1,8 +1,8 @@
 //! The size and the order of the help.
 
-use clap::{Arg, Command, CommandFactory};
+use clap::{Arg, Command};
 
-use super::{Cli, Invocation, parse};
+use super::{Invocation, definition, parse};
 
 /// The most lines of the short help of a command: a tall terminal.
 const MAX_SHORT_LINES: usize = 60;
@@ -15,7 +15,7 @@ const MAX_COLUMNS: usize = 100;
 
 /// The program and its commands, each with its name; the program has none.
 fn commands() -> Vec<(String, Command)> {
-    let mut program = Cli::command();
+    let mut program = definition();
     program.build();
     let commands = program.get_subcommands().map(|command| (command.get_name(), command));
     let mut commands: Vec<(String, Command)> =

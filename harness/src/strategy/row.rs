@@ -194,6 +194,12 @@ impl Row {
         Some(refusal.why)
     }
 
+    /// The sentence that it cannot run in a mode, with the reason; `None` where it can.
+    pub fn refusal(&self, mode: Mode) -> Option<String> {
+        let why = self.refuses_mode(mode)?;
+        Some(format!("{} cannot run in mode {}, because {why}.", self.family, mode.name()))
+    }
+
     /// The style class that gives its colour: `strategy-sc-e`.
     pub fn class(&self) -> String {
         match self.colour == GREY {
