@@ -352,7 +352,7 @@ mod tests {
         let nan = image(|_| f32::NAN);
         for pair in [(&lit, &black), (&nan, &lit), (&lit, &nan)] {
             for metric in ERROR_METRICS {
-                let _ = of(pair.0, pair.1, metric.id);
+                let _ = error_of(pair.0, pair.1, metric.id);
             }
         }
         assert_eq!(error_of(&lit, &black, "missing_energy"), 0.0);

@@ -1,5 +1,5 @@
 //! Shortens the help. clap puts the default of an option, and its values where nothing explains them, on lines of
-//! their own.
+//! their own, and an empty line before details.
 
 use clap::{
     Arg, Command,
@@ -42,12 +42,12 @@ fn fold_option(option: Arg) -> Arg {
     option
 }
 
-/// A help with notes at the end of its first paragraph. A default that depends on something is written in the
-/// help, and joins the first paragraph where it starts the second.
+/// A help with notes at the end of its first paragraph, and with its details right below. A default that depends
+/// on something is written in the help, and joins the first paragraph where it starts the second.
 fn with_notes(help: &str, notes: &str) -> String {
     let help = help.replacen("\n\n[default", " [default", 1);
     match help.split_once("\n\n") {
-        Some((first, rest)) => format!("{first}{notes}\n\n{rest}"),
+        Some((first, rest)) => format!("{first}{notes}\n{rest}"),
         None => help + notes,
     }
 }

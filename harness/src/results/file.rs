@@ -217,8 +217,8 @@ mod tests {
 
     #[test]
     fn the_documented_example_is_complete_and_in_order() {
-        let ours: serde_json::Value = serde_json::from_str(&example().to_json()).expect("JSON");
-        let documented: serde_json::Value = serde_json::from_str(EXAMPLE).expect("JSON");
+        let ours: Value = serde_json::from_str(&example().to_json()).expect("JSON");
+        let documented: Value = serde_json::from_str(EXAMPLE).expect("JSON");
         assert_eq!(ours, documented);
     }
 
