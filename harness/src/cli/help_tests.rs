@@ -10,6 +10,9 @@ const MAX_SHORT_LINES: usize = 60;
 /// The most lines of the short help of the program, which newcomers see first.
 const MAX_FIRST_LINES: usize = 50;
 
+/// The most lines of the long help of `compare`, which has the most options.
+const MAX_LONG_LINES: usize = 342;
+
 /// The most columns of a line of help.
 const MAX_COLUMNS: usize = 100;
 
@@ -27,7 +30,7 @@ fn commands() -> Vec<(String, Command)> {
 /// Faults in the size of a command's short help.
 fn size_faults(command: Command, most_lines: usize) -> Vec<String> {
     let help = command.term_width(MAX_COLUMNS).render_help().to_string();
-    let count = help.lines().count();
+    let count = lines.len();
     let is_long = |line: &&str| line.chars().count() > MAX_COLUMNS;
     let mut faults: Vec<String> =
         help.lines().filter(is_long).map(|line| format!("a long line: {line}")).collect();
@@ -60,6 +63,19 @@ fn the_short_help_of_every_command_fits_a_screen() {
         let most = if name.is_empty() { MAX_FIRST_LINES } else { MAX_SHORT_LINES };
         assert_eq!(size_faults(command, most), [""; 0], "`lightbench {name} -h`");
     }
+}
+
+#[test]
+fn defaults_take_no_lines_of_their_own() {
+    let Ok(Invocation::Show(help)) = parse(["lightbench", "compare", "--help"]) else {
+        panic!("no help")
+    };
+    let lines: Vec<&str> = help.lines().map(str::trim).collect();
+    let is_apart = |pair: &&[&str]| pair[0].is_empty() && pair[1].starts_with("[default: ");
+    assert_eq!(lines.windows(2).find(is_apart), None);
+    assert!(help.contains("each side 1 to 16,384 [default: 640x360]\n"), "{help}");
+    let count = lines.len();
+    assert!(count <= MAX_LONG_LINES, "{count} lines:\n{help}");
 }
 
 #[test]
