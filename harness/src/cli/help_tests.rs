@@ -30,7 +30,7 @@ fn commands() -> Vec<(String, Command)> {
 /// Faults in the size of a command's short help.
 fn size_faults(command: Command, most_lines: usize) -> Vec<String> {
     let help = command.term_width(MAX_COLUMNS).render_help().to_string();
-    let count = lines.len();
+    let count = help.lines().count();
     let is_long = |line: &&str| line.chars().count() > MAX_COLUMNS;
     let mut faults: Vec<String> =
         help.lines().filter(is_long).map(|line| format!("a long line: {line}")).collect();
