@@ -4,6 +4,8 @@ use super::format::number;
 use super::loss::error_columns;
 use super::markup::{Html, html, with_names_whole};
 use super::metrics::{Metric, metrics};
+use crate::digits::rounded;
+use crate::grouping;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
 pub(crate) fn paragraphs(class: &str, texts: &[String]) -> Html {
@@ -47,10 +49,10 @@ pub(crate) fn setting(record: &Record) -> String {
     ));
     parts.push(format!("{} triangles", number(record.setting.triangles as f64)));
     if record.setting.scene_scale != 1.0 {
-        parts.push(format!("scene scale {}", record.setting.scene_scale));
+        parts.push(format!("scene scale {}", rounded(record.setting.scene_scale)));
     }
     if record.setting.radius_scale != 1.0 {
-        parts.push(format!("radius scale {}", record.setting.radius_scale));
+        parts.push(format!("radius scale {}", rounded(record.setting.radius_scale)));
     }
     parts.push(format!("{} frames", number(f64::from(record.times.frames))));
     parts.join(" \u{b7} ")
@@ -109,13 +111,7 @@ pub(crate) fn provenance(results: &Results) -> Html {
 
 /// The distinct values over all records, in order of appearance.
 fn distinct(results: &Results, value: fn(&Record) -> String) -> String {
-    let mut values: Vec<String> = Vec::new();
-    for value in results.records.iter().map(value) {
-        if !values.contains(&value) {
-            values.push(value);
-        }
-    }
-    values.join("; ")
+    grouping::distinct(results.records.iter().map(value)).join("; ")
 }
 
 fn device(kind: DeviceType) -> &'static str {

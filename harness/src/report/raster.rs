@@ -5,6 +5,7 @@
 //! mark, so stored results get it too.
 
 use super::rank::listed;
+use crate::grouping::{distinct, grouped_by};
 use crate::results::{Machine, Record};
 
 /// Follows the name of a marked row.
@@ -23,8 +24,8 @@ pub(crate) fn is_marked(machine: &Machine, record: &Record) -> bool {
 }
 
 /// ` \u{2020}` for a marked row, else nothing.
-pub(crate) fn mark(machine: &Machine, record: &Record) -> String {
-    if is_marked(machine, record) { format!(" {MARK}") } else { String::new() }
+pub(crate) fn mark(machine: &Machine, record: &Record) -> &'static str {
+    if is_marked(machine, record) { " \u{2020}" } else { "" }
 }
 
 /// What the mark means and which rows carry it; `None` where no row does.
@@ -34,26 +35,17 @@ pub(crate) fn notice<'a>(
 ) -> Option<String> {
     let chip = machine.weak_raster()?;
     // Strategies by mode and passes, in the order of the records.
-    let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
-    for record in records {
+    let marked = records.into_iter().filter_map(|record| {
         let passes = record.raster_passes();
-        if passes.is_empty() {
-            continue;
-        }
         let key = format!("{} in {}", listed(&passes), record.setting.mode.name());
-        match groups.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, names)) if !names.contains(&record.strategy.as_str()) => {
-                names.push(&record.strategy);
-            }
-            Some(_) => {}
-            None => groups.push((key, vec![&record.strategy])),
-        }
-    }
-    let parts: Vec<String> = groups
-        .iter()
+        (!passes.is_empty()).then_some((key, record.strategy.as_str()))
+    });
+    let parts: Vec<String> = grouped_by(marked)
+        .into_iter()
+        .map(|(key, names)| (key, distinct(names)))
         .map(|(key, names)| match names.len() {
             count if count > NAMED => format!("{key} of {count} strategies"),
-            _ => format!("{key} of {}", listed(names)),
+            _ => format!("{key} of {}", listed(&names)),
         })
         .collect();
     (!parts.is_empty()).then(|| {
@@ -82,7 +74,7 @@ mod tests {
         let example: Results =
             serde_json::from_str(include_str!("../results/example.json")).expect("the example");
         let machine = example.machine.clone();
-        let of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
+        let record_of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
             let mut record = example.records[0].clone();
             (record.strategy, record.setting.mode) = (strategy.into(), mode);
             let times = |kind| PassTimes::new(kind, vec![1.0]);
@@ -92,10 +84,10 @@ mod tests {
         let deferred =
             [("gbuffer", PassKind::Scene), ("cull", PassKind::Assign), ("shade", PassKind::Shade)];
         let ids = [("model-ids", PassKind::Assign), ("shade", PassKind::Shade)];
-        let tiles = of("T-E/28x28", Mode::Deferred, &deferred);
-        let volumes = of("RasterSphere", Mode::Deferred, &deferred);
-        let models = of("M/2", Mode::Deferred, &ids);
-        let mut forward = of("T-E/28x28", Mode::Forward, &deferred[1..]);
+        let tiles = record_of("T-E/28x28", Mode::Deferred, &deferred);
+        let volumes = record_of("RasterSphere", Mode::Deferred, &deferred);
+        let models = record_of("M/2", Mode::Deferred, &ids);
+        let mut forward = record_of("T-E/28x28", Mode::Forward, &deferred[1..]);
         forward.note = Some(format!("{OLD_NOTE}; lists overflowed"));
         assert_eq!(mark(&machine, &tiles), "");
         for record in [&volumes, &models, &forward] {
