@@ -6,7 +6,7 @@
 //! Along any axis it extends as far as the outline plus a ball, or plus a cone of half angle π/2
 //! around the normal. Culling therefore reuses its code for spots.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 use crate::light_fault::LightFault;
 
@@ -129,6 +129,20 @@ impl Emitter {
             half_y: self.half_y * factor,
             ..self
         }
+    }
+
+    /// The same emitter, rotated about its light's position.
+    #[must_use]
+    pub fn turned(self, rotation: &Mat3) -> Self {
+        let Self { outline, two_sided, diffuse_share, .. } = self;
+        let [x, y] = self.half_axes().map(|axis| *rotation * axis);
+        if outline == Outline::Rectangle {
+            return Self { two_sided, diffuse_share, ..Self::rectangle(x, y) };
+        }
+        // Rotated vertices are rounded, and the rectangle must still hold them.
+        let grown = 1.0 + 8.0 * f32::EPSILON;
+        let vertices = self.vertices.map(|v| *rotation * v);
+        Self { vertices, half_x: x * grown, half_y: y * grown, ..self }
     }
 
     /// Its outline.
