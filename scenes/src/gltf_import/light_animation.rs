@@ -148,7 +148,8 @@ impl Keys<'_> {
             self.count = self.count.saturating_add(count);
         }
         if self.count > MAX_KEYS {
-            let field = format!("animations[{animation_ix}].channels[{channel_ix}]: keys of lights so far");
+            let field =
+                format!("animations[{animation_ix}].channels[{channel_ix}]: keys of lights so far");
             return Err(self.file.invalid(field, self.count, format!("at most {MAX_KEYS}")));
         }
         animation::track(self.file, animation_ix, channel_ix, is_rotation)

@@ -350,7 +350,8 @@ mod tests {
             for time_s in [0.0_f32, 1e-3, 0.999, 1.0, 77.3, 12_345.678, 1e6] {
                 for start in [0, 0x4000_0000, u32::MAX] {
                     let beat = beat(clock(time_s), hz, start);
-                    let exact = f64::from(hz) * f64::from(time_s) + f64::from(start) / 2f64.powi(32);
+                    let exact =
+                        f64::from(hz) * f64::from(time_s) + f64::from(start) / 2f64.powi(32);
                     let turns = f64::from(beat.count) + f64::from(beat.phase) / 2f64.powi(32);
                     // The count wraps around, as the exact number of turns does here.
                     let off = (turns - exact).rem_euclid(2f64.powi(32));

@@ -181,9 +181,8 @@ fn flicker_swings_and_jumps() {
 
 #[test]
 fn turning_keeps_places_and_shapes() {
-    let hexagon: Vec<Vec3> = (0..6)
-        .map(|ix| Vec3::new(5.0 + (ix as f32).cos(), 1.0, 7.0 - (ix as f32).sin()))
-        .collect();
+    let hexagon: Vec<Vec3> =
+        (0..6).map(|ix| Vec3::new(5.0 + (ix as f32).cos(), 1.0, 7.0 - (ix as f32).sin())).collect();
     let (polygon, middle) = Emitter::polygon(&hexagon).expect("valid");
     let rectangle = Emitter::rectangle(Vec3::X, 2.0 * Vec3::Y).two_sided().with_diffuse_share(0.5);
     let motion = motion(MotionLaw::Turn, 1.0, 4);

@@ -198,7 +198,8 @@ fn files_with_only_lights_move_too() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("lights.glb");
     std::fs::write(&path, glb(&only)).expect("writes");
-    let scene = crate::open_lights(&path.to_string_lossy(), DVec3::X).expect("lights");
+    let mut scene = crate::open_lights(&path.to_string_lossy(), DVec3::X).expect("lights");
+    crate::close_ranges(&mut scene.lights, 10.0);
     assert_near(spot_at(&scene, 2.0), Vec3::new(3.0, 0.0, 3.0), Vec3::NEG_Z);
 }
 
