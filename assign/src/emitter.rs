@@ -67,6 +67,20 @@ impl Emitter {
         }
     }
 
+    /// An emitter from its record: half axes, and vertices relative to the light's position. `None`
+    /// if there are too many vertices.
+    pub(crate) fn from_parts(
+        outline: Outline,
+        [half_x, half_y]: [Vec3; 2],
+        corners: &[Vec3],
+    ) -> Option<Self> {
+        let mut vertices = [Vec3::ZERO; MAX_VERTICES];
+        vertices.get_mut(..corners.len())?.copy_from_slice(corners);
+        let count = corners.len() as u8;
+        let two_sided = false;
+        Some(Self { outline, count, vertices, half_x, half_y, two_sided, diffuse_share: 1.0 })
+    }
+
     /// Makes a one-sided convex polygon from its vertices: world space, metres, counter-clockwise
     /// seen from the front. Returns it with the light's position, the centre of the smallest
     /// rectangle around it.

@@ -123,7 +123,14 @@ pub struct Row {
 
 /// No needs at all: a start for rows.
 pub(super) const NEEDS_NOTHING: Needs =
-    Needs { depth: false, normals: false, materials: false, models: false, triangles: false };
+    Needs {
+        depth: false,
+        normals: false,
+        materials: false,
+        models: false,
+        triangles: false,
+        hierarchy: false,
+    };
 
 /// Reads the depth of the surfaces.
 pub(super) const NEEDS_DEPTH: Needs = Needs { depth: true, ..NEEDS_NOTHING };
