@@ -296,7 +296,7 @@ pub(super) fn beat(clock: Clock, hz: f32, start: u32) -> Beat {
 /// The upper 32 bits of a product, by halves: shaders have no wider integers.
 fn mul_high(a: u32, b: u32) -> u32 {
     let (a0, a1, b0, b1) = (a & 0xffff, a >> 16, b & 0xffff, b >> 16);
-    let upper = a1 * b0 + (a0 * b0 >> 16);
+    let upper = a1 * b0 + ((a0 * b0) >> 16);
     let lower = a0 * b1 + (upper & 0xffff);
     a1 * b1 + (upper >> 16) + (lower >> 16)
 }
@@ -316,7 +316,7 @@ pub(super) fn sine(phase: u32) -> f32 {
     let x2 = x * x;
     let tail = 0.079_689_68 + x2 * (-0.004_673_765_6 + x2 * 0.000_151_484_19);
     let sine = x * (1.570_796_4 + x2 * (-0.645_963_7 + x2 * tail));
-    sine.max(-1.0).min(1.0)
+    sine.clamp(-1.0, 1.0)
 }
 
 /// The cosine of a phase: the sine a quarter turn later.
@@ -375,7 +375,7 @@ mod tests {
         }
         assert_eq!((sine(0), sine(0x4000_0000), cosine(0)), (0.0, 1.0, 1.0));
         for (a, b) in [(u32::MAX, u32::MAX), (0x1234_5678, 0x9abc_def0), (7, 9)] {
-            assert_eq!(u64::from(mul_high(a, b)), u64::from(a) * u64::from(b) >> 32);
+            assert_eq!(u64::from(mul_high(a, b)), (u64::from(a) * u64::from(b)) >> 32);
         }
     }
 }

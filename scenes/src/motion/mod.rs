@@ -108,8 +108,8 @@ impl Motion {
         if !self.moves(light) {
             return Some(*light);
         }
-        // `max` first: it turns a NaN into 0.
-        let clock = law::clock(time_s.max(0.0).min(MAX_TIME_S));
+        // A NaN counts as 0.
+        let clock = law::clock(if time_s > 0.0 { time_s.min(MAX_TIME_S) } else { 0.0 });
         let change = law::change(&self.rules, self.law, index, light.position, clock);
         if !change.is_alive {
             return None;
