@@ -148,15 +148,14 @@ impl Emitter {
     /// The same emitter, rotated about its light's position.
     #[must_use]
     pub fn turned(self, rotation: &Mat3) -> Self {
-        let Self { outline, two_sided, diffuse_share, .. } = self;
         let [x, y] = self.half_axes().map(|axis| *rotation * axis);
-        if outline == Outline::Rectangle {
+        if self.outline == Outline::Rectangle {
+            let Self { two_sided, diffuse_share, .. } = self;
             return Self { two_sided, diffuse_share, ..Self::rectangle(x, y) };
         }
         // Rotated vertices are rounded, and the rectangle must still hold them.
-        let grown = 1.0 + 8.0 * f32::EPSILON;
-        let vertices = self.vertices.map(|v| *rotation * v);
-        Self { vertices, half_x: x * grown, half_y: y * grown, ..self }
+        let [half_x, half_y] = [x, y].map(|axis| axis * (1.0 + 8.0 * f32::EPSILON));
+        Self { vertices: self.vertices.map(|v| *rotation * v), half_x, half_y, ..self }
     }
 
     /// Its outline.
