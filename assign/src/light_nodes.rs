@@ -128,7 +128,8 @@ mod tests {
             let all = nodes(&lights);
             let levels = NodeLevels::over(lights.len() as u32);
             assert_eq!(all.len(), levels.total as usize, "{levels:?}");
-            let x = |place: u32| [all[place as usize].min_world[0], all[place as usize].max_world[0]];
+            let x =
+                |place: u32| [all[place as usize].min_world[0], all[place as usize].max_world[0]];
             if levels.levels > 1 {
                 assert_eq!(x(levels.first_parent + 1)[0], x(64)[0], "{levels:?}");
                 assert_eq!(x(levels.first_parent)[1], x(63)[1], "{levels:?}");

@@ -99,8 +99,7 @@ impl LightSorter {
             Sort::Radix(radix::RadixSort::new(gpu, capacity)?)
         };
         let GivenBuffers { spheres: given_spheres, emissions: given_emissions, shapes } = &given;
-        let frame =
-            [&uniform, given_spheres, given_emissions, shapes, &state, &order];
+        let frame = [&uniform, given_spheres, given_emissions, shapes, &state, &order];
         let frame = bind_buffers(gpu, &frame_layout(gpu), &frame);
         let boxes = bind_buffers(gpu, &kernels.layout, &[&spheres, &emissions, &nodes]);
         Ok(Self {

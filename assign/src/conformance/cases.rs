@@ -4,8 +4,8 @@
 use glam::Vec3;
 
 use super::{
-    living::{self, Living},
     lights::{Kinds, at_horizon, bad_lights, lights_at, mix, reaching},
+    living::{self, Living},
     stage::{IN_THE_OPEN, Rng, Solid, Stage, room},
     views::{self, SIZE},
 };

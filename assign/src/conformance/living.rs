@@ -23,8 +23,10 @@ pub(super) struct Living {
 /// Frames in which all lights move, some teleport, and their number changes.
 pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {
     let stage = in_room(rng, &default_view()).thinned(600);
-    let bad: Vec<Light> =
-        bad_lights(&mix(rng, &stage, 1, (0.2, 5.0), Kinds::Points)).into_iter().filter(is_bad_record).collect();
+    let bad: Vec<Light> = bad_lights(&mix(rng, &stage, 1, (0.2, 5.0), Kinds::Points))
+        .into_iter()
+        .filter(is_bad_record)
+        .collect();
     let lights = mix(rng, &stage, 900, (0.2, 5.0), Kinds::Mixed);
     let frames = [700, 640, 900, 0, 820, 33].map(|count| {
         let mut lights = lights[..count].to_vec();

@@ -41,11 +41,8 @@ pub(super) fn light(sphere: &LightSphere, emission: &LightEmission, shapes: &[[f
         Some(LightKind::Spot) => {
             let axis = vector(0);
             let outer_angle = vector(1)[1].atan2(axis[3]);
-            let shape = LightShape::Spot {
-                direction: direction(axis),
-                inner_angle: 0.0,
-                outer_angle,
-            };
+            let shape =
+                LightShape::Spot { direction: direction(axis), inner_angle: 0.0, outer_angle };
             light(sphere.radius_m, shape)
         }
         Some(LightKind::Vpl) => {

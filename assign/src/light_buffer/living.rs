@@ -286,7 +286,11 @@ fn upload(gpu: &Gpu, buffer: &wgpu::Buffer, known: &[u8], bytes: &[u8]) -> u64 {
 impl GpuLights<'_> {
     fn check(&self) -> Result<(), AssignError> {
         let fail = |field: &str, value: String, accepted: String| {
-            Err(AssignError::Parameter { field: format!("lights from the GPU: {field}"), value, accepted })
+            Err(AssignError::Parameter {
+                field: format!("lights from the GPU: {field}"),
+                value,
+                accepted,
+            })
         };
         if self.capacity as usize > MAX_LIGHTS {
             return fail("capacity", self.capacity.to_string(), format!("at most {MAX_LIGHTS}"));
@@ -296,10 +300,19 @@ impl GpuLights<'_> {
             ("spheres", self.spheres, records, wgpu::BufferUsages::STORAGE),
             ("emissions", self.emissions, records, wgpu::BufferUsages::STORAGE),
             ("shapes", self.shapes, 16, wgpu::BufferUsages::STORAGE),
-            ("count", self.count, self.count_offset.saturating_add(4), wgpu::BufferUsages::COPY_SRC),
+            (
+                "count",
+                self.count,
+                self.count_offset.saturating_add(4),
+                wgpu::BufferUsages::COPY_SRC,
+            ),
         ] {
             if buffer.size() < least {
-                return fail(name, format!("{} bytes", buffer.size()), format!("at least {least} bytes"));
+                return fail(
+                    name,
+                    format!("{} bytes", buffer.size()),
+                    format!("at least {least} bytes"),
+                );
             }
             if !buffer.usage().contains(usage) {
                 return fail(name, format!("{:?}", buffer.usage()), format!("usage {usage:?}"));
@@ -310,7 +323,11 @@ impl GpuLights<'_> {
         }
         let (low, high) = self.bounds;
         if !(low.is_finite() && high.is_finite() && low.cmple(high).all()) {
-            return fail("bounds", format!("{low} to {high}"), "finite corners, lowest first".into());
+            return fail(
+                "bounds",
+                format!("{low} to {high}"),
+                "finite corners, lowest first".into(),
+            );
         }
         // An emitter may add to the range.
         if !(MIN_RANGE_M..=2.0 * MAX_RANGE_M).contains(&self.radius_max_m) {

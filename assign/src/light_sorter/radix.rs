@@ -76,10 +76,10 @@ impl RadixSort {
             });
         }
         let item_bytes = u64::from(capacity) * 8;
-        let items = [gpu.storage("light keys", item_bytes)?, gpu.storage("light keys", item_bytes)?];
+        let items =
+            [gpu.storage("light keys", item_bytes)?, gpu.storage("light keys", item_bytes)?];
         let counts = gpu.storage("light digits", u64::from((blocks + 1) * DIGITS) * 4)?;
-        let item_layout =
-            layout(gpu, "light keys", wgpu::ShaderStages::COMPUTE, &[Slot::Write; 3]);
+        let item_layout = layout(gpu, "light keys", wgpu::ShaderStages::COMPUTE, &[Slot::Write; 3]);
         let layouts = [&frame_layout(gpu), &item_layout];
         let mut passes = Vec::new();
         for (ix, digit) in Digit::all(capacity).into_iter().enumerate() {

@@ -30,7 +30,11 @@ pub(crate) struct OrderUniform {
 
 impl OrderUniform {
     /// Parameters for lights in a box of positions.
-    pub(crate) fn in_box((low, high): (glam::Vec3, glam::Vec3), radius_max_m: f32, sorts: bool) -> Self {
+    pub(crate) fn in_box(
+        (low, high): (glam::Vec3, glam::Vec3),
+        radius_max_m: f32,
+        sorts: bool,
+    ) -> Self {
         let side_m = (high - low).max_element();
         let cells_per_m = if side_m > 0.0 { 255.999 / side_m } else { 0.0 };
         Self {
