@@ -169,6 +169,13 @@ impl LightBuffer {
         self.shapes = shapes.clone();
     }
 
+    /// Has the next frame sort the lights, whatever the age of their order.
+    pub fn expire_order(&mut self) {
+        if let Some(living) = &mut self.living {
+            living.expire();
+        }
+    }
+
     /// Records the passes `order` and `boxes` of [`LightOrder::Gpu`]; nothing for other orders. Call
     /// it in each frame after [`update`](Self::update) and before the strategy's passes. A frame may
     /// record it more than once.

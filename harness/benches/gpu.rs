@@ -1,12 +1,17 @@
 //! Device time of every method: `cargo bench --bench gpu -- SC-E/` runs one.
 //!
-//! Benches are named `strategy/scene/lights`, then `assign` or `shade`. The environment chooses
-//! what is drawn: `LIGHTBENCH_SCENE` (a name or a file, default atrium), `LIGHTBENCH_LIGHTS`
-//! (default 200), `LIGHTBENCH_SIZE` (default 128x72), and `LIGHTBENCH_STRATEGIES` (default all,
-//! from both sources). The defaults are small, for software adapters. Times are those of the clock
+//! Benches are named `strategy/scene/lights/motion`, then `assign` or `shade`. The motion is `still`, or
+//! the law by which the lights move in every frame. The environment chooses what is drawn:
+//! `LIGHTBENCH_SCENE` (a name or a file, default atrium), `LIGHTBENCH_LIGHTS` (default 200),
+//! `LIGHTBENCH_SIZE` (default 128x72), `LIGHTBENCH_MOTION` (a law of `--motion`, default still), and
+//! `LIGHTBENCH_STRATEGIES` (default all, from both sources). The defaults are small, for software
+//! adapters. Times are those of the clock
 //! of `lightbench compare`; on a software adapter they are the host's, and say nothing of a GPU.
 
-use std::{cell::OnceCell, time::Duration};
+use std::{
+    cell::{OnceCell, RefCell},
+    time::Duration,
+};
 
 use assign::Gpu;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -20,7 +25,11 @@ use harness::{
     results::{PassKind, pass_kind},
     stage::Stage,
 };
+use scenes::MotionLaw;
 use shading::{Cut, Mode};
+
+/// The motion of lights that do not move.
+const STILL: &str = "still";
 
 fn setting(name: &str, default: &str) -> String {
     std::env::var(name).unwrap_or_else(|_| default.to_owned())
@@ -34,7 +43,9 @@ fn arguments() -> Result<CompareArgs, HarnessError> {
         ("--strategies", setting("LIGHTBENCH_STRATEGIES", "all")),
         ("--source", "both".to_owned()),
     ];
-    let words = options.into_iter().flat_map(|(option, value)| [option.to_owned(), value]);
+    let motion = setting("LIGHTBENCH_MOTION", STILL);
+    let moving = (motion != STILL).then_some(("--motion", motion));
+    let words = options.into_iter().chain(moving).flat_map(|(option, value)| [option.to_owned(), value]);
     // Whatever strategies are asked for: some take no source.
     match cli::parse_stored(std::iter::once("lightbench".to_owned()).chain(words))? {
         Invocation::Compare(args) => Ok(args),
@@ -47,19 +58,22 @@ fn time_of(
     kind: PassKind,
     frames: u64,
     gpu: &Gpu,
-    stage: &Stage,
+    stage: &mut Stage,
     choice: &Choice,
 ) -> Result<Duration, HarnessError> {
     let mut method = choice.make(gpu)?;
     let mut painter = Painter::new(stage, &mut method, Mode::Deferred, Cut::default())?;
     let mut clock = PassClock::new(gpu);
     // The pool grows to what the lists ask for before anything is timed.
-    for _ in 0..3 {
+    for frame in 0..3 {
+        stage.go_to(frame, 3)?;
         painter.draw(gpu, stage, Mode::Deferred, &mut clock)?;
         clock.finish()?;
     }
     let mut ms = 0.0;
-    for _ in 0..frames {
+    for frame in 0..frames {
+        // The lights' clock starts again after an hour.
+        stage.go_to((frame % 216_000) as u32, 1)?;
         painter.draw(gpu, stage, Mode::Deferred, &mut clock)?;
         let passes = clock.finish()?;
         ms += passes
@@ -79,15 +93,14 @@ fn methods(criterion: &mut Criterion) {
         let stage = OnceCell::new();
         let stage = || {
             stage.get_or_init(|| {
-                let mut stage = Stage::new(&gpu, &args.stage).unwrap_or_else(|error| fail(&error));
-                let prepared = stage.renderer.prepare(&stage.view, &stage.lights);
-                prepared.unwrap_or_else(|error| fail(&error.into()));
-                stage
+                let stage = Stage::new(&gpu, &args.stage).unwrap_or_else(|error| fail(&error));
+                RefCell::new(stage)
             })
         };
         for choice in args.choices()? {
             let scene = args.stage.scene.rsplit('/').next().unwrap_or_default();
-            let name = format!("{}/{scene}/{}", choice.id(), args.stage.lights);
+            let motion = args.stage.motion.motion.map_or(STILL, MotionLaw::name);
+            let name = format!("{}/{scene}/{}/{motion}", choice.id(), args.stage.lights);
             for (kind, family) in [(PassKind::Assign, "assign"), (PassKind::Shade, "shade")] {
                 // No lists, nothing to assign.
                 if kind == PassKind::Assign && !choice.has_groups() {
@@ -95,7 +108,7 @@ fn methods(criterion: &mut Criterion) {
                 }
                 criterion.bench_function(&format!("{name}/{family}"), |bencher| {
                     bencher.iter_custom(|frames| {
-                        time_of(kind, frames, &gpu, stage(), &choice)
+                        time_of(kind, frames, &gpu, &mut stage().borrow_mut(), &choice)
                             .unwrap_or_else(|error| fail(&error))
                     });
                 });

@@ -24,23 +24,25 @@ const MOST_POSES: u32 = 1_200;
 /// Refuses options that contradict each other or have no effect, and modes in which no strategy can run.
 pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
     check_effect(args, choices)?;
-    if let Some(checks) = args.checks.filter(|_| !args.path) {
-        let accepted = "left out without --path, because a still camera has one pose";
+    let is_still = !args.path && args.stage.motion.motion.is_none();
+    if let Some(checks) = args.checks.filter(|_| is_still) {
+        let accepted = "left out without --path and --motion, because all frames are the same";
         return Err(CliError::out_of_range("--checks", &checks.to_string(), accepted));
     }
     if let Some(laps) = args.laps {
         let refuse =
             |accepted: &str| Err(CliError::out_of_range("--laps", &laps.to_string(), accepted));
-        if !args.path {
-            return refuse("left out without --path, because a still camera makes no laps");
+        if is_still {
+            return refuse("left out without --path and --motion, because a still frame makes no laps");
         }
         let most = MAX_SAMPLES / args.frames.unwrap_or(MOST_POSES);
         if laps > most.max(1) {
             return refuse(&format!("at most {} for this number of --frames", most.max(1)));
         }
     }
-    if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
-        let accepted = "combined with --path: for a still camera old lists are always right";
+    if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && is_still) {
+        let accepted =
+            "combined with --path or --motion: for a still frame old lists are always right";
         return Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted));
     }
     let modes = args.mode.modes();

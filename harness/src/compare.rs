@@ -19,6 +19,7 @@ use crate::{
     machine::machine,
     measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
     messages::say,
+    moving::lights_by_slot,
     out_folder::OutFolder,
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
@@ -33,6 +34,8 @@ use crate::{
 
 /// Frames on the clock along a path: on a GPU, and on a software adapter.
 const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
+/// Frames of lights that move before a still camera, likewise.
+const DEFAULT_MOVING_FRAMES: [u32; 2] = [240, 12];
 /// Frames before the clock, likewise.
 const DEFAULT_WARMUP: [u32; 2] = [16, 1];
 
@@ -103,11 +106,16 @@ pub fn compare_on(
 /// The frames asked for, or the defaults of the kind of device.
 fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
     let kind = usize::from(gpu.is_software());
-    let defaults = if args.path { DEFAULT_PATH_FRAMES } else { DEFAULT_FRAMES };
+    let moves = args.stage.motion.motion.is_some();
+    let defaults = match (args.path, moves) {
+        (true, _) => DEFAULT_PATH_FRAMES,
+        (false, true) => DEFAULT_MOVING_FRAMES,
+        (false, false) => DEFAULT_FRAMES,
+    };
     Plan {
         warmup: args.warmup.unwrap_or(DEFAULT_WARMUP[kind]),
         timed: args.frames.unwrap_or(defaults[kind]),
-        laps: if args.path { args.laps.unwrap_or(1) } else { 0 },
+        laps: if args.path || moves { args.laps.unwrap_or(1) } else { 0 },
         checks: args.checks.unwrap_or(MAX_CHECKS),
         seed: args.stage.seed,
         cut: args.cut,
@@ -195,7 +203,7 @@ impl Run<'_> {
     }
 
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
-        let lights = self.stage.lights.lights().to_vec();
+        let lights = lights_by_slot(&self.gpu, &self.stage.lights)?;
         let bvh = (self.args.truth == TruthLevel::Full).then(|| LightBvh::new(&lights));
         let modes = self.args.mode.modes();
         let per_method = u64::from(self.plan.timed) * u64::from(self.plan.laps.max(1)) + 1;
@@ -287,7 +295,7 @@ impl Run<'_> {
             record.lists.untested = self.untested;
             self.results.records.push(record);
         }
-        if self.args.path {
+        if self.plan.laps > 0 {
             self.reset()?;
         }
         Ok(())

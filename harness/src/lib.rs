@@ -25,6 +25,7 @@ pub mod list_lengths;
 pub mod machine;
 pub mod measure;
 pub mod messages;
+pub mod moving;
 pub mod open_lights;
 pub mod optics;
 pub mod out_folder;

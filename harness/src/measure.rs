@@ -18,6 +18,7 @@ use crate::{
     drift::WarmUp,
     error::HarnessError,
     list_lengths::ListLengths,
+    moving::Moving,
     painter::Painter,
     pass_samples::PassSamples,
     results::{Passes, Spans},
@@ -238,7 +239,10 @@ impl<'a> Contest<'a> {
     fn frame(&mut self, stage: &Stage, method: usize) -> Result<(), HarnessError> {
         let contender = &mut self.contenders[method];
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
-        let times = self.clock.finish_frame()?;
+        let mut times = self.clock.finish_frame()?;
+        if let Some(upload) = stage.moving.as_ref().and_then(Moving::upload) {
+            times.passes.insert(0, ("upload".to_owned(), upload.ms));
+        }
         contender.samples.collect_frame(times);
         contender.overflowed_frames += u32::from(!settled);
         Ok(())

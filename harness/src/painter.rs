@@ -1,6 +1,6 @@
 //! A strategy with the pipelines that draw its frames.
 
-use assign::{Assignment, Gpu, Passes};
+use assign::{Assignment, EncoderPasses, Gpu, LightBuffer, LightOrder, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
 use crate::{error::HarnessError, stage::Stage, strategy::Method};
@@ -77,12 +77,14 @@ impl<'a> Painter<'a> {
             Self::Lists { strategy, lighting } => {
                 let frame = renderer.frame(view, lights);
                 strategy.prepare(gpu, &frame)?;
+                order_lights(gpu, lights, strategy.needs().hierarchy, passes);
                 record_before_lighting(renderer, mode, *strategy, &frame, passes);
                 lighting.record(renderer, view, *strategy, passes)?;
                 // These are the counters of the previous frame; `prepare` grew the pool to what it asked for.
                 Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
             }
             Self::RasterSphere(spheres) => {
+                order_lights(gpu, lights, false, passes);
                 renderer.record_depth(view, passes);
                 match mode {
                     Mode::DeferredIds => renderer.record_gbuffer_with_ids(view, passes),
@@ -97,6 +99,21 @@ impl<'a> Painter<'a> {
                 Ok(true)
             }
         }
+    }
+}
+
+/// Has the GPU order the lights, if it does so in every frame. Only methods that read the hierarchy need it, and
+/// only they pay for it. For the others it runs off the clock: all methods read the lights in the same order,
+/// so that their images can be compared bit for bit.
+fn order_lights(gpu: &Gpu, lights: &LightBuffer, is_billed: bool, passes: &mut dyn Passes) {
+    match (lights.order(), is_billed) {
+        (LightOrder::Gpu { .. }, true) => lights.record(passes),
+        (LightOrder::Gpu { .. }, false) => {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            lights.record(&mut EncoderPasses { encoder: &mut encoder });
+            gpu.queue.submit([encoder.finish()]);
+        }
+        _ => {}
     }
 }
 

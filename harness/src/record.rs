@@ -10,6 +10,7 @@ use crate::{
     error::HarnessError,
     image_errors::{ImagePair, errors, stored},
     measure::{ListsFigures, Plan, Timed},
+    moving::Moving,
     results::{
         Errors, ImageFigures, Images, ListFigures, Operations, Record, Setting, Times, mean,
     },
@@ -92,7 +93,7 @@ pub fn record(
         setting: Setting {
             scene: visible(&stage.scene.name).into_owned(),
             scene_hash: stage.scene_hash.clone(),
-            path_hash: (plan.laps > 0).then(|| stage.scene.path_hash()),
+            path_hash: args.path.then(|| stage.scene.path_hash()),
             scene_scale: args.stage.scene_scale,
             triangles: stage.scene.triangle_count(),
             mode,
@@ -124,6 +125,7 @@ pub fn record(
             compensation: args.compensate,
             seed: args.stage.seed,
             light_order: Some(stage.lights.order().to_string()),
+            motion: stage.moving.as_ref().map(Moving::setting),
         },
         times: Times {
             frames: plan.timed * plan.laps.max(1),
@@ -137,7 +139,8 @@ pub fn record(
             spans: timed.spans,
             span_ms: None,
             frame_span_ms: None,
-            light_build_ms: Some(stage.lights.build_time().as_secs_f64() * 1e3),
+            light_build_ms: stage.light_build_ms(),
+            upload_bytes: stage.moving.as_ref().and_then(Moving::upload).map(|upload| upload.bytes),
         },
         lists: ListFigures {
             operations: lists.operations.map(Operations::from),

@@ -1,7 +1,7 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
 use assign::{
-    Gpu, Light, LightBuffer, LightKind, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns, View,
+    Gpu, Light, LightBuffer, LightKind, LightOrder, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns, View,
 };
 use glam::{DVec3, Vec3};
 use scenes::{
@@ -13,6 +13,7 @@ use crate::{
     camera,
     cli::{CliError, LightBox, StageArgs},
     error::HarnessError,
+    moving::Moving,
     open_lights::OpenLights,
     optics::Optics,
     results::{Planes, Vpls},
@@ -37,6 +38,8 @@ pub struct Stage {
     pub suns: Suns,
     /// The lights without the faulty ones.
     pub lights: LightBuffer,
+    /// How they move, if they do.
+    pub moving: Option<Moving>,
     /// How area lights are shaded.
     pub area_model: AreaModel,
     /// With `--compensate N`, the number N.
@@ -53,6 +56,9 @@ pub struct Stage {
     optics: Optics,
     /// The diagonal of the scene's core before it was scaled, metres.
     unscaled_m: f32,
+    /// Whether the camera walks along the scene's path.
+    walks: bool,
+    gpu: Gpu,
 }
 
 /// The view and the lights that the arguments give a scene.
@@ -83,6 +89,7 @@ impl Stage {
     pub fn new(gpu: &Gpu, args: &StageArgs) -> Result<Self, HarnessError> {
         let mut stage = Self::under_scattered_lights(gpu, args)?;
         stage.bounce(gpu, args)?;
+        stage.move_lights(0)?;
         Ok(stage)
     }
 
@@ -103,7 +110,8 @@ impl Stage {
             own_lights: lit.own,
             open_lights: lit.open,
             suns: lit.suns,
-            lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order)?,
+            lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order())?,
+            moving: Moving::new(args, lit.lights)?,
             area_model: AreaModel::default(),
             compensation: None,
             vpls: None,
@@ -114,6 +122,8 @@ impl Stage {
             notes,
             optics,
             unscaled_m,
+            walks: false,
+            gpu: gpu.clone(),
         })
     }
 
@@ -127,11 +137,22 @@ impl Stage {
         self.own_lights = lit.own;
         self.open_lights = lit.open;
         self.suns = lit.suns;
-        self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order)?;
+        self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order())?;
+        self.moving = Moving::new(args, lit.lights)?;
+        self.walks = false;
         self.view = view;
         self.notes = notes;
         self.optics = optics;
-        self.bounce(gpu, args)
+        self.bounce(gpu, args)?;
+        self.move_lights(0)
+    }
+
+    /// Moves the lights to where they are in a frame, if they move.
+    fn move_lights(&mut self, frame: u32) -> Result<(), HarnessError> {
+        match &mut self.moving {
+            Some(moving) => moving.go_to(&self.gpu, frame, &mut self.lights),
+            None => Ok(()),
+        }
     }
 
     /// With `--primary` or `--vpls`, replaces the lights by the primary light or by its reflections.
@@ -149,26 +170,31 @@ impl Stage {
             made.lights
         };
         self.own_lights = 0;
-        self.lights = LightBuffer::ordered(gpu, &lights, args.light_order)?;
+        self.lights = LightBuffer::ordered(gpu, &lights, args.light_order())?;
         self.note_plain_vpls();
         Ok(())
     }
 
-    /// Uploads camera and lights, untimed.
+    /// Uploads the camera, untimed, and binds the lights.
     pub fn prepare(&mut self) -> Result<(), HarnessError> {
         Ok(self.renderer.prepare(&self.view, &self.lights)?)
     }
 
-    /// Moves the camera to frame `frame` of `count` along the scene's path, and uploads it.
+    /// Moves to frame `frame` of `count`: the camera along the scene's path, if it
+    /// [follows](Self::follow_path) it, and the lights, if they move.
     pub fn go_to(&mut self, frame: u32, count: u32) -> Result<(), HarnessError> {
-        let size = [self.view.viewport.width, self.view.viewport.height];
-        self.view = self.optics.view(&self.scene, self.scene.path.pose(frame, count), size);
+        if self.walks {
+            let size = [self.view.viewport.width, self.view.viewport.height];
+            self.view = self.optics.view(&self.scene, self.scene.path.pose(frame, count), size);
+        }
+        self.move_lights(frame)?;
         self.prepare()
     }
 
     /// Moves the near plane in front of every surface in the view and in `count` poses of the path, unless an
     /// option or the file sets it.
     pub fn follow_path(&mut self, count: u32) {
+        self.walks = true;
         let size = [self.view.viewport.width, self.view.viewport.height];
         let pose = |frame| self.scene.path.pose(frame, count);
         let mut views: Vec<View> =
@@ -201,6 +227,13 @@ impl Stage {
     /// The eye in the coordinates of the scene's file, metres.
     pub fn eye(&self) -> DVec3 {
         self.scene.origin + self.view.eye().as_dvec3()
+    }
+
+    /// Time in which the CPU ordered the lights and built the hierarchy over them, ms; `None` if that is part
+    /// of the pass `upload`, or the GPU's work.
+    pub fn light_build_ms(&self) -> Option<f64> {
+        let is_once = self.moving.is_none() && !matches!(self.lights.order(), LightOrder::Gpu { .. });
+        is_once.then(|| self.lights.build_time().as_secs_f64() * 1e3)
     }
 
     /// Near and far plane of the view.

@@ -185,6 +185,11 @@ impl Living {
         Ok(())
     }
 
+    /// Has the next frame sort.
+    pub(super) fn expire(&mut self) {
+        self.age = None;
+    }
+
     /// Records `order`, if this frame sorts, and `boxes`.
     pub(super) fn record(&self, passes: &mut dyn Passes) {
         let Some((sorter, _)) = &self.sorter else { return };

@@ -64,6 +64,11 @@ const STAGE: &[Rule<StageArgs>] = &[
         needs: "scattered lights, which --vpls and --primary replace",
     },
     Rule {
+        options: &["speed", "moved-by"],
+        has_effect: |args| args.motion.motion.is_some(),
+        needs: "--motion LAW",
+    },
+    Rule {
         options: &["outlines", "diffuse-share"],
         has_effect: |args| args.areas > 0.0,
         needs: "--areas SHARE above 0, because no scattered light is an area light",

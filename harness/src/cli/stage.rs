@@ -7,6 +7,7 @@ use scenes::{Outlines, Radii};
 use super::{
     camera::Camera,
     headings::{RANGES, SCATTERED, SCENE},
+    motion::MotionArgs,
     named::named,
     values::{self, FarPlane, Size},
     vpl::VplArgs,
@@ -121,16 +122,36 @@ pub struct StageArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold, help_heading = RANGES, hide_short_help = true)]
     pub influence: Option<f64>,
 
-    /// Order of the lights in their buffer: given, morton or bvh
+    /// Order of the lights in their buffer: given, morton, bvh, gpu or gpuN
     ///
     /// All strategies use the same order. given keeps the order of the scene. morton follows a space-filling
-    /// curve. bvh is the order of the leaves of a hierarchy.
-    #[arg(long, value_name = "ORDER", default_value = "bvh", value_parser = values::light_order, help_heading = RANGES, hide_short_help = true)]
-    pub light_order: LightOrder,
+    /// curve. bvh is the order of the leaves of a hierarchy. These three are made by the CPU, off the clock
+    /// if the lights stand still. gpu is made by the GPU in every frame, on the clock; gpuN in every Nth
+    /// frame. [default: bvh, and gpu8 with --motion]
+    #[arg(long, value_name = "ORDER", value_parser = values::light_order, help_heading = RANGES, hide_short_help = true)]
+    pub light_order: Option<LightOrder>,
+
+    /// Lights that move.
+    #[command(flatten)]
+    pub motion: MotionArgs,
 
     /// Indirect light.
     #[command(flatten)]
     pub bounce: VplArgs,
+}
+
+/// Frames between two sorts of lights that move, unless the command line gives a number: boxes grow little
+/// in so few frames.
+const SORTED_EVERY: u32 = 8;
+
+impl StageArgs {
+    /// The order of the lights.
+    pub fn light_order(&self) -> LightOrder {
+        self.light_order.unwrap_or(match self.motion.motion {
+            Some(_) => LightOrder::Gpu { every: SORTED_EVERY },
+            None => LightOrder::Bvh,
+        })
+    }
 }
 
 /// Where lights are scattered.

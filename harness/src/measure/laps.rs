@@ -1,4 +1,4 @@
-//! Frames along the camera's path.
+//! Frames that differ: along the camera's path, or of lights that move.
 //!
 //! 1. Pools grow, at some poses that are spread over the path.
 //! 2. Images are compared with that of no culling, in a lap of its own off the clock: comparing them
@@ -40,7 +40,7 @@ impl Contest<'_> {
                 }
             }
         }
-        self.expire_lists();
+        self.expire_lists(stage);
         let checks = checked_poses(count, self.plan.checks);
         for pose in 0..=checks.last().copied().unwrap_or(0) {
             let is_checked = checks.contains(&pose);
@@ -77,7 +77,7 @@ impl Contest<'_> {
         stage.go_to(0, count)?;
         self.warm_up(stage, timed)?;
         for _ in 0..self.plan.laps {
-            self.expire_lists();
+            self.expire_lists(stage);
             for pose in 0..count {
                 stage.go_to(pose, count)?;
                 for place in orders.next_round() {
@@ -89,9 +89,10 @@ impl Contest<'_> {
         Ok(())
     }
 
-    /// Has lists that are used for several frames made anew, so that they are of the same age at a
-    /// pose in every lap and on every run.
-    fn expire_lists(&mut self) {
+    /// Has lists and orders of lights that are used for several frames made anew, so that they are of the
+    /// same age at a pose in every lap and on every run.
+    fn expire_lists(&mut self, stage: &mut Stage) {
+        stage.lights.expire_order();
         for contender in &mut self.contenders {
             contender.painter.expire();
         }

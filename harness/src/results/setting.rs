@@ -62,9 +62,13 @@ pub struct Setting {
     /// With `--compensate`: its number of lights.
     #[serde(default)]
     pub compensation: Option<f64>,
-    /// Order of the lights in their buffer: `given`, `morton` or `bvh`.
+    /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, or `gpuN` for a sort on the GPU in
+    /// every Nth frame.
     #[serde(default)]
     pub light_order: Option<String>,
+    /// How the lights move; absent if they stand still.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionSetting>,
     /// The seed of the scattered lights.
     pub seed: u64,
     /// The camera's position, world space, metres.
@@ -81,11 +85,22 @@ pub struct Setting {
     pub width: u32,
     /// Image height, pixels.
     pub height: u32,
-    /// Whether each frame shows another pose along the scene's path. Times are then means.
+    /// Whether each frame differs: another pose along the scene's path, or lights that move. Times are then means.
     #[serde(default)]
     pub along_path: bool,
     /// Poses per lap along the path. Samples are stored lap after lap, so the number of laps is
     /// frames / poses. `null` for a still camera, and in older results, which have one lap.
     #[serde(default)]
     pub poses: Option<u32>,
+}
+
+/// How lights move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionSetting {
+    /// The law, such as `drift`.
+    pub law: String,
+    /// Metres per second.
+    pub speed_m_s: f64,
+    /// Who moves the lights: `cpu` or `gpu`.
+    pub moved_by: String,
 }

@@ -43,4 +43,8 @@ pub struct Times {
     /// still lights.
     #[serde(default)]
     pub light_build_ms: Option<f64>,
+    /// Bytes that the last frame uploaded of lights that the CPU moves: the pass `upload`, which is timed by
+    /// wall clock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upload_bytes: Option<u64>,
 }

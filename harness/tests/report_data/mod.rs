@@ -91,6 +91,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             threshold: None,
             cut: Some("windowed".to_owned()),
             light_order: Some("bvh".to_owned()),
+            motion: None,
         },
         times: Times {
             frames,
@@ -105,6 +106,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             frame_span_ms: None,
             rounds: frames,
             light_build_ms: Some(0.4),
+            upload_bytes: None,
         },
         lists: ListFigures {
             operations: None,
