@@ -5,7 +5,10 @@
 //! mark, so stored results get it too.
 
 use super::rank::listed;
-use crate::results::{Machine, Record};
+use crate::results::{Machine, Mode, Record};
+
+/// Marked passes, and the strategies that have them.
+type Group<'a> = (Vec<&'a str>, Vec<&'a str>);
 
 /// Follows the name of a marked row.
 pub(crate) const MARK: &str = "\u{2020}";
@@ -34,33 +37,46 @@ pub(crate) fn notice<'a>(
 ) -> Option<String> {
     let chip = machine.weak_raster()?;
     // Strategies by mode and passes, in the order of the records.
-    let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut modes: Vec<(Mode, Vec<Group<'_>>)> = Vec::new();
     for record in records {
         let passes = record.raster_passes();
         if passes.is_empty() {
             continue;
         }
-        let key = format!("{} in {}", listed(&passes), record.setting.mode.name());
-        match groups.iter_mut().find(|(known, _)| *known == key) {
+        let mode = record.setting.mode;
+        let known = modes.iter().position(|(known, _)| *known == mode);
+        let ix = known.unwrap_or_else(|| {
+            modes.push((mode, Vec::new()));
+            modes.len() - 1
+        });
+        let groups = &mut modes[ix].1;
+        match groups.iter_mut().find(|(known, _)| *known == passes) {
             Some((_, names)) if !names.contains(&record.strategy.as_str()) => {
                 names.push(&record.strategy);
             }
             Some(_) => {}
-            None => groups.push((key, vec![&record.strategy])),
+            None => groups.push((passes, vec![&record.strategy])),
         }
     }
-    let parts: Vec<String> = groups
+    let words = |(passes, names): &Group<'_>| {
+        let pass = if passes.len() == 1 { "pass" } else { "passes" };
+        let names = match names.len() {
+            count if count > NAMED => format!("{count} strategies"),
+            _ => listed(names),
+        };
+        format!("the {pass} {} of {names}", listed(passes))
+    };
+    let marked: String = modes
         .iter()
-        .map(|(key, names)| match names.len() {
-            count if count > NAMED => format!("{key} of {count} strategies"),
-            _ => format!("{key} of {}", listed(names)),
+        .map(|(mode, groups)| {
+            let parts: Vec<String> = groups.iter().map(words).collect();
+            format!(" Marked in {} frames: {}.", mode.name(), parts.join("; "))
         })
         .collect();
-    (!parts.is_empty()).then(|| {
+    (!marked.is_empty()).then(|| {
         format!(
-            "{MARK} {chip} runs fragment shaders on only a few of its processors. Do not compare marked figures \
-             across chips. These passes are marked: {}.",
-            parts.join("; ")
+            "{MARK} {chip} runs fragment shaders on only a few of its processors, so passes that draw triangles \
+             are slow there. Do not compare marked figures across chips.{marked}"
         )
     })
 }
@@ -75,7 +91,7 @@ pub(crate) fn unmarked_note(record: &Record) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Mode, PassKind, PassTimes, Results};
+    use crate::results::{PassKind, PassTimes, Results};
 
     #[test]
     fn stored_rows_are_marked_by_their_passes() {
@@ -105,9 +121,8 @@ mod tests {
         let all = notice(&machine, [&tiles, &volumes, &models, &forward]).expect("three rows");
         for part in [
             "H200 runs",
-            "shade in deferred of RasterSphere",
-            "model-ids in deferred of M/2",
-            "shade in forward of T-E/28x28",
+            "Marked in deferred frames: the pass shade of RasterSphere; the pass model-ids of M/2.",
+            "Marked in forward frames: the pass shade of T-E/28x28.",
         ] {
             assert!(all.contains(part), "{part}: {all}");
         }
