@@ -145,6 +145,7 @@ impl Assignment for Clustered {
         Needs {
             depth: self.gather.is_some(),
             normals: self.normals.is_some(),
+            hierarchy: self.culler.reads_hierarchy(),
             materials: self.cut.is_glossy(),
             ..Needs::default()
         }

@@ -138,7 +138,7 @@ impl Assignment for Grid {
     }
 
     fn needs(&self) -> Needs {
-        Needs::default()
+        Needs { hierarchy: self.culler.reads_hierarchy(), ..Needs::default() }
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

@@ -97,7 +97,8 @@ impl Assignment for PerModel {
     }
 
     fn needs(&self) -> Needs {
-        Needs { models: true, ..Needs::default() }
+        let hierarchy = self.culler.reads_hierarchy();
+        Needs { models: true, hierarchy, ..Needs::default() }
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

@@ -72,7 +72,8 @@ impl Assignment for Tiled {
     }
 
     fn needs(&self) -> Needs {
-        Needs { depth: self.tile_bounds.is_some(), ..Needs::default() }
+        let hierarchy = self.culler.reads_hierarchy();
+        Needs { depth: self.tile_bounds.is_some(), hierarchy, ..Needs::default() }
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {

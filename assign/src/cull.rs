@@ -6,7 +6,7 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, ListsBindings, Lookup, Passes, Shader, StrategyModule,
+    LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader, StrategyModule,
     StrategyWesl,
     frame::{entry, storage_entry},
     kernel::MAX_WORKGROUPS,
@@ -51,6 +51,8 @@ pub struct Culler {
     source: Option<wgpu::BindGroup>,
     lists: LightLists,
     dispatch: Dispatch,
+    /// The number of lights, if only the GPU knows it.
+    live_count: Option<wgpu::Buffer>,
     /// Bytes of the light hierarchy, if the driver uses it.
     hierarchy_bytes: u64,
 }
@@ -67,7 +69,7 @@ struct Variant {
 #[derive(Debug)]
 struct Kernel {
     pipeline: wgpu::ComputePipeline,
-    kinds: LightKinds,
+    traits: LightTraits,
 }
 
 #[derive(Debug)]
@@ -107,6 +109,7 @@ impl Culler {
             source: None,
             lists: LightLists::new(gpu)?,
             dispatch: Dispatch::Workgroups(0),
+            live_count: None,
             hierarchy_bytes: 0,
         })
     }
@@ -120,14 +123,15 @@ impl Culler {
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
-        self.lists.prepare(gpu, frame.lights.count(), groups.count())?;
+        self.lists.prepare(gpu, frame.lights, groups.count())?;
         self.cull.bind(gpu, &self.lists, resources);
         self.look_up.bind(gpu, &self.lists, resources);
         self.bind_source(gpu, frame, groups);
-        let kinds = frame.lights.kinds();
-        if self.kernel.as_ref().is_none_or(|kernel| kernel.kinds != kinds) {
-            self.kernel = Some(self.compile(gpu, kinds)?);
+        let traits = frame.lights.traits();
+        if self.kernel.as_ref().is_none_or(|kernel| kernel.traits != traits) {
+            self.kernel = Some(self.compile(gpu, traits)?);
         }
+        self.live_count = frame.lights.live_count().cloned();
         Ok(())
     }
 
@@ -140,7 +144,7 @@ impl Culler {
                 Dispatch::Indirect(live.buffer().clone())
             }
         };
-        if self.variant.settings.source == LightSource::Hierarchy {
+        if self.reads_hierarchy() {
             entries.push(entry(1, frame.lights.nodes()));
             self.hierarchy_bytes = frame.lights.nodes().size();
         }
@@ -151,16 +155,16 @@ impl Culler {
         }));
     }
 
-    /// The kernel's linked WGSL for a scene with lights of these kinds.
+    /// The kernel's linked WGSL for a scene with such lights.
     pub fn kernel_source<'a>(
         shape: GroupShape,
         settings: CullSettings,
         sparse: bool,
         wesl: impl Into<StrategyWesl<'a>>,
-        kinds: LightKinds,
+        lights: impl Into<LightTraits>,
     ) -> Result<String, AssignError> {
         let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
-        kernel_shader(variant, wesl.into(), kinds).link("package::cull")
+        kernel_shader(variant, wesl.into(), lights.into()).link("package::cull")
     }
 
     /// The kernel's linked WGSL for live groups that are boxes and know how their surfaces face.
@@ -168,14 +172,14 @@ impl Culler {
         settings: CullSettings,
         facing: Facing,
         wesl: impl Into<StrategyWesl<'a>>,
-        kinds: LightKinds,
+        lights: impl Into<LightTraits>,
     ) -> Result<String, AssignError> {
         let variant = Variant { shape: GroupShape::Box, settings, sparse: true, facing };
-        kernel_shader(variant, wesl.into(), kinds).link("package::cull")
+        kernel_shader(variant, wesl.into(), lights.into()).link("package::cull")
     }
 
-    fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
-        let shader = kernel_shader(self.variant, self.module.wesl(), kinds);
+    fn compile(&self, gpu: &Gpu, traits: LightTraits) -> Result<Kernel, AssignError> {
+        let shader = kernel_shader(self.variant, self.module.wesl(), traits);
         // SAFETY: every loop of the driver ends. A loop counts up without wrapping to a fixed
         // number, at most a buffer's length; or tests the next of finitely many nodes; or clears
         // one bit of a word per round; or tries to take entries from a pool that only fills up.
@@ -187,7 +191,7 @@ impl Culler {
             [Some(self.frame.layout()), Some(self.cull.layout()), Some(&self.source_layout)];
         // The kernel writes workgroup memory before it reads it.
         let pipeline = gpu.compute_pipeline(&module, "cull_groups", &layouts, false);
-        Ok(Kernel { pipeline, kinds })
+        Ok(Kernel { pipeline, traits })
     }
 
     /// Records the pass `cull`, which a clock times. Call it after [`prepare`](Self::prepare).
@@ -195,7 +199,7 @@ impl Culler {
         let Some(kernel) = &self.kernel else {
             return;
         };
-        self.lists.record_reset(passes.encoder());
+        self.lists.record_reset(passes.encoder(), self.live_count.as_ref());
         passes.compute("cull", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(LISTS_GROUP, self.cull.bind_group(), &[]);
@@ -207,6 +211,11 @@ impl Culler {
             }
         });
         self.lists.record_readback(passes.encoder());
+    }
+
+    /// Whether the driver reads the hierarchy over the lights.
+    pub fn reads_hierarchy(&self) -> bool {
+        self.variant.settings.source == LightSource::Hierarchy
     }
 
     /// How shading finds a sample's group.
@@ -237,15 +246,18 @@ impl Culler {
     }
 }
 
-fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, kinds: LightKinds) -> Shader<'a> {
+fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTraits) -> Shader<'a> {
     let bounds = match variant.shape {
         GroupShape::Frustum => include_str!("shaders/bounds_frustum.wesl"),
         GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
         GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
     };
     let tests = variant.settings.tests;
+    let is_hierarchy = variant.settings.source == LightSource::Hierarchy;
+    let levels = if is_hierarchy { lights.levels } else { 0 };
     Shader::new(LISTS_GROUP)
         .module("package::cull", include_str!("shaders/cull.wesl"))
+        .module("package::walk", include_str!("shaders/walk.wesl"))
         .module("package::terms", include_str!("shaders/terms.wesl"))
         .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
@@ -261,10 +273,12 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, kinds: LightKinds
         .flag("sat_n", tests.sat_n)
         .flag("sat_p", tests.sat_p)
         .flag("sat_v", tests.sat_v)
-        .flag("hierarchy", variant.settings.source == LightSource::Hierarchy)
+        .flag("hierarchy", is_hierarchy)
+        .flag("parents", levels > 1)
+        .flag("grandparents", levels > 2)
         .flag("area_balls", variant.settings.area_bounds == AreaBounds::Ball)
         .flag("sparse", variant.sparse)
-        .light_kinds(kinds)
+        .light_kinds(lights.kinds)
 }
 
 /// Layout of the kernel's input: live groups if sparse, light nodes if there is a hierarchy.

@@ -6,7 +6,7 @@
 //! Along any axis it extends as far as the outline plus a ball, or plus a cone of half angle π/2
 //! around the normal. Culling therefore reuses its code for spots.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 use crate::light_fault::LightFault;
 
@@ -65,6 +65,20 @@ impl Emitter {
             two_sided: false,
             diffuse_share: 1.0,
         }
+    }
+
+    /// An emitter from its record: half axes, and vertices relative to the light's position. `None`
+    /// if there are too many vertices.
+    pub(crate) fn from_parts(
+        outline: Outline,
+        [half_x, half_y]: [Vec3; 2],
+        corners: &[Vec3],
+    ) -> Option<Self> {
+        let mut vertices = [Vec3::ZERO; MAX_VERTICES];
+        vertices.get_mut(..corners.len())?.copy_from_slice(corners);
+        let count = corners.len() as u8;
+        let two_sided = false;
+        Some(Self { outline, count, vertices, half_x, half_y, two_sided, diffuse_share: 1.0 })
     }
 
     /// Makes a one-sided convex polygon from its vertices: world space, metres, counter-clockwise
@@ -129,6 +143,19 @@ impl Emitter {
             half_y: self.half_y * factor,
             ..self
         }
+    }
+
+    /// The same emitter, rotated about its light's position.
+    #[must_use]
+    pub fn turned(self, rotation: &Mat3) -> Self {
+        let [x, y] = self.half_axes().map(|axis| *rotation * axis);
+        if self.outline == Outline::Rectangle {
+            let Self { two_sided, diffuse_share, .. } = self;
+            return Self { two_sided, diffuse_share, ..Self::rectangle(x, y) };
+        }
+        // Rotated vertices are rounded, and the rectangle must still hold them.
+        let [half_x, half_y] = [x, y].map(|axis| axis * (1.0 + 8.0 * f32::EPSILON));
+        Self { vertices: self.vertices.map(|v| *rotation * v), half_x, half_y, ..self }
     }
 
     /// Its outline.

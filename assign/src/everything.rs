@@ -34,12 +34,16 @@ impl Assignment for Everything {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        self.lists.prepare(gpu, frame.lights.count(), 0)?;
+        self.lists.prepare(gpu, frame.lights, 0)?;
         self.bindings.bind(gpu, &self.lists, &[]);
         Ok(())
     }
 
-    fn record(&mut self, _frame: &Frame<'_>, _passes: &mut dyn Passes) {}
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some(count) = frame.lights.live_count() {
+            self.lists.record_reset(passes.encoder(), Some(count));
+        }
+    }
 
     fn lookup(&self) -> Lookup<'_> {
         // SAFETY: it has no loop.

@@ -29,6 +29,9 @@ pub struct Needs {
     pub models: bool,
     /// The scene's triangles.
     pub triangles: bool,
+    /// The hierarchy over the lights. If the lights move, call
+    /// [`LightBuffer::record`](crate::LightBuffer::record) in each frame before the strategy's passes.
+    pub hierarchy: bool,
 }
 
 /// One frame's inputs. The optional fields are there for the strategies that

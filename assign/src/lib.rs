@@ -43,6 +43,7 @@ mod light_fault;
 mod light_nodes;
 mod light_order;
 mod light_record;
+mod light_sorter;
 mod lists;
 mod lists_bindings;
 mod live_groups;
@@ -70,11 +71,11 @@ pub use frame::{
 pub use gpu::Gpu;
 pub use groups::{Facing, GroupShape, Groups};
 pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};
-pub use light_buffer::{LightBuffer, MAX_LIGHTS, RejectedLight};
+pub use light_buffer::{GpuLights, LightBuffer, MAX_LIGHTS, RejectedLight, SlotCounts};
 pub use light_fault::LightFault;
 pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
-pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere};
+pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere, LightTraits};
 pub use lists::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
     LightLists, ListsSnapshot,

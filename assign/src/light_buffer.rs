@@ -1,15 +1,23 @@
 //! Lights on the GPU: the sound lights in order, the hierarchy over them, and the faulty lights
 //! that were omitted.
 
+mod decode;
+mod given;
+mod living;
+
 use std::time::{Duration, Instant};
 
 use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, Light, LightEmission, LightFault, LightKinds, LightOrder, LightSphere,
-    light_nodes::{LightNode, nodes},
+    AssignError, Gpu, Light, LightFault, LightKinds, LightOrder, LightTraits, Passes,
+    light_nodes::{LightNode, NodeLevels, nodes},
 };
+use given::Given;
+pub(crate) use given::Records;
+pub use living::{GpuLights, SlotCounts};
+use living::{Living, Source};
 
 /// A faulty light that was omitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,23 +31,26 @@ pub struct RejectedLight {
 /// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
 /// shading.
 ///
-/// The buffer omits faulty lights and sorts the others by its [`LightOrder`]. A light's index is
-/// its place in that order; [`given_index`](Self::given_index) converts it to an index in the
-/// renderer's list.
+/// The buffer omits faulty lights and sorts the others by its [`LightOrder`]. A light's index is its
+/// place in that order, its *slot*.
+///
+/// - For lights that stand still, [`ordered`](Self::ordered) sorts them on the CPU, once.
+/// - For lights that move, [`LightOrder::Gpu`] sorts and boxes them on the GPU. Call
+///   [`update`](Self::update) with each frame's lights, and [`record`](Self::record) before the
+///   strategy's passes.
+/// - For lights that the renderer's own kernel writes, [`from_gpu`](Self::from_gpu) takes its
+///   buffers. Call [`update_from_gpu`](Self::update_from_gpu) and `record` in each frame. No light
+///   crosses to the CPU.
 #[derive(Debug)]
 pub struct LightBuffer {
     order: LightOrder,
-    lights: Vec<Light>,
-    given: Vec<u32>,
-    rejected: Vec<RejectedLight>,
-    kinds: LightKinds,
-    bounds: Option<(Vec3, Vec3)>,
-    position_bounds: Option<(Vec3, Vec3)>,
+    given: Given,
     spheres: wgpu::Buffer,
     emissions: wgpu::Buffer,
     shapes: wgpu::Buffer,
     nodes: wgpu::Buffer,
     build_time: Duration,
+    living: Option<Living>,
 }
 
 /// The most lights that a list entry's 30 bits can index.
@@ -53,60 +64,60 @@ impl LightBuffer {
 
     /// Uploads `lights` sorted by `order`. Omits the lights that [`Light::check`] rejects.
     pub fn ordered(gpu: &Gpu, lights: &[Light], order: LightOrder) -> Result<Self, AssignError> {
-        let mut buffer = Self {
+        let mut buffer = Self::empty(gpu, order)?;
+        buffer.update(gpu, lights)?;
+        Ok(buffer)
+    }
+
+    /// Lights that the renderer's own kernel writes. The GPU sorts them in every `every`th frame.
+    ///
+    /// # Errors
+    ///
+    /// As [`update_from_gpu`](Self::update_from_gpu), and [`AssignError::Parameter`] if `every` is 0.
+    pub fn from_gpu(gpu: &Gpu, lights: &GpuLights<'_>, every: u32) -> Result<Self, AssignError> {
+        let mut buffer = Self::empty(gpu, LightOrder::Gpu { every })?;
+        buffer.update_from_gpu(gpu, lights)?;
+        Ok(buffer)
+    }
+
+    fn empty(gpu: &Gpu, order: LightOrder) -> Result<Self, AssignError> {
+        let living = match order {
+            LightOrder::Gpu { every } => Some(Living::new(every)?),
+            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => None,
+        };
+        Ok(Self {
             order,
-            lights: Vec::new(),
-            given: Vec::new(),
-            rejected: Vec::new(),
-            kinds: LightKinds::default(),
-            bounds: None,
-            position_bounds: None,
+            given: Given::default(),
             spheres: gpu.storage("light spheres", 0)?,
             emissions: gpu.storage("light emissions", 0)?,
             shapes: gpu.storage("light shapes", 0)?,
             nodes: gpu.storage("light nodes", size_of::<LightNode>() as u64)?,
             build_time: Duration::ZERO,
-        };
-        buffer.update(gpu, lights)?;
-        Ok(buffer)
+            living,
+        })
     }
 
-    /// Replaces the lights. Buffers grow as needed, so bind groups that hold them must be made
-    /// again, as [`FrameBindings`](crate::FrameBindings) does.
+    /// Replaces the lights, once per frame at most. Buffers grow as needed, so bind groups that hold
+    /// them must be made again, as [`FrameBindings`](crate::FrameBindings) does. With
+    /// [`LightOrder::Gpu`] it uploads only what changed. After an error, the old lights stay.
     pub fn update(&mut self, gpu: &Gpu, lights: &[Light]) -> Result<(), AssignError> {
-        if lights.len() > MAX_LIGHTS {
-            return Err(AssignError::Parameter {
-                field: "lights".into(),
-                value: lights.len().to_string(),
-                accepted: format!("at most {MAX_LIGHTS}"),
-            });
-        }
-        let mut sound = Vec::with_capacity(lights.len());
-        let mut indices = Vec::with_capacity(lights.len());
-        let mut rejected = Vec::new();
-        for (index, light) in lights.iter().enumerate() {
-            match light.check() {
-                Ok(()) => {
-                    sound.push(*light);
-                    indices.push(index as u32);
-                }
-                Err(fault) => rejected.push(RejectedLight { index, fault }),
-            }
+        check_count(lights.len())?;
+        if let Some(living) = &mut self.living {
+            let given = Given::new(lights, |sound| (0..sound.len() as u32).collect());
+            living.update(gpu, &given)?;
+            self.given = given;
+            self.take_living();
+            return Ok(());
         }
         let began = Instant::now();
-        let order = self.order.indices(&sound);
-        let accepted: Vec<Light> = order.iter().map(|&ix| sound[ix as usize]).collect();
-        let given: Vec<u32> = order.iter().map(|&ix| indices[ix as usize]).collect();
-        let nodes = nodes(&accepted);
+        let given = Given::new(lights, |sound| self.order.indices(sound));
+        let nodes = nodes(&given.lights);
         let build_time = began.elapsed();
-        let spheres: Vec<LightSphere> = accepted.iter().map(Light::sphere).collect();
-        let mut shapes = Vec::new();
-        let emissions: Vec<LightEmission> =
-            accepted.iter().map(|l| l.emission(&mut shapes)).collect();
+        let records = Records::new(&given.lights);
         // Makes all buffers before it changes any field, so that the old lights stay whole after an
         // error.
-        let [sphere_bytes, emission_bytes, shape_bytes, node_bytes] =
-            [cast_slice(&spheres), cast_slice(&emissions), cast_slice(&shapes), cast_slice(&nodes)];
+        let [sphere_bytes, emission_bytes, shape_bytes] = records.bytes();
+        let node_bytes: &[u8] = cast_slice(&nodes);
         let larger = [
             fitting(gpu, &self.spheres, "light spheres", sphere_bytes)?,
             fitting(gpu, &self.emissions, "light emissions", emission_bytes)?,
@@ -118,34 +129,96 @@ impl LightBuffer {
         gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
         gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
-        self.kinds = LightKinds::among(&accepted);
-        let around = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-        self.bounds = accepted
-            .iter()
-            .map(|l| (l.position - l.radius_m(), l.position + l.radius_m()))
-            .reduce(around);
-        self.position_bounds = accepted.iter().map(|l| (l.position, l.position)).reduce(around);
-        self.lights = accepted;
         self.given = given;
         self.build_time = build_time;
-        self.rejected = rejected;
         Ok(())
     }
 
-    /// Number of lights that were accepted.
+    /// Takes the next frame's lights from the renderer's own buffers.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] if the buffers are too small for the capacity, lack the usage
+    /// `STORAGE` (the count: `COPY_SRC`), or if the box or the largest range is out of its range; and
+    /// if this buffer was not made with [`LightOrder::Gpu`].
+    pub fn update_from_gpu(
+        &mut self,
+        gpu: &Gpu,
+        lights: &GpuLights<'_>,
+    ) -> Result<(), AssignError> {
+        let Some(living) = &mut self.living else {
+            return Err(AssignError::Parameter {
+                field: "light order".into(),
+                value: self.order.to_string(),
+                accepted: "gpu or gpuN, for lights in the renderer's own buffers".into(),
+            });
+        };
+        living.update_from_gpu(gpu, lights)?;
+        self.given = Given { kinds: lights.kinds, ..Given::default() };
+        self.take_living();
+        Ok(())
+    }
+
+    /// Uses the living lights' buffers as this buffer's.
+    fn take_living(&mut self) {
+        let Some((sorter, shapes)) = self.living.as_ref().and_then(Living::buffers) else { return };
+        let [spheres, emissions, nodes] = sorter.ordered();
+        self.spheres = spheres.clone();
+        self.emissions = emissions.clone();
+        self.nodes = nodes.clone();
+        self.shapes = shapes.clone();
+    }
+
+    /// Records the passes `order` and `boxes` of [`LightOrder::Gpu`]; nothing for other orders. Call
+    /// it in each frame after [`update`](Self::update) and before the strategy's passes. A frame may
+    /// record it more than once.
+    pub fn record(&self, passes: &mut dyn Passes) {
+        if let Some(living) = &self.living {
+            living.record(passes);
+        }
+    }
+
+    /// Number of slots that strategies see: the accepted lights. With [`LightOrder::Gpu`] there may
+    /// be empty slots among them, and for lights from the GPU it is the most lights that fit.
     pub fn count(&self) -> u32 {
-        self.lights.len() as u32
+        match &self.living {
+            Some(living) => living.slots(),
+            None => self.given.lights.len() as u32,
+        }
     }
 
-    /// The accepted lights by index.
+    /// The number of slots in use, a `u32` at the start of this buffer, if only the GPU knows it.
+    /// It may be copied from.
+    pub fn live_count(&self) -> Option<&wgpu::Buffer> {
+        self.living.as_ref().and_then(Living::live_count)
+    }
+
+    /// The accepted lights that the CPU knows. Their order is that of the slots, except with
+    /// [`LightOrder::Gpu`]: then it is the renderer's. Empty for lights from the GPU.
     pub fn lights(&self) -> &[Light] {
-        &self.lights
+        &self.given.lights
     }
 
-    /// The index in the renderer's list of a light of this buffer; `None` if there is no such
-    /// light.
+    /// The lights by slot, as the GPU holds them. For the orders of the CPU this is
+    /// [`lights`](Self::lights). With [`LightOrder::Gpu`] it blocks, and must follow the submission
+    /// of [`record`](Self::record); empty slots have a light of intensity 0.
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<Light>, AssignError> {
+        match &self.living {
+            None => Ok(self.given.lights.clone()),
+            Some(living) => living.read(gpu, &self.given.lights),
+        }
+    }
+
+    /// What the GPU found in the slots in the last submitted [`record`](Self::record). It blocks.
+    /// `None` for the orders of the CPU.
+    pub fn read_counts(&self, gpu: &Gpu) -> Result<Option<SlotCounts>, AssignError> {
+        self.living.as_ref().map(|living| living.read_counts(gpu)).transpose()
+    }
+
+    /// The index in the renderer's list of one of [`lights`](Self::lights); `None` if there is no
+    /// such light.
     pub fn given_index(&self, light: u32) -> Option<u32> {
-        self.given.get(light as usize).copied()
+        self.given.indices.get(light as usize).copied()
     }
 
     /// The order of the lights.
@@ -158,24 +231,56 @@ impl LightBuffer {
         self.build_time
     }
 
-    /// The faulty lights that were omitted.
+    /// Bytes that the last [`update`](Self::update) uploaded with [`LightOrder::Gpu`].
+    pub fn uploaded_bytes(&self) -> u64 {
+        self.living.as_ref().map_or(0, Living::uploaded_bytes)
+    }
+
+    /// Bytes of what only the sort on the GPU needs.
+    pub fn sort_bytes(&self) -> u64 {
+        self.living.as_ref().and_then(Living::buffers).map_or(0, |(sorter, _)| sorter.bytes())
+    }
+
+    /// The faulty lights that [`update`](Self::update) omitted.
     pub fn rejected(&self) -> &[RejectedLight] {
-        &self.rejected
+        &self.given.rejected
     }
 
     /// The kinds of the accepted lights. Shaders are compiled for them.
     pub fn kinds(&self) -> LightKinds {
-        self.kinds
+        self.given.kinds
     }
 
-    /// World-space box around all supports, metres; `None` without lights.
+    /// What culling kernels are compiled for.
+    pub fn traits(&self) -> LightTraits {
+        LightTraits { kinds: self.kinds(), levels: self.levels().levels }
+    }
+
+    /// The levels of the hierarchy.
+    pub(crate) fn levels(&self) -> NodeLevels {
+        match self.living.as_ref().and_then(Living::buffers) {
+            Some((sorter, _)) => sorter.levels(),
+            None => NodeLevels::over(self.count()),
+        }
+    }
+
+    /// World-space box around all supports, metres; `None` without lights. For lights from the GPU
+    /// it is the stated box, extended by the largest range.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        self.bounds
+        match self.living.as_ref().and_then(Living::source) {
+            Some(Source::Gpu { bounds: (low, high), radius_max_m, .. }) => {
+                Some((*low - *radius_max_m, *high + *radius_max_m))
+            }
+            _ => self.given.bounds,
+        }
     }
 
     /// World-space box around all positions, metres, without the ranges; `None` without lights.
     pub fn position_bounds(&self) -> Option<(Vec3, Vec3)> {
-        self.position_bounds
+        match self.living.as_ref().and_then(Living::source) {
+            Some(Source::Gpu { bounds, .. }) => Some(*bounds),
+            _ => self.given.position_bounds,
+        }
     }
 
     /// The spheres: `array<LightSphere>`.
@@ -193,10 +298,21 @@ impl LightBuffer {
         &self.shapes
     }
 
-    /// The hierarchy: `array<LightNode>`, one box per 64 lights.
+    /// The hierarchy: `array<LightNode>`, one box per 64 lights, then one per 64 boxes, and so on.
     pub fn nodes(&self) -> &wgpu::Buffer {
         &self.nodes
     }
+}
+
+fn check_count(lights: usize) -> Result<(), AssignError> {
+    if lights <= MAX_LIGHTS {
+        return Ok(());
+    }
+    Err(AssignError::Parameter {
+        field: "lights".into(),
+        value: lights.to_string(),
+        accepted: format!("at most {MAX_LIGHTS}"),
+    })
 }
 
 /// The buffer if `bytes` fit into it, else a larger one.

@@ -22,6 +22,14 @@ pub enum LightOrder {
     /// The leaves, depth first, of a bounding volume hierarchy over the lights' supports. The CPU
     /// builds it, so it suits lights that do not move.
     Bvh,
+    /// By the Morton code of the lights' positions, 8 bits per axis. The GPU sorts the lights and
+    /// builds the hierarchy in every frame, on the clock: see
+    /// [`LightBuffer::record`](crate::LightBuffer::record).
+    Gpu {
+        /// The lights are sorted anew in every `every`th frame. In the frames between, the order is
+        /// that of earlier positions, and the boxes are larger. Lists are complete either way.
+        every: u32,
+    },
 }
 
 /// The most lights at one place for which a hierarchy is built. The search for pairs to merge is
@@ -32,7 +40,8 @@ impl LightOrder {
     /// The lights' indices in this order.
     pub(crate) fn indices(self, lights: &[Light]) -> Vec<u32> {
         match self {
-            Self::Given => (0..lights.len() as u32).collect(),
+            // The GPU sorts them.
+            Self::Given | Self::Gpu { .. } => (0..lights.len() as u32).collect(),
             Self::Morton => morton(lights),
             Self::Bvh => bvh(lights),
         }
@@ -131,12 +140,15 @@ fn most_coincident(lights: &[Light]) -> usize {
 }
 
 impl fmt::Display for LightOrder {
+    /// As [`FromStr`] reads it: `gpu8` for lights that the GPU sorts in every eighth frame.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Given => "given",
-            Self::Morton => "morton",
-            Self::Bvh => "bvh",
-        })
+        match self {
+            Self::Given => f.write_str("given"),
+            Self::Morton => f.write_str("morton"),
+            Self::Bvh => f.write_str("bvh"),
+            Self::Gpu { every: 1 } => f.write_str("gpu"),
+            Self::Gpu { every } => write!(f, "gpu{every}"),
+        }
     }
 }
 
@@ -144,14 +156,20 @@ impl FromStr for LightOrder {
     type Err = AssignError;
 
     fn from_str(text: &str) -> Result<Self, AssignError> {
-        match text.to_lowercase().as_str() {
-            "given" => Ok(Self::Given),
-            "morton" => Ok(Self::Morton),
-            "bvh" => Ok(Self::Bvh),
+        let lower = text.to_lowercase();
+        let frames = lower.strip_prefix("gpu").map(|frames| match frames {
+            "" => Some(1),
+            _ => frames.parse().ok().filter(|&every: &u32| every > 0),
+        });
+        match (lower.as_str(), frames.flatten()) {
+            ("given", _) => Ok(Self::Given),
+            ("morton", _) => Ok(Self::Morton),
+            ("bvh", _) => Ok(Self::Bvh),
+            (_, Some(every)) => Ok(Self::Gpu { every }),
             _ => Err(AssignError::Parameter {
                 field: "light order".into(),
                 value: text.into(),
-                accepted: "given, morton or bvh".into(),
+                accepted: "given, morton, bvh, gpu, or gpuN for a sort in every Nth frame".into(),
             }),
         }
     }
@@ -183,6 +201,17 @@ mod tests {
             })
             .collect();
         diagonals.iter().sum::<f32>() / diagonals.len() as f32
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for name in ["given", "morton", "bvh", "gpu", "gpu8"] {
+            assert_eq!(name.parse::<LightOrder>().unwrap().to_string(), name);
+        }
+        for wrong in ["gpu0", "gpu-1", "gpux", "hilbert", ""] {
+            let error = wrong.parse::<LightOrder>().unwrap_err().to_string();
+            assert!(error.contains("gpuN"), "{error}");
+        }
     }
 
     #[test]

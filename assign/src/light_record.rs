@@ -59,6 +59,22 @@ impl LightKinds {
     }
 }
 
+/// What culling kernels are compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LightTraits {
+    /// The kinds of lights.
+    pub kinds: LightKinds,
+    /// Levels of the light hierarchy, 1 to 3: the flags `parents` and `grandparents`.
+    pub levels: u32,
+}
+
+impl From<LightKinds> for LightTraits {
+    /// A hierarchy of one level, as few lights have it.
+    fn from(kinds: LightKinds) -> Self {
+        Self { kinds, levels: 1 }
+    }
+}
+
 /// The part of a light that culling reads: its bounding sphere. 16 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

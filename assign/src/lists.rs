@@ -10,7 +10,7 @@
 
 use bytemuck::{Pod, Zeroable, cast_slice, pod_collect_to_vec};
 
-use crate::{AssignError, Gpu, readback::Readback};
+use crate::{AssignError, Gpu, LightBuffer, readback::Readback};
 
 /// Entry flag: the light's diffuse term may reach the group.
 pub const ENTRY_DIFFUSE: u32 = 1 << 30;
@@ -78,8 +78,10 @@ pub struct CullUniform {
     pub guard_cursor: u32,
     /// The most lights of a list. Later lights are dropped.
     pub list_cap: u32,
-    /// Pads to 32 bytes.
-    pub padding: [u32; 2],
+    /// Place of the first light node of level 2.
+    pub first_parent: u32,
+    /// Place of the first light node of level 3.
+    pub first_grandparent: u32,
 }
 
 /// Bytes of one set of counters.
@@ -176,9 +178,10 @@ impl LightLists {
     pub fn prepare(
         &mut self,
         gpu: &Gpu,
-        light_count: u32,
+        lights: &LightBuffer,
         group_count: u32,
     ) -> Result<bool, AssignError> {
+        let (light_count, levels) = (lights.count(), lights.levels());
         self.readback.poll(gpu);
         let asked = self.readback.latest().map_or(0, |c| c.requested());
         let records = u64::from(group_count) + 1;
@@ -192,7 +195,8 @@ impl LightLists {
             self.lists = lists;
             changed = true;
         }
-        if changed || self.counts.0 != light_count {
+        // A number that the GPU wrote replaces the one of the record in every frame.
+        if changed || self.counts.0 != light_count || lights.live_count().is_some() {
             let all = LightList { first: 0, count: light_count };
             gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
         }
@@ -204,7 +208,8 @@ impl LightLists {
             pool_capacity: self.pool_capacity,
             guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
             list_cap: self.list_cap,
-            padding: [0; 2],
+            first_parent: levels.first_parent,
+            first_grandparent: levels.first_grandparent,
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
         Ok(changed)
@@ -256,9 +261,20 @@ impl LightLists {
     }
 
     /// Resets the counters. Call it in the encoder of the pass that fills them, before that pass.
-    /// So they count one frame only, whatever happened to earlier frames.
-    pub fn record_reset(&self, encoder: &mut wgpu::CommandEncoder) {
+    /// So they count one frame only, whatever happened to earlier frames. `live_count` is
+    /// [`LightBuffer::live_count`]: if only the GPU knows the number of lights, it is copied to where
+    /// kernels and shading read it.
+    pub fn record_reset(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        live_count: Option<&wgpu::Buffer>,
+    ) {
         encoder.clear_buffer(&self.counters, 0, None);
+        if let Some(count) = live_count {
+            // `CullUniform::light_count`, and the count of record 0.
+            encoder.copy_buffer_to_buffer(count, 0, &self.uniform, 0, 4);
+            encoder.copy_buffer_to_buffer(count, 0, &self.lists, 4, 4);
+        }
     }
 
     /// Copies the counters for [`stats`](Self::stats). Call it after the last pass that counts.

@@ -41,7 +41,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     }
     if let Some(choice) = choices.iter().find(|choice| choice.is_reused() && !args.path) {
         let accepted = "combined with --path: for a still camera old lists are always right";
-        return Err(CliError::out_of_range("--strategies", choice.id(), accepted));
+        return Err(CliError::out_of_range("--strategies", choice.id().as_str(), accepted));
     }
     let modes = args.mode.modes();
     let is_served = |choice: &Choice| modes.iter().any(|&mode| choice.refuses_mode(mode).is_none());

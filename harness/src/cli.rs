@@ -11,6 +11,7 @@ mod compare;
 mod effect;
 mod error;
 mod fit_ltc;
+mod fold;
 mod headings;
 mod modes;
 mod named;
@@ -24,7 +25,7 @@ mod truth;
 mod values;
 mod vpl;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 pub use advise::AdviseArgs;
 pub use camera::{Camera, CameraPose};
@@ -125,6 +126,11 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     compare: CompareArgs,
+}
+
+/// The definition of the command line.
+fn definition() -> clap::Command {
+    fold::fold(Cli::command())
 }
 
 #[derive(Subcommand)]

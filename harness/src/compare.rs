@@ -204,9 +204,7 @@ impl Run<'_> {
             let mut served = choices.to_vec();
             served.retain(|choice| choice.refuses_mode(mode).is_none());
             for choice in choices {
-                let Some(why) = choice.refuses_mode(mode) else { continue };
-                let (family, mode) = (choice.row().family, mode.name());
-                let words = format!("{family} cannot run in mode {mode}, because {why}");
+                let Some(words) = choice.row().refusal(mode) else { continue };
                 self.results.warnings.push(words);
                 bar.inc(per_method);
             }

@@ -59,11 +59,11 @@ pub fn measure(
             let traced = TracedScene::new(scene);
             let points =
                 seen_points(&traced, &scene.path, rays.div_ceil(args.rays) as usize, args.seed);
-            let of = |is_corrected| {
+            let measured = |is_corrected| {
                 let rule = RangeRule { is_corrected, ..rule };
                 range_errors(&gpu, &images, &traced, &points, rule).map(Some)
             };
-            [of(false)?, of(true)?]
+            [measured(false)?, measured(true)?]
         }
     };
     let run = DeepImageRun {

@@ -121,7 +121,7 @@ pub fn errors(pair: &ImagePair<'_>) -> Vec<(&'static str, f64)> {
     if pair.image.pixels == pair.reference.pixels {
         return ERROR_METRICS.iter().map(|metric| (metric.id, 0.0)).collect();
     }
-    let sums = Sums::of(pair);
+    let sums = Sums::add_up(pair);
     ERROR_METRICS.iter().map(|metric| (metric.id, (metric.value)(&sums, pair))).collect()
 }
 
@@ -143,7 +143,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(pair: &ImagePair<'_>) -> Self {
+    fn add_up(pair: &ImagePair<'_>) -> Self {
         let mut sums = Self { pixels: 0.0, image: 0.0, reference: 0.0, darker: 0.0, off: 0.0 };
         for (a, b) in luminances(pair) {
             sums.pixels += 1.0;
@@ -271,7 +271,7 @@ mod tests {
         HdrImage { width: 64, height: 32, pixels: (0..64 * 32).map(|ix| [values(ix); 3]).collect() }
     }
 
-    fn of(image: &HdrImage, reference: &HdrImage, id: &str) -> f64 {
+    fn error_of(image: &HdrImage, reference: &HdrImage, id: &str) -> f64 {
         let all = errors(&ImagePair { image, reference, exposure: 1.0 });
         all.into_iter().find(|(known, _)| *known == id).map(|(_, value)| value).unwrap()
     }
@@ -280,14 +280,14 @@ mod tests {
     fn the_same_image_has_no_error() {
         let grey = image(|ix| 0.1 + ix as f32 * 1e-4);
         for metric in ERROR_METRICS {
-            assert_eq!(of(&grey, &grey, metric.id), 0.0, "{}", metric.id);
+            assert_eq!(error_of(&grey, &grey, metric.id), 0.0, "{}", metric.id);
         }
         // One bit is enough for the sums to be taken.
         let mut other = grey.clone();
         other.pixels[77][0] += 1e-3;
         let sees = |id: &str| !["pixels_off", "highlights"].contains(&id);
         for metric in ERROR_METRICS.iter().filter(|m| sees(m.id)) {
-            let error = of(&other, &grey, metric.id);
+            let error = error_of(&other, &grey, metric.id);
             let is_brighter = metric.id == "missing_energy";
             assert!((error > 0.0) != is_brighter && error < 1e-2, "{}: {error}", metric.id);
         }
@@ -298,18 +298,18 @@ mod tests {
         let reference = image(|_| 1.0);
         // Every fourth pixel is half as bright.
         let darker = image(|ix| if ix % 4 == 0 { 0.5 } else { 1.0 });
-        assert!((of(&darker, &reference, "missing_energy") - 0.125).abs() < 1e-12);
-        assert!((of(&darker, &reference, "bias") + 0.125).abs() < 1e-12);
-        assert!((of(&darker, &reference, "pixels_off") - 0.25).abs() < 1e-12);
-        assert!((of(&darker, &reference, "rel_mse") - 0.25 * 0.25 / 1.01).abs() < 1e-12);
-        assert!((of(&darker, &reference, "tile") - 0.125).abs() < 1e-12);
+        assert!((error_of(&darker, &reference, "missing_energy") - 0.125).abs() < 1e-12);
+        assert!((error_of(&darker, &reference, "bias") + 0.125).abs() < 1e-12);
+        assert!((error_of(&darker, &reference, "pixels_off") - 0.25).abs() < 1e-12);
+        assert!((error_of(&darker, &reference, "rel_mse") - 0.25 * 0.25 / 1.01).abs() < 1e-12);
+        assert!((error_of(&darker, &reference, "tile") - 0.125).abs() < 1e-12);
         // Other pixels are brighter by as much: no bias, but missing energy.
         let both = image(|ix| [0.5, 1.5, 1.0, 1.0][ix % 4]);
-        assert!(of(&both, &reference, "bias").abs() < 1e-12);
-        assert!((of(&both, &reference, "missing_energy") - 0.125).abs() < 1e-12);
+        assert!(error_of(&both, &reference, "bias").abs() < 1e-12);
+        assert!((error_of(&both, &reference, "missing_energy") - 0.125).abs() < 1e-12);
         // One dark tile of eight.
         let tile = image(|ix| if ix % 64 < 16 && ix / 64 < 16 { 0.0 } else { 1.0 });
-        assert!((of(&tile, &reference, "tile") - 1.0).abs() < 1e-12);
+        assert!((error_of(&tile, &reference, "tile") - 1.0).abs() < 1e-12);
         // It is found, at the right place.
         let tile = image(|ix| if ix % 64 / 16 == 2 && ix / 64 / 16 == 1 { 0.0 } else { 1.0 });
         let pair = ImagePair { image: &tile, reference: &reference, exposure: 1.0 };
@@ -321,15 +321,18 @@ mod tests {
         // Five bright pixels of 2,048, a hundred times as bright as the rest.
         let with = |bright: f32| image(|ix| if ix % 400 == 7 { bright } else { 1.0 });
         let reference = with(100.0);
-        let highlights = |bright| of(&with(bright), &reference, "highlights");
+        let highlights = |bright| error_of(&with(bright), &reference, "highlights");
         // Five of the 21 brightest pixels are one doubling off, with a floor of a hundredth of the mean.
         assert!((highlights(50.0) - 6.0 / 21.0).abs() < 0.01, "{}", highlights(50.0));
         assert!((highlights(200.0) - highlights(50.0)).abs() < 0.01);
         assert!(highlights(1.0) > 1.5);
         // The metrics of means hardly see it.
-        assert!(of(&with(200.0), &reference, "log_error") < 0.004);
-        let both =
-            of(&image(|ix| if ix % 2 == 0 { 2.0 } else { 0.5 }), &image(|_| 1.0), "log_error");
+        assert!(error_of(&with(200.0), &reference, "log_error") < 0.004);
+        let both = error_of(
+            &image(|ix| if ix % 2 == 0 { 2.0 } else { 0.5 }),
+            &image(|_| 1.0),
+            "log_error",
+        );
         let expected = 0.5 * ((2.01_f64 / 1.01).log2() + (1.01_f64 / 0.51).log2());
         assert!((both - expected).abs() < 1e-9, "{both} {expected}");
     }
@@ -339,7 +342,7 @@ mod tests {
         let reference = image(|ix| if ix % 64 < 32 { 0.2 } else { 0.6 });
         let at = |gain: f32| {
             let pixels = reference.pixels.iter().map(|p| p.map(|v| v * gain)).collect();
-            of(&HdrImage { pixels, ..reference.clone() }, &reference, "flip")
+            error_of(&HdrImage { pixels, ..reference.clone() }, &reference, "flip")
         };
         assert!(at(1.05) > 0.005 && at(1.5) > 2.0 * at(1.05) && at(3.0) < 1.0);
     }
@@ -351,11 +354,11 @@ mod tests {
         let nan = image(|_| f32::NAN);
         for pair in [(&lit, &black), (&nan, &lit), (&lit, &nan)] {
             for metric in ERROR_METRICS {
-                let _ = of(pair.0, pair.1, metric.id);
+                let _ = error_of(pair.0, pair.1, metric.id);
             }
         }
-        assert_eq!(of(&lit, &black, "missing_energy"), 0.0);
-        assert!(!of(&lit, &black, "bias").is_finite());
+        assert_eq!(error_of(&lit, &black, "missing_energy"), 0.0);
+        assert!(!error_of(&lit, &black, "bias").is_finite());
         let empty = HdrImage { width: 0, height: 0, pixels: Vec::new() };
         assert!(errors(&ImagePair { image: &empty, reference: &empty, exposure: 1.0 }).len() > 5);
     }

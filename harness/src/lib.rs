@@ -18,6 +18,7 @@ mod digits;
 pub mod drift;
 pub mod error;
 pub mod fit_ltc;
+mod grouping;
 pub mod image_errors;
 pub mod interrupted;
 pub mod list_lengths;

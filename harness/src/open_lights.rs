@@ -3,6 +3,8 @@
 use assign::Light;
 use scenes::LOST;
 
+use crate::digits::rounded;
+
 /// Lights without a range in their file, and the ranges that they got.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenLights {
@@ -38,23 +40,17 @@ impl OpenLights {
             _ => ("lights have", "their", "end"),
         };
         let at = match shortest == longest {
-            true => short(longest.into()),
-            false => format!("{} to {}", short(shortest.into()), short(longest.into())),
+            true => rounded(longest.into()),
+            false => format!("{} to {}", rounded(shortest.into()), rounded(longest.into())),
         };
         format!(
             "{count} {lights} no range in {their} file, and {end} at {at} m, where a surface receives {} lux. \
              Each light loses at most {} lux on a surface: --threshold moves its end, --unbounded measures \
              the loss",
-            short(threshold),
-            short(LOST * threshold)
+            rounded(threshold),
+            rounded(LOST * threshold)
         )
     }
-}
-
-/// A number with three digits.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    rounded.to_string()
 }
 
 #[cfg(test)]
@@ -73,7 +69,7 @@ mod tests {
         assert_eq!(open.count, 2);
         let note = open.note();
         assert!(note.starts_with("2 lights have no range in their file"), "{note}");
-        for part in ["end at 10 to 20 m", "receives 0.02 lux", "at most 0.0218 lux"] {
+        for part in ["end at 10 to 20 m", "receives 0.02 lux", "at most 0.02178 lux"] {
             assert!(note.contains(part), "{note}");
         }
     }

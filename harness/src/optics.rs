@@ -17,6 +17,7 @@ use scenes::{DepthSpan, Lens, Pose, Scene};
 use crate::{
     camera::file_camera,
     cli::{CliError, FarPlane, StageArgs},
+    digits::rounded,
     report::significant,
     results::{PlaneSource, Planes},
 };
@@ -120,7 +121,7 @@ impl Optics {
 
     /// The depth of the near plane and its source, in words.
     fn near(&self) -> String {
-        format!("{} m {}", self.near_m, source_words(self.near_from, "of --near"))
+        format!("{} m {}", rounded(self.near_m.into()), source_words(self.near_from, "of --near"))
     }
 
     /// Moves the near plane in front of every surface in the views, unless an option or the file sets it.

@@ -209,10 +209,10 @@ mod tests {
         for name in ["results.json.123.tmp", "charts/a.svg.7.tmp"] {
             fs::write(left(name), "half").unwrap();
         }
-        let own = ["results.json", "notes.tmp", "a.json.b.tmp", "x.1.tmp", "x.json.1.tmp2"];
-        own.iter().for_each(|name| fs::write(left(name), "whole").unwrap());
+        let kept = ["results.json", "notes.tmp", "a.json.b.tmp", "x.1.tmp", "x.json.1.tmp2"];
+        kept.iter().for_each(|name| fs::write(left(name), "whole").unwrap());
         drop(hold(folder.path()).unwrap());
-        assert!(own.iter().all(|name| left(name).is_file()));
+        assert!(kept.iter().all(|name| left(name).is_file()));
         assert!(!left("results.json.123.tmp").exists() && !left("charts/a.svg.7.tmp").exists());
         assert!(!left(LOCK).exists());
     }

@@ -118,7 +118,7 @@ pub(crate) fn see(
         exposure: Some(f64::from(exposure)),
         ..Images::default()
     };
-    let stem = format!("{}-{}", mode.name(), choice.id().replace('/', "-"));
+    let stem = format!("{}-{}", mode.name(), choice.id().as_str().replace('/', "-"));
     if is_same {
         // An identical image is kept once.
         (images.tone_mapped, images.raw) = (Some(baseline.clone()), raw(baseline));

@@ -14,6 +14,7 @@
 //! ```
 
 mod bill;
+mod fault;
 mod file;
 mod flat;
 mod image;

@@ -12,7 +12,7 @@ use crate::{
     report,
     results::{Record, Results},
     stored::{Store, is_plain},
-    study::{Done, Manifest, complete, write_study},
+    study::{Done, Manifest, check_study, complete, write_study},
 };
 
 /// The file of results in a folder.
@@ -26,6 +26,7 @@ pub fn report_stored(args: &ReportArgs) -> Result<String, HarnessError> {
     let out = args.out.as_ref().unwrap_or(first);
     if first.is_dir() && Manifest::find(first)?.is_some() {
         let mut done = Done::read(&args.folders)?;
+        check_study(&done, first)?;
         for (job, results) in &mut done.results {
             if let Some(folder) = done.folders.get(job) {
                 refresh(results, folder)?;

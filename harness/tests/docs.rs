@@ -236,7 +236,7 @@ fn advice_lies_on_the_frontier_of_all_that_was_measured() {
         let gains = |other: &Record| is_surely_faster(best, other) == Some(true);
         assert!(best.is_exact() || exact.clone().all(gains), "{name}: {id} gains nothing");
         let says_still = text.lines().next().is_some_and(|line| line.contains("Still lights only"));
-        assert_eq!(says_still, id.contains("/bvh"), "{name}: {text}");
+        assert_eq!(says_still, id.is_bvh(), "{name}: {text}");
         answers.push(id.clone());
     }
     assert_ne!(answers[0], answers[2], "two scenes, two answers");

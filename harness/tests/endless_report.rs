@@ -143,7 +143,7 @@ fn a_setting_that_the_paper_lacks_decides_nothing_and_a_tie_is_a_tie() {
         results.records.retain(|record| keep.contains(&record.strategy.as_str()));
         let position = results.records[1].clone();
         for record in &mut results.records {
-            if record.strategy.ends_with("/n6/bvh") {
+            if record.strategy.as_str().ends_with("/n6/bvh") {
                 record.times.passes = position.times.passes.clone();
                 record.set_times();
             }

@@ -196,6 +196,29 @@ fn a_damaged_study_is_refused_by_name() {
     let error = Manifest::find(folder.path()).expect_err("refused").to_string();
     assert!(error.contains("version is 99") && error.contains("1 to 2"), "{error}");
     assert!(error.contains("newer") && !error.contains("remove"), "{error}");
+    for (name, value, accepted) in [
+        ("version", "\"two\"", "1 to 2"),
+        ("version", "0", "1 to 2"),
+        ("identity", "7", "a list of texts"),
+        ("study", "7", "the name of a study"),
+        ("jobs", "[]", "at least one job"),
+    ] {
+        let mut file: serde_json::Value = serde_json::from_str(&format!(
+            r#"{{"version":1,"identity":[],"study":"culling","jobs":[{job}]}}"#
+        ))
+        .expect("JSON");
+        file[name] = serde_json::from_str(value).expect("JSON");
+        std::fs::write(folder.path().join("study.json"), file.to_string()).expect("writes");
+        let error = Manifest::find(folder.path()).expect_err("refused").to_string();
+        let names_field = error
+            .contains(&format!("study.json: not the list of a study's jobs: {name} is {value}"));
+        assert!(names_field && error.contains(accepted), "{error}");
+    }
+    let text = format!(r#"{{"version":1,"identity":[],"study":"cullin","jobs":[{job}]}}"#);
+    std::fs::write(folder.path().join("study.json"), text).expect("writes");
+    let output = start(&["report", out]).wait_with_output().expect("ends");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(error.contains("study.json") && error.contains("culling, area"), "{error}");
     // Jobs of version 2 have settings, even if there are none: without them a view has no name.
     for (settings, is_whole) in [("", false), (r#","settings":{}"#, true)] {
         let job = format!(r#"{{"name":"a","scene":"a","section":"b","command":[]{settings}}}"#);

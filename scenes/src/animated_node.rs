@@ -1,4 +1,4 @@
-//! A camera's animation: the transforms of the nodes from the root to the camera, evaluated exactly
+//! Animated nodes: the transforms of the nodes from the root to a camera or light, evaluated exactly
 //! at any time.
 
 use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4, Vec4Swizzles};
@@ -33,6 +33,15 @@ pub(crate) struct Track {
     pub(crate) values: Vec<Vec4>,
     pub(crate) interpolation: Interpolation,
     pub(crate) is_rotation: bool,
+}
+
+/// Where a node is, in f64. `gltf_import::walk` places nodes at rest in the same way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    pub(crate) place: DMat4,
+    /// The same with scales of 0 replaced by 1, because such a scale does not turn a camera or a
+    /// light.
+    pub(crate) facing: DMat4,
 }
 
 /// A node's local transform, before any animation.
@@ -104,20 +113,60 @@ impl AnimatedNode {
     /// The pose at `t` (0..1) of the animation.
     pub(crate) fn pose(&self, t: f32) -> Pose {
         let time = self.start_s + (self.end_s - self.start_s) * t;
-        let root = DMat4::from_translation(-self.origin);
-        // `gltf_import::walk` places nodes at rest in the same way: a scale of 0 does not turn a
-        // camera.
-        let (place, facing) = self.chain.iter().fold((root, root), |(place, facing), part| {
-            let local = part.local(time);
-            (place * local.matrix().as_dmat4(), facing * local.facing().as_dmat4())
-        });
-        Pose::of_node(&DMat4 { w_axis: place.w_axis, ..facing })
+        let root = Placement::from_origin(self.origin);
+        let parts = self.chain.iter();
+        parts.fold(root, |placement, part| placement.below(&part.local(time))).pose()
+    }
+}
+
+impl Placement {
+    pub(crate) const IDENTITY: Self = Self { place: DMat4::IDENTITY, facing: DMat4::IDENTITY };
+
+    /// The root of a file's nodes, in a world that begins at `origin` of the file.
+    pub(crate) fn from_origin(origin: DVec3) -> Self {
+        let root = DMat4::from_translation(-origin);
+        Self { place: root, facing: root }
+    }
+
+    /// The placement of a node below.
+    pub(crate) fn below(&self, local: &Local) -> Self {
+        Self {
+            place: self.place * local.matrix().as_dmat4(),
+            facing: self.facing * local.facing().as_dmat4(),
+        }
+    }
+
+    /// The placement after another one, which is relative to this one.
+    pub(crate) fn then(&self, next: &Self) -> Self {
+        Self { place: self.place * next.place, facing: self.facing * next.facing }
+    }
+
+    /// The pose of a camera or spot there.
+    pub(crate) fn pose(&self) -> Pose {
+        Pose::of_node(&DMat4 { w_axis: self.place.w_axis, ..self.facing })
     }
 }
 
 impl Part {
+    /// The transform before any animation.
+    pub(crate) fn still(&self) -> Mat4 {
+        self.local.matrix()
+    }
+
+    /// The tracks of its translation, rotation and scale.
+    pub(crate) fn tracks(&self) -> [Option<&Track>; 3] {
+        [self.translation.as_ref(), self.rotation.as_ref(), self.scale.as_ref()]
+    }
+
+    /// The times of its first and last key, seconds.
+    pub(crate) fn ends(&self) -> Option<(f32, f32)> {
+        let ends = |t: &Track| (t.times[0], t.times[t.times.len() - 1]);
+        let ends = self.tracks().into_iter().flatten().map(ends);
+        ends.reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
+    }
+
     /// The transform at a time.
-    fn local(&self, time: f32) -> Local {
+    pub(crate) fn local(&self, time: f32) -> Local {
         let sample = |track: &Option<Track>| track.as_ref().map(|t| t.sample(time));
         match self.local {
             Local::Matrix(_) => self.local,

@@ -61,8 +61,8 @@ impl Feed {
 }
 
 impl Scene {
-    /// BLAKE3 over geometry, transforms, materials, images, lights, suns and cameras, as 64
-    /// hexadecimal digits. Names, warnings and the path ([`path_hash`](Self::path_hash)) are not
+    /// BLAKE3 over geometry, transforms, materials, images, lights with their animation, suns and
+    /// cameras, as 64 hexadecimal digits. Names, warnings and the path ([`path_hash`](Self::path_hash)) are not
     /// part of it. Procedural scenes may differ in the last bit between platforms whose `sin` and
     /// `cos` differ.
     pub fn hash(&self) -> String {
@@ -174,6 +174,10 @@ impl Scene {
             feed.floats(&sun.direction.to_array());
             feed.floats(&sun.irradiance.to_array());
         }
+        if let Some(animation) = &self.light_animation {
+            feed.int(LIGHT_ANIMATION);
+            animation.feed(|values| feed.floats(values));
+        }
     }
 
     fn hash_cameras(&self, feed: &mut Feed) {
@@ -193,6 +197,7 @@ impl Scene {
 /// Each marks the start of a feature that few scenes have.
 const COLORS: u64 = 0x636f_6c6f_7273;
 const SUNS: u64 = 0x7375_6e73;
+const LIGHT_ANIMATION: u64 = 0x616e_696d_6174_6564;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ fn render(name: &str, encoding: Encoding, paint: &Paint) -> Image {
 }
 
 /// A well-mixed 32-bit value (the finaliser of MurmurHash3).
-fn mix(mut h: u32) -> u32 {
+pub(crate) fn mix(mut h: u32) -> u32 {
     h = (h ^ h >> 16).wrapping_mul(0x85eb_ca6b);
     h = (h ^ h >> 13).wrapping_mul(0xc2b2_ae35);
     h ^ h >> 16

@@ -4,7 +4,7 @@ use assign::{Light, LightShape, Sun};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, Vec3};
 
-use crate::{Aabb, CameraPath, Image, Material, Pose, SceneError};
+use crate::{Aabb, CameraPath, Image, LightAnimation, Material, Pose, SceneError};
 
 /// Everything that is drawn, lit, and looked from. World space is right-handed with +Y up, in
 /// metres.
@@ -25,6 +25,8 @@ pub struct Scene {
     /// The scene's own lights; may be empty. They include faulty ones, which uploading quarantines
     /// and reports.
     pub lights: Vec<Light>,
+    /// How the scene's file moves some of these lights; `None` if they all stand still.
+    pub light_animation: Option<LightAnimation>,
     /// Indices of the lights whose file gives no range. [`close_ranges`](crate::close_ranges) chose
     /// their range.
     pub open_lights: Vec<u32>,
@@ -231,6 +233,7 @@ impl Scene {
         let size = self.bounds.max - self.bounds.min;
         let (models, instances) = (self.models.clone(), self.instances.clone());
         let (lights, open_lights) = (self.lights.clone(), self.open_lights.clone());
+        let animated = self.light_animation.as_ref().map(|a| a.lights.clone());
         for (x, z) in (0..side).flat_map(|x| (0..side).map(move |z| (x, z))).skip(1) {
             let by = Vec3::new(x as f32 * size.x, 0.0, z as f32 * size.z);
             let first = self.models.len() as u32;
@@ -240,8 +243,11 @@ impl Scene {
             }));
             let moved = |i: &Instance| Instance { model: first + i.model, ..*i };
             self.instances.extend(instances.iter().map(moved));
-            let first_light = self.lights.len() as u32;
-            self.open_lights.extend(open_lights.iter().map(|ix| first_light + ix));
+            let first_light = self.lights.len();
+            self.open_lights.extend(open_lights.iter().map(|ix| first_light as u32 + ix));
+            if let (Some(animation), Some(lights)) = (&mut self.light_animation, &animated) {
+                animation.lights.extend(LightAnimation::copied(lights, first_light, by));
+            }
             self.lights.extend(lights.iter().map(|l| Light { position: l.position + by, ..*l }));
         }
         let last = (side - 1) as f32;
@@ -261,8 +267,8 @@ impl Scene {
 
     /// The scene, uniformly scaled about the origin.
     ///
-    /// Geometry, boxes, cameras, the path and the positions of the scene's own lights scale by
-    /// `factor`. The ranges of these lights scale by `factor` and their intensities by its square,
+    /// Geometry, boxes, cameras, the path and the positions of the scene's own lights, also of
+    /// animated ones, scale by `factor`. The ranges of these lights scale by `factor` and their intensities by its square,
     /// so that the lit image stays the same. Suns stay as they are.
     ///
     /// # Errors
@@ -292,6 +298,9 @@ impl Scene {
             if let LightShape::Vpl { min_distance_m, .. } = &mut light.shape {
                 *min_distance_m *= factor;
             }
+        }
+        if let Some(animation) = &mut self.light_animation {
+            animation.scale_by(factor);
         }
         for camera in &mut self.cameras {
             camera.pose = camera.pose.scaled(factor);

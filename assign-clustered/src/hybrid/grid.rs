@@ -58,14 +58,14 @@ impl Assignment for HybridGrid {
                 })?),
             };
         froxels.surfaces_only = u32::from(depth.is_some());
-        self.lists.prepare(gpu, frame.lights.count(), froxels.froxel_count())?;
+        self.lists.prepare(gpu, frame.lights, froxels.froxel_count())?;
         gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
         self.look_up.bind(gpu, &self.lists, &[entry(FROXELS_BINDING, &self.froxels)]);
         self.passes.prepare(gpu, frame, &froxels, &self.froxels, &self.lists, depth)
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        self.lists.record_reset(passes.encoder());
+        self.lists.record_reset(passes.encoder(), frame.lights.live_count());
         self.passes.record(frame, passes);
         self.lists.record_readback(passes.encoder());
     }

@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use super::{
     lights::{Kinds, at_horizon, bad_lights, lights_at, mix, reaching},
+    living::{self, Living},
     stage::{IN_THE_OPEN, Rng, Solid, Stage, room},
     views::{self, SIZE},
 };
@@ -25,6 +26,8 @@ pub(super) enum Plan {
     Still(Lit),
     /// Several stages in sequence with one instance.
     Sequence(Vec<Lit>),
+    /// Lights that change in every frame, which the GPU sorts.
+    Living(Living),
     /// A pool that is far too small, then a sufficient one.
     Overflow(Lit),
     /// A stage without and with faulty lights, and the faulty lights' indices.
@@ -137,6 +140,12 @@ pub const CASES: &[Case] = &[
     case("lights-move", "every light moves, then teleports", lights_move),
     case("camera-teleports", "the camera jumps", camera_teleports),
     case("light-count-changes", "lights come and go, spots among them", counts_change),
+    case("gpu-order", "the GPU sorts lights that move in every frame", |r| living::few(r, 1, false)),
+    case("gpu-order-stale", "lights move, come and go without a new order", |r| living::few(r, 3, false)),
+    case("gpu-order-many", "40,000 lights that move, in a hierarchy of two levels", living::many),
+    case("lights-from-gpu", "the GPU writes lights, faulty ones among them, and their number", |r| {
+        living::few(r, 2, true)
+    }),
     case("overflow", "5,000 lights at one point, a pool of 64 entries", |r| {
         let mut lit = lit(r, &default_view(), 5_000, coincident);
         lit.stage = lit.stage.thinned(400);
@@ -148,7 +157,7 @@ pub const CASES: &[Case] = &[
 /// Makes lights for a stage.
 type Lights = fn(&mut Rng, &Stage, usize) -> Vec<Light>;
 
-fn default_view() -> View {
+pub(super) fn default_view() -> View {
     views::sized(SIZE)
 }
 
@@ -157,7 +166,7 @@ fn default_mix(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Light> {
 }
 
 /// `view` of a room.
-fn in_room(rng: &mut Rng, view: &View) -> Stage {
+pub(super) fn in_room(rng: &mut Rng, view: &View) -> Stage {
     let port = view.viewport;
     let target = [port.x + port.width, port.y + port.height];
     Stage::new(*view, target, &room(rng, 1.0), 1_000)

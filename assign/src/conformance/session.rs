@@ -6,12 +6,15 @@ use super::{
     Make,
     cases::{Case, Lit, Plan},
     check::{self, Seen, UNWRITTEN},
+    feed::Feed,
+    living::Living,
     rig::{Rig, Surfaces},
     stage::Rng,
     violation::{Breach, Figures, Findings, Outcome, Place},
 };
 use crate::{
-    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, LightBuffer, SampleDomain,
+    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, LightBuffer, LightOrder,
+    SampleDomain,
 };
 
 /// The number of frames after which the pool must fit all lists.
@@ -30,6 +33,7 @@ pub(super) fn run(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<Outcome, As
     let done = match &plan {
         Plan::Still(lit) => run.sequence(std::slice::from_ref(lit)),
         Plan::Sequence(stages) => run.sequence(stages),
+        Plan::Living(living) => run.living(living),
         Plan::Overflow(lit) => run.overflow(lit),
         Plan::Quarantine { clean, dirty, bad } => run.quarantine(clean, dirty, bad),
     };
@@ -122,13 +126,31 @@ impl Run<'_> {
         self.findings.frame = self.figures.frames;
         let seen = session.draw(self.rig, lit, wipe)?;
         check::lists(&seen, complete, self.findings);
-        let pairs = check::pairs(&seen, session.lights.lights(), self.findings);
+        let lights = session.lights.read(&self.rig.gpu)?;
+        let pairs = check::pairs(&seen, &lights, self.findings);
         self.figures.frames += 1;
         self.figures.samples += seen.probes.len() as u64;
         self.figures.pairs += pairs.reaching;
         self.figures.listed += pairs.listed;
         self.figures.any_depth |= session.domain == SampleDomain::AnyDepth;
         Ok(seen)
+    }
+
+    /// Draws frames of lights that change in each of them.
+    fn living(&mut self, living: &Living) -> Result<(), AssignError> {
+        let mut session = Session::living(self.rig, self.make, living)?;
+        for (stage, lit) in (0..).zip(&living.frames) {
+            self.findings.stage = stage;
+            session.set_up(self.rig, lit)?;
+            self.settle(&mut session, lit, stage == 0)?;
+            let counts = session.lights.read_counts(&self.rig.gpu)?.unwrap_or_default();
+            let found = (counts.faulty + counts.dark) as usize;
+            if found != living.bad {
+                let detail = format!("{} lights are faulty, but the GPU found {found}", living.bad);
+                self.findings.add(Breach::Quarantine, Place::default(), detail);
+            }
+        }
+        Ok(())
     }
 
     /// With a pool that is far too small, no pair is missed and the overflow is counted. Without
@@ -181,6 +203,8 @@ struct Session {
     lights: LightBuffer,
     surfaces: Option<Surfaces>,
     domain: SampleDomain,
+    /// The renderer's own buffers of lights, if it writes them on the GPU.
+    feed: Option<Feed>,
 }
 
 impl Session {
@@ -191,12 +215,27 @@ impl Session {
             lights: LightBuffer::new(&rig.gpu, &[])?,
             surfaces: None,
             domain: SampleDomain::AnyDepth,
+            feed: None,
         })
+    }
+
+    /// A session whose lights the GPU sorts.
+    fn living(rig: &Rig, make: &Make<'_>, living: &Living) -> Result<Self, AssignError> {
+        let order = LightOrder::Gpu { every: living.every };
+        let lights = LightBuffer::ordered(&rig.gpu, &[], order)?;
+        let feed = living.from_gpu.then(|| Feed::new(&rig.gpu, &living.frames)).transpose()?;
+        Ok(Self { lights, feed, ..Self::new(rig, make)? })
     }
 
     /// Uploads a stage.
     fn set_up(&mut self, rig: &Rig, lit: &Lit) -> Result<(), AssignError> {
-        self.lights.update(&rig.gpu, &lit.lights)?;
+        match &self.feed {
+            Some(feed) => {
+                feed.write(&rig.gpu, &lit.lights);
+                self.lights.update_from_gpu(&rig.gpu, &feed.lights())?;
+            }
+            None => self.lights.update(&rig.gpu, &lit.lights)?,
+        }
         if lit.opaque_only {
             self.domain = SampleDomain::OpaqueSurfaces;
         }
@@ -234,6 +273,7 @@ impl Session {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let frame = frame_of(lit, &self.lights, self.surfaces.as_ref(), self.domain);
         let mut passes = EncoderPasses { encoder: &mut encoder };
+        self.lights.record(&mut passes);
         self.strategy.record(&frame, &mut passes);
         let surfaces = self.surfaces.as_ref();
         let surfaces = surfaces.ok_or_else(|| AssignError::Device("no stage set up".into()))?;
@@ -243,7 +283,7 @@ impl Session {
             snapshot: self.strategy.lists().snapshot(gpu)?,
             probes: rig.read_probes(surfaces)?,
             group_count,
-            light_count: self.lights.count(),
+            light_count: self.lights.read(gpu)?.len() as u32,
             knows_normals: self.strategy.needs().normals,
         })
     }

@@ -24,6 +24,11 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// An axis of a label, a unit and a scale.
+    pub fn new(label: impl Into<String>, unit: impl Into<String>, scale: Scale) -> Self {
+        Self { label: label.into(), unit: unit.into(), scale }
+    }
+
     /// The label with its unit: `Frame time (ms)`.
     pub(super) fn caption(&self) -> String {
         match (self.label.is_empty(), self.unit.is_empty()) {
@@ -79,6 +84,13 @@ pub struct Point {
     pub tip: String,
 }
 
+impl Point {
+    /// A point with a tip.
+    pub fn new(x: f64, y: f64, tip: impl Into<String>) -> Self {
+        Self { x, y, tip: tip.into(), ..Self::default() }
+    }
+}
+
 /// Points that belong together.
 #[derive(Clone, Debug, Default)]
 pub struct Series {
@@ -97,6 +109,18 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
+impl Series {
+    /// A series of points that are drawn in one way, in the colour that a class gives.
+    pub fn new(
+        name: impl Into<String>,
+        class: impl Into<String>,
+        marks: Marks,
+        points: Vec<Point>,
+    ) -> Self {
+        Self { name: name.into(), class: class.into(), marks, points, ..Self::default() }
+    }
+}
+
 /// Points and lines over two axes.
 #[derive(Clone, Debug, Default)]
 pub struct XyChart {
@@ -110,4 +134,13 @@ pub struct XyChart {
     pub series: Vec<Series>,
     /// A remark below the chart; may be empty.
     pub note: String,
+}
+
+impl XyChart {
+    /// A chart without a remark. Series without points are left out.
+    pub fn new(title: impl Into<String>, axes: [Axis; 2], mut series: Vec<Series>) -> Self {
+        series.retain(|series| !series.points.is_empty());
+        let [x, y] = axes;
+        Self { title: title.into(), x, y, series, note: String::new() }
+    }
 }

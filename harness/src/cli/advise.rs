@@ -26,7 +26,7 @@ pub struct AdviseArgs {
     ///
     /// 1 is the first view of the path. [default: 24, or 3 on a software adapter; one view with --camera and
     /// in a scene without a path]
-    #[arg(long, display_order = 8, value_name = "N", conflicts_with = "camera", allow_hyphen_values = true, value_parser = values::frames)]
+    #[arg(long, display_order = 8, value_name = "N", conflicts_with = "camera", allow_hyphen_values = true, value_parser = values::whole_from(1, values::MAX_FRAMES))]
     pub poses: Option<u32>,
 
     /// GPU to use, by any part of its name

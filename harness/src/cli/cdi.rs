@@ -22,7 +22,7 @@ pub struct CdiArgs {
     pub scene_scale: f64,
 
     /// Builds to time, 1 to 100,000 [default: 64, or 3 on a software adapter]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, values::MAX_FRAMES))]
     pub frames: Option<u32>,
 
     /// GPU to use, by any part of its name
@@ -44,11 +44,11 @@ pub struct CdiArgs {
     pub casts: Sizes,
 
     /// Rays per virtual point light, 1 to 16
-    #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::rays, help_heading = RAYS)]
+    #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::whole_from(1, 16), help_heading = RAYS)]
     pub rays: u32,
 
     /// Rays to compare with exact ones, 0 to 1,048,576
-    #[arg(long, value_name = "N", default_value = "20000", allow_hyphen_values = true, value_parser = values::compared_rays, help_heading = RAYS)]
+    #[arg(long, value_name = "N", default_value = "20000", allow_hyphen_values = true, value_parser = values::whole_from(0, 1 << 20), help_heading = RAYS)]
     pub compared: u32,
 
     /// Seed of the compared rays

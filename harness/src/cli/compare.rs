@@ -45,7 +45,7 @@ pub struct CompareArgs {
     ///
     /// The results keep every sample. [default: 64, or 3 on a software adapter; with --path 1,200, or 60 on a
     /// software adapter]
-    #[arg(long, display_order = 9, value_name = "N", allow_hyphen_values = true, value_parser = values::frames)]
+    #[arg(long, display_order = 9, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, values::MAX_FRAMES))]
     pub frames: Option<u32>,
 
     /// GPU to use, by any part of its name
@@ -73,7 +73,7 @@ pub struct CompareArgs {
     ///
     /// The factor stays between 1/4 and 4. It hides where these lights are dense or sparse, and so hides part of
     /// the error. N is a number from 1 to 1e9.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::compensation, help_heading = BOUNCE, hide_short_help = true)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, 1e9), help_heading = BOUNCE, hide_short_help = true)]
     pub compensate: Option<f64>,
 
     /// Tests of lights against frusta, joined by +, for strategies whose id names none
@@ -91,13 +91,13 @@ pub struct CompareArgs {
     /// Frames of each method to draw before timing starts, 0 to 100,000
     ///
     /// A GPU draws more of them until its times are steady. [default: 16, or 1 on a software adapter]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::warmup, help_heading = TIMING, hide_short_help = true)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_FRAMES), help_heading = TIMING, hide_short_help = true)]
     pub warmup: Option<u32>,
 
     /// With --path, laps along the path, 1 to 1,000, each of --frames poses [default: 1]
     ///
     /// The test for ties needs 6 laps.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::laps, help_heading = TIMING, hide_short_help = true)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, 1_000), help_heading = TIMING, hide_short_help = true)]
     pub laps: Option<u32>,
 
     /// What to check against the CPU
@@ -105,7 +105,7 @@ pub struct CompareArgs {
     pub truth: TruthLevel,
 
     /// With --path, poses at which to compare images with no culling, 1 to 8 [default: 8]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::checks, help_heading = CHECKS, hide_short_help = true)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, values::MAX_CHECKS), help_heading = CHECKS, hide_short_help = true)]
     pub checks: Option<u32>,
 
     /// Also compare each image with that of lights without a range: the error of their ranges

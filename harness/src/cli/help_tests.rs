@@ -1,8 +1,8 @@
 //! The size and the order of the help.
 
-use clap::{Arg, Command, CommandFactory};
+use clap::{Arg, Command};
 
-use super::{Cli, Invocation, parse};
+use super::{Invocation, definition, parse};
 
 /// The most lines of the short help of a command: a tall terminal.
 const MAX_SHORT_LINES: usize = 60;
@@ -10,12 +10,15 @@ const MAX_SHORT_LINES: usize = 60;
 /// The most lines of the short help of the program, which newcomers see first.
 const MAX_FIRST_LINES: usize = 50;
 
+/// The most lines of the long help of `compare`, which has the most options.
+const MAX_LONG_LINES: usize = 342;
+
 /// The most columns of a line of help.
 const MAX_COLUMNS: usize = 100;
 
 /// The program and its commands, each with its name; the program has none.
 fn commands() -> Vec<(String, Command)> {
-    let mut program = Cli::command();
+    let mut program = definition();
     program.build();
     let commands = program.get_subcommands().map(|command| (command.get_name(), command));
     let mut commands: Vec<(String, Command)> =
@@ -60,6 +63,19 @@ fn the_short_help_of_every_command_fits_a_screen() {
         let most = if name.is_empty() { MAX_FIRST_LINES } else { MAX_SHORT_LINES };
         assert_eq!(size_faults(command, most), [""; 0], "`lightbench {name} -h`");
     }
+}
+
+#[test]
+fn defaults_take_no_lines_of_their_own() {
+    let Ok(Invocation::Show(help)) = parse(["lightbench", "compare", "--help"]) else {
+        panic!("no help")
+    };
+    let lines: Vec<&str> = help.lines().map(str::trim).collect();
+    let is_apart = |pair: &&[&str]| pair[0].is_empty() && pair[1].starts_with("[default: ");
+    assert_eq!(lines.windows(2).find(is_apart), None);
+    assert!(help.contains("each side 1 to 16,384 [default: 640x360]\n"), "{help}");
+    let count = lines.len();
+    assert!(count <= MAX_LONG_LINES, "{count} lines:\n{help}");
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use std::ffi::OsString;
 
-use clap::{ArgMatches, CommandFactory, FromArgMatches, error::ErrorKind};
+use clap::{ArgMatches, FromArgMatches, error::ErrorKind};
 
-use super::{Cli, CliError, Command, Invocation, effect};
+use super::{Cli, CliError, Command, Invocation, definition, effect};
 
 /// Parses a command line. The first word is the program's name.
 ///
@@ -49,9 +49,9 @@ where
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
             Ok((Invocation::Show(error.render().to_string()), None))
         }
-        _ => Err(CliError::from_clap(&error, &Cli::command())),
+        _ => Err(CliError::from_clap(&error, &definition())),
     };
-    let matches = match Cli::command().try_get_matches_from(arguments) {
+    let matches = match definition().try_get_matches_from(arguments) {
         Ok(matches) => matches,
         Err(error) => return shown(error),
     };

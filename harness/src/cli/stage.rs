@@ -20,7 +20,7 @@ pub struct StageArgs {
     pub scene: String,
 
     /// Lights to scatter, in addition to the scene's own; 0 to 16,777,216
-    #[arg(long, display_order = 2, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::lights)]
+    #[arg(long, display_order = 2, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_LIGHTS))]
     pub lights: u32,
 
     /// Add the lights of another .gltf or .glb file
@@ -52,7 +52,7 @@ pub struct StageArgs {
     pub scene_scale: f64,
 
     /// Draw N x N copies of the scene side by side, with all their lights; 1 to 64
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::copies, help_heading = SCENE, hide_short_help = true)]
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::whole_from(1, 64), help_heading = SCENE, hide_short_help = true)]
     pub replicate: u32,
 
     /// View depth of the near plane in metres, 1e-6 to 1e6

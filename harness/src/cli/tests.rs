@@ -1,6 +1,5 @@
 use std::path::PathBuf;
 
-use clap::CommandFactory;
 use shading::{Cut, Mode};
 
 use super::*;
@@ -31,7 +30,7 @@ fn message(parsed: Result<Invocation, CliError>) -> String {
 
 #[test]
 fn clap_accepts_the_definition() {
-    Cli::command().debug_assert();
+    definition().debug_assert();
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use shading::traced::MAX_BOUNCES;
 
 use super::{stage::StageArgs, values};
 
@@ -20,7 +21,7 @@ pub struct TruthArgs {
     /// Surfaces that light may meet before it meets the visible one, 0 to 16
     ///
     /// From 1 on, surfaces that emit light also light other surfaces.
-    #[arg(long, display_order = 7, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::bounces)]
+    #[arg(long, display_order = 7, value_name = "N", default_value = "0", allow_hyphen_values = true, value_parser = values::whole_from(0, MAX_BOUNCES))]
     pub bounces: u32,
 
     /// Leave out the light that comes straight from lights
@@ -32,7 +33,7 @@ pub struct TruthArgs {
     pub matte_bounces: bool,
 
     /// Samples per pixel for shadows and bounces, 1 to 65,536
-    #[arg(long, display_order = 10, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::samples)]
+    #[arg(long, display_order = 10, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::whole_from(1, 65_536))]
     pub samples: u32,
 
     /// Seed of the samples [default: --seed]

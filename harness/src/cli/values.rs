@@ -6,15 +6,15 @@ use assign::{AssignError, FrustumTests, LightOrder};
 
 use shading::{ACCEPTED_AREA_MODELS, AreaModel};
 
+use crate::digits::grouped;
+
 /// The most lights that can be scattered.
 pub const MAX_LIGHTS: u32 = 1 << 24;
 const MAX_SIDE: u32 = 16_384;
-const MAX_FRAMES: u32 = 100_000;
+/// The most frames that can be timed.
+pub(super) const MAX_FRAMES: u32 = 100_000;
 /// The most poses along a path at which images are compared.
 pub(crate) const MAX_CHECKS: u32 = 8;
-const MAX_LAPS: u32 = 1_000;
-const MAX_SAMPLES: u32 = 65_536;
-const MAX_BOUNCES: u32 = shading::traced::MAX_BOUNCES;
 /// The largest side of a reflective shadow map, pixels.
 const MAX_RSM: u32 = 2048;
 const SCALES: (f64, f64) = (1e-6, 1e6);
@@ -158,30 +158,6 @@ pub(super) fn rsm(text: &str) -> Result<u32, String> {
     size.ok_or_else(|| "0, or a whole number from 16 to 2,048".to_owned())
 }
 
-pub(super) fn compensation(text: &str) -> Result<f64, String> {
-    number(text, 1.0, 1e9).ok_or_else(|| "a number from 1 to 1e9".to_owned())
-}
-
-pub(super) fn rays(text: &str) -> Result<u32, String> {
-    whole(text, 1, 16).ok_or_else(|| "a whole number from 1 to 16".to_owned())
-}
-
-pub(super) fn compared_rays(text: &str) -> Result<u32, String> {
-    whole(text, 0, 1 << 20).ok_or_else(|| "a whole number from 0 to 1,048,576".to_owned())
-}
-
-pub(super) fn deep_size(text: &str) -> Result<u32, String> {
-    whole(text, 4, 1024).ok_or_else(|| "a whole number from 4 to 1,024".to_owned())
-}
-
-pub(super) fn oversampling(text: &str) -> Result<u32, String> {
-    whole(text, 1, 8).ok_or_else(|| "a whole number from 1 to 8".to_owned())
-}
-
-pub(super) fn range_scale(text: &str) -> Result<f64, String> {
-    number(text, 0.1, 100.0).ok_or_else(|| "a number from 0.1 to 100".to_owned())
-}
-
 pub(super) fn metres(text: &str) -> Result<f64, String> {
     number(text, 0.0, 1e6).ok_or_else(|| "a number of metres from 0 to 1e6".to_owned())
 }
@@ -207,41 +183,9 @@ pub(super) fn area_model(text: &str) -> Result<AreaModel, String> {
     text.parse().map_err(|_| ACCEPTED_AREA_MODELS.to_owned())
 }
 
-pub(super) fn copies(text: &str) -> Result<u32, String> {
-    whole(text, 1, 64).ok_or_else(|| "a whole number from 1 to 64".to_owned())
-}
-
-pub(super) fn lights(text: &str) -> Result<u32, String> {
-    whole(text, 0, MAX_LIGHTS).ok_or_else(|| "a whole number from 0 to 16,777,216".to_owned())
-}
-
-pub(super) fn frames(text: &str) -> Result<u32, String> {
-    whole(text, 1, MAX_FRAMES).ok_or_else(|| "a whole number from 1 to 100,000".to_owned())
-}
-
-pub(super) fn laps(text: &str) -> Result<u32, String> {
-    whole(text, 1, MAX_LAPS).ok_or_else(|| "a whole number from 1 to 1,000".to_owned())
-}
-
-pub(super) fn checks(text: &str) -> Result<u32, String> {
-    whole(text, 1, MAX_CHECKS).ok_or_else(|| "a whole number from 1 to 8".to_owned())
-}
-
-pub(super) fn bounces(text: &str) -> Result<u32, String> {
-    whole(text, 0, MAX_BOUNCES).ok_or_else(|| format!("a whole number from 0 to {MAX_BOUNCES}"))
-}
-
-pub(super) fn samples(text: &str) -> Result<u32, String> {
-    whole(text, 1, MAX_SAMPLES).ok_or_else(|| "a whole number from 1 to 65,536".to_owned())
-}
-
 pub(super) fn table_size(text: &str) -> Result<usize, String> {
     let size = whole(text, 2, 1024).ok_or("a whole number from 2 to 1,024")?;
     Ok(size as usize)
-}
-
-pub(super) fn warmup(text: &str) -> Result<u32, String> {
-    whole(text, 0, MAX_FRAMES).ok_or_else(|| "a whole number from 0 to 100,000".to_owned())
 }
 
 pub(super) fn seed(text: &str) -> Result<u64, String> {
@@ -250,6 +194,29 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
 
 pub(super) fn text(text: &str) -> Result<String, String> {
     if text.trim().is_empty() { Err("a name".to_owned()) } else { Ok(text.to_owned()) }
+}
+
+/// A parser of whole numbers within bounds.
+pub(super) fn whole_from(
+    least: u32,
+    most: u32,
+) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync {
+    move |text| {
+        let [low, high] = [least, most].map(|end| grouped(&end.to_string()));
+        whole(text, least, most).ok_or_else(|| format!("a whole number from {low} to {high}"))
+    }
+}
+
+/// A parser of numbers within bounds.
+pub(super) fn number_from(
+    least: f64,
+    most: f64,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    let shown = |end: f64| if end >= 1e5 { format!("{end:e}") } else { end.to_string() };
+    move |text| {
+        let (low, high) = (shown(least), shown(most));
+        number(text, least, most).ok_or_else(|| format!("a number from {low} to {high}"))
+    }
 }
 
 fn number(text: &str, least: f64, most: f64) -> Option<f64> {

@@ -38,7 +38,7 @@ pub struct VplArgs {
     /// Rays that find the range of one virtual point light, 1 to 16
     ///
     /// The first is the primary ray; the others surround it.
-    #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::rays, requires = "vpls", help_heading = BOUNCE, hide_short_help = true)]
+    #[arg(long, value_name = "N", default_value = "6", allow_hyphen_values = true, value_parser = values::whole_from(1, 16), requires = "vpls", help_heading = BOUNCE, hide_short_help = true)]
     pub rays: u32,
 
     /// Direction of the primary ray
@@ -52,7 +52,7 @@ pub struct VplArgs {
     /// Factor on the ranges that rays found, 0.1 to 100
     ///
     /// A factor above 1 makes up for the fall-off, which fades a light out before its range ends.
-    #[arg(long, value_name = "X", default_value = "2", allow_hyphen_values = true, value_parser = values::range_scale, requires = "vpls", help_heading = BOUNCE, hide_short_help = true)]
+    #[arg(long, value_name = "X", default_value = "2", allow_hyphen_values = true, value_parser = values::number_from(0.1, 100.0), requires = "vpls", help_heading = BOUNCE, hide_short_help = true)]
     pub range_scale: f64,
 
     /// Keep only virtual point lights whose range lies between these two, metres
@@ -97,13 +97,13 @@ pub struct DeepArgs {
     pub spread: Spread,
 
     /// Pixels along a side of each deep image, 4 to 1,024
-    #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::deep_size, help_heading = DEEP, hide_short_help = true)]
+    #[arg(long, value_name = "N", default_value = "64", allow_hyphen_values = true, value_parser = values::whole_from(4, 1024), help_heading = DEEP, hide_short_help = true)]
     pub deep_size: u32,
 
     /// Surface samples along each side of a pixel of the deep images, 1 to 8
     ///
     /// 1 is the paper's.
-    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::oversampling, help_heading = DEEP, hide_short_help = true)]
+    #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true, value_parser = values::whole_from(1, 8), help_heading = DEEP, hide_short_help = true)]
     pub oversampling: u32,
 
     /// How to build the deep images

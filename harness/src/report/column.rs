@@ -2,12 +2,13 @@
 //! that computes a cell.
 //!
 //! ```text
-//! Column::figure("shade", "ms", Better::Less, |row: &Row| Some(row.shade_ms), significant)
+//! Column::figure("listed", "/sample", Better::Less, |row: &Row| row.listed, number)
+//! Column::ms("shade", |row: &Row| Some(row.shade_ms))
 //! Column::words("size", "px", |row: &Row| row.size.clone())
 //! ```
 
-use super::format::ABSENT;
-use super::markup::Html;
+use super::format::{ABSENT, significant};
+use super::markup::{Html, html};
 
 /// Which way a figure is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +38,8 @@ pub(crate) struct Column<'a, T> {
     pub(crate) id: &'static str,
     /// Its heading, without the unit.
     pub(crate) head: String,
+    /// The class that gives `--colour` to the dot before its heading on a page; empty draws no dot.
+    pub(crate) class: String,
     /// Its unit, may be empty. The terminal's table puts it on a line of its own.
     pub(crate) unit: String,
     /// Its heading in the terminal's table, which leaves out a column without one.
@@ -65,6 +68,11 @@ impl<'a, T> Column<'a, T> {
         Self { unit: unit.into(), better, ..Self::new(head.into(), cells) }
     }
 
+    /// A column of times, ms.
+    pub(crate) fn ms(head: impl Into<String>, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+        Self::figure(head, "ms", Better::Less, value, significant)
+    }
+
     /// A column of words.
     pub(crate) fn words(
         head: impl Into<String>,
@@ -83,10 +91,16 @@ impl<'a, T> Column<'a, T> {
         Self::words(head, unit, |_| String::new()).note(cell)
     }
 
+    /// A column of sentences, which is wider than a column of figures. Only pages show it.
+    pub(crate) fn prose(head: &str, text: impl Fn(&T) -> String + 'a) -> Self {
+        Self::markup(head, "", move |row| html!("<span class=\"words\">{}</span>", text(row)))
+    }
+
     fn new(head: String, cells: Cells<'a, T>) -> Self {
         Self {
             id: "",
             head,
+            class: String::new(),
             unit: String::new(),
             terminal: None,
             about: String::new(),
@@ -101,6 +115,11 @@ impl<'a, T> Column<'a, T> {
     /// Names the column in the page's markup.
     pub(crate) fn id(self, id: &'static str) -> Self {
         Self { id, ..self }
+    }
+
+    /// Draws a dot before the heading on a page, in the colour that a class gives.
+    pub(crate) fn dotted(self, class: String) -> Self {
+        Self { class, ..self }
     }
 
     /// Shows the column in the terminal too, under this heading.

@@ -6,6 +6,8 @@ use super::lead::{Lead, span};
 use super::loss::{loss, range_loss};
 use super::rank::{is_timed, tie};
 use super::raster;
+use crate::digits::rounded;
+use crate::grouping::distinct;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel, Untested};
 
 /// Times whose ratio is closer to 1 than this are called equal: a few samples do not show more.
@@ -52,8 +54,8 @@ fn setting(all: &[Comparison<'_>], comparison: &Comparison<'_>) -> String {
         varies(|r| format!("in {}", r.setting.scene)),
         varies(|r| r.setting.mode.name().to_owned()),
         varies(|r| format!("at {}\u{d7}{}", r.setting.width, r.setting.height)),
-        varies(|r| format!("at scene scale {}", r.setting.scene_scale)),
-        varies(|r| format!("at radius scale {}", r.setting.radius_scale)),
+        varies(|r| format!("at scene scale {}", rounded(r.setting.scene_scale))),
+        varies(|r| format!("at radius scale {}", rounded(r.setting.radius_scale))),
         varies(|r| format!("from seed {}", r.setting.seed)),
     ]
     .into_iter()
@@ -148,13 +150,8 @@ fn plain_name(record: &Record) -> String {
 /// What the families of a tie are: `DC-I: dense clusters, implicit bounds.`; `None` where one leads, whose
 /// name its sentence explains.
 fn plain_names(lead: &Lead<'_>) -> Option<String> {
-    let mut names: Vec<String> = Vec::new();
-    for row in lead.records.iter().filter_map(|record| record.strategy.row()) {
-        let name = format!("{}: {}", row.family, row.name);
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+    let rows = lead.records.iter().filter_map(|record| record.strategy.row());
+    let names = distinct(rows.map(|row| format!("{}: {}", row.family, row.name)));
     (lead.is_tie() && !names.is_empty()).then(|| format!("{}.", names.join("; ")))
 }
 

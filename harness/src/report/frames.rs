@@ -6,6 +6,7 @@ use super::format::{number, significant};
 use super::markup::{Html, html};
 use super::raster::{self, MARK};
 use super::table::{Look, Row, Table};
+use crate::grouping::grouped_by;
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
 
 /// The heading of a kind of frame, and what strategies pay for in it.
@@ -34,19 +35,14 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
 
 /// Methods under the same lights, each with its records in all modes, in the order of the records.
 fn methods<'a>(records: &[&'a Record]) -> Vec<(&'a str, Vec<&'a Record>)> {
-    let mut methods: Vec<(&str, Vec<&Record>)> = Vec::new();
-    for &record in records.iter().filter(|record| !record.is_control()) {
-        match methods.iter_mut().find(|(known, _)| *known == record.strategy.as_str()) {
-            Some((_, own)) => own.push(record),
-            None => methods.push((&record.strategy, vec![record])),
-        }
-    }
-    methods
+    let methods = records.iter().filter(|record| !record.is_control());
+    grouped_by(methods.map(|record| (record.strategy.as_str(), *record)))
 }
 
 /// The kinds of frame that were measured or can be derived.
 fn kinds(methods: &[(&str, Vec<&Record>)]) -> Vec<FrameKind> {
-    let is_known = |kind: &FrameKind| methods.iter().any(|(_, own)| Bill::of(*kind, own).is_some());
+    let is_known =
+        |kind: &FrameKind| methods.iter().any(|(_, own)| Bill::in_frame(*kind, own).is_some());
     FrameKind::ALL.into_iter().filter(is_known).collect()
 }
 
@@ -58,7 +54,7 @@ fn modes(records: &[&Record]) -> usize {
 }
 
 fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
-    let Some(bill) = Bill::of(kind, own) else { return super::format::ABSENT.into() };
+    let Some(bill) = Bill::in_frame(kind, own) else { return super::format::ABSENT.into() };
     let measured = own.iter().find(|record| record.setting.mode == kind.mode());
     let is_marked = match measured {
         Some(record) => raster::is_marked(machine, record),
@@ -122,14 +118,8 @@ pub(crate) fn sections(results: &Results) -> Html {
         );
         (record.setting.scene.clone(), record.setting.scene_hash.clone(), size)
     };
-    let mut groups: Vec<Vec<&Record>> = Vec::new();
-    for record in &results.records {
-        match groups.iter_mut().find(|group| group.first().is_some_and(|r| key(r) == key(record))) {
-            Some(group) => group.push(record),
-            None => groups.push(vec![record]),
-        }
-    }
-    let section = |(ix, group): (usize, &Vec<&Record>)| {
+    let groups = grouped_by(results.records.iter().map(|record| (key(record), record)));
+    let section = |(ix, (_, group)): (usize, &(_, Vec<&Record>))| {
         let first = group.first().filter(|_| modes(group) > 1)?;
         let caption =
             format!("{}, {} lights", first.setting.scene, number(first.setting.lights as f64));

@@ -29,7 +29,7 @@ pub(crate) struct Lead<'a> {
 
 impl<'a> Lead<'a> {
     /// Of ranked records; `None` where there is none.
-    pub(crate) fn of(ranked: &[Ranked<'a>]) -> Option<Self> {
+    pub(crate) fn from_ranks(ranked: &[Ranked<'a>]) -> Option<Self> {
         let mut records = first(ranked);
         let leader = *records.first()?;
         let other = ranked.iter().map(|ranked| ranked.record).find(|r| !std::ptr::eq(*r, leader));
@@ -51,7 +51,7 @@ impl<'a> Lead<'a> {
 
     /// Of a comparison, whose names carry marks.
     pub(crate) fn of_comparison(comparison: &Comparison<'a>) -> Option<Self> {
-        let lead = Self::of(&comparison.ranks())?;
+        let lead = Self::from_ranks(&comparison.ranks())?;
         let names = lead.records.iter().map(|record| comparison.name(record)).collect();
         Some(Self { names, ..lead })
     }

@@ -50,7 +50,7 @@ fn viewer(record: &Record, baseline: Option<&str>, kept: &BTreeSet<&str>) -> Htm
     let difference = known(images.difference.as_deref());
     let pair = PicturePair {
         scene: &record.setting.scene,
-        name: &record.strategy,
+        name: record.strategy.as_str(),
         size: [record.setting.width, record.setting.height],
         image: image.as_deref(),
         reference: reference.as_deref(),

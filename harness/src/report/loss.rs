@@ -65,11 +65,11 @@ pub(crate) fn errors_of<'a>(comparison: &Comparison<'_>) -> Vec<Metric<'a>> {
 
 /// The errors of a record: `30.1 % missing energy, relMSE 0.210, FLIP 0.104`; empty where none is known.
 pub fn error_words(record: &Record) -> String {
-    let of = |id| error(record, id);
+    let metric = |id| error(record, id);
     let words = [
-        of("missing_energy").map(|share| format!("{} % missing energy", percent(share))),
-        of("rel_mse").map(|error| format!("relMSE {}", difference(error))),
-        of("flip").map(|error| format!("FLIP {}", difference(error))),
+        metric("missing_energy").map(|share| format!("{} % missing energy", percent(share))),
+        metric("rel_mse").map(|error| format!("relMSE {}", difference(error))),
+        metric("flip").map(|error| format!("FLIP {}", difference(error))),
     ];
     words.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }

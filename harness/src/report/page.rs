@@ -5,6 +5,8 @@ use super::format::number;
 use super::loss::errors_of;
 use super::markup::{Html, html, with_names_whole};
 use super::metrics::{Measured, Metric, metrics};
+use crate::digits::rounded;
+use crate::grouping;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
 
 pub(crate) fn paragraphs(class: &str, texts: &[String]) -> Html {
@@ -48,10 +50,10 @@ pub(crate) fn setting(record: &Record) -> String {
     ));
     parts.push(format!("{} triangles", number(record.setting.triangles as f64)));
     if record.setting.scene_scale != 1.0 {
-        parts.push(format!("scene scale {}", record.setting.scene_scale));
+        parts.push(format!("scene scale {}", rounded(record.setting.scene_scale)));
     }
     if record.setting.radius_scale != 1.0 {
-        parts.push(format!("radius scale {}", record.setting.radius_scale));
+        parts.push(format!("radius scale {}", rounded(record.setting.radius_scale)));
     }
     parts.push(format!("{} frames", number(f64::from(record.times.frames))));
     parts.join(" \u{b7} ")
@@ -60,13 +62,6 @@ pub(crate) fn setting(record: &Record) -> String {
 /// What each column means: all columns that a table of these results may have.
 pub(crate) fn columns<'r>(all: impl IntoIterator<Item = &'r Results>) -> Html {
     let comparisons: Vec<Comparison<'r>> = all.into_iter().flat_map(comparisons).collect();
-    let is_shown = |column: &Metric<'_>| {
-        let has_value = |comparison| {
-            let value = |record| column.value(&Measured { comparison, record });
-            comparison.all().any(|record| value(record).is_some())
-        };
-        !column.is_optional || comparisons.iter().any(has_value)
-    };
     let errors = comparisons.iter().map(errors_of).find(|errors| !errors.is_empty());
     let about = |column: &Metric<'_>| {
         html!(
@@ -76,8 +71,17 @@ pub(crate) fn columns<'r>(all: impl IntoIterator<Item = &'r Results>) -> Html {
             column.about
         )
     };
-    let metrics: Vec<Metric<'_>> = metrics().into_iter().filter(is_shown).collect();
-    metrics.iter().chain(errors.iter().flatten()).map(about).collect()
+    let columns = metrics().into_iter().chain(errors.into_iter().flatten());
+    columns.filter(|column| is_shown(column, &comparisons)).map(|column| about(&column)).collect()
+}
+
+/// Whether a table shows a column: an optional one only where it has a value.
+fn is_shown<'a>(column: &Metric<'a>, comparisons: &'a [Comparison<'a>]) -> bool {
+    let has_value = |comparison: &'a Comparison<'a>| {
+        let mut records = comparison.all();
+        records.any(|record| column.value(&Measured { comparison, record }).is_some())
+    };
+    !column.is_optional || comparisons.iter().any(has_value)
 }
 
 /// Where, when and from what the figures came.
@@ -120,13 +124,7 @@ pub(crate) fn provenance(results: &Results) -> Html {
 
 /// The distinct values over all records, in order of appearance.
 fn distinct(results: &Results, value: fn(&Record) -> String) -> String {
-    let mut values: Vec<String> = Vec::new();
-    for value in results.records.iter().map(value) {
-        if !values.contains(&value) {
-            values.push(value);
-        }
-    }
-    values.join("; ")
+    grouping::distinct(results.records.iter().map(value)).join("; ")
 }
 
 fn device(kind: DeviceType) -> &'static str {

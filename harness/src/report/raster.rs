@@ -5,10 +5,8 @@
 //! mark, so stored results get it too.
 
 use super::rank::listed;
-use crate::results::{Machine, Mode, Record};
-
-/// Marked passes, and the strategies that have them.
-type Group<'a> = (Vec<&'a str>, Vec<&'a str>);
+use crate::grouping::{distinct, grouped_by};
+use crate::results::{Machine, Record};
 
 /// Follows the name of a marked row.
 pub(crate) const MARK: &str = "\u{2020}";
@@ -26,8 +24,8 @@ pub(crate) fn is_marked(machine: &Machine, record: &Record) -> bool {
 }
 
 /// ` \u{2020}` for a marked row, else nothing.
-pub(crate) fn mark(machine: &Machine, record: &Record) -> String {
-    if is_marked(machine, record) { format!(" {MARK}") } else { String::new() }
+pub(crate) fn mark(machine: &Machine, record: &Record) -> &'static str {
+    if is_marked(machine, record) { " \u{2020}" } else { "" }
 }
 
 /// What the mark means and which rows carry it; `None` where no row does.
@@ -37,41 +35,22 @@ pub(crate) fn notice<'a>(
 ) -> Option<String> {
     let chip = machine.weak_raster()?;
     // Strategies by mode and passes, in the order of the records.
-    let mut modes: Vec<(Mode, Vec<Group<'_>>)> = Vec::new();
-    for record in records {
+    let marked = records.into_iter().filter_map(|record| {
         let passes = record.raster_passes();
-        if passes.is_empty() {
-            continue;
-        }
-        let mode = record.setting.mode;
-        let known = modes.iter().position(|(known, _)| *known == mode);
-        let ix = known.unwrap_or_else(|| {
-            modes.push((mode, Vec::new()));
-            modes.len() - 1
-        });
-        let groups = &mut modes[ix].1;
-        match groups.iter_mut().find(|(known, _)| *known == passes) {
-            Some((_, names)) if !names.contains(&record.strategy.as_str()) => {
-                names.push(&record.strategy);
-            }
-            Some(_) => {}
-            None => groups.push((passes, vec![&record.strategy])),
-        }
-    }
-    let words = |(passes, names): &Group<'_>| {
-        let pass = if passes.len() == 1 { "pass" } else { "passes" };
+        let key = (record.setting.mode.name(), listed(&passes));
+        (!passes.is_empty()).then_some((key, record.strategy.as_str()))
+    });
+    let of_passes = |((mode, passes), names): ((&'static str, String), Vec<&str>)| {
+        let names = distinct(names);
         let names = match names.len() {
             count if count > NAMED => format!("{count} strategies"),
-            _ => listed(names),
+            _ => listed(&names),
         };
-        format!("the {pass} {} of {names}", listed(passes))
+        (mode, format!("{passes} of {names}"))
     };
-    let marked: String = modes
-        .iter()
-        .map(|(mode, groups)| {
-            let parts: Vec<String> = groups.iter().map(words).collect();
-            format!(" Marked in {} frames: {}.", mode.name(), parts.join("; "))
-        })
+    let marked: String = grouped_by(grouped_by(marked).into_iter().map(of_passes))
+        .into_iter()
+        .map(|(mode, parts)| format!(" Marked passes in {mode} frames: {}.", parts.join("; ")))
         .collect();
     (!marked.is_empty()).then(|| {
         format!(
@@ -98,7 +77,7 @@ mod tests {
         let example: Results =
             serde_json::from_str(include_str!("../results/example.json")).expect("the example");
         let machine = example.machine.clone();
-        let of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
+        let record_of = |strategy: &str, mode, passes: &[(&str, PassKind)]| {
             let mut record = example.records[0].clone();
             (record.strategy, record.setting.mode) = (strategy.into(), mode);
             let times = |kind| PassTimes::new(kind, vec![1.0]);
@@ -108,10 +87,10 @@ mod tests {
         let deferred =
             [("gbuffer", PassKind::Scene), ("cull", PassKind::Assign), ("shade", PassKind::Shade)];
         let ids = [("model-ids", PassKind::Assign), ("shade", PassKind::Shade)];
-        let tiles = of("T-E/28x28", Mode::Deferred, &deferred);
-        let volumes = of("RasterSphere", Mode::Deferred, &deferred);
-        let models = of("M/2", Mode::Deferred, &ids);
-        let mut forward = of("T-E/28x28", Mode::Forward, &deferred[1..]);
+        let tiles = record_of("T-E/28x28", Mode::Deferred, &deferred);
+        let volumes = record_of("RasterSphere", Mode::Deferred, &deferred);
+        let models = record_of("M/2", Mode::Deferred, &ids);
+        let mut forward = record_of("T-E/28x28", Mode::Forward, &deferred[1..]);
         forward.note = Some(format!("{OLD_NOTE}; lists overflowed"));
         assert_eq!(mark(&machine, &tiles), "");
         for record in [&volumes, &models, &forward] {
@@ -121,8 +100,8 @@ mod tests {
         let all = notice(&machine, [&tiles, &volumes, &models, &forward]).expect("three rows");
         for part in [
             "H200 runs",
-            "Marked in deferred frames: the pass shade of RasterSphere; the pass model-ids of M/2.",
-            "Marked in forward frames: the pass shade of T-E/28x28.",
+            "Marked passes in deferred frames: shade of RasterSphere; model-ids of M/2.",
+            "Marked passes in forward frames: shade of T-E/28x28.",
         ] {
             assert!(all.contains(part), "{part}: {all}");
         }

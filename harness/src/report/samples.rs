@@ -20,8 +20,8 @@ pub(crate) fn samples(records: &[&Record], colours: &Colours<'_>) -> Html {
     let half = half_width(strips.iter().map(|(_, _, strip)| strip));
     let mut groups = Html::default();
     for record in records {
-        let own = strips.iter_mut().filter(|(other, _, _)| std::ptr::eq(*other, *record));
-        let rows: Html = own
+        let of_record = strips.iter_mut().filter(|(other, _, _)| std::ptr::eq(*other, *record));
+        let rows: Html = of_record
             .map(|(_, times, strip)| {
                 strip.half_width = half;
                 row(times, strip)

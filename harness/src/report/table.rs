@@ -15,12 +15,14 @@ pub(crate) struct Row<T> {
     name: String,
     /// The class that gives `--colour` to the dot before the name; empty draws no dot.
     class: String,
+    /// What a page shows after the name.
+    note: Html,
     data: T,
 }
 
 impl<T> Row<T> {
     pub(crate) fn new(name: impl Into<String>, data: T) -> Self {
-        Self { name: name.into(), class: String::new(), data }
+        Self { name: name.into(), class: String::new(), note: Html::default(), data }
     }
 }
 
@@ -72,8 +74,19 @@ impl<'a, T> Table<'a, T> {
         self
     }
 
-    /// The table for a page.
+    /// Adds markup after each name, on pages only.
+    pub(crate) fn noted(mut self, note: impl Fn(&T) -> Html) -> Self {
+        for row in &mut self.rows {
+            row.note = note(&row.data);
+        }
+        self
+    }
+
+    /// The table for a page; empty where it has no rows.
     pub(crate) fn html(&self, label: &str, look: Look) -> Html {
+        if self.rows.is_empty() {
+            return Html::default();
+        }
         let is_sortable = look == Look::Sortable;
         let head = |text: Html| match is_sortable {
             true => html!("<button type=\"button\">{}</button>", text),
@@ -85,12 +98,8 @@ impl<'a, T> Table<'a, T> {
         let row = |row: &Row<T>| {
             let cell = |column: &Column<'a, T>| cell_html(column, &row.data, &competitors);
             let cells: Html = self.columns.iter().map(cell).collect();
-            let dot = match row.class.is_empty() {
-                true => Html::default(),
-                false => html!("<i class=\"dot {}\"></i>", row.class),
-            };
-            let name = with_names_whole(&row.name);
-            html!("<tr><th scope=\"row\">{}{}</th>{}</tr>\n", dot, name, cells)
+            let name = dot(&row.class) + with_names_whole(&row.name) + row.note.clone();
+            html!("<tr><th scope=\"row\">{}</th>{}</tr>\n", name, cells)
         };
         let rows: Html = self.rows.iter().map(row).collect();
         let (class, caption) = match look {
@@ -121,7 +130,11 @@ impl<'a, T> Table<'a, T> {
             true => Html::default(),
             false => html!(" title=\"{}\"", column.about),
         };
-        let text = head(Html::from(&column.head) + unit);
+        let name = match column.class.is_empty() {
+            true => Html::from(&column.head),
+            false => dot(&column.class) + with_names_whole(&column.head),
+        };
+        let text = head(name + unit);
         html!("<th scope=\"col\"{}>{}</th>", title, text)
     }
 
@@ -172,6 +185,14 @@ impl<'a, T> Table<'a, T> {
             let _ = writeln!(text, "| {} |{cells}", row.name);
         }
         text
+    }
+}
+
+/// A dot in the colour that a class gives; nothing without a class.
+fn dot(class: &str) -> Html {
+    match class.is_empty() {
+        true => Html::default(),
+        false => html!("<i class=\"dot {}\"></i>", class),
     }
 }
 

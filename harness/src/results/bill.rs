@@ -94,7 +94,7 @@ impl Bill {
     /// Without a pre-pass, a method that reads depth draws the same passes as with one, and pays for one more.
     /// With ids in the G-buffer, a method needs no `model-ids`; the cost of the ids in the G-buffer is then
     /// unknown. Nothing else can be derived.
-    pub fn of(kind: FrameKind, records: &[&Record]) -> Option<Self> {
+    pub fn in_frame(kind: FrameKind, records: &[&Record]) -> Option<Self> {
         let in_mode = |mode: Mode| records.iter().find(|record| record.setting.mode == mode);
         if let Some(record) = in_mode(kind.mode()) {
             return Some(Self {
@@ -201,16 +201,16 @@ mod tests {
 
     #[test]
     fn records_list_their_raster_passes() {
-        let of = |strategy: &str, mode, passes: &[(&str, f64)]| {
+        let passes_of = |strategy: &str, mode, passes: &[(&str, f64)]| {
             record(strategy, mode, passes).raster_passes().join(",")
         };
         let deferred = [("depth", 1.0), ("gbuffer", 1.0), ("cull", 1.0), ("shade", 1.0)];
-        assert_eq!(of("T-E/28x28", Mode::Deferred, &deferred), "");
-        assert_eq!(of("RasterSphere", Mode::Deferred, &deferred), "shade");
+        assert_eq!(passes_of("T-E/28x28", Mode::Deferred, &deferred), "");
+        assert_eq!(passes_of("RasterSphere", Mode::Deferred, &deferred), "shade");
         let ids = [("depth", 1.0), ("model-ids", 1.0), ("cull", 1.0), ("shade", 1.0)];
-        assert_eq!(of("M/2/bvh", Mode::Deferred, &ids), "model-ids");
-        assert_eq!(of("T-E/28x28", Mode::Forward, &deferred), "gbuffer,shade");
-        assert_eq!(of("T-E/28x28", Mode::ForwardNoPrepass, &ids[..1]), "depth");
+        assert_eq!(passes_of("M/2/bvh", Mode::Deferred, &ids), "model-ids");
+        assert_eq!(passes_of("T-E/28x28", Mode::Forward, &deferred), "gbuffer,shade");
+        assert_eq!(passes_of("T-E/28x28", Mode::ForwardNoPrepass, &ids[..1]), "depth");
     }
 
     #[test]
@@ -218,21 +218,21 @@ mod tests {
         let explicit = [("depth", 0.5), ("bounds", 0.1), ("cull", 0.2), ("shade", 1.0)];
         let forward = record("SC-E/48x48x40/bvh", Mode::Forward, &explicit);
         assert!((forward.with_depth_ms() - 1.8).abs() < 1e-12);
-        let none = Bill::of(FrameKind::NoPrepass, &[&forward]).expect("derived");
+        let none = Bill::in_frame(FrameKind::NoPrepass, &[&forward]).expect("derived");
         assert!(none.is_derived && (none.assign_ms - 0.8).abs() < 1e-12, "{none:?}");
         assert!((none.frame_ms - 1.8).abs() < 1e-12, "{none:?}");
         let measured = record("SC-E/48x48x40/bvh", Mode::ForwardNoPrepass, &explicit);
-        let bill = Bill::of(FrameKind::NoPrepass, &[&forward, &measured]).expect("measured");
+        let bill = Bill::in_frame(FrameKind::NoPrepass, &[&forward, &measured]).expect("measured");
         assert!(!bill.is_derived && (bill.assign_ms - 0.8).abs() < 1e-12, "{bill:?}");
         // The cost of lighting hidden surfaces cannot be derived.
         let implicit = record("T-I/28x28", Mode::Forward, &explicit);
-        assert_eq!(Bill::of(FrameKind::NoPrepass, &[&implicit]), None);
+        assert_eq!(Bill::in_frame(FrameKind::NoPrepass, &[&implicit]), None);
         assert!((implicit.with_depth_ms() - 1.3).abs() < 1e-12);
         let ids =
             [("depth", 0.5), ("gbuffer", 1.0), ("model-ids", 0.5), ("cull", 0.1), ("shade", 0.3)];
         let models = record("M/2", Mode::Deferred, &ids);
-        let deferred = Bill::of(FrameKind::Deferred, &[&models]).expect("measured");
-        let with_ids = Bill::of(FrameKind::DeferredIds, &[&models]).expect("derived");
+        let deferred = Bill::in_frame(FrameKind::Deferred, &[&models]).expect("measured");
+        let with_ids = Bill::in_frame(FrameKind::DeferredIds, &[&models]).expect("derived");
         assert!((deferred.both_ms() - 0.9).abs() < 1e-12 && !deferred.is_derived);
         assert!((with_ids.both_ms() - 0.4).abs() < 1e-12 && with_ids.is_derived);
         assert!((with_ids.frame_ms - 1.9).abs() < 1e-12);

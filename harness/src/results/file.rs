@@ -4,12 +4,15 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
 use thiserror::Error;
 
 use super::{
     Record, Results, SCHEMA_VERSION,
-    flat::{FlatResults, fault},
+    fault::{flat_fault, nested_fault},
+    flat::FlatResults,
     lack::lack,
+    renamed::warned_today,
     seal::{sealed, unsealed},
 };
 
@@ -53,8 +56,8 @@ pub enum ResultsError {
     Version {
         /// The file.
         path: PathBuf,
-        /// Its version.
-        found: u64,
+        /// Its version, or what stands in its place.
+        found: Value,
     },
 }
 
@@ -106,25 +109,35 @@ impl Results {
             .map_err(|source| ResultsError::Read { path: path.to_owned(), source })?;
         let (value, checksum) = unsealed(&bytes).map_err(fail)?;
         // From the text: the order of passes counts.
-        let results = match value.get("schema_version").and_then(serde_json::Value::as_u64) {
-            Some(1) => {
-                let flat = serde_json::from_slice::<FlatResults>(&bytes);
-                return match flat {
-                    Ok(flat) => Ok((flat.into(), checksum)),
-                    Err(error) => Err(fail(fault(&value).unwrap_or_else(|| error.to_string()))),
-                };
+        type Read = (serde_json::Result<Results>, fn(&Value) -> Option<String>);
+        let (results, fault): Read = match value.get("schema_version") {
+            None => {
+                let accepted = format!("it must be 1 to {SCHEMA_VERSION}");
+                return Err(fail(format!("schema_version is missing: {accepted}")));
             }
-            Some(found) if found != u64::from(SCHEMA_VERSION) => {
-                return Err(ResultsError::Version { path: path.to_owned(), found });
+            Some(version) if *version == 1 => {
+                (serde_json::from_slice::<FlatResults>(&bytes).map(Results::from), flat_fault)
             }
-            _ => serde_json::from_slice(&bytes),
+            Some(version) if *version == SCHEMA_VERSION => {
+                (serde_json::from_slice(&bytes), nested_fault)
+            }
+            Some(found) => {
+                return Err(ResultsError::Version { path: path.to_owned(), found: found.clone() });
+            }
         };
-        Ok((results.map_err(|error| fail(error.to_string()))?, checksum))
+        let results =
+            results.map_err(|error| fail(fault(&value).unwrap_or_else(|| error.to_string())))?;
+        Ok((results, checksum))
     }
 
-    /// Gives records of earlier versions the bills of today, and shows what names hide.
+    /// Gives records of earlier versions the bills and the warnings of today, and shows what names hide.
     pub(super) fn bill_as_today(&mut self) {
         self.show_hidden();
+        for warning in &mut self.warnings {
+            if let Some(today) = warned_today(warning) {
+                *warning = today;
+            }
+        }
         self.records.iter_mut().for_each(Record::bill_again);
     }
 }
@@ -204,8 +217,8 @@ mod tests {
 
     #[test]
     fn the_documented_example_is_complete_and_in_order() {
-        let ours: serde_json::Value = serde_json::from_str(&example().to_json()).expect("JSON");
-        let documented: serde_json::Value = serde_json::from_str(EXAMPLE).expect("JSON");
+        let ours: Value = serde_json::from_str(&example().to_json()).expect("JSON");
+        let documented: Value = serde_json::from_str(EXAMPLE).expect("JSON");
         assert_eq!(ours, documented);
     }
 
@@ -247,7 +260,16 @@ mod tests {
         assert!(
             read(r#"{"schema_version": 3}"#).contains("schema_version is 3: it must be 1 to 2")
         );
-        assert!(read(r#"{"schema_version": 1}"#).contains("missing field"));
+        for (faulty, reason) in [
+            (r#"{"schema_version": "new"}"#, r#"schema_version is "new": it must be 1 to 2"#),
+            (r#"{"schema_version": 2.5}"#, "schema_version is 2.5: it must be 1 to 2"),
+            ("{}", "schema_version is missing: it must be 1 to 2"),
+            (r#"{"schema_version": 1}"#, "missing field"),
+            (r#"{"schema_version": 2, "machine": 7}"#, "machine: invalid type: integer `7`"),
+        ] {
+            let error = read(faulty);
+            assert!(error.contains(reason) && error.contains("results.json: "), "{error}");
+        }
         assert!(read("{").contains("not a results.json"));
         fs::remove_file(&path).expect("removes");
         assert!(Results::read(&path).expect_err("gone").to_string().contains("cannot be read"));

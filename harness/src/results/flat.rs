@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, de::DeserializeOwned};
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::{
@@ -29,7 +29,7 @@ pub(super) struct FlatResults {
 
 /// A record of schema 1. Its fields have the names of today, or are aliases of them.
 #[derive(Deserialize)]
-struct FlatRecord {
+pub(super) struct FlatRecord {
     strategy: String,
     #[serde(default)]
     strategy_parameters: BTreeMap<String, Value>,
@@ -83,31 +83,6 @@ impl From<FlatRecord> for Record {
     }
 }
 
-/// The record and the field at which a file of schema 1 cannot be read. The parser does not know the place of
-/// flattened fields.
-pub(super) fn fault(file: &Value) -> Option<String> {
-    let records = file.get("records")?.as_array()?;
-    records.iter().enumerate().find_map(|(ix, record)| {
-        let error = FlatRecord::deserialize(record).err()?;
-        let fields = record.as_object().into_iter().flatten();
-        let at_field = fields.into_iter().find_map(|(name, value)| {
-            let field = Value::Object([(name.clone(), value.clone())].into_iter().collect());
-            let error = field_error::<Setting>(&field)
-                .or_else(|| field_error::<Times>(&field))
-                .or_else(|| field_error::<ListFigures>(&field))
-                .or_else(|| field_error::<ImageFigures>(&field))?;
-            Some(format!("records[{ix}].{name}: {error}"))
-        });
-        Some(at_field.unwrap_or_else(|| format!("records[{ix}]: {error}")))
-    })
-}
-
-/// Why a section of a record cannot be read from a field; `None` where other fields are missing.
-fn field_error<T: DeserializeOwned>(field: &Value) -> Option<String> {
-    let error = T::deserialize(field).err()?.to_string();
-    (!error.starts_with("missing field")).then_some(error)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::SCHEMA_VERSION;
@@ -131,22 +106,5 @@ mod tests {
         assert_eq!(record.lists.entries, 412_345);
         let passes: Vec<&str> = record.times.passes.iter().map(|(name, _)| name).collect();
         assert_eq!(passes, ["depth", "cull", "shade"], "passes keep their order");
-    }
-
-    #[test]
-    fn an_error_names_the_record_and_the_field() {
-        let example = include_str!("example_schema_1.json");
-        for (name, wrong, reason) in [
-            ("triangles", Value::from("many"), "expected u64"),
-            ("clock", Value::from("sundial"), "unknown variant `sundial`"),
-            ("longest_list", Value::from(-1), "expected u64"),
-            ("max_abs_diff", Value::from("x"), "expected f64"),
-        ] {
-            let mut file: Value = serde_json::from_str(example).unwrap();
-            file["records"][0][name] = wrong;
-            let fault = fault(&file).expect("a fault");
-            assert!(fault.starts_with(&format!("records[0].{name}: ")), "{fault}");
-            assert!(fault.contains(reason), "{fault}");
-        }
     }
 }

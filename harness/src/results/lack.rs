@@ -86,15 +86,15 @@ mod tests {
         let line = "lightbench compare --strategies None,sc-e/bvh,T-E/hs,T-E,M --mode deferred";
         let whole = ["None", "SC-E/48x48x40/bvh", "T-E/28x28/hs", "T-E/28x28", "M"];
         assert_eq!(lack(&results(line, &whole)), None);
-        let said = |ids: &[&str]| lack(&results(line, ids)).expect("a lack");
-        assert!(said(&[]).contains("no records"));
-        assert!(said(&whole[..4]).contains("M in deferred is missing"));
-        assert!(said(&whole[1..]).contains("None in deferred is missing"));
-        assert!(said(&[whole[0]; 5]).contains("holds None in deferred twice"));
+        let lack_of = |ids: &[&str]| lack(&results(line, ids)).expect("a lack");
+        assert!(lack_of(&[]).contains("no records"));
+        assert!(lack_of(&whole[..4]).contains("M in deferred is missing"));
+        assert!(lack_of(&whole[1..]).contains("None in deferred is missing"));
+        assert!(lack_of(&[whole[0]; 5]).contains("holds None in deferred twice"));
         let other = ["None", "SC-E/48x48x40", "T-E/28x28/hs", "T-E/28x28", "M"];
-        assert!(said(&other).contains("SC-E/48x48x40/bvh in deferred is missing"));
+        assert!(lack_of(&other).contains("SC-E/48x48x40/bvh in deferred is missing"));
         let more = [&whole[..], &["G/20x20x20"]].concat();
-        assert!(said(&more).contains("G/20x20x20 in deferred, which its command"));
+        assert!(lack_of(&more).contains("G/20x20x20 in deferred, which its command"));
         // Each mode has its records.
         let both = line.replace("deferred", "both");
         assert!(lack(&results(&both, &whole)).is_some());

@@ -81,15 +81,15 @@ impl Results {
         let Some(path) = beside(results) else { return Ok(()) };
         let (mut known, checksum) = Self::read_raw(results)?;
         known.bill_as_today();
-        let own = self.metrics(checksum.clone());
-        if own == known.metrics(checksum.clone()) && !path.exists() {
+        let fresh = self.metrics(checksum.clone());
+        if fresh == known.metrics(checksum.clone()) && !path.exists() {
             return Ok(());
         }
         known.take_metrics(results, &checksum);
-        if own == known.metrics(checksum) {
+        if fresh == known.metrics(checksum) {
             return Ok(());
         }
-        let text = sealed(&own).map_err(|error| ResultsError::Parse {
+        let text = sealed(&fresh).map_err(|error| ResultsError::Parse {
             path: path.clone(),
             reason: error.to_string(),
         })?;

@@ -1,15 +1,14 @@
-//! Records of schema 1, under the ids that say today what they were.
+//! What earlier versions stored, in the words of today.
 //!
-//! Ids that have changed their meaning stand in their rows of the registry, as [`StandIn`]s. `G/20x20x20` cut the box of the lights' supports, which is
-//! `G/20x20x20/supports` now. `T-I/28x28` asked for HS+SAT-N, but stages had no far plane then, and
-//! without far corners the shader ran HS only: that is `T-I/28x28/hs`.
+//! Ids that have changed their meaning stand in their rows of the registry, as [`StandIn`]s. A row says what
+//! its old id meant, and how it turns into the id of today and back.
 
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::Setting;
-use crate::strategy::{StandIn, StrategyId};
+use super::{Mode, Setting};
+use crate::strategy::{StandIn, StrategyId, row};
 
 /// The id that says today what a record of schema 1 was.
 pub(super) fn named_today(
@@ -31,6 +30,13 @@ pub(super) fn named_today(
 pub(super) fn named_then(id: &StrategyId) -> StrategyId {
     let then = id.row_of_stand_in().and_then(|stand_in| id.with(stand_in.to_then).ok());
     then.unwrap_or_else(|| id.clone())
+}
+
+/// What a warning of earlier versions says today: `RasterSphere has no mode forward` gave no reason. `None`
+/// where the warning stays as it is.
+pub(super) fn warned_today(warning: &str) -> Option<String> {
+    let (family, mode) = warning.split_once(" has no mode ")?;
+    row(family)?.refusal(Mode::ALL.into_iter().find(|known| known.name() == mode)?)
 }
 
 #[cfg(test)]
@@ -55,6 +61,16 @@ mod tests {
         assert_eq!(name("G/20x20x20/bvh/cap8", "lights"), "G/20x20x20/supports/bvh/cap8");
         assert_eq!(name("G/8x8x8/surfaces/bvh", "surfaces"), "G/8x8x8/surfaces/bvh");
         assert_eq!(name("G/20x20x20/bvh", "positions"), "G/20x20x20/bvh");
+    }
+
+    #[test]
+    fn an_old_warning_gets_its_reason() {
+        let today =
+            "RasterSphere cannot run in mode forward, because light volumes read a G-buffer.";
+        assert_eq!(warned_today("RasterSphere has no mode forward").as_deref(), Some(today));
+        for other in [today, "Gone has no mode forward", "None has no mode forward"] {
+            assert_eq!(warned_today(other), None);
+        }
     }
 
     #[test]

@@ -14,12 +14,14 @@ impl Record {
         self.times.assign_ms = self.time_of(|_, kind| kind == PassKind::Assign);
         self.times.shade_ms = self.time_of(|_, kind| kind == PassKind::Shade);
         self.times.frame_ms = self.time_of(|_, _| true);
-        let of = |samples: fn(&Spans) -> &[f64]| {
+        let span = |samples: fn(&Spans) -> &[f64]| {
             let samples = samples(self.times.spans.as_ref()?);
             (!samples.is_empty()).then(|| self.middle_ms(samples))
         };
-        [self.times.span_ms, self.times.frame_span_ms] =
-            [of(|spans| &spans.assign_and_shade_samples_ms), of(|spans| &spans.frame_samples_ms)];
+        [self.times.span_ms, self.times.frame_span_ms] = [
+            span(|spans| &spans.assign_and_shade_samples_ms),
+            span(|spans| &spans.frame_samples_ms),
+        ];
     }
 
     /// The time of the selected passes, summed per frame, ms: median, or mean along a path. 0 without such a

@@ -7,7 +7,6 @@ use std::{
     collections::BTreeMap,
     fmt,
     hash::{Hash, Hasher},
-    ops::Deref,
 };
 
 use assign::{FrustumTests, LightSource};
@@ -215,33 +214,30 @@ impl StrategyId {
         self.row.map_or_else(|| "strategy-none".to_owned(), Row::class)
     }
 
-    /// Parameters and settings by name, as results store them: those of the id, and stored ones that it
-    /// does not say, such as those of an unknown family.
-    pub fn parameters(&self) -> BTreeMap<String, Value> {
-        let Some(row) = self.row else { return self.unread.clone() };
+    /// The parameters, each with its name: `slices`, 40. None of an unknown family.
+    pub fn sizes(&self) -> impl Iterator<Item = (&'static str, Value)> {
         let number = |text: &str| {
             let whole = text.parse::<u64>().map(Value::from);
             whole.or_else(|_| text.parse::<f64>().map(Value::from)).unwrap_or_else(|_| text.into())
         };
+        let names = self.row.map_or(&[][..], |row| row.parameters);
         let values = self.size().split('x').filter(|value| !value.is_empty()).map(number);
-        let parameters = row.parameters.iter().copied().zip(values);
+        names.iter().copied().zip(values)
+    }
+
+    /// Parameters and settings by name, as results store them: those of the id, and stored ones that it
+    /// does not say, such as those of an unknown family.
+    pub fn parameters(&self) -> BTreeMap<String, Value> {
+        let Some(row) = self.row else { return self.unread.clone() };
         let settings = row.axes.iter().filter_map(|axis| axis.parameter(&self.options));
-        let said = parameters.chain(settings).map(|(name, value)| (name.to_owned(), value));
-        said.chain(self.unread.clone()).collect()
+        let stated = self.sizes().chain(settings).map(|(name, value)| (name.to_owned(), value));
+        stated.chain(self.unread.clone()).collect()
     }
 }
 
 impl fmt::Display for StrategyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&self.text)
-    }
-}
-
-impl Deref for StrategyId {
-    type Target = str;
-
-    fn deref(&self) -> &str {
-        &self.text
     }
 }
 

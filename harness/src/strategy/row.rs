@@ -122,8 +122,14 @@ pub struct Row {
 }
 
 /// No needs at all: a start for rows.
-pub(super) const NEEDS_NOTHING: Needs =
-    Needs { depth: false, normals: false, materials: false, models: false, triangles: false };
+pub(super) const NEEDS_NOTHING: Needs = Needs {
+    depth: false,
+    normals: false,
+    materials: false,
+    models: false,
+    triangles: false,
+    hierarchy: false,
+};
 
 /// Reads the depth of the surfaces.
 pub(super) const NEEDS_DEPTH: Needs = Needs { depth: true, ..NEEDS_NOTHING };
@@ -192,6 +198,12 @@ impl Row {
     pub fn refuses_mode(&self, mode: Mode) -> Option<&'static str> {
         let refusal = self.refuses.iter().find(|refusal| refusal.modes.contains(&mode))?;
         Some(refusal.why)
+    }
+
+    /// The sentence that it cannot run in a mode, with the reason; `None` where it can.
+    pub fn refusal(&self, mode: Mode) -> Option<String> {
+        let why = self.refuses_mode(mode)?;
+        Some(format!("{} cannot run in mode {}, because {why}.", self.family, mode.name()))
     }
 
     /// The style class that gives its colour: `strategy-sc-e`.

@@ -28,7 +28,8 @@ pub(crate) fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
         let Some(folder) = done.folders.get(&job.name) else { continue };
         let Some(reference) = Store::new(folder).image(Some(&truth.raw))? else { continue };
         let exposure = truth.exposure as f32;
-        let models: Vec<String> = done.of(scene, MODELS).map(|(job, _)| job.name.clone()).collect();
+        let models: Vec<String> =
+            done.section(scene, MODELS).map(|(job, _)| job.name.clone()).collect();
         for model in models {
             let Some(folder) = done.folders.get(&model) else { continue };
             let Some(results) = done.results.get_mut(&model) else { continue };
@@ -46,6 +47,7 @@ pub(crate) fn compare_with_truth(done: &mut Done) -> Result<(), HarnessError> {
 
 /// The truth image of a scene, with its job.
 pub fn truth_of<'a>(done: &'a Done, scene: &'a str) -> Option<(&'a Job, &'a TruthImage)> {
-    let of = |(job, results): (&'a Job, &'a Results)| Some((job, results.truth_image.as_ref()?));
-    done.of(scene, TRUTH).find_map(of)
+    let with_image =
+        |(job, results): (&'a Job, &'a Results)| Some((job, results.truth_image.as_ref()?));
+    done.section(scene, TRUTH).find_map(with_image)
 }

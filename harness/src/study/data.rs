@@ -2,8 +2,10 @@
 
 use super::job::Job;
 use super::manifest::Done;
+use crate::grouping::grouped_by;
 use crate::report::format::number;
-use crate::results::{Record, Results};
+use crate::report::raster;
+use crate::results::{Machine, Record, Results};
 use crate::strategy::StrategyId;
 
 /// A record with the job that it comes from.
@@ -11,14 +13,35 @@ use crate::strategy::StrategyId;
 pub(crate) struct Entry<'a> {
     pub(crate) job: &'a Job,
     pub(crate) record: &'a Record,
+    /// Where it was measured.
+    machine: &'a Machine,
+}
+
+impl Entry<'_> {
+    /// ` \u{2020}` where rasterisation limits its times, else nothing.
+    pub(crate) fn mark(&self) -> &'static str {
+        raster::mark(self.machine, self.record)
+    }
+}
+
+/// ` \u{2020}` where rasterisation limits the times of a strategy among some entries, else nothing.
+pub(crate) fn mark(entries: &[Entry<'_>], id: &StrategyId) -> &'static str {
+    let same = entries.iter().filter(|entry| entry.record.strategy == *id);
+    same.map(Entry::mark).max().unwrap_or_default()
+}
+
+/// The name of a strategy in a table of entries, with its mark.
+pub(crate) fn marked_name(entries: &[Entry<'_>], id: &StrategyId) -> String {
+    format!("{id}{}", mark(entries, id))
 }
 
 /// All records of a section that are there, in the order of its jobs.
 pub(crate) fn entries<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> Vec<Entry<'a>> {
     let of_job = |(job, results): (&'a Job, &'a Results)| {
-        results.records.iter().map(move |record| Entry { job, record })
+        let machine = &results.machine;
+        results.records.iter().map(move |record| Entry { job, record, machine })
     };
-    done.of(scene, section).flat_map(of_job).collect()
+    done.section(scene, section).flat_map(of_job).collect()
 }
 
 /// The records that rank strategies: those along the path at each count of lights that has them, and
@@ -57,13 +80,7 @@ pub(crate) type Line<'a> = (&'a StrategyId, Vec<&'a Record>);
 
 /// The records of each strategy, in the order in which strategies first appear.
 pub(crate) fn lines<'a>(entries: &[Entry<'a>]) -> Vec<Line<'a>> {
-    let mut lines: Vec<Line<'a>> = Vec::new();
-    for Entry { record, .. } in entries {
-        match lines.iter_mut().find(|(id, _)| **id == record.strategy) {
-            Some((_, records)) => records.push(record),
-            None => lines.push((&record.strategy, vec![record])),
-        }
-    }
+    let mut lines = grouped_by(entries.iter().map(|entry| (&entry.record.strategy, entry.record)));
     for (_, records) in &mut lines {
         records.sort_by_key(|record| record.setting.lights);
     }

@@ -1,16 +1,15 @@
 //! The list of all studies: the one place that names them.
 
-use super::{
-    area::Area, cdi::Cdi, comparison::Comparison, culling::Culling, endless::Endless, slice::Study,
-};
+use super::{area, cdi, comparison, culling, endless, slice::Study};
 use crate::cli::CliError;
 
 /// All studies, in the order in which the command line lists them.
-pub(crate) const STUDIES: &[&dyn Study] = &[&Comparison, &Culling, &Area, &Endless, &Cdi];
+pub(crate) const STUDIES: &[Study] =
+    &[comparison::STUDY, culling::STUDY, area::STUDY, endless::STUDY, cdi::STUDY];
 
 /// Name of each study, and what it answers.
 pub fn studies() -> impl Iterator<Item = (&'static str, &'static str)> {
-    STUDIES.iter().map(|study| (study.name(), study.answers()))
+    STUDIES.iter().map(|study| (study.name, study.answers))
 }
 
 /// The study of a name.
@@ -18,9 +17,9 @@ pub fn studies() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// # Errors
 ///
 /// Names the studies that there are.
-pub(crate) fn named(name: &str) -> Result<&'static dyn Study, CliError> {
+pub(crate) fn named(name: &str) -> Result<&'static Study, CliError> {
     let known: Vec<&str> = studies().map(|(name, _)| name).collect();
-    let study = STUDIES.iter().copied().find(|study| study.name() == name);
+    let study = STUDIES.iter().find(|study| study.name == name);
     study.ok_or_else(|| CliError::unknown("study", name, &known))
 }
 

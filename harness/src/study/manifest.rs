@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::study::job::Job;
 use crate::{
+    grouping::distinct,
     messages::say,
     results::{Results, ResultsError, sealed, unsealed, write_atomically},
     visible::visible,
@@ -37,16 +38,78 @@ fn first_version() -> u32 {
     1
 }
 
-/// Checks that the jobs of a file have settings, which files of version 1 lack.
-fn check_settings(file: &Value, version: u64) -> Result<(), String> {
-    let jobs = file.get("jobs").and_then(Value::as_array).filter(|_| version > 1);
-    let lacks = |job: &Value| job.get("settings").is_none();
-    match jobs.and_then(|jobs| jobs.iter().position(lacks)) {
-        Some(ix) => Err(format!(
-            "jobs[{ix}].settings is missing: a file of version {version} must have it, also where it is {{}}"
-        )),
-        None => Ok(()),
+/// What a field must be: its name, a test of its value, and what the test accepts.
+type Rule = (&'static str, fn(&Value) -> bool, &'static str);
+
+const RULES: [Rule; 3] = [
+    ("study", is_plain_text, "the name of a study"),
+    ("identity", is_list_of_text, "a list of texts"),
+    (
+        "jobs",
+        |jobs| jobs.as_array().is_some_and(|jobs| !jobs.is_empty()),
+        "a list of at least one job",
+    ),
+];
+
+const JOB_RULES: [Rule; 4] = [
+    ("name", is_name, "letters, digits, '-', '_' and '.', the first no '.'"),
+    ("scene", is_plain_text, "text without control characters"),
+    ("section", is_plain_text, "text without control characters"),
+    ("command", is_list_of_text, "a list of texts"),
+];
+
+/// Jobs have settings from version 2 on.
+const SETTINGS: Rule = ("settings", Value::is_object, "an object; {} where there are none");
+
+fn is_list_of_text(value: &Value) -> bool {
+    value.as_array().is_some_and(|texts| texts.iter().all(Value::is_string))
+}
+
+fn is_plain_text(value: &Value) -> bool {
+    value.as_str().is_some_and(|text| visible(text) == text)
+}
+
+/// Names of jobs are names of folders: the file may come from anywhere.
+fn is_name(value: &Value) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    let is_plain =
+        |name: &str| !name.is_empty() && !name.starts_with('.') && name.chars().all(plain);
+    value.as_str().is_some_and(is_plain)
+}
+
+/// Characters of a faulty value that a message shows.
+const SHOWN: usize = 60;
+
+/// Checks the fields of an object; an error names the first faulty one, its value and what is accepted.
+fn check_fields(at: &str, object: &Value, rules: &[Rule]) -> Result<(), String> {
+    for (name, is_right, accepted) in rules {
+        match object.get(name) {
+            None => return Err(format!("{at}{name} is missing: it must be {accepted}")),
+            Some(value) if !is_right(value) => {
+                let value: String = value.to_string().chars().take(SHOWN).collect();
+                return Err(format!("{at}{name} is {value}: it must be {accepted}"));
+            }
+            Some(_) => {}
+        }
     }
+    Ok(())
+}
+
+/// Checks a file of a known version, field by field.
+fn check_file(file: &Value, version: u64) -> Result<(), String> {
+    check_fields("", file, &RULES)?;
+    let jobs = file.get("jobs").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    for (ix, job) in jobs.iter().enumerate() {
+        let at = format!("jobs[{ix}].");
+        check_fields(&at, job, &JOB_RULES)?;
+        check_fields(&at, job, if version > 1 { &[SETTINGS] } else { &[] })?;
+        let is_same = |other: &Value| other.get("name") == job.get("name");
+        if let Some(first) = jobs[..ix].iter().position(is_same) {
+            let name = &job["name"];
+            return Err(format!("{at}name is {name}: it must not be that of jobs[{first}]"));
+        }
+    }
+    Ok(())
 }
 
 impl Manifest {
@@ -71,16 +134,18 @@ impl Manifest {
         };
         let manifest = || -> Result<Self, String> {
             let (file, _) = unsealed(&bytes).map_err(damaged)?;
-            let version = file.get("version").and_then(Value::as_u64).unwrap_or(1);
-            if version > u64::from(VERSION) {
-                return Err(format!(
-                    "version is {version}: this program reads versions 1 to {VERSION}: use a newer lightbench"
-                ));
-            }
-            check_settings(&file, version).map_err(damaged)?;
+            let version = match file.get("version").unwrap_or(&Value::from(1)) {
+                found if *found == 1 => 1,
+                found if *found == VERSION => u64::from(VERSION),
+                found => {
+                    let is_newer = found.as_u64().is_some_and(|found| found > u64::from(VERSION));
+                    let advice = if is_newer { ": use a newer lightbench" } else { "" };
+                    return Err(format!("version is {found}: it must be 1 to {VERSION}{advice}"));
+                }
+            };
+            check_file(&file, version).map_err(damaged)?;
             let mut manifest: Self =
                 serde_json::from_slice(&bytes).map_err(|e| damaged(e.to_string()))?;
-            manifest.check().map_err(damaged)?;
             manifest.upgrade();
             Ok(manifest)
         };
@@ -96,32 +161,14 @@ impl Manifest {
         }
     }
 
-    /// Names of jobs are names of folders: the file may come from anywhere.
-    fn check(&self) -> Result<(), String> {
-        if self.version == 0 {
-            return Err(format!("version is 0: it must be 1 to {VERSION}"));
+    /// How the study of another folder differs from this one, that of the first folder.
+    fn difference(&self, other: &Self) -> String {
+        if self.identity == other.identity {
+            let advice = "one version of lightbench must have listed both";
+            return format!("jobs are not those of the first folder: {advice}");
         }
-        if self.jobs.is_empty() {
-            return Err("jobs is empty: it must list at least one job".to_owned());
-        }
-        if let Some(job) = self.jobs.iter().find(|job| visible(&job.scene) != job.scene) {
-            return Err(format!(
-                "jobs.scene is {:?}: it must not contain control characters",
-                job.scene
-            ));
-        }
-        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-        for (ix, job) in self.jobs.iter().enumerate() {
-            let name = &job.name;
-            let is_plain = !name.is_empty() && !name.starts_with('.') && name.chars().all(plain);
-            if !is_plain || self.jobs.iter().take(ix).any(|other| other.name == *name) {
-                return Err(format!(
-                    "jobs[{ix}].name is {name:?}: it must be unique, of letters, digits, '-', '_' and '.', \
-                     the first no '.'"
-                ));
-            }
-        }
-        Ok(())
+        let [first, other] = [self, other].map(|manifest| manifest.identity.join(" "));
+        format!("identity is `{other}`: it must be that of the first folder, `{first}`")
     }
 
     /// Writes it into a folder.
@@ -156,16 +203,16 @@ impl Done {
         let mut done: Option<Self> = None;
         for folder in folders {
             let path = folder.join(FILE);
-            let fail =
-                |reason: &str| ResultsError::Study { path: path.clone(), reason: reason.into() };
-            let manifest = Manifest::find(folder)?.ok_or_else(|| fail("no study is there"))?;
+            let fail = |reason: String| ResultsError::Study { path: path.clone(), reason };
+            let is_gone = || fail("it is missing: each folder must be one of a study".to_owned());
+            let manifest = Manifest::find(folder)?.ok_or_else(is_gone)?;
             let done = done.get_or_insert_with(|| Self {
                 manifest: manifest.clone(),
                 results: BTreeMap::new(),
                 folders: BTreeMap::new(),
             });
             if done.manifest != manifest {
-                return Err(fail("another study than in the first folder"));
+                return Err(fail(done.manifest.difference(&manifest)));
             }
             for job in &manifest.jobs {
                 let path = job.folder(folder).join("results.json");
@@ -236,7 +283,7 @@ impl Done {
     }
 
     /// The jobs of a scene that are done, with their results, of one section.
-    pub fn of<'a>(
+    pub fn section<'a>(
         &'a self,
         scene: &'a str,
         section: &'a str,
@@ -250,13 +297,7 @@ impl Done {
 
     /// The scenes, in the order of their jobs.
     pub fn scenes(&self) -> Vec<&str> {
-        let mut scenes: Vec<&str> = Vec::new();
-        for job in &self.manifest.jobs {
-            if !scenes.contains(&job.scene.as_str()) {
-                scenes.push(&job.scene);
-            }
-        }
-        scenes
+        distinct(self.manifest.jobs.iter().map(|job| job.scene.as_str()))
     }
 }
 

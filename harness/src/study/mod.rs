@@ -5,8 +5,8 @@
 //! command writes. A job is done where its `results.json` is there, is whole, and holds all records of its
 //! command. `study.json` beside `jobs` lists all jobs, also those of other shards.
 //!
-//! Each study is a folder here that holds its jobs, its page and its claims behind one trait,
-//! `Study` (`slice.rs`). Adding a study takes its folder, its `mod` line below, and its place in
+//! Each study is a folder here that holds its jobs, its page and its claims, and one row of data that names them,
+//! a `Study` (`slice.rs`). Adding a study takes its folder, its `mod` line below, and its place in
 //! `list.rs`. Everything else asks the list: the command line, the report and the tests of all pages.
 
 mod against_truth;
@@ -31,6 +31,6 @@ pub use area::BOUNDS;
 pub use job::{Job, Settings};
 pub use list::studies;
 pub use manifest::{Done, Manifest};
-pub use report::{claims_markdown, complete, write_study};
+pub use report::{check_study, claims_markdown, complete, write_study};
 pub use run::study;
 pub use scene::StudyScene;

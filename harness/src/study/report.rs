@@ -12,7 +12,7 @@ use super::manifest::Done;
 use super::page::frame;
 use crate::error::HarnessError;
 use crate::report::terminal::push_wrapped;
-use crate::results::write_atomically;
+use crate::results::{ResultsError, write_atomically};
 
 /// Writes the report of a study into a folder: `index.html`, `charts/*.svg` and `study-data.json`. Returns
 /// what to print: findings, verdicts on the paper's claims, notices, and where the report is.
@@ -43,18 +43,32 @@ pub fn write_study(done: &Done, out: &Path) -> Result<String, HarnessError> {
     Ok(text)
 }
 
+/// Checks that this program has the study of a folder.
+///
+/// # Errors
+///
+/// Names the file, the study and the studies that there are.
+pub fn check_study(done: &Done, folder: &Path) -> Result<(), ResultsError> {
+    list::named(&done.manifest.study).map(|_| ()).map_err(|_| {
+        let known: Vec<&str> = list::studies().map(|(name, _)| name).collect();
+        let study = &done.manifest.study;
+        let reason = format!("study is {study:?}: it must be one of {}", known.join(", "));
+        ResultsError::Study { path: folder.join("study.json"), reason }
+    })
+}
+
 /// Computes the errors that a study takes from the images of several jobs.
 ///
 /// # Errors
 ///
 /// Names the study where there is none of that name, or the image that cannot be read.
 pub fn complete(done: &mut Done) -> Result<(), HarnessError> {
-    list::named(&done.manifest.study)?.after_run(done)
+    (list::named(&done.manifest.study)?.after_run)(done)
 }
 
 /// The verdict on each claim of the paper that a study is held against, as a Markdown table; empty where
 /// there is no such study.
 pub fn claims_markdown(done: &Done) -> String {
     let Ok(study) = list::named(&done.manifest.study) else { return String::new() };
-    claims::markdown(study.paper(), &claims::judge(done, study.paper()))
+    claims::markdown(study.paper, &claims::judge(done, study.paper))
 }

@@ -47,9 +47,9 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
         None => {
             let mut jobs = Vec::new();
             for scene in &scenes {
-                jobs.extend(study.jobs(&mut bench, args, scene)?);
+                jobs.extend((study.jobs)(&mut bench, args, scene)?);
             }
-            Manifest::new(wanted, study.name(), jobs)
+            Manifest::new(wanted, study.name, jobs)
         }
     };
     // Faulty jobs show before the first one runs, and before anything is written.
@@ -66,7 +66,7 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
     }
     run(&mut bench, out, &mine)?;
     let mut done = Done::read(std::slice::from_ref(out))?;
-    study.after_run(&mut done)?;
+    (study.after_run)(&mut done)?;
     done.write_metrics()?;
     report::write_study(&done, out)
 }

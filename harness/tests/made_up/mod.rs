@@ -149,7 +149,7 @@ impl Maker {
         let mut records = self.all(10_000);
         let is_high = view == "high";
         for record in records.iter_mut().filter(|_| is_high) {
-            let family = record.strategy.split('/').next().unwrap_or_default();
+            let family = record.strategy.family();
             let growth = match (family, self.turned) {
                 ("T-E", _) => 2.0,
                 ("SC-E", "discontinuity") => 2.5,
@@ -184,7 +184,7 @@ impl Maker {
         let mut records = self.all(lights);
         if self.turned == "bounds" {
             for record in &mut records {
-                let id = &record.strategy;
+                let id = record.strategy.as_str();
                 record.strategy = if id.contains("-I") {
                     id.replacen("-I", "-E", 1).into()
                 } else {

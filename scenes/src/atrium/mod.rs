@@ -67,6 +67,7 @@ pub fn atrium(seed: u64) -> Scene {
         models: hall.models,
         lights: Vec::new(),
         open_lights: Vec::new(),
+        light_animation: None,
         suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,

@@ -1,4 +1,5 @@
-//! Reads the animation of a camera: the tracks of the nodes from the root to the camera.
+//! Reads the animation of a camera: the tracks of the nodes from the root to the camera. Names the
+//! animations that nothing plays.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -8,7 +9,7 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{Warnings, area_lights, file::File, walk::Walk};
+use super::{Warnings, area_lights, file::File, punctual, walk::Walk};
 use crate::{
     SceneError,
     animated_node::{AnimatedNode, Local, Part, Track},
@@ -32,13 +33,14 @@ pub(super) fn load(
     origin: DVec3,
     warnings: &mut Warnings,
 ) -> Result<Option<AnimatedNode>, SceneError> {
-    let moves = |channel: &&Channel| chain.contains(&channel.target.node.value());
+    let moves = |channel: &Channel| chain.contains(&channel.target.node.value());
     let mut moving = file
         .root
         .animations
         .iter()
-        .filter(|animation| animation.channels.iter().any(|channel| moves(&channel)));
-    let Some(animation) = moving.next() else {
+        .enumerate()
+        .filter(|(_, animation)| animation.channels.iter().any(moves));
+    let Some((animation_ix, animation)) = moving.next() else {
         return Ok(None);
     };
     if moving.next().is_some() {
@@ -51,7 +53,7 @@ pub(super) fn load(
         scale: None,
     };
     let mut parts: Vec<_> = chain.iter().map(part).collect();
-    for channel in animation.channels.iter().filter(moves) {
+    for (channel_ix, channel) in animation.channels.iter().enumerate() {
         let node = channel.target.node.value();
         let Some(part) = chain.iter().position(|ix| *ix == node) else {
             continue;
@@ -62,40 +64,26 @@ pub(super) fn load(
             Checked::Valid(Property::Scale) => (&mut parts[part].scale, false),
             _ => continue,
         };
-        let sampler = animation.samplers.get(channel.sampler.value()).ok_or_else(|| {
-            let accepted = format!("below {}", animation.samplers.len());
-            file.invalid("animations channel sampler", channel.sampler.value(), accepted)
-        })?;
-        *slot = Some(track(file, sampler, is_rotation)?);
+        *slot = Some(track(file, animation_ix, channel_ix, is_rotation)?);
     }
-    let tracks = || {
-        let all = parts.iter().flat_map(|p| [&p.translation, &p.rotation, &p.scale]);
-        all.flatten()
-    };
-    if tracks().next().is_none() {
-        return Ok(None);
-    }
-    let ends = |t: &Track| (t.times[0], t.times[t.times.len() - 1]);
-    let start_s = tracks().map(|t| ends(t).0).fold(f32::INFINITY, f32::min);
-    let end_s = tracks().map(|t| ends(t).1).fold(f32::NEG_INFINITY, f32::max);
-    Ok(Some(AnimatedNode { chain: parts, origin, start_s, end_s }))
+    let ends = parts.iter().filter_map(Part::ends);
+    let whole = ends.reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)));
+    Ok(whole.map(|(start_s, end_s)| AnimatedNode { chain: parts, origin, start_s, end_s }))
 }
 
-/// Warns about animations that are not played: those that move meshes, lights or joints.
+/// Warns about animations that are not played: those that move meshes, area lights, suns or joints.
 pub(super) fn note_unplayed(file: &File, walk: &Walk, warnings: &mut Warnings) {
     let nodes = &file.root.nodes;
     let joints = file.root.skins.iter().flat_map(|skin| &skin.joints);
     let joints: HashSet<usize> = joints.map(gltf::json::Index::value).collect();
-    // Whether something drawn is attached to a node or to a node below it.
+    // Whether something that stays at rest is attached to a node or to a node below it.
     let mut carries = vec![false; nodes.len()];
     for visit in walk.visits.iter().rev() {
         let node = &nodes[visit.ix];
         let extensions = node.extensions.as_ref();
-        let is_light = extensions.is_some_and(|e| {
-            e.khr_lights_punctual.is_some() || e.others.contains_key("EXT_lights_area")
-        });
         carries[visit.ix] |= node.mesh.is_some()
-            || is_light
+            || punctual::is_sun(file, node)
+            || extensions.is_some_and(|e| e.others.contains_key(area_lights::EXTENSION))
             || node.extras.as_ref().is_some_and(|e| e.get().contains(area_lights::KEY))
             || joints.contains(&visit.ix);
         if carries[visit.ix]
@@ -114,13 +102,35 @@ pub(super) fn note_unplayed(file: &File, walk: &Walk, warnings: &mut Warnings) {
     };
     let name = nodes[*first].name.clone().unwrap_or_else(|| format!("node {first}"));
     warnings.add(format!(
-        "animations of meshes and lights are not played: {} animated nodes stay at rest; \
-         the first is {name:?}",
+        "animations of meshes, area lights and suns are not played: those of {} animated nodes \
+         stay at rest; the first is {name:?}",
         moved.len()
     ));
 }
 
-fn track(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, SceneError> {
+/// The track of a channel. Errors name the animation and the channel.
+pub(super) fn track(
+    file: &File,
+    animation_ix: usize,
+    channel_ix: usize,
+    is_rotation: bool,
+) -> Result<Track, SceneError> {
+    let animation = &file.root.animations[animation_ix];
+    let channel = format!("animations[{animation_ix}].channels[{channel_ix}]");
+    let sampler_ix = animation.channels[channel_ix].sampler.value();
+    let sampler = animation.samplers.get(sampler_ix).ok_or_else(|| {
+        let accepted = format!("below {}", animation.samplers.len());
+        file.invalid(format!("{channel}.sampler"), sampler_ix, accepted)
+    })?;
+    keys(file, sampler, is_rotation).map_err(|error| match error {
+        SceneError::Invalid { file, field, value, accepted } => {
+            SceneError::Invalid { file, field: format!("{channel}: {field}"), value, accepted }
+        }
+        other => other,
+    })
+}
+
+fn keys(file: &File, sampler: &Sampler, is_rotation: bool) -> Result<Track, SceneError> {
     let interpolation = match sampler.interpolation {
         Checked::Valid(interpolation) => interpolation,
         Checked::Invalid => Interpolation::Linear,

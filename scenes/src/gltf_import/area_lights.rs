@@ -135,7 +135,7 @@ fn of_extras(
 }
 
 /// The extension's name, on nodes and at the root.
-const EXTENSION: &str = "EXT_lights_area";
+pub(super) const EXTENSION: &str = "EXT_lights_area";
 
 /// One light of EXT_lights_area.
 #[derive(Deserialize)]

@@ -17,6 +17,7 @@ mod images;
 mod influence;
 mod invalid;
 mod json_path;
+mod light_animation;
 mod limits;
 mod materials;
 mod mesh_limits;
@@ -56,9 +57,10 @@ use crate::{CameraPath, Scene, SceneError, close_ranges, extent, fit};
 /// joints. Missing normals are computed flat. Missing tangents are computed by MikkTSpace where the
 /// material has a normal map.
 ///
-/// The importer leaves out morph targets, lines, points, and animations of anything but cameras. It
-/// turns blended materials into masks. [`Scene::warnings`] lists all of this, and every extension
-/// that is not supported.
+/// The importer leaves out morph targets, lines and points. It turns blended materials into masks.
+/// It plays animations of cameras and of the points and spots of KHR_lights_punctual
+/// ([`Scene::light_animation`]), but not those of meshes, area lights and suns. [`Scene::warnings`]
+/// lists all of this, and every extension that is not supported.
 ///
 /// [`close_ranges`] chooses a range for lights without one. Lights that
 /// [`Light::check`](assign::Light::check) refuses stay in [`Scene::lights`]:
@@ -94,6 +96,8 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
     if placed.instances.is_empty() {
         return Err(SceneError::Empty { name: path.display().to_string() });
     }
+    let light_animation =
+        light_animation::load(&file, &walk, &placed.light_nodes, origin, &mut warnings)?;
     animation::note_unplayed(&file, &walk, &mut warnings);
     let mut animated = None;
     let targets = animation::targets(&file);
@@ -120,6 +124,7 @@ pub fn load_gltf(path: &Path) -> Result<Scene, SceneError> {
         instances: placed.instances,
         models: placed.models,
         lights: placed.lights,
+        light_animation,
         suns: placed.suns,
         open_lights: Vec::new(),
         cameras: placed.cameras,
@@ -159,8 +164,10 @@ pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, Scen
     let file = open(path)?;
     let mut warnings = file.take_notes();
     let walk = walk::walk(&file, origin)?;
-    let (lights, suns) = nodes::lights(&file, &walk, &mut warnings)?;
-    check_suns(&file, &suns)?;
+    let placed = nodes::lights(&file, &walk, &mut warnings)?;
+    check_suns(&file, &placed.suns)?;
+    let light_animation =
+        light_animation::load(&file, &walk, &placed.light_nodes, origin, &mut warnings)?;
     animation::note_unplayed(&file, &walk, &mut warnings);
     Ok(Scene {
         name: name(path),
@@ -169,8 +176,9 @@ pub(crate) fn load_gltf_lights(path: &Path, origin: DVec3) -> Result<Scene, Scen
         images: Vec::new(),
         instances: Vec::new(),
         models: Vec::new(),
-        lights,
-        suns,
+        lights: placed.lights,
+        light_animation,
+        suns: placed.suns,
         open_lights: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,

@@ -1,7 +1,5 @@
 //! Places what the nodes hold: models, lights and cameras.
 
-use assign::{Light, Sun};
-
 use super::{
     Warnings, area_lights, cameras,
     file::File,
@@ -57,17 +55,17 @@ pub(super) fn place(
     Ok(placed)
 }
 
-/// Only the lights and suns of the visited nodes.
+/// Only the lights and suns of the visited nodes, and no models.
 pub(super) fn lights(
     file: &File,
     walk: &Walk,
     warnings: &mut Warnings,
-) -> Result<(Vec<Light>, Vec<Sun>), SceneError> {
+) -> Result<Placed, SceneError> {
     let mut placed = Placed::default();
     for visit in walk.visits.iter().filter(|visit| visit.is_visible) {
         placed.add_lights(file, visit, warnings)?;
     }
-    Ok((placed.lights, placed.suns))
+    Ok(placed)
 }
 
 impl Placed {
@@ -101,7 +99,9 @@ impl Placed {
         warnings: &mut Warnings,
     ) -> Result<(), SceneError> {
         let node = &file.root.nodes[visit.ix];
+        let first = self.lights.len();
         self.add_light(file, node, &visit.placed, warnings)?;
+        self.light_nodes.extend((first..self.lights.len()).map(|light| (visit.ix, light)));
         let area = area_lights::of_node(file, visit.ix, node, visit.to_world, warnings)?;
         self.lights.extend(area);
         Ok(())

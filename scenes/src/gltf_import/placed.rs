@@ -18,6 +18,8 @@ pub(super) struct Placed {
     pub(super) instances: Vec<Instance>,
     /// The range of a light is infinite where the file gives none.
     pub(super) lights: Vec<Light>,
+    /// The node and the index of each light of KHR_lights_punctual among `lights`.
+    pub(super) light_nodes: Vec<(usize, usize)>,
     pub(super) suns: Vec<Sun>,
     pub(super) cameras: Vec<Camera>,
     /// For each camera, the nodes from the root to the one that holds it.

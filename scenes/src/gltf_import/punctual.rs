@@ -23,13 +23,10 @@ impl Placed {
         to_world: &DMat4,
         warnings: &mut Warnings,
     ) -> Result<(), SceneError> {
-        let of_node = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let Some(reference) = of_node else {
+        let Some(ix) = light_of(node) else {
             return Ok(());
         };
-        let of_root = file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        let lights = of_root.map_or(&[][..], |e| &e.lights);
-        let ix = reference.light.value();
+        let lights = lights(file);
         let json = lights.get(ix).ok_or_else(|| {
             file.invalid("KHR_lights_punctual.light", ix, format!("below {}", lights.len()))
         })?;
@@ -61,6 +58,24 @@ impl Placed {
         });
         Ok(())
     }
+}
+
+/// The index of the light that a node carries.
+fn light_of(node: &Node) -> Option<usize> {
+    let extension = node.extensions.as_ref()?.khr_lights_punctual.as_ref()?;
+    Some(extension.light.value())
+}
+
+/// The lights of the file.
+fn lights(file: &File) -> &[JsonLight] {
+    let of_root = file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+    of_root.map_or(&[][..], |e| &e.lights)
+}
+
+/// Whether a node carries a directional light.
+pub(super) fn is_sun(file: &File, node: &Node) -> bool {
+    let light = light_of(node).and_then(|ix| lights(file).get(ix));
+    light.is_some_and(|light| matches!(light.type_, Checked::Valid(LightType::Directional)))
 }
 
 /// The cone of a spot. Missing angles get the specification's defaults.

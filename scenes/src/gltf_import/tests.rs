@@ -1,6 +1,7 @@
 mod area_lights;
 mod cameras;
 mod compressed;
+mod light_animation;
 mod materials;
 mod placing;
 mod valid;

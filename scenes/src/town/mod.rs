@@ -73,6 +73,7 @@ pub fn town(seed: u64, size: TownSize) -> Scene {
         models: town.models,
         lights: Vec::new(),
         open_lights: Vec::new(),
+        light_animation: None,
         suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,

@@ -127,6 +127,7 @@ pub(crate) fn showcase() -> Scene {
         ],
         lights: Vec::new(),
         open_lights: Vec::new(),
+        light_animation: None,
         suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,

@@ -39,6 +39,7 @@ pub(crate) fn scene_of(quads: &[[Vec3; 3]], material: Material, images: Vec<Imag
         }],
         lights: Vec::new(),
         open_lights: Vec::new(),
+        light_animation: None,
         suns: Vec::new(),
         cameras: Vec::new(),
         view_camera: 0,

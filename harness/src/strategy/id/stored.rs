@@ -90,9 +90,9 @@ fn read_fields(mut fields: Map<String, Value>) -> Result<StrategyId, String> {
             ));
         }
     };
-    let said = id.parameters();
+    let stated = id.parameters();
     for (name, value) in stored {
-        match said.get(&name) {
+        match stated.get(&name) {
             Some(known) if is_same(known, &value) => {}
             Some(known) if id.is_runnable() => {
                 return Err(format!(

@@ -160,8 +160,8 @@ pub(crate) fn jobs(
     let ids = format!("{BASELINE},{}", ids.join(","));
     let near = range(CULLED_RANGE_SHARE);
     let culled = ["--lights", extent.culled, "--areas", "1", "--radius-scale", &near];
-    let own = ["--strategies", &ids, "--pictures", "none"];
-    let words = [&["compare"], &alike[..], &outlines, &culled, &frames, &own].concat();
+    let options = ["--strategies", &ids, "--pictures", "none"];
+    let words = [&["compare"], &alike[..], &outlines, &culled, &frames, &options].concat();
     jobs.push(Job::new(scene, BOUNDS, extent.culled, &words));
     Ok(jobs)
 }
@@ -182,8 +182,8 @@ mod tests {
             for model in extent.models.iter().chain(costs) {
                 assert!(model.parse::<shading::AreaModel>().is_ok(), "{model}");
             }
-            let own = extent.models.contains(&"ltc");
-            assert!(own && extent.models.len() < 16, "a figure has 16 colours");
+            let has_ltc = extent.models.contains(&"ltc");
+            assert!(has_ltc && extent.models.len() < 16, "a figure has 16 colours");
         }
     }
 }

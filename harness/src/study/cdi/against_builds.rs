@@ -94,14 +94,14 @@ mod tests {
 
     #[test]
     fn only_the_build_may_differ() {
-        let of = |build: &str, rays| Vpls {
+        let vpls = |build: &str, rays| Vpls {
             rays,
             deep: Some(DeepImages { build: build.into(), ..DeepImages::default() }),
             ..Vpls::default()
         };
-        assert!(differs_by_build(&of("per-direction", 6), &of("compute", 6)));
-        assert!(!differs_by_build(&of("per-direction", 6), &of("compute", 3)));
-        assert!(!differs_by_build(&of("per-direction", 6), &of("fragment", 6)));
-        assert!(!differs_by_build(&of("per-direction", 6), &Vpls::default()));
+        assert!(differs_by_build(&vpls("per-direction", 6), &vpls("compute", 6)));
+        assert!(!differs_by_build(&vpls("per-direction", 6), &vpls("compute", 3)));
+        assert!(!differs_by_build(&vpls("per-direction", 6), &vpls("fragment", 6)));
+        assert!(!differs_by_build(&vpls("per-direction", 6), &Vpls::default()));
     }
 }

@@ -230,12 +230,12 @@ fn steps(args: &StudyArgs, scene: &StudyScene, extent: &Extent) -> Vec<Job> {
     let timed = ["--frames", extent.frames, "--warmup", extent.warmup, "--pictures", "none"];
     let deep = extent.deep(None, None);
     let common = [&["compare"], &drawn[..], &timed, &["--vpls", extent.rsm], &deep].concat();
-    let own = ["--strategies", GRID, "--light-order", "given", "--truth", "none"];
+    let options = ["--strategies", GRID, "--light-order", "given", "--truth", "none"];
     // Pairs in f64 would take minutes: images say whether anything was lost. Lights that are made in each
     // frame have the order of their map and no hierarchy.
     let all = ["--strategies", extent.strategies, "--light-order", "given", "--truth", "none"];
     vec![
-        Job::new(scene, STEPS, "", &[&common[..], &own].concat()),
+        Job::new(scene, STEPS, "", &[&common[..], &options].concat()),
         Job::new(scene, STRATEGIES, "", &[&common[..], &all].concat()),
     ]
 }

@@ -36,7 +36,7 @@ pub(crate) fn image_by_build(done: &Done, scene: &str) -> Option<(f64, f64)> {
     entries(done, scene, MODELS).iter().find_map(|entry| {
         let vpls = entry.record.indirect.as_ref()?;
         let is_brute = vpls.deep.as_ref()?.build.starts_with("per-direction");
-        let of = |id: &str| vpls.build_errors.get(id).copied().flatten();
-        Some((of(METRIC)?, of("pixels_off")?)).filter(|_| is_brute)
+        let error = |id: &str| vpls.build_errors.get(id).copied().flatten();
+        Some((error(METRIC)?, error("pixels_off")?)).filter(|_| is_brute)
     })
 }

@@ -13,7 +13,7 @@ pub(crate) const PAPER: &str = "Archer, Leach and Knowles 2019, on a GTX 1060";
 
 /// The runs of `lightbench cdi` of a section.
 pub(crate) fn runs<'a>(done: &'a Done, scene: &'a str, section: &'a str) -> Vec<&'a DeepImageRun> {
-    done.of(scene, section).filter_map(|(_, results)| results.deep_images.as_ref()).collect()
+    done.section(scene, section).filter_map(|(_, results)| results.deep_images.as_ref()).collect()
 }
 
 /// Those whose builds were timed at a steady, risen clock.
@@ -38,12 +38,12 @@ pub(crate) fn refused_build(done: &Done, scene: &str, run: &DeepImageRun) -> Opt
         .filter(|other| other.scene_hash == run.scene_hash && is_same_work(&other.deep, &run.deep));
     let steady = same.filter(|other| other.unsteady().is_none());
     let least = steady.map(DeepImageRun::build_ms).fold(f64::INFINITY, f64::min);
-    let own = run.build_ms();
-    slower_than_again(own, least).then(|| {
+    let build_ms = run.build_ms();
+    slower_than_again(build_ms, least).then(|| {
         format!(
             "another job of this study took {} ms for the same work, this one {}",
             significant(least),
-            significant(own)
+            significant(build_ms)
         )
     })
 }
@@ -79,8 +79,9 @@ pub(crate) fn shown(ms: f64, counts: bool) -> Html {
 pub(crate) fn notices(done: &Done) -> Vec<String> {
     let mut notices = Vec::new();
     for scene in done.scenes() {
-        let jobs =
-            [jobs::BUILDS, jobs::CASTS].into_iter().flat_map(|section| done.of(scene, section));
+        let jobs = [jobs::BUILDS, jobs::CASTS]
+            .into_iter()
+            .flat_map(|section| done.section(scene, section));
         for (job, results) in jobs {
             let Some(run) = results.deep_images.as_ref() else { continue };
             // The job's own warning already stands among the notices.
@@ -104,8 +105,8 @@ pub(crate) fn notices(done: &Done) -> Vec<String> {
     }
     let lights = || {
         done.results.iter().flat_map(|(job, results)| {
-            let of = move |record| Some((job, Option::as_ref(record)?));
-            results.records.iter().map(|record| &record.indirect).filter_map(of)
+            let with_job = move |record| Some((job, Option::as_ref(record)?));
+            results.records.iter().map(|record| &record.indirect).filter_map(with_job)
         })
     };
     for (job, vpls) in lights() {

@@ -2,6 +2,7 @@
 //! of the truth or of one seed could make the difference, and whether each sweep found its least error
 //! inside.
 
+use crate::grouping::grouped_by;
 use crate::report::format::{difference, significant};
 use crate::results::{Record, TruthImage, Vpls};
 use crate::study::against_truth::{MODELS, truth_of};
@@ -73,8 +74,8 @@ pub(crate) fn best<'a>(
     name: &str,
     among: impl Fn(&Record) -> bool,
 ) -> Option<Entry<'a>> {
-    let own = entries.iter().filter(|entry| rule(entry.record) == name && among(entry.record));
-    least(own.copied())
+    let of_rule = entries.iter().filter(|entry| rule(entry.record) == name && among(entry.record));
+    least(of_rule.copied())
 }
 
 fn least<'a>(entries: impl Iterator<Item = Entry<'a>>) -> Option<Entry<'a>> {
@@ -107,20 +108,21 @@ fn parameter(vpls: &Vpls) -> f64 {
 /// Whether the best of a rule's sweep is its first or its last setting, `None` of fewer than three:
 /// then a better one may lie beyond.
 pub(crate) fn is_at_end(entries: &[Entry<'_>], best: &Record) -> Option<bool> {
-    let own = best.indirect.as_ref()?;
-    let of_sweep = |vpls: &&Vpls| {
-        let deep =
-            |vpls: &Vpls| vpls.deep.as_ref().map(|d| (d.build.clone(), d.directions(), d.size_px));
-        (vpls.ranges.as_str(), vpls.candidates) == (own.ranges.as_str(), own.candidates)
-            && (vpls.rays, vpls.is_reflected, vpls.is_corrected)
-                == (own.rays, own.is_reflected, own.is_corrected)
-            && deep(vpls) == deep(own)
+    let vpls = best.indirect.as_ref()?;
+    let sweep = |vpls: &Vpls| {
+        let deep = vpls.deep.as_ref();
+        (
+            (vpls.ranges.clone(), vpls.candidates),
+            (vpls.rays, vpls.is_reflected, vpls.is_corrected),
+            deep.map(|deep| (deep.build.clone(), deep.directions(), deep.size_px)),
+        )
     };
+    let of_sweep = |other: &&Vpls| sweep(other) == sweep(vpls);
     let all = entries.iter().filter_map(|entry| entry.record.indirect.as_ref()).filter(of_sweep);
     let values: Vec<f64> = all.map(parameter).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(0.0, f64::max);
-    let value = parameter(own);
+    let value = parameter(vpls);
     (values.len() > 2).then_some(value == least || value == most)
 }
 
@@ -137,8 +139,8 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     };
     let noise = noise_of(truth);
     let say = |other: Entry<'_>, what: &str| {
-        let theirs = error(other.record).unwrap_or(f64::NAN);
-        let verdict = match nearer(own, theirs, noise) {
+        let other_error = error(other.record).unwrap_or(f64::NAN);
+        let verdict = match nearer(own, other_error, noise) {
             _ if [cast, other].iter().any(|entry| is_stale(entry.record)) => STALE,
             Nearer::First => "rays are nearer to the truth",
             Nearer::Second => "rays are farther from the truth",
@@ -151,7 +153,7 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
             difference(own),
             in_time(cast.record),
             setting(other.record),
-            difference(theirs),
+            difference(other_error),
             in_time(other.record),
             match is_at_end(&all, other.record) {
                 Some(true) =>
@@ -188,10 +190,10 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
         ));
     }
     if let Some(other) = best(&all, named("infinite"), |_| true) {
-        let theirs = error(other.record).unwrap_or(f64::NAN);
+        let other_error = error(other.record).unwrap_or(f64::NAN);
         found.push(format!(
             "In {scene} the mean error of lights with infinite range is {} of the mean{}.",
-            difference(theirs),
+            difference(other_error),
             in_time(other.record)
         ));
     }
@@ -240,17 +242,11 @@ pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
 /// any scene. A renderer would choose this setting once.
 fn best_in_common(done: &Done, is_of: fn(&Settings) -> bool) -> Option<(f64, f64)> {
     let scenes = done.scenes();
-    let mut errors_of: Vec<(&Settings, Vec<f64>)> = Vec::new();
-    for scene in &scenes {
-        for Entry { job, record } in entries(done, scene, MODELS) {
-            let Some(error) = error(record).filter(|_| is_of(&job.settings)) else { continue };
-            match errors_of.iter_mut().find(|(known, _)| **known == job.settings) {
-                Some((_, errors)) => errors.push(error),
-                None => errors_of.push((&job.settings, vec![error])),
-            }
-        }
-    }
-    errors_of
+    let all = scenes.iter().flat_map(|scene| entries(done, scene, MODELS));
+    let errors = all
+        .filter(|entry| is_of(&entry.job.settings))
+        .filter_map(|entry| Some((&entry.job.settings, error(entry.record)?)));
+    grouped_by(errors)
         .into_iter()
         .filter(|(_, errors)| errors.len() == scenes.len())
         .map(|(_, errors)| {

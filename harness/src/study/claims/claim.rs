@@ -75,7 +75,7 @@ impl Claim<'_> {
                 } else if all(&Verdict::Fails) {
                     Verdict::Fails
                 } else {
-                    let of = |id: &str, how: &str| {
+                    let scenes_where = |id: &str, how: &str| {
                         let scenes: Vec<&str> = several
                             .iter()
                             .filter(|(_, answer)| answer.verdict.id() == id)
@@ -84,9 +84,9 @@ impl Claim<'_> {
                         (!scenes.is_empty()).then(|| format!("{how} in {}", listed(&scenes)))
                     };
                     let parts: Vec<String> = [
-                        of("holds", "holds"),
-                        of("differs", "holds in part"),
-                        of("fails", "fails"),
+                        scenes_where("holds", "holds"),
+                        scenes_where("differs", "holds in part"),
+                        scenes_where("fails", "fails"),
                     ]
                     .into_iter()
                     .flatten()

@@ -9,9 +9,11 @@ mod claim;
 mod markdown;
 pub(crate) mod order;
 mod table;
+mod tally;
 mod verdict;
 
 pub(crate) use claim::{Check, Claim, Paper, judge, on_another_gpu};
 pub(crate) use markdown::markdown;
 pub(crate) use table::claims_html;
+pub(crate) use tally::{Outcome, Tally};
 pub(crate) use verdict::{Answer, Verdict};

@@ -2,10 +2,9 @@
 
 use super::claim::{Claim, Paper};
 use super::verdict::Answer;
+use crate::report::column::Column;
 use crate::report::markup::{Html, html};
-use crate::study::page::figure::table;
-
-const HEADS: [&str; 4] = ["claim", "the paper", "measured here", "verdict"];
+use crate::report::table::{Look, Row, Table};
 
 /// What a verdict means.
 const SCALE: &str = "A claim \u{201c}holds\u{201d} if the figures of all scenes confirm it, and \
@@ -18,7 +17,22 @@ pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool
     if claims.is_empty() {
         return Html::default();
     }
-    let rows: Vec<Vec<Html>> = claims.iter().map(row).collect();
+    // A narrow table has no heads, so a word precedes the figures.
+    let paper_says = |claim: &&Claim<'_>| {
+        html!("<b class=\"of\">paper: </b>{}{}", claim.check.paper, departure(claim))
+    };
+    let columns = [
+        Column::markup("the paper", "", paper_says),
+        Column::markup("measured here", "", |claim: &&Claim<'_>| {
+            let is_one_of_several = claim.answers.len() > 1;
+            claim.answers.iter().map(|answer| measured(answer, is_one_of_several)).collect()
+        }),
+        Column::markup("verdict", "", |claim: &&Claim<'_>| verdict(claim)),
+    ];
+    let rows = claims.iter().map(|claim| Row::new(claim.check.words, claim)).collect();
+    let table = Table::new("claim", columns, rows)
+        .noted(|claim| html!(" <small>{}</small>", claim.check.place))
+        .html(&format!("Claims of {}", paper.name), Look::Plain);
     let caveat = if is_software {
         " This study ran on a software adapter, so the verdicts do not apply to a GPU."
     } else {
@@ -31,30 +45,25 @@ pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool
         paper.about,
         caveat,
         SCALE,
-        table(&format!("Claims of {}", paper.name), &HEADS, &rows)
+        table
     )
 }
 
-/// One row: the claim, the paper's figures and our departure, the answer of each scene, and the verdict.
-fn row(claim: &Claim<'_>) -> Vec<Html> {
-    let check = claim.check;
-    let departure = match check.departure {
+/// How our measurement departs from the paper's.
+fn departure(claim: &Claim<'_>) -> Html {
+    match claim.check.departure {
         "" => Html::default(),
         departure => html!("<br><small>Here: {}</small>", departure),
-    };
-    let several = claim.answers.len() > 1;
-    vec![
-        html!("{} <small>{}</small>", check.words, check.place),
-        // A narrow table has no heads, so a word precedes the figures.
-        html!("<b class=\"of\">paper: </b>{}{}", check.paper, departure),
-        claim.answers.iter().map(|answer| measured(answer, several)).collect(),
-        html!(
-            "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
-            claim.verdict().id(),
-            check.id,
-            claim.verdict_text()
-        ),
-    ]
+    }
+}
+
+fn verdict(claim: &Claim<'_>) -> Html {
+    html!(
+        "<span class=\"verdict {0}\" data-claim=\"{1}\" data-verdict=\"{0}\">{2}</span>",
+        claim.verdict().id(),
+        claim.check.id,
+        claim.verdict_text()
+    )
 }
 
 /// A figure with each of its parts, which semicolons separate, on a line of its own.
@@ -69,11 +78,11 @@ fn line_by_line(figure: &str) -> Html {
 /// The answer of one scene, with its own verdict if there are several.
 fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> Html {
     let (verdict, figure) = (answer.verdict.text(), line_by_line(&answer.figure));
-    let own = html!("<span class=\"verdict {}\">{}</span>", answer.verdict.id(), verdict);
+    let badge = html!("<span class=\"verdict {}\">{}</span>", answer.verdict.id(), verdict);
     match (is_one_of_several, figure.is_empty()) {
         (false, true) => html!("<p>{}</p>", verdict),
         (false, false) => html!("<p>{}</p>", figure),
-        (true, true) => html!("<p><b>{}</b> {}</p>", scene, own),
-        (true, false) => html!("<p><b>{}</b> {}<br>{}</p>", scene, own, figure),
+        (true, true) => html!("<p><b>{}</b> {}</p>", scene, badge),
+        (true, false) => html!("<p><b>{}</b> {}<br>{}</p>", scene, badge, figure),
     }
 }

@@ -96,7 +96,7 @@ pub(crate) struct Extent {
 
 impl Extent {
     /// That of a scene.
-    pub(crate) fn of(quick: bool, triangles: u64) -> Self {
+    pub(crate) fn new(quick: bool, triangles: u64) -> Self {
         match (quick, triangles >= HEAVY_TRIANGLES) {
             (true, _) => QUICK,
             (false, true) => HEAVY,

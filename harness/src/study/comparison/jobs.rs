@@ -31,7 +31,7 @@ pub(crate) fn jobs(
     scene: &StudyScene,
 ) -> Result<Vec<Job>, HarnessError> {
     let (views, triangles) = look(bench, scene)?;
-    let mut extent = Extent::of(args.quick, triangles);
+    let mut extent = Extent::new(args.quick, triangles);
     extent.size = args.size.unwrap_or(extent.size);
     let mut plan = Plan { scene, extent, seed: args.seed, jobs: Vec::new() };
     plan.example();

@@ -9,57 +9,24 @@ mod jobs;
 mod page;
 
 use self::page::{accuracy, frames, overview, path, scaling, sizes, views};
-use super::{
-    claims::Paper,
-    job::Job,
-    manifest::Done,
-    page::{figure::Charts, part::Part, shots::Shots},
-    scene::StudyScene,
-    slice::Study,
-};
-use crate::{bench::Bench, cli::StudyArgs, error::HarnessError, report::markup::Html};
+use super::slice::Study;
 
 /// The greatest relMSE at which a lossy knob is called cheap.
 const CHEAP_REL_MSE: f64 = 1e-2;
 
 /// The comparison.
-pub(crate) struct Comparison;
-
-impl Study for Comparison {
-    fn name(&self) -> &'static str {
-        "comparison"
-    }
-
-    fn answers(&self) -> &'static str {
-        "Which strategy is fastest: the comparison paper, more lights, other radii, and speed against accuracy"
-    }
-
-    fn jobs(
-        &self,
-        bench: &mut Bench,
-        args: &StudyArgs,
-        scene: &StudyScene,
-    ) -> Result<Vec<Job>, HarnessError> {
-        jobs::jobs(bench, args, scene)
-    }
-
-    fn headline(&self, done: &Done) -> Option<String> {
-        overview::headline(done)
-    }
-
-    fn findings(&self, done: &Done, scene: &str) -> Vec<String> {
+pub(crate) const STUDY: Study = Study {
+    name: "comparison",
+    answers: "Which strategy is fastest: the comparison paper, more lights, other radii, and speed against accuracy",
+    jobs: jobs::jobs,
+    after_run: |_| Ok(()),
+    headline: overview::headline,
+    findings: |done, scene| {
         let mut all = overview::findings(done, scene);
         all.extend(accuracy::cheapest(done, scene, CHEAP_REL_MSE));
         all
-    }
-
-    fn parts(
-        &self,
-        done: &Done,
-        scene: &str,
-        charts: &mut Charts,
-        shots: &mut Shots<'_>,
-    ) -> Vec<Part> {
+    },
+    parts: |done, scene, charts, shots| {
         let mut parts = Vec::from(accuracy::accuracy(done, scene, charts, shots));
         parts.extend(scaling::scaling(done, scene, charts));
         parts.push(path::path(done, scene, charts));
@@ -68,17 +35,10 @@ impl Study for Comparison {
         parts.extend(sizes::sizes(done, scene, charts));
         parts.push(overview::overview(done, scene, charts));
         parts
-    }
-
-    fn overall(&self, done: &Done) -> Html {
-        sizes::best_overall(done)
-    }
-
-    fn paper(&self) -> &'static Paper {
-        &claims::PAPER
-    }
-
-    fn notices(&self, done: &Done) -> Vec<String> {
+    },
+    overall: sizes::best_overall,
+    paper: &claims::PAPER,
+    notices: |done| {
         done.scenes().into_iter().flat_map(|scene| overview::ties(done, scene)).collect()
-    }
-}
+    },
+};

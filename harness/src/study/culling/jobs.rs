@@ -20,6 +20,9 @@ use crate::study::scene::StudyScene;
 /// our sparse clusters, and cells that lights add themselves to.
 const STRATEGIES: &str = "Clay,None,Sphere,RasterSphere,DC-I/40x40x24/cap128,DC-I/40x40x24,SC-E,HG";
 
+/// The family of the paper's clusters.
+pub(crate) const CLUSTERS: &str = "DC-I";
+
 /// How long to look at a mode.
 struct Extent {
     mode: &'static str,
@@ -125,13 +128,14 @@ mod tests {
         let jobs = plan(&args, scene);
         for mode in ["deferred", "forward"] {
             let of_mode: Vec<&Job> = jobs.iter().filter(|job| job.section == mode).collect();
-            let said: Vec<String> = of_mode.iter().map(|job| job.command.join(" ")).collect();
+            let commands: Vec<String> = of_mode.iter().map(|job| job.command.join(" ")).collect();
             // Three counts of lights make a line, from none to the paper's most.
-            assert!(said.len() >= 3, "{said:?}");
+            assert!(commands.len() >= 3, "{commands:?}");
             assert!(
-                said[0].contains("--lights 0 ") && said.last().unwrap().contains("--lights 1500 ")
+                commands[0].contains("--lights 0 ")
+                    && commands.last().unwrap().contains("--lights 1500 ")
             );
-            for said in &said {
+            for commands in &commands {
                 for part in [
                     "DC-I/40x40x24/cap128,",
                     "--size 1920x1080",
@@ -140,7 +144,7 @@ mod tests {
                     "--light-order given",
                     "--light-box cylinders",
                 ] {
-                    assert!(said.contains(part), "{part}: {said}");
+                    assert!(commands.contains(part), "{part}: {commands}");
                 }
             }
         }

@@ -4,56 +4,19 @@ mod claims;
 mod jobs;
 mod page;
 
-use super::{
-    claims::Paper,
-    job::Job,
-    manifest::Done,
-    page::{figure::Charts, part::Part, shots::Shots},
-    scene::StudyScene,
-    slice::Study,
-};
-use crate::{bench::Bench, cli::StudyArgs, error::HarnessError};
+use super::slice::Study;
+use crate::report::markup::Html;
 
 /// The culling survey.
-pub(crate) struct Culling;
-
-impl Study for Culling {
-    fn name(&self) -> &'static str {
-        "culling"
-    }
-
-    fn answers(&self) -> &'static str {
-        "What culling gains in a frame with 0 to 1,500 lights along a path, deferred and forward"
-    }
-
-    fn jobs(
-        &self,
-        bench: &mut Bench,
-        args: &StudyArgs,
-        scene: &StudyScene,
-    ) -> Result<Vec<Job>, HarnessError> {
-        jobs::jobs(bench, args, scene)
-    }
-
-    fn headline(&self, done: &Done) -> Option<String> {
-        page::headline(done)
-    }
-
-    fn findings(&self, done: &Done, scene: &str) -> Vec<String> {
-        page::findings(done, scene)
-    }
-
-    fn parts(
-        &self,
-        done: &Done,
-        scene: &str,
-        charts: &mut Charts,
-        _shots: &mut Shots<'_>,
-    ) -> Vec<Part> {
-        page::modes(done, scene, charts)
-    }
-
-    fn paper(&self) -> &'static Paper {
-        &claims::PAPER
-    }
-}
+pub(crate) const STUDY: Study = Study {
+    name: "culling",
+    answers: "What culling gains in a frame with 0 to 1,500 lights along a path, deferred and forward",
+    jobs: jobs::jobs,
+    after_run: |_| Ok(()),
+    headline: page::headline,
+    findings: page::findings,
+    parts: |done, scene, charts, _| page::modes(done, scene, charts),
+    overall: |_| Html::default(),
+    paper: &claims::PAPER,
+    notices: |_| Vec::new(),
+};

@@ -10,7 +10,7 @@ use crate::report::markup::Html;
 use crate::report::rank::{ALIKE, listed};
 use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::study::data::{Entry, Line, counts, entries, lines};
+use crate::study::data::{Entry, Line, counts, entries, lines, marked_name};
 use crate::study::manifest::Done;
 use crate::study::page::figure::Charts;
 use crate::study::page::lines::{fit, times_series};
@@ -42,24 +42,14 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
             if all.is_empty() {
                 return None;
             }
-            let chart = XyChart {
-                title: format!("Frame time against lights, {mode}"),
-                x: Axis {
-                    label: "Lights".to_owned(),
-                    unit: String::new(),
-                    scale: Scale::LinearFromZero,
-                },
-                y: Axis {
-                    label: "Frame, mean along the path".to_owned(),
-                    unit: "ms".to_owned(),
-                    scale: Scale::LinearFromZero,
-                },
-                series: lines(&all)
-                    .iter()
-                    .map(|(id, records)| times_series(id, records, frame, Marks::LineAndPoints))
-                    .collect(),
-                note: String::new(),
-            };
+            let linear = |label, unit| Axis::new(label, unit, Scale::LinearFromZero);
+            let axes = [linear("Lights", ""), linear("Frame, mean along the path", "ms")];
+            let series = lines(&all)
+                .iter()
+                .map(|(id, records)| times_series(id, records, frame, Marks::LineAndPoints))
+                .collect();
+            let title = format!("Frame time against lights, {mode}");
+            let chart = XyChart::new(title, axes, series);
             let body = charts.xy(&format!("{scene}-{mode}"), &chart) + times(&all);
             let caution = match done.results.values().any(|r| r.machine.weak_raster().is_some()) {
                 true if *mode == "forward" => FORWARD_CAUTION,
@@ -85,7 +75,7 @@ fn times<'a>(entries: &[Entry<'a>]) -> Html {
             let found = records.iter().find(|record| record.setting.lights == count);
             found.map(|record| frame(record))
         };
-        Column::figure(number(count as f64), "ms", Better::Less, time, significant)
+        Column::ms(number(count as f64), time)
     };
     let mut columns: Vec<Column<'a, Line<'a>>> = counts(entries).into_iter().map(at).collect();
     columns.extend([
@@ -96,13 +86,7 @@ fn times<'a>(entries: &[Entry<'a>]) -> Html {
             |line: &Line<'a>| Some(straight(line)?.slope * 1e6),
             significant,
         ),
-        Column::figure(
-            "offset",
-            "ms",
-            Better::Less,
-            |line: &Line<'a>| Some(straight(line)?.offset),
-            significant,
-        ),
+        Column::ms("offset", |line: &Line<'a>| Some(straight(line)?.offset)),
         Column::figure(
             "R\u{b2}",
             "",
@@ -118,7 +102,7 @@ fn times<'a>(entries: &[Entry<'a>]) -> Html {
             significant,
         ),
     ]);
-    let row = |line: Line<'a>| Row::new(line.0.to_string(), line);
+    let row = |line: Line<'a>| Row::new(marked_name(entries, line.0), line);
     Table::new("method", columns, lines(entries).into_iter().map(row).collect())
         .competing(|_| false)
         .dotted(|(id, _)| id.class())

@@ -56,11 +56,11 @@ pub(crate) struct Setting<'a> {
 }
 
 impl<'a> Setting<'a> {
-    pub(crate) fn of(id: &'a StrategyId) -> Self {
+    pub(crate) fn read(id: &'a StrategyId) -> Self {
         let options = id.options();
         Self {
             grid: id.size(),
-            slices: id.parameters().get("slices").and_then(serde_json::Value::as_u64),
+            slices: id.sizes().find(|(name, _)| *name == "slices").and_then(|(_, n)| n.as_u64()),
             cones: options.normals.is_some().then(|| options.normals.bins()),
             cut: match options.specular {
                 SpecularCut::None => Cut::None,
@@ -88,7 +88,7 @@ pub(crate) fn setting(id: &StrategyId) -> String {
     if id.role() == Some(Role::Baseline) {
         return "no culling".to_owned();
     }
-    let setting = Setting::of(id);
+    let setting = Setting::read(id);
     let mut text = match setting.cones {
         None if setting.cut == Cut::Diffuse => "diffuse reach".to_owned(),
         None => "position".to_owned(),
@@ -151,7 +151,7 @@ impl<'a> Case<'a> {
 
     /// The record of one setting.
     pub(crate) fn find(&self, wanted: impl Fn(&Setting<'_>) -> bool) -> Option<&'a Record> {
-        self.culled().find(|record| wanted(&Setting::of(&record.strategy)))
+        self.culled().find(|record| wanted(&Setting::read(&record.strategy)))
     }
 
     /// The record by position only, with the usual clusters and the early exit where it is there.
@@ -200,7 +200,7 @@ enum Kind {
 
 impl Kind {
     /// The paper's row that a setting stands beside: cones by its test, and without a loss.
-    fn of(setting: &Setting<'_>) -> Option<Self> {
+    fn beside(setting: &Setting<'_>) -> Option<Self> {
         match (setting.cones, setting.cut) {
             (None, Cut::None) => Some(Self::Position),
             (None, Cut::Diffuse) => Some(Self::Diffuse),
@@ -253,7 +253,7 @@ pub(crate) struct Published {
 
 /// The paper's row of a place, its lights and a setting.
 pub(crate) fn paper(place: &str, lights: u64, setting: &Setting<'_>) -> Option<Published> {
-    let kind = Kind::of(setting)?;
+    let kind = Kind::beside(setting)?;
     let row = PAPER.iter().find(|row| (row.0, row.1, row.2) == (place, lights, kind))?;
     Some(Published { listed: row.3, assign_ms: row.4, shade_ms: row.5 })
 }
@@ -266,7 +266,7 @@ mod tests {
     fn settings_are_read_from_ids() {
         let id = StrategyId::read;
         let cut = id("SC-E/48x48x40/bvh/n54/s0.001");
-        let read = Setting::of(&cut);
+        let read = Setting::read(&cut);
         assert_eq!((read.cones, read.cut), (Some(54), Cut::Below(0.001)));
         assert_eq!(setting(&cut), "54 cones, cut 0.001");
         let plain = id("SC-E/48x48x40/bvh");
@@ -277,7 +277,7 @@ mod tests {
             cut: Cut::None,
             exits: true,
         };
-        assert_eq!(Setting::of(&plain), expected);
+        assert_eq!(Setting::read(&plain), expected);
         assert_eq!(
             (setting(&plain).as_str(), setting(&id("None")).as_str()),
             ("position", "no culling")
@@ -286,9 +286,11 @@ mod tests {
         let published = id("SC-E/80x80x24/n6/cone45/bvh/no-exit");
         assert_eq!(setting(&published), "6 cones, 45\u{b0} test, 80x80x24, no early exit");
         assert_eq!(setting(&id("SC-E/48x48x40/dif/bvh")), "diffuse reach");
-        assert!(Setting::of(&published).is_of_the_paper() && Setting::of(&plain).is_of_the_paper());
+        assert!(
+            Setting::read(&published).is_of_the_paper() && Setting::read(&plain).is_of_the_paper()
+        );
         let one = id("SC-E/48x48x40/n1");
-        assert!(!Setting::of(&one).is_of_the_paper(), "the paper has no one cone");
+        assert!(!Setting::read(&one).is_of_the_paper(), "the paper has no one cone");
     }
 
     #[test]
@@ -299,7 +301,9 @@ mod tests {
         }
         // 54 cones leave out four fifths of what 23,043,487 outer operations are by position.
         let listed = |id| {
-            paper("a", 126, &Setting::of(&StrategyId::read(id))).and_then(|row| row.listed).unwrap()
+            paper("a", 126, &Setting::read(&StrategyId::read(id)))
+                .and_then(|row| row.listed)
+                .unwrap()
         };
         let [position, cones, inner] =
             ["SC-E/48x48x40", "SC-E/48x48x40/n54/cone45", "SC-E/48x48x40/dif"].map(listed);

@@ -6,17 +6,18 @@ use crate::report::format::significant;
 use crate::report::markup::Html;
 use crate::results::{Operations, Record};
 use crate::study::endless::cases::{Case, seen, setting};
-use crate::study::page::figure::Charts;
+use crate::study::page::figure::{Charts, time_bar};
 
 /// The charts that a case has figures for.
 pub(crate) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Html {
     let slug = |what: &str| format!("{scene}-{}-{}-{what}", case.place, case.lights);
     let culled: Vec<&Record> = case.culled().collect();
     let mut html = Html::default();
+    let bar = |record: &&Record| time_bar(setting(&record.strategy), String::new(), record);
     let times = BarChart {
         title: "Assign and shade by cones".to_owned(),
         axis: axis("Assign + shade", "ms"),
-        rows: culled.iter().map(|record| time(record)).collect(),
+        rows: culled.iter().map(bar).collect(),
         note: String::new(),
     };
     html += charts.bars(&slug("times"), &times);
@@ -39,30 +40,7 @@ pub(crate) fn charts_of(case: &Case<'_>, scene: &str, charts: &mut Charts) -> Ht
 }
 
 fn axis(label: &str, unit: &str) -> Axis {
-    Axis { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::LinearFromZero }
-}
-
-fn time(record: &Record) -> BarRow {
-    let part = |name: &str, class: &str, value| Segment {
-        name: name.to_owned(),
-        class: class.to_owned(),
-        value,
-    };
-    BarRow {
-        name: setting(&record.strategy),
-        class: String::new(),
-        segments: vec![
-            part("assign", "pass-assign-0", record.times.assign_ms),
-            part("shade", "pass-shade-0", record.times.shade_ms),
-        ],
-        value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
-        tip: format!(
-            "{}\nassign {} ms\nshade {} ms",
-            record.strategy,
-            significant(record.times.assign_ms),
-            significant(record.times.shade_ms)
-        ),
-    }
+    Axis::new(label, unit, Scale::LinearFromZero)
 }
 
 /// Bars of a figure of operations; `None` where none were counted.

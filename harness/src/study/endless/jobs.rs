@@ -113,8 +113,8 @@ pub(crate) fn jobs(
         }
         if count == many {
             let ruled = ["--influence", INFLUENCE, "--cut", "hard", "--unbounded"];
-            let own = [&["--replicate", side, "--camera", "path:0/12"], &ruled[..]].concat();
-            add("influence", count, &published(&extent, size).join(","), &own);
+            let options = [&["--replicate", side, "--camera", "path:0/12"], &ruled[..]].concat();
+            add("influence", count, &published(&extent, size).join(","), &options);
         }
     }
     Ok(jobs)

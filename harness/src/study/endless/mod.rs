@@ -7,56 +7,19 @@ mod claims;
 mod jobs;
 mod page;
 
-use super::{
-    claims::Paper,
-    job::Job,
-    manifest::Done,
-    page::{figure::Charts, part::Part, shots::Shots},
-    scene::StudyScene,
-    slice::Study,
-};
-use crate::{bench::Bench, cli::StudyArgs, error::HarnessError};
+use super::slice::Study;
+use crate::report::markup::Html;
 
 /// The study of many polygon lights.
-pub(crate) struct Endless;
-
-impl Study for Endless {
-    fn name(&self) -> &'static str {
-        "endless"
-    }
-
-    fn answers(&self) -> &'static str {
-        "What normal cones gain under many polygon lights: light operations and times"
-    }
-
-    fn jobs(
-        &self,
-        bench: &mut Bench,
-        args: &StudyArgs,
-        scene: &StudyScene,
-    ) -> Result<Vec<Job>, HarnessError> {
-        jobs::jobs(bench, args, scene)
-    }
-
-    fn headline(&self, done: &Done) -> Option<String> {
-        page::headline(done)
-    }
-
-    fn findings(&self, done: &Done, scene: &str) -> Vec<String> {
-        page::findings(done, scene)
-    }
-
-    fn parts(
-        &self,
-        done: &Done,
-        scene: &str,
-        charts: &mut Charts,
-        shots: &mut Shots<'_>,
-    ) -> Vec<Part> {
-        page::places(done, scene, charts, shots)
-    }
-
-    fn paper(&self) -> &'static Paper {
-        &claims::PAPER
-    }
-}
+pub(crate) const STUDY: Study = Study {
+    name: "endless",
+    answers: "What normal cones gain under many polygon lights: light operations and times",
+    jobs: jobs::jobs,
+    after_run: |_| Ok(()),
+    headline: page::headline,
+    findings: page::findings,
+    parts: page::places,
+    overall: |_| Html::default(),
+    paper: &claims::PAPER,
+    notices: |_| Vec::new(),
+};

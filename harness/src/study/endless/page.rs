@@ -59,7 +59,7 @@ pub(crate) fn places(
 
 /// A picture of the view.
 fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
-    let key = case.entries.iter().find_map(|Entry { job, record }| {
+    let key = case.entries.iter().find_map(|Entry { job, record, .. }| {
         shots.file(&job.name, record.image.files.baseline.as_deref()?)
     });
     let Some(key) = key else { return Html::default() };
@@ -74,7 +74,9 @@ fn view(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
 /// The paper's table with ours.
 fn operations<'a>(case: &'a Case<'a>) -> Html {
     let rows = case.entries.iter();
-    let row = |entry: &'a Entry<'a>| Row::new(setting(&entry.record.strategy), entry.record);
+    let row = |entry: &'a Entry<'a>| {
+        Row::new(setting(&entry.record.strategy) + entry.mark(), entry.record)
+    };
     let columns = [terms(case), times(case), errors()].into_iter().flatten();
     Table::new("cones", columns, rows.map(row).collect())
         .competing(|_| false)
@@ -110,15 +112,9 @@ fn terms<'a>(case: &'a Case<'a>) -> Vec<Column<'a, &'a Record>> {
 
 /// Columns of times, with the paper's.
 fn times<'a>(case: &'a Case<'a>) -> Vec<Column<'a, &'a Record>> {
-    let ms = |head, own: fn(&Record) -> f64, paper: fn(&Published) -> f64| {
-        Column::figure(
-            head,
-            "ms",
-            Better::Less,
-            move |record: &&Record| Some(own(record)),
-            significant,
-        )
-        .note(move |record| beside(of_the_paper(case, record).as_ref().map(paper), significant))
+    let ms = |head, time: fn(&Record) -> f64, paper: fn(&Published) -> f64| {
+        Column::ms(head, move |record: &&Record| Some(time(record)))
+            .note(move |record| beside(of_the_paper(case, record).as_ref().map(paper), significant))
     };
     vec![
         ms("assign", |record| record.times.assign_ms, |paper| paper.assign_ms),
@@ -149,7 +145,7 @@ fn beside<T>(paper: Option<T>, show: fn(T) -> String) -> Html {
 
 /// The paper's figures of a setting, where they stand beside it.
 fn of_the_paper(case: &Case<'_>, record: &Record) -> Option<Published> {
-    let setting = Setting::of(&record.strategy);
+    let setting = Setting::read(&record.strategy);
     stands_for_the_paper(case, record).then(|| paper(case.place, case.lights, &setting)).flatten()
 }
 
@@ -160,14 +156,14 @@ fn stands_for_the_paper(case: &Case<'_>, record: &Record) -> bool {
         let is_test = matches!(setting.cut, Cut::ConeTest(_));
         (is_test, setting.slices == Some(PAPER_SLICES), !setting.exits)
     };
-    let own = Setting::of(&record.strategy);
+    let setting = Setting::read(&record.strategy);
     let kind = |setting: &Setting<'_>| (setting.cones, setting.cut == Cut::Diffuse);
     let is_better = |other: &Record| {
-        let other = Setting::of(&other.strategy);
+        let other = Setting::read(&other.strategy);
         let is_published = !matches!(other.cut, Cut::Below(_)) && other.slices != Some(HALF_SLICES);
-        kind(&other) == kind(&own) && is_published && faith(&other) > faith(&own)
+        kind(&other) == kind(&setting) && is_published && faith(&other) > faith(&setting)
     };
-    record.culls() && own.slices != Some(HALF_SLICES) && !case.culled().any(is_better)
+    record.culls() && setting.slices != Some(HALF_SLICES) && !case.culled().any(is_better)
 }
 
 /// Terms that would be seen and that a lossy setting loses: a number, or the least that it may be.
@@ -188,7 +184,7 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
 /// rows are not asked for.
 fn usual<'a>(case: &Case<'a>) -> impl Iterator<Item = &'a Record> {
     let is_usual = |record: &&Record| {
-        let setting = Setting::of(&record.strategy);
+        let setting = Setting::read(&record.strategy);
         setting.grid == USUAL && setting.exits
     };
     case.culled().filter(is_usual)
@@ -201,14 +197,14 @@ fn fastest<'a>(all: impl Iterator<Item = &'a Record>) -> Option<&'a Record> {
 
 /// The verb of a setting.
 fn takes(record: &Record) -> &'static str {
-    match Setting::of(&record.strategy).cones {
+    match Setting::read(&record.strategy).cones {
         Some(cones) if cones > 1 => "take",
         _ => "takes",
     }
 }
 
 fn is_of_the_paper(record: &&Record) -> bool {
-    Setting::of(&record.strategy).is_of_the_paper()
+    Setting::read(&record.strategy).is_of_the_paper()
 }
 
 fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
@@ -272,7 +268,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         let Some(position) = case.position().filter(|record| competes(record)) else { continue };
         let cones: Vec<&Record> = usual(&case)
             .filter(is_of_the_paper)
-            .filter(|record| competes(record) && Setting::of(&record.strategy).cones.is_some())
+            .filter(|record| competes(record) && Setting::read(&record.strategy).cones.is_some())
             .collect();
         if cones.is_empty() {
             continue;

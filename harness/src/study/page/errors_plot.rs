@@ -100,9 +100,9 @@ impl Plot<'_> {
         }
         let mut series = Vec::new();
         for (ix, (name, class, shape)) in names.iter().enumerate() {
-            let of = |on: bool| {
-                let own = known.iter().filter(|(known, _, _)| known == name);
-                let mut points: Vec<Point> = own
+            let points_of = |on: bool| {
+                let of_series = known.iter().filter(|(known, _, _)| known == name);
+                let mut points: Vec<Point> = of_series
                     .filter(|(_, _, point)| best.contains(&(point.x, point.y)) == on)
                     .map(|(_, _, point)| point.clone())
                     .collect();
@@ -121,8 +121,8 @@ impl Plot<'_> {
                 shape: Some(shape.unwrap_or(ix)),
                 ..Series::default()
             };
-            series.push(Series { points: of(false), faded: true, ..like.clone() });
-            series.push(Series { points: of(true), ..like.clone() });
+            series.push(Series { points: points_of(false), faded: true, ..like.clone() });
+            series.push(Series { points: points_of(true), ..like.clone() });
             let line = Marks::Line;
             series.push(Series { points: curve, faded: true, marks: line, ..like });
         }

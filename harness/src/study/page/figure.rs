@@ -1,9 +1,12 @@
-//! Charts with their files, choices between panels, and tables.
+//! Charts with their files, and choices between panels.
 
-use crate::chart::{BarChart, Histogram, XyChart, histograms_svg, histograms_svg_file};
-use crate::report::markup::{Html, html, with_names_whole};
+use crate::chart::{
+    BarChart, BarRow, Histogram, Segment, XyChart, histograms_svg, histograms_svg_file,
+};
+use crate::report::format::significant;
+use crate::report::markup::{Html, html};
 use crate::report::panels::{self, Panel};
-use crate::strategy::StrategyId;
+use crate::results::Record;
 
 /// The charts of a page. Each is drawn twice: once for the page, and once for a separate file.
 #[derive(Default)]
@@ -65,47 +68,27 @@ pub(crate) fn panels(label: &str, panels: &[(String, Html)]) -> Html {
     panels::panels(label, &Html::default(), &panels)
 }
 
-/// The head of a column with its unit in small.
-pub(crate) fn unit(head: &str, unit: &str) -> Html {
-    html!("{} <span class=\"unit\">{}</span>", head, unit)
-}
-
-/// Words in a separate column, which is wider than a column of figures.
-pub(crate) fn words(text: &str) -> Html {
-    html!("<span class=\"words\">{}</span>", text)
-}
-
-/// A table: the first cell of a row is its heading, the others are figures. Cells are text, or HTML that a
-/// trusted builder made.
-pub(crate) fn table<H, C>(label: &str, heads: &[H], rows: &[Vec<C>]) -> Html
-where
-    H: Clone + Into<Html>,
-    C: Clone + Into<Html>,
-{
-    let head = |head: &H| html!("<th scope=\"col\">{}</th>", head.clone().into());
-    let heads: Html = heads.iter().map(head).collect();
-    let mut body = Html::default();
-    for row in rows {
-        let Some((name, cells)) = row.split_first() else { continue };
-        let cells: Html =
-            cells.iter().map(|cell| html!("<td>{}</td>", cell.clone().into())).collect();
-        body += html!("<tr><th scope=\"row\">{}</th>{}</tr>\n", name.clone().into(), cells);
+/// A bar of the time to assign and to shade, with both parts in its tip.
+pub(crate) fn time_bar(name: String, class: String, record: &Record) -> BarRow {
+    let part = |name: &str, class: &str, value| Segment {
+        name: name.to_owned(),
+        class: class.to_owned(),
+        value,
+    };
+    let (assign_ms, shade_ms) = (record.times.assign_ms, record.times.shade_ms);
+    BarRow {
+        name,
+        class,
+        segments: vec![
+            part("assign", "pass-assign-0", assign_ms),
+            part("shade", "pass-shade-0", shade_ms),
+        ],
+        value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
+        tip: format!(
+            "{}\nassign {} ms\nshade {} ms",
+            record.strategy,
+            significant(assign_ms),
+            significant(shade_ms)
+        ),
     }
-    html!(
-        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\">\
-         <table class=\"figures\"><thead><tr>{1}</tr></thead>\n<tbody>\n{2}</tbody></table></div>\n",
-        label,
-        heads,
-        body
-    )
-}
-
-/// A name with the dot of its colour.
-pub(crate) fn dotted(class: &str, name: impl Into<Html>) -> Html {
-    html!("<i class=\"dot {}\"></i>{}", class, name.into())
-}
-
-/// A strategy's name with the dot of its colour.
-pub(crate) fn name(id: &str) -> Html {
-    dotted(&StrategyId::read(id).class(), with_names_whole(id))
 }

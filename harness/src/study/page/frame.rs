@@ -41,13 +41,14 @@ pub(crate) struct Page {
 }
 
 /// Draws the page of the jobs that are done.
-pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
+pub(crate) fn page(study: &Study, done: &Done) -> Page {
     let mut charts = Charts::default();
     let mut shots = Shots::new(done);
     let mut body = Html::default();
     let scenes = done.scenes();
-    let found: Vec<Vec<String>> = scenes.iter().map(|scene| study.findings(done, scene)).collect();
-    let mut words: Vec<String> = study.headline(done).into_iter().collect();
+    let found: Vec<Vec<String>> =
+        scenes.iter().map(|scene| (study.findings)(done, scene)).collect();
+    let mut words: Vec<String> = (study.headline)(done).into_iter().collect();
     let headline = words.first().cloned().unwrap_or_else(|| "Nothing is done yet.".to_owned());
     words.extend(found.iter().flatten().cloned());
     // Of several scenes, each lists its findings in its own section, and its first one at the top.
@@ -57,7 +58,7 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
         found.iter().flat_map(|texts| texts.iter().take(most)).cloned().collect();
     let mut sections: Vec<Html> = Vec::new();
     for (scene, texts) in scenes.iter().copied().zip(&found) {
-        let mut parts = study.parts(done, scene, &mut charts, &mut shots);
+        let mut parts = (study.parts)(done, scene, &mut charts, &mut shots);
         parts.retain(|part| !part.body.is_empty());
         if !parts.is_empty() {
             let texts = if several { page::paragraphs("said", texts) } else { Html::default() };
@@ -66,12 +67,12 @@ pub(crate) fn page(study: &dyn Study, done: &Done) -> Page {
     }
     body += legend(done);
     if !done.results.is_empty() {
-        let claims = claims::judge(done, study.paper());
-        body += claims::claims_html(study.paper(), &claims, is_software(done));
+        let claims = claims::judge(done, study.paper);
+        body += claims::claims_html(study.paper, &claims, is_software(done));
         words.extend(claims.iter().map(claims::Claim::text));
     }
     body += sections.into_iter().collect();
-    body += study.overall(done);
+    body += (study.overall)(done);
     body += shots.templates();
     let notices = notices(study, done, shots.left_out);
     words.extend(notices.iter().cloned());
@@ -190,7 +191,7 @@ fn is_software(done: &Done) -> bool {
 }
 
 /// What a reader must know before trusting a figure.
-fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<String> {
+fn notices(study: &Study, done: &Done, pictures_left_out: usize) -> Vec<String> {
     let mut notices = Vec::new();
     let missing = done.missing();
     if !missing.is_empty() {
@@ -233,7 +234,7 @@ fn notices(study: &dyn Study, done: &Done, pictures_left_out: usize) -> Vec<Stri
         }
         notices.extend(results.warnings.iter().map(|warning| format!("{job}: {warning}")));
     }
-    notices.extend(study.notices(done));
+    notices.extend((study.notices)(done));
     if pictures_left_out > 0 {
         notices.push(format!(
             "{pictures_left_out} pictures would make this page too large; they are in the folders \

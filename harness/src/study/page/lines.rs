@@ -23,8 +23,8 @@ pub(crate) fn times_series(
     time: Time,
     marks: Marks,
 ) -> Series {
-    let points = points(id, records, time);
-    Series { name: id.short(), class: id.class(), marks, points, ..Series::default() }
+    let points = points(id.as_str(), records, time);
+    Series::new(id.short(), id.class(), marks, points)
 }
 
 /// Times against lights, with the name of what took them.
@@ -41,4 +41,17 @@ pub(crate) fn points(name: &str, records: &[&Record], time: Time) -> Vec<Point> 
         }
     };
     records.iter().map(point).collect()
+}
+
+/// A line through points, each with a tip that names the units of both figures.
+pub(crate) fn tipped_line(
+    name: &str,
+    class: &str,
+    [x_unit, y_unit]: [&str; 2],
+    points: impl Iterator<Item = (f64, f64)>,
+) -> Series {
+    let point = |(x, y): (f64, f64)| {
+        Point::new(x, y, format!("{name}\n{} {x_unit}\n{} {y_unit}", number(x), significant(y)))
+    };
+    Series::new(name, class, Marks::LineAndPoints, points.map(point).collect())
 }

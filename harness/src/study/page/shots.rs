@@ -10,6 +10,7 @@ use image::{ImageFormat, ImageReader, imageops::FilterType};
 use serde_json::{Map, Value, json};
 use shading::HdrImage;
 
+use crate::digits::rounded;
 use crate::report::format::{difference, significant};
 use crate::report::markup::{Html, html};
 use crate::report::picture_pair::{PicturePair, verdict};
@@ -67,7 +68,7 @@ impl<'a> Shots<'a> {
 
     /// Keeps the pictures of a record; returns the key by which the page opens them, if there are any.
     pub(crate) fn keep(&mut self, entry: Entry<'_>, wanted: Wanted) -> Option<String> {
-        let Entry { job, record } = entry;
+        let Entry { job, record, .. } = entry;
         let images = &record.image.files;
         let image = match wanted {
             // Under the exposure of the truth, as the truth itself.
@@ -102,7 +103,9 @@ impl<'a> Shots<'a> {
             Wanted::Truth => &record.image.truth_errors,
         };
         let name = match wanted {
-            Wanted::Truth => record.setting.area_model.as_deref().unwrap_or(&record.strategy),
+            Wanted::Truth => {
+                record.setting.area_model.as_deref().unwrap_or(record.strategy.as_str())
+            }
             _ => record.strategy.as_str(),
         };
         let pair = PicturePair {
@@ -217,7 +220,7 @@ fn viewer(record: &Record, pair: &PicturePair<'_>, errors: &Errors) -> Html {
     let threshold = record
         .setting
         .threshold
-        .map_or_else(String::new, |threshold| format!(", threshold {threshold}"));
+        .map_or_else(String::new, |threshold| format!(", threshold {}", rounded(threshold)));
     let mut figures = html!("<li>{} ms</li>", significant(record.assign_and_shade_ms()));
     for (id, error) in errors {
         if let Some(error) = error.filter(|error| error.is_finite()) {

@@ -5,7 +5,7 @@ use crate::report::format::{percent, significant};
 use crate::report::rank::ALIKE;
 use crate::results::Record;
 use crate::study::area::page::models::{SPOTS, model};
-use crate::study::claims::{Answer, Check, Verdict};
+use crate::study::claims::{Answer, Check, Tally, Verdict};
 use crate::study::data::entries;
 use crate::study::manifest::Done;
 
@@ -69,20 +69,15 @@ pub(crate) fn by_lights(
     models: [&str; 2],
     judge: impl Fn(&Record, &Record) -> (String, bool),
 ) -> Answer {
-    let (mut figures, mut good) = (Vec::new(), 0);
+    let mut tally = Tally::default();
     for lights in [16, 64] {
         let [Some(first), Some(second)] = models.map(|model| at(done, scene, model, lights)) else {
             continue;
         };
         let (figure, bears_out) = judge(first, second);
-        figures.push(format!("{lights} lights: {figure}"));
-        good += usize::from(bears_out);
+        tally.add(bears_out, format!("{lights} lights: {figure}"));
     }
-    if figures.is_empty() {
-        return Answer::unknown(&format!("{} at 16 or 64 lights", models.join(" and ")));
-    }
-    let verdict = Verdict::of_parts(good, figures.len(), "counts of lights");
-    Answer { figure: figures.join("; "), verdict }
+    tally.answer("counts of lights", &format!("{} at 16 or 64 lights", models.join(" and ")))
 }
 
 pub(crate) const ONE_LIGHT: Check = Check {
@@ -93,17 +88,17 @@ pub(crate) const ONE_LIGHT: Check = Check {
     departure: "one stochastic sample takes the third place. MRP is mrp-published, our reading of \
                 equation 5.5",
     decide: |done, scene| {
-        let of = |name: &str| at(done, scene, name, 1);
-        let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
+        let record = |name: &str| at(done, scene, name, 1);
+        let (Some(mrp), Some(ltc)) = (record("mrp-published"), record("ltc")) else {
             return Answer::unknown("mrp-published and ltc for one light");
         };
         let mut figure = format!("MRP {}, LTC {}", time(mrp), time(ltc));
         let mut parts = vec![faster(mrp, ltc)];
-        if let Some(other) = of(&stochastic(1)) {
+        if let Some(other) = record(&stochastic(1)) {
             figure += &format!(", one sample {}", time(other));
             parts.push(faster(ltc, other));
         }
-        if let Some(own) = of("mrp") {
+        if let Some(own) = record("mrp") {
             figure += &format!("; mrp {}", time(own));
         }
         let good = parts.iter().filter(|part| **part == Faster::First).count();
@@ -124,8 +119,8 @@ pub(crate) const MRP_GAIN: Check = Check {
     decide: |done, scene| {
         let (mut figures, mut parts) = (Vec::new(), Vec::new());
         for (lights, least) in GAINS {
-            let of = |name| at(done, scene, name, lights);
-            let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else { continue };
+            let record = |name| at(done, scene, name, lights);
+            let (Some(mrp), Some(ltc)) = (record("mrp-published"), record("ltc")) else { continue };
             let gain = 1.0 - mrp.times.frame_ms / ltc.times.frame_ms;
             let shading = 1.0 - mrp.times.shade_ms / ltc.times.shade_ms;
             let mut figure = format!(
@@ -135,7 +130,7 @@ pub(crate) const MRP_GAIN: Check = Check {
                 significant(ltc.times.frame_ms),
                 percent(shading)
             );
-            if let Some(own) = of("mrp") {
+            if let Some(own) = record("mrp") {
                 figure +=
                     &format!(", mrp {} %", percent(1.0 - own.times.shade_ms / ltc.times.shade_ms));
             }
@@ -179,8 +174,10 @@ pub(crate) const LIGHTS_OR_SAMPLES: Check = Check {
     paper: "a figure without numbers",
     departure: "compared with 16 lights and one sample",
     decide: |done, scene| {
-        let of = |samples, lights| at(done, scene, &stochastic(samples), lights);
-        let (Some(base), Some(samples), Some(lights)) = (of(1, 16), of(4, 16), of(1, 64)) else {
+        let record = |samples, lights| at(done, scene, &stochastic(samples), lights);
+        let (Some(base), Some(samples), Some(lights)) =
+            (record(1, 16), record(4, 16), record(1, 64))
+        else {
             return Answer::unknown("1 and 4 samples at 16 lights, 1 at 64");
         };
         let figure = format!(
@@ -229,9 +226,10 @@ pub(crate) const FASTER: Check = Check {
     departure: "the stochastic algorithm has 4 samples. MRP is mrp-published, our reading of \
                 equation 5.5",
     decide: |done, scene| {
-        let of = |name: &str| at(done, scene, name, 64);
-        let stochastic = of(&stochastic(4));
-        let (Some(mrp), Some(ltc), Some(other)) = (of("mrp-published"), of("ltc"), stochastic)
+        let record = |name: &str| at(done, scene, name, 64);
+        let stochastic = record(&stochastic(4));
+        let (Some(mrp), Some(ltc), Some(other)) =
+            (record("mrp-published"), record("ltc"), stochastic)
         else {
             return Answer::unknown("the three algorithms at 64 lights");
         };

@@ -8,8 +8,8 @@ use crate::results::Record;
 use crate::strategy::Options;
 use crate::study::against_truth::MODELS;
 use crate::study::area::jobs::BOUNDS;
-use crate::study::area::page::models::model;
-use crate::study::claims::{Answer, Check, Verdict};
+use crate::study::area::page::models::{family as family_of, model, samples};
+use crate::study::claims::{Answer, Check, Tally, Verdict};
 use crate::study::data::entries;
 use crate::study::manifest::Done;
 
@@ -24,23 +24,41 @@ pub(crate) fn error_of(done: &Done, scene: &str, wanted: &str, metric: &str) -> 
     of_model(done, scene, wanted)?.image.truth_errors.get(metric).copied().flatten()
 }
 
+/// Judges a claim by the FLIP of two models against the truth, each with the label that the figure gives it.
+pub(crate) fn by_flip(
+    done: &Done,
+    scene: &str,
+    models: [(&str, &str); 2],
+    missing: &str,
+    judge: impl FnOnce(f64, f64) -> Verdict,
+) -> Answer {
+    let [Some(first), Some(second)] = models.map(|(model, _)| error_of(done, scene, model, "flip"))
+    else {
+        return Answer::unknown(missing);
+    };
+    let told = models.iter().zip([first, second]);
+    let told = told.map(|((_, label), error)| format!("{label} {}", difference(error)));
+    let figure = format!("FLIP: {}", told.collect::<Vec<_>>().join(", "));
+    Answer { figure, verdict: judge(first, second) }
+}
+
 /// Numbers of samples of a family of models, ascending, with an error of each.
 fn by_samples(done: &Done, scene: &str, family: &str, metric: &str) -> Vec<(u32, f64)> {
     let all = entries(done, scene, MODELS);
     let mut found: Vec<(u32, f64)> = all
         .iter()
         .filter_map(|entry| {
-            let (name, samples) = model(entry.record).split_once(':')?;
+            let model = model(entry.record);
             let error = entry.record.image.truth_errors.get(metric).copied().flatten()?;
-            (name == family).then_some((samples.parse().ok()?, error))
+            Some((samples(model)?, error)).filter(|_| family_of(model) == family)
         })
         .collect();
     found.sort_by_key(|(samples, _)| *samples);
     found
 }
 
-const UNIFORM: &str = "monte-carlo";
-const REFLECTED: &str = "monte-carlo-reflected";
+pub(crate) const UNIFORM: &str = "monte-carlo";
+pub(crate) const REFLECTED: &str = "monte-carlo-reflected";
 
 pub(crate) const BALLS: Check = Check {
     id: "balls",
@@ -51,7 +69,7 @@ pub(crate) const BALLS: Check = Check {
                 box. We compare lists of clusters and tiles, not volumes",
     decide: |done, scene| {
         let all = entries(done, scene, BOUNDS);
-        let (mut figures, mut good, mut count) = (Vec::new(), 0, 0);
+        let mut tally = Tally::default();
         for ball in all.iter().map(|entry| entry.record) {
             let by_outline = |options: &mut Options| options.area_bounds = AreaBounds::Outline;
             let Ok(id) = ball.strategy.with(by_outline) else { continue };
@@ -60,23 +78,18 @@ pub(crate) const BALLS: Check = Check {
             }
             let outline = all.iter().map(|entry| entry.record).find(|r| r.strategy == id);
             let Some(outline) = outline.filter(|record| record.lists.entries > 0) else { continue };
-            count += 1;
-            good += usize::from(ball.lists.entries > outline.lists.entries);
             let time = Ratio::between(ball, outline).map_or_else(String::new, |ratio| {
                 let tie = if ratio.is_tie() { " (a tie)" } else { "" };
                 format!(", \u{d7} {} in assign + shade{tie}", significant(ratio.median))
             });
-            figures.push(format!(
+            let figure = format!(
                 "{} by spheres: \u{d7} {} list entries{time}",
                 outline.strategy.short(),
                 significant(ball.lists.entries as f64 / outline.lists.entries as f64)
-            ));
+            );
+            tally.add(ball.lists.entries > outline.lists.entries, figure);
         }
-        if count == 0 {
-            return Answer::unknown("lists by spheres and by outlines");
-        }
-        let verdict = Verdict::of_parts(good, count, "strategies");
-        Answer { figure: figures.join("; "), verdict }
+        tally.answer("strategies", "lists by spheres and by outlines")
     },
 };
 
@@ -178,8 +191,8 @@ pub(crate) const FRESNEL: Check = Check {
     paper: "only pictures of curtains and banners",
     departure: "missing energy is that of both terms. mrp-published is our reading of equation 5.5",
     decide: |done, scene| {
-        let of = |name| error_of(done, scene, name, "missing_energy");
-        let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
+        let error = |name| error_of(done, scene, name, "missing_energy");
+        let (Some(mrp), Some(ltc)) = (error("mrp-published"), error("ltc")) else {
             return Answer::unknown("mrp-published");
         };
         let figure =
@@ -199,18 +212,18 @@ pub(crate) const MRP_FLIP: Check = Check {
                 specular light open, and our reading makes it far too bright. mrp has derived \
                 weights. The claim is decided only where both agree",
     decide: |done, scene| {
-        let of = |name| error_of(done, scene, name, "flip");
-        let (Some(mrp), Some(ltc)) = (of("mrp-published"), of("ltc")) else {
+        let error = |name| error_of(done, scene, name, "flip");
+        let (Some(mrp), Some(ltc)) = (error("mrp-published"), error("ltc")) else {
             return Answer::unknown("mrp-published");
         };
         let mut figure =
             format!("FLIP: mrp-published {}, ltc {}", difference(mrp), difference(ltc));
         for other in ["mrp", "point"] {
-            if let Some(error) = of(other) {
+            if let Some(error) = error(other) {
                 figure += &format!(", {other} {}", difference(error));
             }
         }
-        let verdict = match (mrp > ltc, of("mrp").map(|derived| derived > ltc)) {
+        let verdict = match (mrp > ltc, error("mrp").map(|derived| derived > ltc)) {
             (true, Some(true)) => Verdict::Holds,
             (false, Some(false)) => Verdict::Fails,
             (published, _) => {

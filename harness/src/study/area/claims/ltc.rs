@@ -4,7 +4,8 @@ use shading::ltc::{POLYNOMIAL_COMPONENTS, Polynomial, Table};
 
 use crate::report::format::{difference, significant};
 use crate::study::area::claims::cost::{Faster, at, by_lights, faster, time};
-use crate::study::area::claims::errors::error_of;
+use crate::study::area::claims::errors::{REFLECTED, UNIFORM, by_flip, error_of};
+use crate::study::area::page::models::family;
 use crate::study::claims::{Answer, Check, Verdict};
 use crate::study::manifest::Done;
 
@@ -19,25 +20,18 @@ pub(crate) const TABLES: Check = Check {
     paper: "FLIP 0.39606 and 0.39435; LPIPS 0.20339 and 0.20316",
     departure: "no LPIPS. \u{201c}Nearly equal\u{201d} means within 1 %",
     decide: |done, scene| {
-        let of = |name| error_of(done, scene, name, "flip");
-        let (Some(engine), Some(exact)) = (of("ltc-hammon"), of("ltc")) else {
-            return Answer::unknown("both tables");
-        };
-        let figure = format!(
-            "FLIP: engine\u{2019}s (ltc-hammon) {}, exact (ltc) {}",
-            difference(engine),
-            difference(exact)
-        );
-        let is_slight = (engine / exact - 1.0).abs() <= HARDLY;
-        let verdict = match (exact <= engine, is_slight) {
-            (true, true) => Verdict::Holds,
-            (true, false) => Verdict::Differs("the exact one is clearly nearer".to_owned()),
-            (false, true) => {
-                Verdict::Differs("nearly equal; the engine\u{2019}s is nearer".to_owned())
+        let models = [("ltc-hammon", "engine\u{2019}s (ltc-hammon)"), ("ltc", "exact (ltc)")];
+        by_flip(done, scene, models, "both tables", |engine, exact| {
+            let is_slight = (engine / exact - 1.0).abs() <= HARDLY;
+            match (exact <= engine, is_slight) {
+                (true, true) => Verdict::Holds,
+                (true, false) => Verdict::Differs("the exact one is clearly nearer".to_owned()),
+                (false, true) => {
+                    Verdict::Differs("nearly equal; the engine\u{2019}s is nearer".to_owned())
+                }
+                (false, false) => Verdict::Fails,
             }
-            (false, false) => Verdict::Fails,
-        };
-        Answer { figure, verdict }
+        })
     },
 };
 
@@ -69,16 +63,10 @@ pub(crate) const POLYNOMIAL_IMAGE: Check = Check {
     paper: "root mean square error below 0.01",
     departure: "the two images are not compared with each other, only with the truth",
     decide: |done, scene| {
-        let of = |name| error_of(done, scene, name, "flip");
-        let (Some(polynomial), Some(table)) = (of("ltc-polynomial"), of("ltc")) else {
-            return Answer::unknown("polynomials and the table");
-        };
-        let figure = format!(
-            "FLIP against the truth: polynomials {}, table {}",
-            difference(polynomial),
-            difference(table)
-        );
-        Answer { figure, verdict: Verdict::unmeasured("the difference of the two images") }
+        let models = [("ltc-polynomial", "polynomials"), ("ltc", "table")];
+        by_flip(done, scene, models, "polynomials and the table", |_, _| {
+            Verdict::unmeasured("the difference of the two images")
+        })
     },
 };
 
@@ -132,19 +120,16 @@ pub(crate) const SPLITTING: Check = Check {
     departure: "the lights of the study are at most five times as long as wide. A test of shading \
                 has a light of 1,000 to 1: it shows the noise, and splitting removes it",
     decide: |done, scene| {
-        let of = |name| error_of(done, scene, name, "flip");
-        let (Some(before), Some(after)) = (of("ltc-unsplit"), of("ltc")) else {
-            return Answer::unknown("ltc-unsplit");
-        };
-        let figure = format!("FLIP: unsplit {}, split {}", difference(before), difference(after));
-        let verdict = if before > after * (1.0 + SHOWS) {
-            Verdict::Holds
-        } else if after > before * (1.0 + SHOWS) {
-            Verdict::Fails
-        } else {
-            Verdict::undecided("no edge of this view is long enough")
-        };
-        Answer { figure, verdict }
+        let models = [("ltc-unsplit", "unsplit"), ("ltc", "split")];
+        by_flip(done, scene, models, "ltc-unsplit", |before, after| {
+            if before > after * (1.0 + SHOWS) {
+                Verdict::Holds
+            } else if after > before * (1.0 + SHOWS) {
+                Verdict::Fails
+            } else {
+                Verdict::undecided("no edge of this view is long enough")
+            }
+        })
     },
 };
 
@@ -182,40 +167,33 @@ const MRP: [&str; 2] = ["mrp-published", "mrp"];
 
 /// LTC's FLIP is below that of every other algorithm of the paper, and of uniform samples.
 fn least(done: &Done, scene: &str) -> Answer {
-    let Some(own) = error_of(done, scene, "ltc", "flip") else { return Answer::unknown("ltc") };
-    let mut others: Vec<(String, f64)> = Vec::new();
-    for samples in [2, 8, 32, 4, 16, 64] {
-        for family in ["monte-carlo-reflected", "monte-carlo"] {
-            let name = format!("{family}:{samples}");
-            if let Some(error) = error_of(done, scene, &name, "flip") {
-                others.push((name, error));
-            }
-        }
-    }
-    for name in MRP {
-        let error = error_of(done, scene, name, "flip");
-        others.extend(error.map(|error| (name.to_owned(), error)));
-    }
+    let flip = |model: &str| error_of(done, scene, model, "flip");
+    let Some(ltc) = flip("ltc") else { return Answer::unknown("ltc") };
+    let sampled = [2, 8, 32, 4, 16, 64]
+        .into_iter()
+        .flat_map(|samples| [REFLECTED, UNIFORM].map(|family| format!("{family}:{samples}")));
+    let others: Vec<(String, f64)> = sampled
+        .chain(MRP.map(str::to_owned))
+        .filter_map(|name| flip(&name).map(|error| (name, error)))
+        .collect();
     let Some(nearest) = others.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Answer::unknown("another algorithm");
     };
     let figure = format!(
         "FLIP: ltc {}; least of the others {} {}",
-        difference(own),
+        difference(ltc),
         nearest.0,
         difference(nearest.1)
     );
     let nearer: Vec<&str> =
-        others.iter().filter(|other| other.1 <= own).map(|other| other.0.as_str()).collect();
-    let is_measured = |name: &str| others.iter().any(|(known, _)| known == name);
+        others.iter().filter(|other| other.1 <= ltc).map(|other| other.0.as_str()).collect();
     let by_mrp = MRP.iter().filter(|name| nearer.contains(name)).count();
-    let is_beaten =
-        by_mrp == MRP.len() || nearer.iter().any(|name| name.starts_with("monte-carlo-reflected:"));
+    let is_beaten = by_mrp == MRP.len() || nearer.iter().any(|name| family(name) == REFLECTED);
     let verdict = match (is_beaten, by_mrp, nearer.is_empty()) {
         (true, ..) => Verdict::Fails,
         (false, 1.., _) => Verdict::Differs("MRP is nearer by one of two readings".to_owned()),
         (false, 0, false) => Verdict::Differs(format!("uniform {} is nearer", nearer.join(", "))),
-        (false, 0, true) if MRP.into_iter().all(is_measured) => Verdict::Holds,
+        (false, 0, true) if MRP.into_iter().all(|name| flip(name).is_some()) => Verdict::Holds,
         (false, 0, true) => Verdict::Differs("MRP not measured by both readings".to_owned()),
     };
     Answer { figure, verdict }

@@ -1,14 +1,17 @@
 //! The cost of area lights: times against the number of lights, by model, compared with spots.
 
 use crate::chart::{Axis, Marks, Scale, Series, XyChart};
+use crate::grouping::grouped_by;
+use crate::report::column::{Better, Column};
 use crate::report::finding::lights;
-use crate::report::format::{ABSENT, significant};
+use crate::report::format::significant;
 use crate::report::markup::{Html, html};
+use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::study::area::page::models::{SPOTS, class, model, name};
+use crate::study::area::page::models::{SPOTS, class, model};
 use crate::study::data::{counts, entries};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::figure::Charts;
 use crate::study::page::lines::{fit, points};
 use crate::study::page::part::Part;
 
@@ -21,14 +24,8 @@ type ModelLine<'a> = (&'a str, Vec<&'a Record>);
 
 /// The records of each model, in the order of their lights.
 fn by_model<'a>(done: &'a Done, scene: &'a str) -> Vec<ModelLine<'a>> {
-    let mut lines: Vec<ModelLine<'a>> = Vec::new();
-    for entry in entries(done, scene, "cost") {
-        let own = model(entry.record);
-        match lines.iter_mut().find(|(known, _)| *known == own) {
-            Some((_, records)) => records.push(entry.record),
-            None => lines.push((own, vec![entry.record])),
-        }
-    }
+    let all = entries(done, scene, "cost").into_iter();
+    let mut lines = grouped_by(all.map(|entry| (model(entry.record), entry.record)));
     for (_, records) in &mut lines {
         records.sort_by_key(|record| record.setting.lights);
     }
@@ -41,20 +38,12 @@ pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part
     if lines.is_empty() {
         return None;
     }
-    let series = |(model, records): &ModelLine<'_>| Series {
-        name: (*model).to_owned(),
-        class: class(model),
-        marks: Marks::LineAndPoints,
-        points: points(model, records, shade),
-        ..Series::default()
+    let series = |(model, records): &ModelLine<'_>| {
+        Series::new(*model, class(model), Marks::LineAndPoints, points(model, records, shade))
     };
-    let chart = XyChart {
-        title: "Shading time against lights, by model".to_owned(),
-        x: Axis { label: "Lights".to_owned(), unit: String::new(), scale: Scale::Log },
-        y: Axis { label: "Shade".to_owned(), unit: "ms".to_owned(), scale: Scale::Log },
-        series: lines.iter().map(series).collect(),
-        note: String::new(),
-    };
+    let axes = [Axis::new("Lights", "", Scale::Log), Axis::new("Shade", "ms", Scale::Log)];
+    let title = "Shading time against lights, by model";
+    let chart = XyChart::new(title, axes, lines.iter().map(series).collect());
     let body = charts.xy(&format!("{scene}-cost"), &chart) + times(done, scene, &lines);
     Some(Part::new(
         "cost",
@@ -67,51 +56,45 @@ pub(crate) fn cost(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part
     ))
 }
 
-fn times(done: &Done, scene: &str, lines: &[ModelLine<'_>]) -> Html {
-    let counts = counts(&entries(done, scene, "cost"));
-    let spots = lines.iter().find(|(own, _)| *own == SPOTS).map(|(_, records)| records);
-    let at = |records: &[&Record], count: u64| {
-        records.iter().find(|record| record.setting.lights == count).map(|record| shade(record))
+/// The time of each model at each count of lights, and the straight line through these times.
+fn times<'a>(done: &Done, scene: &str, lines: &'a [ModelLine<'a>]) -> Html {
+    let spots = lines.iter().find(|(model, _)| *model == SPOTS);
+    let slope = |(_, records): &ModelLine<'_>| {
+        Some(fit(records, shade).filter(|fit| fit.points > 2)?.slope)
     };
-    let slope = |records: &[&Record]| fit(records, shade).filter(|fit| fit.points > 2);
-    let rows: Vec<Vec<Html>> = lines
-        .iter()
-        .map(|(own, records)| {
-            let mut row = vec![name(own)];
-            row.extend(counts.iter().map(|&count| {
-                let Some(time) = at(records, count) else { return ABSENT.into() };
-                match spots.and_then(|spots| at(spots, count)).filter(|_| *own != SPOTS) {
-                    Some(spot) => html!(
-                        "{} <span class=\"unit\">\u{d7} {}</span>",
-                        significant(time),
-                        significant(time / spot)
-                    ),
-                    None => significant(time).into(),
-                }
-            }));
-            let line = slope(records);
-            row.push(
-                line.map_or_else(|| ABSENT.into(), |line| significant(line.slope * 1e3).into()),
-            );
-            let ratio = line.zip(spots.and_then(|spots| slope(spots))).filter(|_| *own != SPOTS);
-            row.push(ratio.map_or_else(
-                || ABSENT.into(),
-                |(line, spot)| significant(line.slope / spot.slope).into(),
-            ));
-            row
+    // A figure of a model over that of spots.
+    let over_spots = |line: &ModelLine<'a>, figure: &dyn Fn(&ModelLine<'a>) -> Option<f64>| {
+        let spots = spots.filter(|_| line.0 != SPOTS)?;
+        Some(figure(line)? / figure(spots)?)
+    };
+    let at = |count: u64| {
+        let time = move |(_, records): &ModelLine<'a>| {
+            records.iter().find(|record| record.setting.lights == count).map(|record| shade(record))
+        };
+        Column::ms(lights(count), move |line: &&ModelLine<'a>| time(line)).note(move |line| {
+            over_spots(line, &time).map_or_else(Html::default, |factor| {
+                html!(" <span class=\"unit\">\u{d7} {}</span>", significant(factor))
+            })
         })
-        .collect();
-    let mut heads: Vec<Html> = vec!["model".into()];
-    heads.extend(counts.iter().map(|count| unit(&lights(*count), "ms")));
-    heads.extend([unit("a light", "\u{b5}s"), "area : spot".into()]);
-    table("Shading times by lights", &heads, &rows)
+    };
+    let mut columns: Vec<_> = counts(&entries(done, scene, "cost")).into_iter().map(at).collect();
+    let per_light = |line: &&ModelLine<'a>| Some(slope(line)? * 1e3);
+    let ratio = |line: &&ModelLine<'a>| over_spots(line, &slope);
+    columns.extend([
+        Column::figure("a light", "\u{b5}s", Better::Less, per_light, significant),
+        Column::figure("area : spot", "", Better::Less, ratio, significant),
+    ]);
+    Table::new("model", columns, lines.iter().map(|line| Row::new(line.0, line)).collect())
+        .competing(|_| false)
+        .dotted(|line| class(line.0))
+        .html("Shading times by lights", Look::Plain)
 }
 
 /// The cost of an area light compared with a spot, at the most lights.
 pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     let lines = by_model(done, scene);
-    let at_most = |own: &str| {
-        let records = &lines.iter().find(|(known, _)| *known == own)?.1;
+    let at_most = |model: &str| {
+        let records = &lines.iter().find(|(known, _)| *known == model)?.1;
         records.last().map(|record| (record.setting.lights, shade(record)))
     };
     let sentence = || {

@@ -11,7 +11,7 @@ use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::error_columns::error_columns;
 use crate::study::page::errors_plot::{FIRST, Plot, frontier};
-use crate::study::page::figure::{Charts, dotted, table, words};
+use crate::study::page::figure::Charts;
 use crate::study::page::part::Part;
 use crate::study::page::shots::{Shots, Wanted};
 
@@ -102,6 +102,11 @@ pub(crate) fn family(model: &str) -> &str {
     model.split(':').next().unwrap_or(model)
 }
 
+/// The samples per light of a model: 16 of `monte-carlo:16`; `None` where it draws none.
+pub(crate) fn samples(model: &str) -> Option<u32> {
+    model.split_once(':')?.1.parse().ok()
+}
+
 /// The class that colours a model.
 pub(crate) fn class(model: &str) -> String {
     let known = FAMILIES.iter().find(|known| known.id == family(model));
@@ -111,11 +116,6 @@ pub(crate) fn class(model: &str) -> String {
 /// A record's model of area lights; spots where it has none.
 pub(crate) fn model(record: &Record) -> &str {
     record.setting.area_model.as_deref().unwrap_or(SPOTS)
-}
-
-/// A model's name with the dot of its colour.
-pub(crate) fn name(model: &str) -> Html {
-    dotted(&class(model), model)
 }
 
 /// An error against the truth, where it is finite.
@@ -152,7 +152,7 @@ pub(crate) fn models(
         class: |record| class(model(record)),
         shape: |_| None,
         name: |record| model(record).to_owned(),
-        label: |record| model(record).split(':').nth(1).unwrap_or_default().to_owned(),
+        label: |record| samples(model(record)).map_or_else(String::new, |count| count.to_string()),
         wanted: Wanted::Truth,
         time: "Shade",
         first: FIRST,
@@ -221,33 +221,28 @@ fn errors_table<'a>(entries: &[Entry<'a>], truth: &'a TruthImage) -> Html {
 }
 
 /// What each model leaves out, and what that comes to here.
-fn words_table(entries: &[Entry<'_>]) -> Html {
-    let rows: Vec<Vec<Html>> = entries
-        .iter()
-        .map(|Entry { record, .. }| {
-            let known = FAMILIES.iter().find(|known| known.id == family(model(record)));
-            let share = |id| error(record, id).map_or_else(|| ABSENT.to_owned(), percent);
-            let measured = format!(
-                "{} % too {} in total; {} % of the light is missing where it is too dark; the \
-                 worst tile is off by {} % of the mean",
-                error(record, "bias").map_or_else(|| ABSENT.to_owned(), |bias| percent(bias.abs())),
-                if error(record, "bias").is_some_and(|bias| bias < 0.0) {
-                    "dark"
-                } else {
-                    "bright"
-                },
-                share("missing_energy"),
-                share("tile"),
-            );
-            vec![
-                name(model(record)),
-                words(known.map_or("", |known| known.about)),
-                words(&measured),
-            ]
-        })
-        .collect();
-    let heads = ["model".into(), words("what it leaves out"), words("measured")];
-    table("What each model gets wrong", &heads, &rows)
+fn words_table<'a>(entries: &[Entry<'a>]) -> Html {
+    let about = |record: &&Record| {
+        let known = FAMILIES.iter().find(|known| known.id == family(model(record)));
+        known.map_or_else(String::new, |known| known.about.to_owned())
+    };
+    let measured = |record: &&Record| {
+        let bias = error(record, "bias");
+        let share = |error: Option<f64>| error.map_or_else(|| ABSENT.to_owned(), percent);
+        format!(
+            "{} % too {} in total; {} % of the light is missing where it is too dark; the worst \
+             tile is off by {} % of the mean",
+            share(bias.map(f64::abs)),
+            if bias.is_some_and(|bias| bias < 0.0) { "dark" } else { "bright" },
+            share(error(record, "missing_energy")),
+            share(error(record, "tile")),
+        )
+    };
+    let columns = [Column::prose("what it leaves out", about), Column::prose("measured", measured)];
+    let row = |entry: &Entry<'a>| Row::new(model(entry.record), entry.record);
+    Table::new("model", columns, entries.iter().map(row).collect())
+        .dotted(|record| class(model(record)))
+        .html("What each model gets wrong", Look::Plain)
 }
 
 /// Names the models on the frontier of time and error, and compares the table with its polynomials.
@@ -280,8 +275,9 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
         "In {scene} no model beats any of these in both time and FLIP: {}.",
         listed(&on)
     )];
-    let of = |wanted: &str| known.iter().find(|(record, _)| model(record) == wanted);
-    if let (Some((table, error)), Some((polynomial, other))) = (of("ltc"), of("ltc-polynomial")) {
+    let find = |wanted: &str| known.iter().find(|(record, _)| model(record) == wanted);
+    if let (Some((table, error)), Some((polynomial, other))) = (find("ltc"), find("ltc-polynomial"))
+    {
         found.push(format!(
             "In {scene} polynomials instead of the table take {} times as long and have a FLIP of \
              {} instead of {}.",
@@ -298,8 +294,8 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
     done.scenes().into_iter().find_map(|scene| {
         let all = entries(done, scene, MODELS);
         let known = all.iter().filter_map(|entry| {
-            let is_sampled = model(entry.record).starts_with("monte-carlo");
-            Some((entry.record, error(entry.record, METRIC)?)).filter(|_| !is_sampled)
+            let has_noise = samples(model(entry.record)).is_some();
+            Some((entry.record, error(entry.record, METRIC)?)).filter(|_| !has_noise)
         });
         let (record, error) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some(format!(
@@ -318,8 +314,8 @@ mod tests {
     #[test]
     fn every_family_has_a_colour_of_its_own() {
         // Those that look the lobe up per light show the image of their base in its colour.
-        let own = FAMILIES.iter().filter(|known| !known.id.ends_with("-per-light"));
-        let mut classes: Vec<String> = own.map(|known| class(known.id)).collect();
+        let coloured = FAMILIES.iter().filter(|known| !known.id.ends_with("-per-light"));
+        let mut classes: Vec<String> = coloured.map(|known| class(known.id)).collect();
         classes.push(class(SPOTS));
         let count = classes.len();
         classes.sort();

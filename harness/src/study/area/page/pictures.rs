@@ -31,14 +31,14 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
     let truth_key = shots.linear(&job.name, &truth.raw, exposure)?;
     let mut shown: Vec<(String, Html)> = Vec::new();
     for entry in entries(done, scene, MODELS) {
-        let Entry { job, record } = entry;
+        let Entry { job, record, .. } = entry;
         let raw = record.image.files.raw.as_deref();
         let Some(image) = linear(done, &job.name, raw) else { continue };
         if (image.width, image.height) != (reference.width, reference.height) {
             continue;
         }
         let pair = ImagePair { image: &image, reference: &reference, exposure: exposure as f32 };
-        let own = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
+        let picture = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
         let gain = GAIN * exposure as f32;
         let difference = shots.drawn(format!("{}:difference", job.name), || {
             image.difference_png(&reference, gain).ok()
@@ -47,7 +47,7 @@ pub(crate) fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Optio
         let cut = shots.drawn(format!("{}:tile", job.name), || beside(&pair, corner));
         let name = model(record);
         let body = figure(Some(truth_key.clone()), "The truth", "")
-            + figure(own, name, "")
+            + figure(picture, name, "")
             + figure(
                 difference,
                 &format!("Difference \u{d7} {}", significant(f64::from(gain))),

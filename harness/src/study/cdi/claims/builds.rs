@@ -18,7 +18,7 @@ pub(crate) fn one_pass(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("builds at a steady clock");
     };
     let factor = |ms: Option<f64>| ms.map(|ms| ms / most.single_ms);
-    let said = |ms: Option<f64>, what: &str| match ms {
+    let time = |ms: Option<f64>, what: &str| match ms {
         Some(ms) => {
             format!("{what} {} ms, {} times", significant(ms), significant(ms / most.single_ms))
         }
@@ -28,8 +28,8 @@ pub(crate) fn one_pass(done: &Done, scene: &str) -> Answer {
         "{} directions: one pass {} ms; {}; {}",
         most.directions,
         significant(most.single_ms),
-        said(most.each_ms, "a dispatch per direction"),
-        said(most.batched_ms, "one dispatch for all")
+        time(most.each_ms, "a dispatch per direction"),
+        time(most.batched_ms, "one dispatch for all")
     );
     let reaches = |ms| factor(ms).map(|factor| factor >= LEAST_FACTOR);
     let verdict = match (reaches(most.each_ms), reaches(most.batched_ms)) {
@@ -109,12 +109,12 @@ pub(crate) fn build_linear(done: &Done, scene: &str) -> Answer {
 pub(crate) fn usual<'a>(done: &'a Done, scene: &'a str, build: &str) -> Option<&'a DeepImageRun> {
     let all = runs(done, scene, jobs::BUILDS);
     let first = all.first().copied()?;
-    let own = all.into_iter().filter(|run| {
+    let found = all.into_iter().filter(|run| {
         run.deep.build == build
             && (run.deep.size_px, run.deep.oversampling) == (first.deep.size_px, 1)
             && run.deep.spread == first.deep.spread
     });
-    own.max_by_key(|run| run.deep.directions())
+    found.max_by_key(|run| run.deep.directions())
 }
 
 pub(crate) fn size(done: &Done, scene: &str) -> Answer {

@@ -12,8 +12,8 @@ use crate::study::manifest::Done;
 
 /// Passes of the lights, ms.
 fn passes_ms(vpls: &Vpls, is_own: fn(&str) -> bool) -> f64 {
-    let own = vpls.passes.iter().filter(|(pass, _)| is_own(pass));
-    own.map(|(_, times)| times.median_ms).sum()
+    let passes = vpls.passes.iter().filter(|(pass, _)| is_own(pass));
+    passes.map(|(_, times)| times.median_ms).sum()
 }
 
 pub(crate) fn cast_share(done: &Done, scene: &str) -> Answer {
@@ -169,9 +169,9 @@ pub(crate) fn arrays(done: &Done, scene: &str) -> Answer {
     };
     let cast = |linked: bool| {
         let all = runs(done, scene, jobs::CASTS).into_iter();
-        let own = all.filter(|run| (run.deep.build == "linked-lists") == linked);
+        let found = all.filter(|run| (run.deep.build == "linked-lists") == linked);
         let whole =
-            own.flat_map(|run| timed_casts(done, scene, run)).filter(|cast| !cast.is_middle);
+            found.flat_map(|run| timed_casts(done, scene, run)).filter(|cast| !cast.is_middle);
         whole.max_by_key(|cast| cast.rsm_px).map(|cast| (cast.rsm_px, median(&cast.cast_ms)))
     };
     let builds = build("linked-lists").zip(build("compute"));

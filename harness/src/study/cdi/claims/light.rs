@@ -98,7 +98,7 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
         rule(record) == "random" && against.nearer(record).is_some_and(|who| who != Nearer::First)
     });
     let fewest = as_near.min_by_key(|record| kept(record));
-    let own = kept(against.cast);
+    let kept_lights = kept(against.cast);
     let mut figure = against.described("rays", against.cast);
     figure += &match fewest {
         Some(record) => format!(
@@ -115,7 +115,7 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
     if let Some(verdict) = stale(&[against.cast]) {
         return Answer { figure, verdict };
     }
-    let is_fewer = fewest.is_none_or(|record| kept(record) > own);
+    let is_fewer = fewest.is_none_or(|record| kept(record) > kept_lights);
     let verdict = match (is_fewer, same_lights.and_then(|record| against.nearer(record))) {
         (false, _) => Verdict::Fails,
         (true, Some(Nearer::First)) => Verdict::Holds,
@@ -168,14 +168,14 @@ pub(crate) fn similar(done: &Done, scene: &str) -> Answer {
     let Some(against) = Against::new(done, scene) else {
         return Answer::unknown("errors of rays against the truth");
     };
-    let of =
+    let find =
         |id: &str| against.cast.image.truth_errors.get(id).copied().flatten().unwrap_or(f64::NAN);
     let figure = format!(
         "mean error {} of the mean, missing energy {} %, bias {} %, FLIP {}",
-        significant(of(METRIC)),
-        percent(of("missing_energy")),
-        percent(of("bias")),
-        significant(of("flip"))
+        significant(find(METRIC)),
+        percent(find("missing_energy")),
+        percent(find("bias")),
+        significant(find("flip"))
     );
     if let Some(verdict) = stale(&[against.cast]) {
         return Answer { figure, verdict };

@@ -1,13 +1,16 @@
 //! Building deep images: times by directions and by build, and memory.
 
-use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::chart::{Axis, Scale, XyChart};
+use crate::report::column::{Better, Column};
 use crate::report::format::{ABSENT, mebibytes, number, significant};
 use crate::report::markup::{Html, html};
-use crate::results::{CastTimes, DeepImageRun, median};
+use crate::report::table::{Look, Row, Table};
+use crate::results::{CastTimes, DeepImageRun, DeepImages, PassTimes, median};
 use crate::study::cdi::jobs;
 use crate::study::cdi::times::{PAPER, refused_build, runs, shown, timed_runs};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::figure::Charts;
+use crate::study::page::lines::tipped_line;
 use crate::study::page::part::Part;
 
 /// The paper's table 2: directions, and times in its atrium and its town; of 169 from the text.
@@ -44,7 +47,7 @@ pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Option<Pa
     let first = all.first().copied()?;
     let plain: Vec<&DeepImageRun> =
         all.iter().copied().filter(|run| is_plain(run, first)).collect();
-    let of = |build: &str, directions: u32| {
+    let find = |build: &str, directions: u32| {
         plain
             .iter()
             .copied()
@@ -56,49 +59,49 @@ pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Option<Pa
     counts.sort_unstable();
     counts.dedup();
     let counts_as_time = |run: &DeepImageRun| refused_build(done, scene, run).is_none();
-    let ms = |run: Option<&DeepImageRun>| {
-        run.map_or_else(|| ABSENT.into(), |run| shown(run.build_ms(), counts_as_time(run)))
+    let timed = |run: Option<&DeepImageRun>| {
+        run.filter(|run| counts_as_time(run)).map(DeepImageRun::build_ms)
     };
-    let rows: Vec<Vec<Html>> = counts
-        .iter()
-        .map(|&count| {
-            let [compute, fragment, each, batched] = BUILDS.map(|(id, ..)| of(id, count));
-            let timed = |run: Option<&DeepImageRun>| {
-                run.filter(|run| counts_as_time(run)).map(DeepImageRun::build_ms)
-            };
-            let factor = |all: Option<&DeepImageRun>| {
-                let factor = timed(compute).zip(timed(all)).map(|(one, all)| all / one);
-                Html::from(factor.map_or(ABSENT.to_owned(), significant))
-            };
-            let paper = PAPER_BUILDS.iter().find(|(known, _)| *known == count);
-            let theirs = |ix: usize| {
-                let ms = paper.map(|(_, ms)| significant(ms[ix]));
-                Html::from(ms.unwrap_or_else(|| ABSENT.to_owned()))
-            };
-            let mut row = vec![number(f64::from(count)).into(), ms(compute), ms(fragment)];
-            row.extend([ms(each), factor(each), ms(batched), factor(batched)]);
-            row.extend([theirs(0), theirs(1)]);
-            row
+    let compute = BUILDS[0].0;
+    let ms = |(build, head, _): (&'static str, &'static str, &str)| {
+        Column::markup(head, "ms", move |count: &u32| match find(build, *count) {
+            Some(run) => shown(run.build_ms(), counts_as_time(run)),
+            None => ABSENT.into(),
         })
-        .collect();
+    };
+    let factor = |build: &'static str| {
+        let value = move |count: &u32| {
+            let one_pass = timed(find(compute, *count))?;
+            Some(timed(find(build, *count))? / one_pass)
+        };
+        Column::figure("factor", "", Better::More, value, significant)
+    };
+    let paper = |head, scene: usize| {
+        Column::ms(head, move |count: &u32| {
+            let (_, ms) = PAPER_BUILDS.iter().find(|(known, _)| known == count)?;
+            Some(ms[scene])
+        })
+    };
+    let [one_pass, rasterised, each, batched] = BUILDS;
+    let columns = [
+        ms(one_pass),
+        ms(rasterised),
+        ms(each),
+        factor(each.0),
+        ms(batched),
+        factor(batched.0),
+        paper("paper, Atrium", 0),
+        paper("paper, Rungholt", 1),
+    ];
+    let rows = counts.iter().map(|count| Row::new(number(f64::from(*count)), *count)).collect();
+    let title = "Build time against directions";
+    let table =
+        Table::new("directions", columns, rows).competing(|_| false).html(title, Look::Plain);
     let steady: Vec<&DeepImageRun> =
         plain.iter().copied().filter(|run| counts_as_time(run)).collect();
-    let ms = |head| unit(head, "ms");
-    let heads = [
-        "directions".into(),
-        ms("one pass, compute"),
-        ms("one pass, rasterised"),
-        ms("a dispatch per direction"),
-        "factor".into(),
-        ms("per direction, one dispatch"),
-        "factor".into(),
-        ms("paper, Atrium"),
-        ms("paper, Rungholt"),
-    ];
-    let chart = charts.xy(&format!("{scene}-builds"), &build_chart(&steady));
-    let body = chart
-        + table("Build time against directions", &heads, &rows)
-        + passes(of("compute", counts.last().copied().unwrap_or(0)))
+    let body = charts.xy(&format!("{scene}-builds"), &build_chart(title, &steady))
+        + table
+        + passes(find(compute, counts.last().copied().unwrap_or(0)))
         + memory(&all, counts_as_time);
     let text = format!(
         "{} triangles, {1} x {1} pixels per direction. Build times include sampling or drawing, \
@@ -114,120 +117,79 @@ pub(crate) fn builds(done: &Done, scene: &str, charts: &mut Charts) -> Option<Pa
     Some(Part::new("builds", "Building deep images", text, body))
 }
 
-fn build_chart(plain: &[&DeepImageRun]) -> XyChart {
-    let series = BUILDS
-        .iter()
-        .map(|(id, name, class)| {
-            let own = plain.iter().filter(|run| run.deep.build == *id);
-            let mut points: Vec<Point> = own
-                .map(|run| {
-                    let (x, y) = (f64::from(run.deep.directions()), run.build_ms());
-                    let tip = format!("{name}\n{} directions\n{} ms", number(x), significant(y));
-                    Point { x, y, tip, ..Point::default() }
-                })
-                .collect();
-            points.sort_by(|a, b| a.x.total_cmp(&b.x));
-            let (name, class) = ((*name).to_owned(), (*class).to_owned());
-            Series { name, class, marks: Marks::LineAndPoints, points, ..Series::default() }
-        })
-        .filter(|series| !series.points.is_empty())
-        .collect();
-    XyChart {
-        title: "Build time against directions".to_owned(),
-        x: Axis { label: "Directions".to_owned(), unit: String::new(), scale: Scale::Log },
-        y: Axis { label: "Build".to_owned(), unit: "ms".to_owned(), scale: Scale::Log },
-        series,
-        note: String::new(),
-    }
+fn build_chart(title: &str, plain: &[&DeepImageRun]) -> XyChart {
+    let series = |(build, name, class): &(&str, &str, &str)| {
+        let runs = plain.iter().filter(|run| run.deep.build == *build);
+        let mut points: Vec<(f64, f64)> =
+            runs.map(|run| (f64::from(run.deep.directions()), run.build_ms())).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        tipped_line(name, class, ["directions", "ms"], points.into_iter())
+    };
+    let axes = [Axis::new("Directions", "", Scale::Log), Axis::new("Build", "ms", Scale::Log)];
+    XyChart::new(title, axes, BUILDS.iter().map(series).collect())
 }
 
 /// Times of casting rays and of random ranges against the number of lights.
 pub(crate) fn cast_chart(arrays: &[&CastTimes], linked: &[&CastTimes]) -> XyChart {
-    let line =
-        |casts: &[&CastTimes], name: &str, class: &str, of: fn(&CastTimes) -> &[f64]| Series {
-            name: name.to_owned(),
-            class: class.to_owned(),
-            marks: Marks::LineAndPoints,
-            points: casts
-                .iter()
-                .filter(|cast| !cast.is_middle)
-                .map(|cast| {
-                    let (x, y) = (cast.lights as f64, median(of(cast)));
-                    let tip = format!("{name}\n{} lights\n{} ms", number(x), significant(y));
-                    Point { x, y, tip, ..Point::default() }
-                })
-                .collect(),
-            ..Series::default()
-        };
+    let line = |casts: &[&CastTimes], name: &str, class: &str, ms: fn(&CastTimes) -> &[f64]| {
+        let casts = casts.iter().filter(|cast| !cast.is_middle);
+        let points = casts.map(|cast| (cast.lights as f64, median(ms(cast))));
+        tipped_line(name, class, ["lights", "ms"], points)
+    };
     let series = vec![
         line(arrays, "rays through arrays", "series-0", |cast| &cast.cast_ms),
         line(arrays, "random ranges", "series-3", |cast| &cast.random_ms),
         line(linked, "rays through linked lists", "series-2", |cast| &cast.cast_ms),
     ];
-    let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
-    XyChart {
-        title: "Time to find the ranges of all lights".to_owned(),
-        x: Axis {
-            label: "Virtual point lights".to_owned(),
-            unit: String::new(),
-            scale: Scale::Log,
-        },
-        y: Axis { label: "Ranges".to_owned(), unit: "ms".to_owned(), scale: Scale::Log },
-        series,
-        note: String::new(),
-    }
+    let lights = Axis::new("Virtual point lights", "", Scale::Log);
+    let axes = [lights, Axis::new("Ranges", "ms", Scale::Log)];
+    XyChart::new("Time to find the ranges of all lights", axes, series)
 }
 
 /// The passes of a build.
 fn passes(run: Option<&DeepImageRun>) -> Html {
     let Some(run) = run else { return Html::default() };
-    let rows: Vec<Vec<String>> = run
-        .passes
-        .iter()
-        .map(|(pass, times)| {
-            vec![pass.to_owned(), significant(times.median_ms), significant(times.p95_ms)]
-        })
-        .collect();
+    let columns = [
+        Column::ms("median", |times: &&PassTimes| Some(times.median_ms)),
+        Column::ms("p95", |times: &&PassTimes| Some(times.p95_ms)),
+    ];
+    let rows = run.passes.iter().map(|(pass, times)| Row::new(pass, times)).collect();
     let title = format!("The passes of {} directions", run.deep.directions());
-    html!("<h4>{}</h4>\n", title)
-        + table(&title, &["pass".into(), unit("median", "ms"), unit("p95", "ms")], &rows)
+    let table = Table::new("pass", columns, rows).competing(|_| false);
+    html!("<h4>{}</h4>\n", title) + table.html(&title, Look::Plain)
+}
+
+/// What deep images are, for the first column of a table.
+pub(crate) fn images_name(deep: &DeepImages) -> String {
+    format!(
+        "{} x {}\u{b2}{}{}, {}",
+        deep.directions(),
+        deep.size_px,
+        if deep.oversampling > 1 { ", oversampled" } else { "" },
+        if deep.spread == "squares" { ", squares" } else { "" },
+        deep.build
+    )
 }
 
 /// What every setting takes.
 fn memory(all: &[&DeepImageRun], counts_as_time: impl Fn(&DeepImageRun) -> bool) -> Html {
-    let rows: Vec<Vec<Html>> = all
-        .iter()
-        .map(|run| {
-            let deep = &run.deep;
-            let name = format!(
-                "{} x {}\u{b2}{}{}, {}",
-                deep.directions(),
-                deep.size_px,
-                if deep.oversampling > 1 { ", oversampled" } else { "" },
-                if deep.spread == "squares" { ", squares" } else { "" },
-                deep.build
-            );
-            vec![
-                name.into(),
-                significant(deep.footprint_m).into(),
-                number(deep.samples as f64).into(),
-                number(deep.fragments as f64).into(),
-                number(deep.longest_list as f64).into(),
-                mebibytes(deep.bytes as f64).into(),
-                shown(run.build_ms(), counts_as_time(run)),
-            ]
-        })
-        .collect();
-    let heads = [
-        "deep images".into(),
-        unit("pixel", "m"),
-        "samples".into(),
-        "fragments".into(),
-        "longest list".into(),
-        unit("memory", "MiB"),
-        unit("build", "ms"),
+    let figure = |head, unit, value: fn(&DeepImages) -> f64, show| {
+        let value = move |run: &&DeepImageRun| Some(value(&run.deep));
+        Column::figure(head, unit, Better::Less, value, show)
+    };
+    let columns = [
+        figure("pixel", "m", |deep| deep.footprint_m, significant),
+        figure("samples", "", |deep| deep.samples as f64, number),
+        figure("fragments", "", |deep| deep.fragments as f64, number),
+        figure("longest list", "", |deep| deep.longest_list as f64, number),
+        figure("memory", "MiB", |deep| deep.bytes as f64, mebibytes),
+        Column::markup("build", "ms", |run: &&DeepImageRun| {
+            shown(run.build_ms(), counts_as_time(run))
+        }),
     ];
-    html!("<h4>Memory</h4>\n") + table("Memory of deep images", &heads, &rows)
+    let rows = all.iter().map(|run| Row::new(images_name(&run.deep), *run)).collect();
+    let table = Table::new("deep images", columns, rows).competing(|_| false);
+    html!("<h4>Memory</h4>\n") + table.html("Memory of deep images", Look::Plain)
 }
 
 /// Times of the builds of most directions that count: the faster of the two single passes, brute force
@@ -245,12 +207,12 @@ pub(crate) fn most_directions(done: &Done, scene: &str) -> Option<MostDirections
     let all = timed_runs(done, scene, jobs::BUILDS);
     let directions = all.iter().map(|run| run.deep.directions()).max()?;
     let best = |builds: &[&str]| {
-        let own = all.iter().filter(|run| {
+        let timed = all.iter().filter(|run| {
             is_plain(run, first)
                 && run.deep.directions() == directions
                 && builds.contains(&run.deep.build.as_str())
         });
-        own.map(|run| run.build_ms()).filter(|ms| ms.is_finite()).min_by(f64::total_cmp)
+        timed.map(|run| run.build_ms()).filter(|ms| ms.is_finite()).min_by(f64::total_cmp)
     };
     Some(MostDirections {
         directions,

@@ -139,23 +139,23 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Option<Part> {
     let reference = linear(done, &truth_job.name, Some(&truth.raw))?;
     let truth_key = shots.linear(&truth_job.name, &truth.raw, exposure);
     let direct = done
-        .of(scene, jobs::DIRECT)
+        .section(scene, jobs::DIRECT)
         .find_map(|(job, results)| Some((job, results.truth_image.as_ref()?)))
         .and_then(|(job, image)| shots.file(&job.name, &image.image));
     let mut shown = Vec::new();
     for (_, _, name) in RULES {
-        let Some(Entry { job, record }) = best(&entries(done, scene, MODELS), name, |_| true)
+        let Some(Entry { job, record, .. }) = best(&entries(done, scene, MODELS), name, |_| true)
         else {
             continue;
         };
         let raw = record.image.files.raw.as_deref();
         let Some(image) = linear(done, &job.name, raw) else { continue };
-        let own = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
+        let picture = raw.and_then(|raw| shots.linear(&job.name, raw, exposure));
         let gain = GAIN * exposure as f32;
         let apart = shots.drawn(format!("{}:difference", job.name), || {
             image.difference_png(&reference, gain).ok()
         });
-        let worse = |text: &str| format!("{text}, {}.", setting(record));
+        let caption = |text: &str| format!("{text}, {}.", setting(record));
         let body =
             figure(direct.clone(), "Zero bounces, path-traced", "what the light reaches itself.")
                 + figure(
@@ -164,14 +164,14 @@ fn pictures(done: &Done, scene: &str, shots: &mut Shots<'_>) -> Option<Part> {
                     "the truth of indirect light.",
                 )
                 + figure(
-                    own,
+                    picture,
                     &format!("One bounce by lights with {name} ranges"),
                     &format!("{}.", setting(record)),
                 )
                 + figure(
                     apart,
                     &format!("Difference \u{d7} {}", significant(f64::from(gain))),
-                    &worse("absolute and linear; black means none; light behind walls is a leak"),
+                    &caption("absolute and linear; black means none; light behind walls is a leak"),
                 );
         shown.push((name.to_owned(), html!("<div class=\"views\">{}</div>\n", body)));
     }

@@ -1,13 +1,17 @@
 //! Rays through deep images against exact ones: how far off distances are, by directions and by size.
 
-use crate::chart::{Axis, Histogram, Marks, Point, Scale, Series, XyChart};
-use crate::report::format::{number, percent, significant};
+use crate::chart::{Axis, Histogram, Scale, XyChart};
+use crate::report::column::{Better, Column};
+use crate::report::format::{percent, significant};
 use crate::report::markup::Html;
+use crate::report::table::{Look, Row, Table};
 use crate::results::{DeepImageRun, RangeErrors};
 use crate::study::cdi::jobs;
+use crate::study::cdi::page::builds::images_name;
 use crate::study::cdi::times::runs;
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::figure::Charts;
+use crate::study::page::lines::tipped_line;
 use crate::study::page::part::Part;
 
 /// The runs whose rays were compared, with what was found.
@@ -62,33 +66,18 @@ fn chart(
     all: &[(&DeepImageRun, &RangeErrors)],
     x: fn(&DeepImageRun) -> f64,
 ) -> XyChart {
-    let line = |name: &str, class: &str, of: fn(&RangeErrors) -> f64| Series {
-        name: name.to_owned(),
-        class: class.to_owned(),
-        marks: Marks::LineAndPoints,
-        points: all
-            .iter()
-            .map(|(run, errors)| (x(run), of(errors)))
-            .filter(|(_, y)| y.is_finite())
-            .map(|(x, y)| {
-                let tip = format!("{name}\n{} {label}\n{} footprints", number(x), significant(y));
-                Point { x, y, tip, ..Point::default() }
-            })
-            .collect(),
-        ..Series::default()
+    let line = |name: &str, class: &str, error: fn(&RangeErrors) -> f64| {
+        let points = all.iter().map(|(run, errors)| (x(run), error(errors)));
+        let known = points.filter(|(_, error)| error.is_finite());
+        tipped_line(name, class, [label, "footprints"], known)
     };
     let series = vec![
         line("median of rays", "series-0", RangeErrors::median),
         line("90 % of rays", "series-1", |errors| quantile(errors, 0.9)),
         line("median of lights\u{2019} ranges", "series-2", |errors| errors.median_range_error),
     ];
-    XyChart {
-        title: title.to_owned(),
-        x: Axis { label: label.to_owned(), unit: String::new(), scale: Scale::Log },
-        y: Axis { label: "Error".to_owned(), unit: "footprints".to_owned(), scale: Scale::Log },
-        series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
-        note: String::new(),
-    }
+    let axes = [Axis::new(label, "", Scale::Log), Axis::new("Error", "footprints", Scale::Log)];
+    XyChart::new(title, axes, series)
 }
 
 /// A quantile of the errors of rays, in footprints.
@@ -118,53 +107,46 @@ fn histogram((run, errors): &(&DeepImageRun, &RangeErrors)) -> Histogram {
     }
 }
 
-fn errors_table(all: &[(&DeepImageRun, &RangeErrors)]) -> Html {
+/// The errors of a run, and whether directions were corrected.
+type Errors<'a> = (&'a DeepImageRun, &'a RangeErrors, bool);
+
+fn errors_table<'a>(all: &[(&'a DeepImageRun, &'a RangeErrors)]) -> Html {
     let corrected =
         all.iter().filter_map(|(run, _)| Some((*run, run.corrected_errors.as_ref()?, true)));
     let both = all.iter().map(|(run, errors)| (*run, *errors, false)).chain(corrected);
-    let rows: Vec<Vec<String>> = both
-        .map(|(run, errors, is_corrected)| {
-            let share = |count: u64| percent(count as f64 / errors.rays.max(1) as f64);
-            vec![
-                format!(
-                    "{} x {}\u{b2}{}{}, {}{}",
-                    run.deep.directions(),
-                    run.deep.size_px,
-                    if run.deep.oversampling > 1 { ", oversampled" } else { "" },
-                    if run.deep.spread == "squares" { ", squares" } else { "" },
-                    run.deep.build,
-                    if is_corrected { ", corrected" } else { "" }
-                ),
-                significant(errors.median()),
-                significant(quantile(errors, 0.9)),
-                significant(errors.median_range_error),
-                share(errors.too_near),
-                share(errors.too_far),
-                share(errors.lost),
-                share(errors.invented),
-            ]
-        })
-        .collect();
-    let heads = [
-        "deep images".into(),
-        unit("median", "footprints"),
-        unit("90 %", "footprints"),
-        unit("range, median", "footprints"),
-        unit("too near", "%"),
-        unit("too far", "%"),
-        unit("lost", "%"),
-        unit("invented", "%"),
+    let row = |row: Errors<'a>| {
+        let corrected = if row.2 { ", corrected" } else { "" };
+        Row::new(images_name(&row.0.deep) + corrected, row)
+    };
+    let footprints = |head, value: fn(&RangeErrors) -> f64| {
+        let value = move |row: &Errors<'_>| Some(value(row.1));
+        Column::figure(head, "footprints", Better::Less, value, significant)
+    };
+    let share = |head, count: fn(&RangeErrors) -> u64| {
+        let value = move |row: &Errors<'_>| Some(count(row.1) as f64 / row.1.rays.max(1) as f64);
+        Column::figure(head, "%", Better::Less, value, percent)
+    };
+    let columns = [
+        footprints("median", RangeErrors::median),
+        footprints("90 %", |errors| quantile(errors, 0.9)),
+        footprints("range, median", |errors| errors.median_range_error),
+        share("too near", |errors| errors.too_near),
+        share("too far", |errors| errors.too_far),
+        share("lost", |errors| errors.lost),
+        share("invented", |errors| errors.invented),
     ];
-    table("Ranges against exact rays", &heads, &rows)
+    Table::new("deep images", columns, both.map(row).collect())
+        .competing(|_| false)
+        .html("Ranges against exact rays", Look::Plain)
 }
 
 /// The median error at the most directions.
 pub(crate) fn findings(done: &Done, scene: &str) -> Option<String> {
     let all = compared(done, scene);
-    let own = all
+    let usual = all
         .iter()
         .filter(|(run, _)| is_paper_build(run) && run.deep.size_px == all[0].0.deep.size_px);
-    let (run, errors) = own.max_by_key(|(run, _)| run.deep.directions())?;
+    let (run, errors) = usual.max_by_key(|(run, _)| run.deep.directions())?;
     errors.median().is_finite().then(|| {
         format!(
             "In {scene} at {} directions the median error of a ray is {} of a pixel\u{2019}s \

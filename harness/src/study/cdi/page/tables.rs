@@ -5,15 +5,14 @@ use super::light::indirect;
 use super::ranges;
 use crate::report::column::{Better, Column};
 use crate::report::format::{ABSENT, mebibytes, number, significant};
-use crate::report::markup::Html;
 use crate::report::table::{Look, Row, Table};
-use crate::results::{DeepImageRun, PassKind, Record, median};
+use crate::results::{CastTimes, DeepImageRun, PassKind, Record, median};
 use crate::study::cdi::jobs;
 use crate::study::cdi::times::{PAPER, runs, shown, timed_casts};
 use crate::study::cdi::verdicts::{in_common, quietest, rays_against_random};
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, table, unit};
+use crate::study::page::figure::Charts;
 use crate::study::page::part::Part;
 use crate::study::page::shots::Shots;
 
@@ -63,8 +62,8 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
     let mut rows: Vec<Row<(f64, [f64; 2])>> = STEPS
         .iter()
         .map(|(name, is_own, paper)| {
-            let own = vpls.passes.iter().filter(|(pass, _)| is_own(pass));
-            row(name, own.map(|(_, times)| times.median_ms).sum(), *paper)
+            let passes = vpls.passes.iter().filter(|(pass, _)| is_own(pass));
+            row(name, passes.map(|(_, times)| times.median_ms).sum(), *paper)
         })
         .collect();
     let scene_ms = record.times.passes.median_ms(Some(PassKind::Scene));
@@ -74,18 +73,12 @@ fn steps(done: &Done, scene: &str) -> Option<Part> {
     let total = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     rows.push(row("total", total, [20.6, 43.5]));
     let paper = |head, scene: usize| {
-        let ms =
-            move |step: &(f64, [f64; 2])| step.1.get(scene).copied().filter(|ms| ms.is_finite());
-        Column::figure(head, "ms", Better::Less, ms, significant)
+        Column::ms(head, move |step: &(f64, [f64; 2])| {
+            step.1.get(scene).copied().filter(|ms| ms.is_finite())
+        })
     };
     let columns = [
-        Column::figure(
-            "here",
-            "ms",
-            Better::Less,
-            |step: &(f64, [f64; 2])| Some(step.0),
-            significant,
-        ),
+        Column::ms("here", |step: &(f64, [f64; 2])| Some(step.0)),
         paper("paper, Atrium", 0),
         paper("paper, Rungholt", 1),
     ];
@@ -117,70 +110,67 @@ const PAPER_CASTS: [(u32, [f64; 3]); 4] = [
 ];
 
 /// The paper's table 3 with ours.
-fn casts(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
+fn casts<'a>(done: &'a Done, scene: &'a str, charts: &mut Charts) -> Option<Part> {
     let all = runs(done, scene, jobs::CASTS);
-    let of = |build: fn(&DeepImageRun) -> bool| all.iter().copied().find(|run| build(run));
-    let run = of(|run| run.deep.build != "linked-lists")?;
-    let linked = of(|run| run.deep.build == "linked-lists");
+    let is_linked = |run: &&&DeepImageRun| run.deep.build == "linked-lists";
+    let run = all.iter().find(|run| !is_linked(run)).copied()?;
+    let linked = all.iter().find(is_linked).copied();
     let counted = timed_casts(done, scene, run);
     let of_lists = linked.map(|run| timed_casts(done, scene, run)).unwrap_or_default();
-    let mut rows = Vec::new();
-    for cast in &run.casts {
-        let counts = counted.iter().any(|known| std::ptr::eq(*known, cast));
-        let (ms, random) = (median(&cast.cast_ms), median(&cast.random_ms));
-        let list = linked.and_then(|run| {
-            run.casts
-                .iter()
-                .find(|other| (other.rsm_px, other.is_middle) == (cast.rsm_px, cast.is_middle))
-        });
-        let is_paper = |side: u32| side == cast.rsm_px && !cast.is_middle;
-        let paper = PAPER_CASTS.iter().find(|(side, _)| is_paper(*side));
-        let theirs = |ix: usize| paper.map_or(ABSENT.to_owned(), |(_, ms)| significant(ms[ix]));
-        let rays = cast.lights as f64 * f64::from(cast.rays);
-        let row: Vec<Html> = vec![
-            format!("{0} x {0}{1}", cast.rsm_px, if cast.is_middle { ", the middle" } else { "" })
-                .into(),
-            number(rays).into(),
-            shown(ms, counts),
-            shown(rays / ms / 1e6, counts),
-            match cast.corrected_ms.is_empty() {
-                true => ABSENT.into(),
-                false => shown(median(&cast.corrected_ms), counts),
-            },
-            list.map_or_else(
-                || ABSENT.into(),
-                |list| {
-                    let counts = of_lists.iter().any(|known| std::ptr::eq(*known, list));
-                    shown(median(&list.cast_ms), counts)
-                },
-            ),
-            shown(random, counts),
-            theirs(0).into(),
-            theirs(1).into(),
-            theirs(2).into(),
-        ];
-        rows.push(row);
-    }
-    if rows.is_empty() {
+    let counts = |cast: &CastTimes| counted.iter().any(|known| std::ptr::eq(*known, cast));
+    let in_lists = |cast: &CastTimes| {
+        let same =
+            |other: &&CastTimes| (other.rsm_px, other.is_middle) == (cast.rsm_px, cast.is_middle);
+        linked?.casts.iter().find(same)
+    };
+    let ms = |head, ms: fn(&CastTimes) -> &[f64]| {
+        Column::markup(head, "ms", move |cast: &&CastTimes| match ms(cast) {
+            [] => ABSENT.into(),
+            ms => shown(median(ms), counts(cast)),
+        })
+    };
+    let rays = |cast: &CastTimes| cast.lights as f64 * f64::from(cast.rays);
+    let paper = |head, figure: usize| {
+        Column::ms(head, move |cast: &&CastTimes| {
+            let mut known = PAPER_CASTS.iter().filter(|_| !cast.is_middle);
+            Some(known.find(|(side, _)| *side == cast.rsm_px)?.1[figure])
+        })
+    };
+    let columns = [
+        Column::figure("rays", "", Better::Neither, |cast: &&CastTimes| Some(rays(cast)), number),
+        ms("cast", |cast| &cast.cast_ms),
+        Column::markup("rate", "10\u{2079} rays/s", |cast: &&CastTimes| {
+            shown(rays(cast) / median(&cast.cast_ms) / 1e6, counts(cast))
+        }),
+        ms("corrected", |cast| &cast.corrected_ms),
+        Column::markup("through linked lists", "ms", |cast: &&CastTimes| match in_lists(cast) {
+            Some(list) => {
+                let counts = of_lists.iter().any(|known| std::ptr::eq(*known, list));
+                shown(median(&list.cast_ms), counts)
+            }
+            None => ABSENT.into(),
+        }),
+        ms("random", |cast| &cast.random_ms),
+        paper("paper, Atrium", 0),
+        paper("paper, Rungholt", 1),
+        paper("paper, random", 2),
+    ];
+    let row = |cast: &'a CastTimes| {
+        let middle = if cast.is_middle { ", the middle" } else { "" };
+        Row::new(format!("{0} x {0}{middle}", cast.rsm_px), cast)
+    };
+    let title = "Rays from every pixel of the shadow map";
+    let table = Table::new("shadow map", columns, run.casts.iter().map(row).collect())
+        .competing(|_| false)
+        .html(title, Look::Plain);
+    if table.is_empty() {
         return None;
     }
-    let heads = [
-        "shadow map".into(),
-        "rays".into(),
-        unit("cast", "ms"),
-        unit("rate", "10\u{2079} rays/s"),
-        unit("corrected", "ms"),
-        unit("through linked lists", "ms"),
-        unit("random", "ms"),
-        unit("paper, Atrium", "ms"),
-        unit("paper, Rungholt", "ms"),
-        unit("paper, random", "ms"),
-    ];
     let drawn = cast_chart(&counted, &of_lists);
     let chart = charts.xy(&format!("{scene}-casts"), &drawn);
     Some(Part::new(
         "casts",
-        "Rays from every pixel of the shadow map",
+        title,
         format!(
             "Every pixel that shows a surface becomes a virtual point light; none is discarded. In \
              a map of the scene\u{2019}s middle nearly every pixel does, and rays lie closer \
@@ -192,7 +182,7 @@ fn casts(done: &Done, scene: &str, charts: &mut Charts) -> Option<Part> {
             run.deep.size_px,
             run.deep.size_px
         ),
-        chart + table("Rays from every pixel of the shadow map", &heads, &rows),
+        chart + table,
     ))
 }
 
@@ -201,8 +191,7 @@ fn strategies<'a>(done: &'a Done, scene: &'a str) -> Option<Part> {
     let all = entries(done, scene, jobs::STRATEGIES);
     let first = all.first()?;
     let ms = |head, time: fn(&Record) -> f64| {
-        let value = move |record: &&Record| Some(time(record));
-        Column::figure(head, "ms", Better::Less, value, significant)
+        Column::ms(head, move |record: &&Record| Some(time(record)))
     };
     let differing = |record: &&Record| Some(record.image.differing_channels? as f64);
     let bytes = |record: &&Record| Some(record.lists.list_bytes as f64);
@@ -221,7 +210,9 @@ fn strategies<'a>(done: &'a Done, scene: &'a str) -> Option<Part> {
         first.record.setting.height
     );
     let title = "Strategies under virtual point lights";
-    let row = |entry: &Entry<'a>| Row::new(entry.record.strategy.to_string(), entry.record);
+    let row = |entry: &Entry<'a>| {
+        Row::new(format!("{}{}", entry.record.strategy, entry.mark()), entry.record)
+    };
     let table = Table::new("strategy", columns, all.iter().map(row).collect())
         .competing(|_| false)
         .dotted(|record| record.strategy.class())

@@ -20,7 +20,7 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
         .filter(|entry| is_of_the_paper(entry.record))
         .collect();
     let lines = lines(&scaling);
-    let of = |wanted: String, bvh: bool| {
+    let fits = |wanted: String, bvh: bool| {
         let (_, records) =
             lines.iter().find(|(id, _)| id.family() == wanted && id.is_bvh() == bvh)?;
         let fit = |time| fit(records, time).filter(|fit: &Fit| fit.points > 2);
@@ -34,7 +34,7 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
     let mut figures = Vec::new();
     for group in ["T", "DC", "SC"] {
         for bvh in [false, true] {
-            let pair = (of(format!("{group}-E"), bvh), of(format!("{group}-I"), bvh));
+            let pair = (fits(format!("{group}-E"), bvh), fits(format!("{group}-I"), bvh));
             let (Some((explicit, explicit_without)), Some((implicit, implicit_without))) = pair
             else {
                 continue;

@@ -2,16 +2,17 @@
 
 use crate::report::format::{number, significant};
 use crate::results::Record;
-use crate::study::claims::Answer;
 use crate::study::claims::order::Order;
-use crate::study::comparison::claims::pairs::{Member, Pairs};
+use crate::study::claims::{Answer, Verdict};
+use crate::study::comparison::claims::members::Members;
+use crate::study::comparison::claims::pairs::Pairs;
 use crate::study::data::{Entry, counts, is_near, is_of_the_paper, nearest_count, ranking, stand};
 use crate::study::manifest::Done;
 
-/// Records of the paper's strategies under the same lights, exact ones only.
+/// Exact records of the paper's strategies under the same lights.
 pub(crate) struct Field<'a> {
     pub(crate) lights: u64,
-    records: Vec<&'a Record>,
+    pub(crate) records: Members<'a, &'a Record>,
 }
 
 impl<'a> Field<'a> {
@@ -22,61 +23,58 @@ impl<'a> Field<'a> {
             .filter(|entry| is_of_the_paper(entry.record) && entry.record.is_exact())
             .filter(|entry| entry.record.assign_and_shade_ms().is_finite())
             .collect();
-        let Some(lights) = nearest_count(&counts(&all), wanted) else {
-            return Err(Answer::unknown("the ranking along the path"));
-        };
-        if !is_near(lights, wanted) {
-            let why = format!("only {} lights were measured", number(lights as f64));
-            return Err(Answer::undecided(&why));
-        }
-        let own = all.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
-        let mut records: Vec<&Record> = own.collect();
-        // The paper's own strategy comes before what stands in for it.
-        records.sort_by_key(|record| record.strategy.stand_in().is_some());
+        let lights = count_near(&all, wanted, "the ranking along the path")?;
+        let records = all.iter().map(|entry| entry.record).filter(|r| r.setting.lights == lights);
+        let records = records.map(|record| (&record.strategy, record)).collect();
+        let mut records: Members<'a, &'a Record> = Members::new(String::new(), records);
+        // Poses of single strategies stand beside them.
+        let most = records.all.iter().max_by_key(|(_, record)| record.times.frames);
+        let stand = most.map_or_else(String::new, |(_, record)| stand(record));
+        let mean = if stand == "one pose" { "" } else { "means of " };
+        records.basis = format!("at {} lights, {mean}{stand}", number(lights as f64));
         Ok(Self { lights, records })
     }
 
-    /// The record of a family.
-    pub(crate) fn of(&self, name: &str) -> Option<&'a Record> {
-        self.records.iter().copied().find(|record| record.strategy.family() == name)
-    }
-
-    /// What was measured of a family.
-    pub(crate) fn member(&self, name: &str) -> Member {
-        Member::of(self.of(name).map(|record| &record.strategy))
-    }
-
-    /// `at 10,000 lights, means of 240 poses`; poses of single strategies stand beside them.
-    pub(crate) fn basis(&self) -> String {
-        let most = self.records.iter().max_by_key(|record| record.times.frames);
-        let stand = most.map_or_else(String::new, |record| stand(record));
-        let mean = if stand == "one pose" { "" } else { "means of " };
-        format!("at {} lights, {mean}{stand}", number(self.lights as f64))
+    /// The records of two families.
+    pub(crate) fn both(&self, families: [&str; 2]) -> Option<[&'a Record; 2]> {
+        let [first, second] = families.map(|family| self.records.get(family).copied());
+        Some([first?, second?])
     }
 
     /// The times of families, fastest first: `T-I 0.0461, G/supports 0.0485 ms`.
     pub(crate) fn times(&self, families: &[&str]) -> String {
-        let mut all: Vec<&Record> = families.iter().filter_map(|name| self.of(name)).collect();
-        all.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-        let time = |record: &&Record| {
-            format!("{} {}", record.strategy.short(), significant(record.assign_and_shade_ms()))
-        };
-        all.iter().map(time).collect::<Vec<_>>().join(", ") + " ms"
+        self.records.ascending(families, |r| r.assign_and_shade_ms(), significant) + " ms"
     }
 }
 
-/// Whether times come in the paper's order, all pairs across its groups. Where the chain is one strategy
-/// before all others, whether it leads.
+/// The count of lights that may speak for the one of a claim; `what` names what was not measured.
+pub(crate) fn count_near(all: &[Entry<'_>], wanted: u64, what: &str) -> Result<u64, Answer> {
+    let Some(lights) = nearest_count(&counts(all), wanted) else {
+        return Err(Answer::unknown(what));
+    };
+    if !is_near(lights, wanted) {
+        let why = format!("only {} lights were measured", number(lights as f64));
+        return Err(Answer::undecided(&why));
+    }
+    Ok(lights)
+}
+
+/// The verdict on a chain of groups. Where the chain is one strategy before all others, whether it leads.
+pub(crate) fn chain_verdict(chain: &[&[&str]], pairs: &Pairs) -> Verdict {
+    match chain {
+        [[_], _] => pairs.leader_verdict(),
+        _ => pairs.verdict(),
+    }
+}
+
+/// Whether times come in the paper's order, all pairs across its groups.
 pub(crate) fn ordered(done: &Done, scene: &str, wanted: u64, chain: &[&[&str]]) -> Answer {
     let field = match Field::at(done, scene, wanted) {
         Ok(field) => field,
         Err(answer) => return answer,
     };
-    let order = |less: &str, more: &str| Some(Order::of_times(field.of(less)?, field.of(more)?));
-    let pairs = Pairs::of_chain(chain, |name| field.member(name), order);
-    let families: Vec<&str> = chain.concat();
-    let figure = format!("{}: {}{}", field.basis(), field.times(&families), pairs.exceptions());
-    let is_leader = matches!(chain, [[_], _]);
-    let verdict = if is_leader { pairs.leader_verdict() } else { pairs.verdict() };
-    Answer { figure, verdict }
+    let pairs = field.records.pairs(chain, |less, more| Order::of_times(less, more));
+    let times = field.times(&chain.concat());
+    let figure = format!("{}: {times}{}", field.records.basis, pairs.exceptions());
+    Answer { figure, verdict: chain_verdict(chain, &pairs) }
 }

@@ -7,7 +7,8 @@ use crate::results::Record;
 use crate::strategy::StrategyId;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
-use crate::study::comparison::claims::pairs::{ALIKE, Member, Pairs};
+use crate::study::comparison::claims::members::Members;
+use crate::study::comparison::claims::pairs::{ALIKE, Pairs};
 use crate::study::comparison::page::scaling::{Straight, straight};
 use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, poses, stand};
 use crate::study::manifest::Done;
@@ -89,50 +90,45 @@ fn straightness(
 }
 
 /// The time of each strategy that a claim is about, as a line.
-struct Slopes<'a> {
-    basis: String,
-    all: Vec<(&'a StrategyId, Fit)>,
+type Slopes<'a> = Members<'a, Fit>;
+
+fn fit_lines<'a>(done: &'a Done, scene: &'a str, time: Time) -> Result<Slopes<'a>, Answer> {
+    let lines = grown(done, scene, RANGE[1]);
+    let all: Vec<(&StrategyId, Fit)> =
+        lines.iter().filter_map(|(id, records)| Some((*id, fit(records, time)?))).collect();
+    match all.is_empty() {
+        true => Err(Answer::unknown("scaling over three counts of lights")),
+        false => Ok(Members::new(basis(&lines), all)),
+    }
 }
 
-impl<'a> Slopes<'a> {
-    fn of(done: &'a Done, scene: &'a str, time: Time) -> Result<Self, Answer> {
-        let lines = grown(done, scene, RANGE[1]);
-        let all: Vec<(&StrategyId, Fit)> =
-            lines.iter().filter_map(|(id, records)| Some((*id, fit(records, time)?))).collect();
-        match all.is_empty() {
-            true => Err(Answer::unknown("scaling over three counts of lights")),
-            false => Ok(Self { basis: basis(&lines), all }),
-        }
-    }
+/// The lines of assignment and those of shading.
+fn fit_both<'a>(done: &'a Done, scene: &'a str) -> Result<[Slopes<'a>; 2], Answer> {
+    let assign = fit_lines(done, scene, |record| record.times.assign_ms)?;
+    Ok([assign, fit_lines(done, scene, |record| record.times.shade_ms)?])
+}
 
-    fn of_family(&self, name: &str) -> Option<&(&'a StrategyId, Fit)> {
-        self.all.iter().find(|(id, _)| id.family() == name)
-    }
+/// Decides by the order of slopes or offsets.
+fn ordered(slopes: &Slopes<'_>, chain: &[&[&str]], figure: fn(&Fit) -> f64) -> Pairs {
+    slopes.pairs(chain, |less, more| Order::of_fits(figure(less), figure(more)))
+}
 
-    fn fit(&self, name: &str) -> Option<&Fit> {
-        self.of_family(name).map(|(_, fit)| fit)
-    }
-
-    /// What stands in for one of some strategies.
-    fn stand_in(&self, names: &[&str]) -> Option<&'static str> {
-        names.iter().find_map(|name| self.of_family(name)?.0.stand_in())
-    }
-
-    fn ascending(&self, names: &[&str], of: fn(&Fit) -> f64) -> String {
-        let own = names.iter().filter_map(|name| self.of_family(name));
-        let mut all: Vec<(String, f64)> = own.map(|(id, fit)| (id.short(), of(fit))).collect();
-        all.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let said = all.iter().map(|(name, figure)| format!("{name} {}", significant(*figure)));
-        said.collect::<Vec<_>>().join(", ")
-    }
-
-    /// Decides by the order of slopes or offsets.
-    fn ordered(&self, chain: &[&[&str]], of: fn(&Fit) -> f64) -> Pairs {
-        let member = |name: &str| Member::of(self.of_family(name).map(|(id, _)| *id));
-        Pairs::of_chain(chain, member, |less, more| {
-            Some(Order::of_fits(of(self.fit(less)?), of(self.fit(more)?)))
-        })
-    }
+/// Decides by the order of a figure of the lines through assign + shade.
+fn by_order(
+    done: &Done,
+    scene: &str,
+    unit: &str,
+    chain: &[&[&str]],
+    figure: fn(&Fit) -> f64,
+) -> Answer {
+    let slopes = match fit_lines(done, scene, Record::assign_and_shade_ms) {
+        Ok(slopes) => slopes,
+        Err(answer) => return answer,
+    };
+    let pairs = ordered(&slopes, chain, figure);
+    let known = slopes.ascending(&chain.concat(), figure, significant);
+    let figure = format!("{}, {unit}: {known}{}", slopes.basis, pairs.exceptions());
+    Answer { figure, verdict: pairs.verdict() }
 }
 
 fn slope(fit: &Fit) -> f64 {
@@ -145,43 +141,19 @@ fn offset(fit: &Fit) -> f64 {
 
 /// The groups of table 4.6 by the slope of all stages.
 pub(crate) fn slopes(done: &Done, scene: &str) -> Answer {
-    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
-        Ok(slopes) => slopes,
-        Err(answer) => return answer,
-    };
     let chain: [&[&str]; 5] = [&["SC-E", "SC-I"], &["T-E"], &["DC-I", "G"], &["T-I"], &["M"]];
-    let pairs = slopes.ordered(&chain, slope);
-    let figure = format!(
-        "{}, \u{b5}s per 1,000 lights: {}{}",
-        slopes.basis,
-        slopes.ascending(&chain.concat(), slope),
-        pairs.exceptions()
-    );
-    Answer { figure, verdict: pairs.verdict() }
+    by_order(done, scene, "\u{b5}s per 1,000 lights", &chain, slope)
 }
 
 /// The groups of table 4.6 by the offset of all stages.
 pub(crate) fn offsets(done: &Done, scene: &str) -> Answer {
-    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
-        Ok(slopes) => slopes,
-        Err(answer) => return answer,
-    };
     let chain: [&[&str]; 3] = [&["M", "T-I", "G", "DC-I"], &["T-E"], &["SC-I", "SC-E"]];
-    let pairs = slopes.ordered(&chain, offset);
-    let figure = format!(
-        "{}, ms: {}{}",
-        slopes.basis,
-        slopes.ascending(&chain.concat(), offset),
-        pairs.exceptions()
-    );
-    Answer { figure, verdict: pairs.verdict() }
+    by_order(done, scene, "ms", &chain, offset)
 }
 
 /// Shading grows faster than assignment, in each strategy.
 pub(crate) fn shading_dominates(done: &Done, scene: &str) -> Answer {
-    let both = Slopes::of(done, scene, |r| r.times.assign_ms)
-        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.times.shade_ms)?)));
-    let (assign, shade) = match both {
+    let [assign, shade] = match fit_both(done, scene) {
         Ok(both) => both,
         Err(answer) => return answer,
     };
@@ -211,18 +183,16 @@ pub(crate) fn shading_dominates(done: &Done, scene: &str) -> Answer {
 
 /// M assigns with the least slope and shades with the greatest.
 pub(crate) fn model_slopes(done: &Done, scene: &str) -> Answer {
-    let both = Slopes::of(done, scene, |r| r.times.assign_ms)
-        .and_then(|assign| Ok((assign, Slopes::of(done, scene, |r| r.times.shade_ms)?)));
-    let (assign, shade) = match both {
+    let [assign, shade] = match fit_both(done, scene) {
         Ok(both) => both,
         Err(answer) => return answer,
     };
-    if assign.fit("M").is_none() {
+    if assign.get("M").is_none() {
         return Answer::unknown("M over three counts of lights");
     }
     let others = ["SC-E", "SC-I", "T-E", "T-I", "G", "DC-I"];
-    let less = assign.ordered(&[&["M"], &others], slope);
-    let more = shade.ordered(&[&others, &["M"]], slope);
+    let less = ordered(&assign, &[&["M"], &others], slope);
+    let more = ordered(&shade, &[&others, &["M"]], slope);
     let verdict = match (less.leader_verdict(), more.leader_verdict()) {
         (Verdict::Fails, Verdict::Fails) => Verdict::Fails,
         (_, Verdict::Fails) => {
@@ -237,19 +207,19 @@ pub(crate) fn model_slopes(done: &Done, scene: &str) -> Answer {
     let figure = format!(
         "{}, \u{b5}s per 1,000 lights: assign {}; shade {}",
         assign.basis,
-        assign.ascending(&names, slope),
-        shade.ascending(&names, slope)
+        assign.ascending(&names, slope, significant),
+        shade.ascending(&names, slope, significant)
     );
     Answer { figure, verdict }
 }
 
 /// The slopes and the offsets of DC-I and G are alike.
 pub(crate) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
-    let slopes = match Slopes::of(done, scene, Record::assign_and_shade_ms) {
+    let slopes = match fit_lines(done, scene, Record::assign_and_shade_ms) {
         Ok(slopes) => slopes,
         Err(answer) => return answer,
     };
-    let (Some(dense), Some(grid)) = (slopes.fit("DC-I"), slopes.fit("G")) else {
+    let (Some(dense), Some(grid)) = (slopes.get("DC-I"), slopes.get("G")) else {
         return Answer::unknown("DC-I and G over three counts of lights");
     };
     let apart = |of: fn(&Fit) -> f64| (of(dense) / of(grid)).max(of(grid) / of(dense));
@@ -265,8 +235,8 @@ pub(crate) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
     let figure = format!(
         "{}: slope {} \u{b5}s per 1,000 lights, offset {} ms",
         slopes.basis,
-        slopes.ascending(&names, slope),
-        slopes.ascending(&names, offset)
+        slopes.ascending(&names, slope, significant),
+        slopes.ascending(&names, offset, significant)
     );
     Answer { figure, verdict }
 }

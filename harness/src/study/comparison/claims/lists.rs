@@ -29,14 +29,14 @@ const EXTREME: f64 = 0.25;
 /// The records of a family in the views of low and of high discontinuity.
 fn in_both<'a>(done: &'a Done, scene: &'a str, name: &str) -> Option<[&'a Record; 2]> {
     let views = entries(done, scene, "views");
-    let of = |low: bool| {
-        let own = |entry: &&Entry<'_>| {
+    let record = |low: bool| {
+        let is_wanted = |entry: &&Entry<'_>| {
             let id = &entry.record.strategy;
             is_of_view(entry, low) && id.family() == name && is_of_the_paper(entry.record)
         };
-        views.iter().find(own).map(|entry| entry.record)
+        views.iter().find(is_wanted).map(|entry| entry.record)
     };
-    Some([of(true)?, of(false)?])
+    Some([record(true)?, record(false)?])
 }
 
 /// From low to high discontinuity T-E's lists grow far more than SC-E's.
@@ -49,18 +49,18 @@ pub(crate) fn discontinuity(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("lists of T-E and SC-E in views of low and high discontinuity");
     };
     let growth = |[low, high]: [f64; 2]| high / low - 1.0;
-    let said = |name: &str, both: [f64; 2]| {
+    let growth_of = |name: &str, both: [f64; 2]| {
         let [low, high] = both.map(significant);
         format!("{name} {low} to {high} ({} %)", percent(growth(both)))
     };
     let mut figure = format!(
         "lights listed per sample, from low to high discontinuity: {}; {}",
-        said("T-E", tiles),
-        said("SC-E", clusters)
+        growth_of("T-E", tiles),
+        growth_of("SC-E", clusters)
     );
     for name in ["G", "M"] {
         if let Some(both) = listed(name) {
-            figure += &format!("; {}", said(name, both));
+            figure += &format!("; {}", growth_of(name, both));
         }
     }
     let verdict = match (growth(tiles), growth(clusters)) {
@@ -123,19 +123,19 @@ impl<'a> Models<'a> {
         let lights = nearest_count(&counts(&ranked), 10_000)?;
         let linear = |all: Vec<Entry<'a>>| -> Vec<&'a Record> {
             let records = all.into_iter().map(|entry| entry.record);
-            let own = records.filter(|r| r.setting.lights == lights && !r.strategy.is_bvh());
-            own.filter(|record| !record.is_lossy).collect()
+            let chosen = records.filter(|r| r.setting.lights == lights && !r.strategy.is_bvh());
+            chosen.filter(|record| !record.is_lossy).collect()
         };
         Some(Self { lights, lists: linear(main), times: linear(ranked) })
     }
 
-    fn of(records: &[&'a Record], name: &str) -> Option<&'a Record> {
+    fn find(records: &[&'a Record], name: &str) -> Option<&'a Record> {
         records.iter().copied().find(|record| record.strategy.short() == name)
     }
 
     /// The time of a strategy: along the path where it was measured there.
     fn timed(&self, name: &str) -> Option<&'a Record> {
-        Self::of(&self.times, name).or_else(|| Self::of(&self.lists, name))
+        Self::find(&self.times, name).or_else(|| Self::find(&self.lists, name))
     }
 
     /// The time of the grid, or of its stand-in.
@@ -149,7 +149,7 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
     let Some(models) = Models::at(done, scene) else {
         return Answer::unknown("the main comparison");
     };
-    let lists = ["M", "M/2"].map(|name| Models::of(&models.lists, name));
+    let lists = ["M", "M/2"].map(|name| Models::find(&models.lists, name));
     let times = ["M", "M/2"].map(|name| models.timed(name));
     let ([Some(long), Some(short)], [Some(whole), Some(parts)]) = (lists, times) else {
         return Answer::unknown("M and M/2");

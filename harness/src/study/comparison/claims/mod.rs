@@ -4,6 +4,7 @@ mod bounds;
 mod field;
 mod growth;
 mod lists;
+mod members;
 mod pairs;
 mod search;
 mod speed;

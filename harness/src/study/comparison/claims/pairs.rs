@@ -24,7 +24,7 @@ pub(crate) enum Member {
 
 impl Member {
     /// By the id of the record, where there is one.
-    pub(crate) fn of(id: Option<&StrategyId>) -> Self {
+    pub(crate) fn from_id(id: Option<&StrategyId>) -> Self {
         match id {
             None => Self::Missing,
             Some(id) => id.stand_in().map_or(Self::Measured, Self::StandIn),
@@ -146,12 +146,12 @@ impl Pairs {
         if self.all() == 0 {
             return self.verdict();
         }
-        let said = [
+        let parts = [
             (&self.reversed, "not first"),
             (&self.unsure, "too few laps for so small a difference"),
             (&self.ties, "a tie"),
         ];
-        let part = said.iter().find(|(pairs, _)| !pairs.is_empty());
+        let part = parts.iter().find(|(pairs, _)| !pairs.is_empty());
         self.decided_by(part.map(|(_, what)| (*what).to_owned()).into_iter().collect())
     }
 
@@ -171,14 +171,14 @@ impl Pairs {
 
     /// The pairs that are not as the paper has them, as further parts of a figure.
     pub(crate) fn exceptions(&self) -> String {
-        let said = |what: &str, pairs: &[String]| match pairs.len() {
+        let told = |what: &str, pairs: &[String]| match pairs.len() {
             0 => String::new(),
             1..=MOST_NAMED => format!("; {what}: {}", listed(pairs)),
             many => format!("; {what}: {many} pairs"),
         };
-        said("reversed", &self.reversed)
-            + &said("ties", &self.ties)
-            + &said("too few laps to order", &self.unsure)
+        told("reversed", &self.reversed)
+            + &told("ties", &self.ties)
+            + &told("too few laps to order", &self.unsure)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Claims on group sizes and intersection tests: sections 4.3.1, 4.3.2 and 4.5.
 
+use crate::grouping::grouped_by;
 use crate::report::format::{percent, significant};
 use crate::report::rank::{first, ranks};
 use crate::results::Record;
 use crate::study::claims::order::Order;
-use crate::study::claims::{Answer, Verdict};
+use crate::study::claims::{Answer, Tally, Verdict};
 use crate::study::comparison::claims::pairs::Pairs;
 use crate::study::data::{Entry, entries, stand, tests as tests_of};
 use crate::study::manifest::Done;
@@ -30,12 +31,12 @@ const ABOUT: f64 = 0.03;
 /// The records of the search for sizes of a family: from the list of all lights, as in the paper, where
 /// they were measured so.
 fn searched<'a>(all: &[Entry<'a>], name: &str) -> Vec<&'a Record> {
-    let of = |bvh: bool| -> Vec<&Record> {
-        let own = all.iter().map(|entry| entry.record);
-        own.filter(|r| r.strategy.family() == name && r.strategy.is_bvh() == bvh).collect()
+    let from_source = |bvh: bool| -> Vec<&Record> {
+        let records = all.iter().map(|entry| entry.record);
+        records.filter(|r| r.strategy.family() == name && r.strategy.is_bvh() == bvh).collect()
     };
-    let linear = of(false);
-    if linear.is_empty() { of(true) } else { linear }
+    let linear = from_source(false);
+    if linear.is_empty() { from_source(true) } else { linear }
 }
 
 /// ` (measured only with /bvh)` where the records are not the paper's.
@@ -52,9 +53,9 @@ fn time(record: &Record) -> f64 {
 
 /// Whether a grid has as many cells along each side of its box.
 fn is_cubic(record: &Record) -> bool {
-    let mut counts = record.strategy.size().split('x');
+    let mut counts = record.strategy.sizes().map(|(_, count)| count);
     let first = counts.next();
-    counts.all(|count| Some(count) == first)
+    counts.all(|count| Some(&count) == first.as_ref())
 }
 
 /// The paper's size leads each family, or ties with what leads.
@@ -68,23 +69,23 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
         records.retain(|record| name != "G" || is_cubic(record));
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
-        let own = records.iter().find(|record| record.strategy.size() == selected);
-        let (Some(own), Some(leader)) = (own, best.first()) else {
+        let chosen = records.iter().find(|record| record.strategy.size() == selected);
+        let (Some(chosen), Some(leader)) = (chosen, best.first()) else {
             notes.push(format!("{name} not measured"));
             continue;
         };
-        basis = format!("{}{}", stand(own), source(&records));
+        basis = format!("{}{}", stand(chosen), source(&records));
         decided += 1;
-        notes.extend(own.strategy.stand_in().map(|what| format!("with {what}")));
-        let name = own.strategy.short();
-        if best.iter().any(|record| record.strategy == own.strategy) {
+        notes.extend(chosen.strategy.stand_in().map(|what| format!("with {what}")));
+        let name = chosen.strategy.short();
+        if best.iter().any(|record| record.strategy == chosen.strategy) {
             good += 1;
-            figures.push(format!("{name} {selected} {} ms", significant(time(own))));
+            figures.push(format!("{name} {selected} {} ms", significant(time(chosen))));
         } else {
             figures.push(format!(
                 "{name} {selected} {} ms, {} % longer than {}",
-                significant(time(own)),
-                percent(time(own) / time(leader) - 1.0),
+                significant(time(chosen)),
+                percent(time(chosen) / time(leader) - 1.0),
                 leader.strategy.size()
             ));
         }
@@ -101,8 +102,8 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
 pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
     let records = searched(&entries(done, scene, "sizes"), "G");
     let least = |cubic: bool| {
-        let own = records.iter().filter(|record| is_cubic(record) == cubic);
-        own.min_by(|a, b| time(a).total_cmp(&time(b)))
+        let grids = records.iter().filter(|record| is_cubic(record) == cubic);
+        grids.min_by(|a, b| time(a).total_cmp(&time(b)))
     };
     let (Some(equal), Some(shaped)) = (least(true), least(false)) else {
         return Answer::unknown(
@@ -126,15 +127,8 @@ pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
 
 /// The records of each family of the search for tests.
 fn tested<'a>(done: &'a Done, scene: &'a str) -> Vec<(&'a str, Vec<&'a Record>)> {
-    let mut families: Vec<(&str, Vec<&Record>)> = Vec::new();
-    for Entry { record, .. } in entries(done, scene, "tests") {
-        let name = record.strategy.family();
-        match families.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, records)) => records.push(record),
-            None => families.push((name, vec![record])),
-        }
-    }
-    families
+    let all = entries(done, scene, "tests").into_iter();
+    grouped_by(all.map(|entry| (entry.record.strategy.family(), entry.record)))
 }
 
 /// HS+SAT-N leads in each family, or ties with what leads.
@@ -149,7 +143,7 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
         basis = stand(meant);
         decided += 1;
         good += usize::from(best.iter().any(|record| record.strategy == meant.strategy));
-        let said = |record: &Record| {
+        let shown = |record: &Record| {
             let union = tests_of(record).unwrap_or_default().to_uppercase();
             format!("{union} {} ms", significant(time(record)))
         };
@@ -158,8 +152,8 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
             .map(|ranked| ranked.record)
             .filter(|record| tests_of(record).as_deref() != Some(BEST))
             .min_by(|a, b| time(a).total_cmp(&time(b)))
-            .map_or_else(String::new, |other| format!(", fastest of the others {}", said(other)));
-        figures.push(format!("{name}: {}{fastest}", said(meant)));
+            .map_or_else(String::new, |other| format!(", fastest of the others {}", shown(other)));
+        figures.push(format!("{name}: {}{fastest}", shown(meant)));
     }
     if decided == 0 {
         return Answer::unknown("intersection tests");
@@ -170,18 +164,16 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
 
 /// The union of all tests shades about as fast as HS+SAT-N, and assigns slower.
 pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
-    let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
+    let mut tally = Tally::default();
     for (name, records) in tested(done, scene) {
-        let of =
+        let find =
             |tests: &str| records.iter().find(|record| tests_of(record).as_deref() == Some(tests));
-        let (Some(best), Some(full)) = (of(BEST), of(FULL)) else { continue };
-        all += 2;
+        let (Some(best), Some(full)) = (find(BEST), find(FULL)) else { continue };
         let shade = full.times.shade_ms / best.times.shade_ms;
-        good += usize::from((shade - 1.0).abs() <= ABOUT);
-        good += usize::from(
-            Order::of_figures(best.times.assign_ms, full.times.assign_ms) == Order::Less,
-        );
-        figures.push(format!(
+        tally.count((shade - 1.0).abs() <= ABOUT);
+        let order = Order::of_figures(best.times.assign_ms, full.times.assign_ms);
+        tally.count(order == Order::Less);
+        tally.figures.push(format!(
             "{name}: shade {} and {} ms, assign {} and {} ms",
             significant(best.times.shade_ms),
             significant(full.times.shade_ms),
@@ -189,8 +181,5 @@ pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
             significant(full.times.assign_ms)
         ));
     }
-    if all == 0 {
-        return Answer::unknown("HS+SAT-N and the union of all tests");
-    }
-    Answer { figure: figures.join("; "), verdict: Verdict::of_parts(good, all, "measures") }
+    tally.answer("measures", "HS+SAT-N and the union of all tests")
 }

@@ -1,6 +1,7 @@
 //! Claims on times: which strategies are fast at which count of lights.
 
 use crate::report::format::{mebibytes, number, significant};
+use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::field::{Field, ordered};
@@ -22,13 +23,13 @@ pub(crate) fn dense_before_sparse(done: &Done, scene: &str) -> Answer {
         Ok(field) => field,
         Err(answer) => return answer,
     };
-    let (Some(dense), Some(sparse)) = (field.of("DC-E"), field.of("SC-E")) else {
+    let Some([dense, sparse]) = field.both(["DC-E", "SC-E"]) else {
         return Answer::unknown("DC-E and SC-E");
     };
     let ratio = sparse.assign_and_shade_ms() / dense.assign_and_shade_ms();
     let figure = format!(
         "{}: {}; SC-E takes {} times as long",
-        field.basis(),
+        field.records.basis,
         field.times(&["DC-E", "SC-E"]),
         significant(ratio)
     );
@@ -48,7 +49,7 @@ pub(crate) fn sparse_memory(done: &Done, scene: &str) -> Answer {
         Ok(field) => field,
         Err(answer) => return answer,
     };
-    let (Some(dense), Some(sparse)) = (field.of("DC-E"), field.of("SC-E")) else {
+    let Some([dense, sparse]) = field.both(["DC-E", "SC-E"]) else {
         return Answer::unknown("DC-E and SC-E");
     };
     let told = |what: &str, bytes: [u64; 2]| {
@@ -80,12 +81,12 @@ pub(crate) fn explicit_at_many(done: &Done, scene: &str) -> Answer {
         Ok(field) => field,
         Err(answer) => return answer,
     };
-    let (mut pairs, mut figure) = (Pairs::default(), field.basis());
+    let (mut pairs, mut figure) = (Pairs::default(), field.records.basis.clone());
     for names in [["T-E", "T-I"], ["DC-E", "DC-I"], ["SC-E", "SC-I"]] {
-        let order =
-            |less: &str, more: &str| Some(Order::of_times(field.of(less)?, field.of(more)?));
-        pairs.compare(names, |name| field.member(name), order);
-        if names.iter().any(|name| field.of(name).is_some()) {
+        let order = |less: &&Record, more: &&Record| Order::of_times(less, more);
+        let order = |less: &str, more: &str| field.records.order(less, more, order);
+        pairs.compare(names, |name| field.records.member(name), order);
+        if names.iter().any(|name| field.records.get(name).is_some()) {
             figure += &format!("; {}", field.times(&names));
         }
     }

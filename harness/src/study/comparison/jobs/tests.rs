@@ -4,7 +4,7 @@ use super::*;
 
 fn plan(quick: bool, triangles: u64) -> Vec<Job> {
     let scene = StudyScene { scene: "atrium".into(), name: "atrium".into(), scale: 1.0 };
-    let extent = Extent::of(quick, triangles);
+    let extent = Extent::new(quick, triangles);
     let mut plan = Plan { scene: &scene, extent, seed: 1, jobs: Vec::new() };
     plan.example();
     plan.searches();
@@ -41,9 +41,9 @@ fn what_ranks_is_measured_along_the_path() {
     for triangles in [1_000, 7_000_000] {
         let jobs = plan(false, triangles);
         for section in ["sizes", "tests", "path", "scaling"] {
-            let own: Vec<&Job> = jobs.iter().filter(|job| job.section == section).collect();
-            assert!(!own.is_empty(), "{section}");
-            for job in own {
+            let chosen: Vec<&Job> = jobs.iter().filter(|job| job.section == section).collect();
+            assert!(!chosen.is_empty(), "{section}");
+            for job in chosen {
                 assert!(job.command.iter().any(|word| word == "--path"), "{}", job.name);
                 let laps: u32 = job.option("--laps").and_then(|n| n.parse().ok()).expect("laps");
                 assert!(laps >= 6, "{}: {laps} laps", job.name);

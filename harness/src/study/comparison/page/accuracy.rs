@@ -1,5 +1,6 @@
 //! Speed against accuracy: what each lossy knob gains in time and costs in error.
 
+use crate::digits::rounded;
 use crate::report::format::{difference, significant};
 use crate::report::markup::Html;
 use crate::report::rank::Ratio;
@@ -66,7 +67,7 @@ pub(crate) fn accuracy(
         class: |record| record.strategy.class(),
         shape: |record| Some(usize::from(record.setting.cut.as_deref() == Some("hard"))),
         name: |record| record.strategy.to_string(),
-        label: |record| record.setting.threshold.map_or_else(String::new, |t| t.to_string()),
+        label: |record| record.setting.threshold.map_or_else(String::new, rounded),
         wanted: Wanted::Unbounded,
         time: "Assign + shade",
         first: FIRST,

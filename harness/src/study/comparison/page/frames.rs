@@ -10,11 +10,12 @@ use crate::study::page::part::Part;
 /// The kinds of frame: from jobs in several modes (section `frames`), or what the main comparison lets
 /// derive.
 pub(crate) fn frames(done: &Done, scene: &str) -> Part {
-    let of = |section| -> Vec<(&Machine, Vec<&Record>)> {
-        let jobs = done.of(scene, section);
+    let jobs_of = |section| -> Vec<(&Machine, Vec<&Record>)> {
+        let jobs = done.section(scene, section);
         jobs.map(|(_, results)| (&results.machine, results.records.iter().collect())).collect()
     };
-    let jobs = Some(of("frames")).filter(|jobs| !jobs.is_empty()).unwrap_or_else(|| of("main"));
+    let jobs =
+        Some(jobs_of("frames")).filter(|jobs| !jobs.is_empty()).unwrap_or_else(|| jobs_of("main"));
     let mut tables = Html::default();
     for (machine, records) in jobs.iter().rev() {
         let Some(first) = records.first() else { continue };

@@ -1,6 +1,7 @@
 //! The main comparison: the best strategy at each count of lights, with its passes.
 
 use crate::chart::{BarChart, Scale};
+use crate::grouping::grouped_by;
 use crate::report::colours::Colours;
 use crate::report::comparison::{Comparison, comparisons};
 use crate::report::format::{number, short_adapter, significant};
@@ -53,9 +54,10 @@ fn examples(done: &Done, scene: &str) -> Vec<Results> {
 
 /// Records of several jobs as if they came from one.
 fn merged(done: &Done, entries: &[Entry<'_>]) -> Option<Results> {
-    let of = done.results.get(&entries.first()?.job.name)?;
+    let results = done.results.get(&entries.first()?.job.name)?;
     let records = entries.iter().map(|entry| entry.record.clone()).collect();
-    let empty = Results::new(of.machine.clone(), of.command.clone(), of.truth.clone());
+    let empty =
+        Results::new(results.machine.clone(), results.command.clone(), results.truth.clone());
     Some(Results { records, ..empty })
 }
 
@@ -194,21 +196,14 @@ fn timed(record: &Record) -> String {
 
 /// The headline: the fastest at the most lights, in each scene.
 pub(crate) fn headline(done: &Done) -> Option<String> {
-    let scenes = done.scenes();
-    let mut leads: Vec<(String, Vec<&str>)> = Vec::new();
     let mut most = None;
-    for scene in &scenes {
-        let Some(results) = rankings(done, scene).pop() else { continue };
-        let Some(comparison) = comparison(&results) else { continue };
-        let Some(lead) = Lead::of_comparison(&comparison).map(|lead| lead.headline()) else {
-            continue;
-        };
+    let leads = grouped_by(done.scenes().into_iter().filter_map(|scene| {
+        let results = rankings(done, scene).pop()?;
+        let comparison = comparison(&results)?;
+        let lead = Lead::of_comparison(&comparison)?.headline();
         most = most.max(Some(comparison.first().setting.lights));
-        match leads.iter_mut().find(|(known, _)| *known == lead) {
-            Some((_, scenes)) => scenes.push(scene),
-            None => leads.push((lead, vec![scene])),
-        }
-    }
+        Some((lead, scene))
+    }));
     let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
     let parts: Vec<String> =
         leads.iter().map(|(lead, scenes)| format!("{lead} in {}", listed(scenes))).collect();
@@ -218,11 +213,11 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
 
 /// Who shares the first rank, per count of lights.
 pub(crate) fn ties(done: &Done, scene: &str) -> Vec<String> {
-    let said = |results: &Results| {
+    let sentence = |results: &Results| {
         let comparison = comparison(results)?;
         let tie = tie(&comparison.ranks())?;
         let lights = crate::report::finding::lights(comparison.first().setting.lights);
         Some(format!("{scene}, {lights}: {tie}."))
     };
-    rankings(done, scene).iter().filter_map(said).collect()
+    rankings(done, scene).iter().filter_map(sentence).collect()
 }

@@ -34,7 +34,7 @@ pub(crate) struct Spread {
 
 impl Spread {
     /// `None` without poses, or where their times say nothing.
-    pub(crate) fn of(record: &Record) -> Option<Self> {
+    pub(crate) fn measure(record: &Record) -> Option<Self> {
         let times = record.pose_times_ms();
         let worst = times.iter().copied().fold(f64::NAN, f64::max);
         let (mean, deviation) = (mean(&times), standard_deviation(&times));
@@ -57,11 +57,11 @@ pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     let all = entries(done, scene, "path");
     let mut shown: Vec<(String, Html)> = Vec::new();
     for count in counts(&all).into_iter().rev() {
-        let own: Vec<Entry<'_>> =
+        let at_count: Vec<Entry<'_>> =
             all.iter().filter(|entry| entry.record.setting.lights == count).copied().collect();
         let title = format!("Pose by pose, {} lights", number(count as f64));
-        let body = charts.xy(&format!("{scene}-path-{count}"), &chart(title.clone(), &own))
-            + spreads(&title, &own);
+        let body = charts.xy(&format!("{scene}-path-{count}"), &chart(title.clone(), &at_count))
+            + spreads(&title, &at_count);
         shown.push((format!("{} lights", number(count as f64)), body));
     }
     Part::new(
@@ -77,8 +77,11 @@ pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Part {
 
 fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
     let lines = lines(entries);
-    let means: Vec<f64> =
-        entries.iter().filter_map(|e| Spread::of(e.record)).map(|spread| spread.mean).collect();
+    let means: Vec<f64> = entries
+        .iter()
+        .filter_map(|e| Spread::measure(e.record))
+        .map(|spread| spread.mean)
+        .collect();
     let most = means.iter().copied().fold(0.0, f64::max);
     let least = means.iter().copied().fold(f64::INFINITY, f64::min);
     let scale = if most > LOG_ABOVE * least { Scale::Log } else { Scale::LinearFromZero };
@@ -87,28 +90,17 @@ fn chart(title: String, entries: &[Entry<'_>]) -> XyChart {
         .flat_map(|(id, records)| records.iter().map(move |record| (id, record)))
         .map(|(id, record)| {
             let times = record.pose_times_ms();
-            let point = |(pose, y): (usize, &f64)| Point {
-                x: 100.0 * pose as f64 / times.len() as f64,
-                y: *y,
-                tip: format!("{}\npose {pose}\n{} ms", record.strategy, significant(*y)),
-                ..Point::default()
+            let point = |(pose, ms): (usize, &f64)| {
+                let tip = format!("{}\npose {pose}\n{} ms", record.strategy, significant(*ms));
+                Point::new(100.0 * pose as f64 / times.len() as f64, *ms, tip)
             };
-            Series {
-                name: id.short(),
-                class: id.class(),
-                marks: Marks::Line,
-                points: times.iter().enumerate().map(point).collect(),
-                ..Series::default()
-            }
+            let points = times.iter().enumerate().map(point).collect();
+            Series::new(id.short(), id.class(), Marks::Line, points)
         })
         .collect();
-    XyChart {
-        title,
-        x: Axis { label: "Along the path".to_owned(), unit: "%".to_owned(), scale: Scale::Linear },
-        y: Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale },
-        series,
-        note: String::new(),
-    }
+    let axes =
+        [Axis::new("Along the path", "%", Scale::Linear), Axis::new("Assign + shade", "ms", scale)];
+    XyChart::new(title, axes, series)
 }
 
 /// A strategy's record with how its times vary.
@@ -116,15 +108,15 @@ type Varied<'a> = (&'a Record, Spread);
 
 /// A column of times.
 fn ms<'a>(head: &str, value: fn(&Spread) -> f64) -> Column<'a, Varied<'a>> {
-    let value = move |row: &Varied<'a>| Some(value(&row.1));
-    Column::figure(head, "ms", Better::Less, value, significant)
+    Column::ms(head, move |row: &Varied<'a>| Some(value(&row.1)))
 }
 
 /// How the times of each strategy vary. Ranks stand in the main table, so no figure is marked as the best.
 fn spreads<'a>(title: &str, entries: &[Entry<'a>]) -> Html {
     let row = |entry: &Entry<'a>| {
         let record = entry.record;
-        Some(Row::new(record.strategy.to_string(), (record, Spread::of(record)?)))
+        let name = format!("{}{}", record.strategy, entry.mark());
+        Some(Row::new(name, (record, Spread::measure(record)?)))
     };
     let count = |of: fn(&Record) -> usize| move |row: &Varied<'_>| Some(of(row.0) as f64);
     let columns = [

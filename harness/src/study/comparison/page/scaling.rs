@@ -1,6 +1,7 @@
 //! Times against the number of lights, with straight lines through them.
 
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
+use crate::grouping::distinct;
 use crate::report::column::{Better, Column};
 use crate::report::fit::Fit;
 use crate::report::format::{ABSENT, number, percent, significant};
@@ -8,9 +9,9 @@ use crate::report::markup::{Html, html};
 use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
 use crate::strategy::StrategyId;
-use crate::study::data::{Entry, Line, counts, entries, lines, poses, ranking, stand};
+use crate::study::data::{Entry, Line, counts, entries, lines, marked_name, poses, ranking, stand};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::figure::{Charts, panels};
 use crate::study::page::lines::{Time, fit, times_series};
 use crate::study::page::part::Part;
 
@@ -124,13 +125,13 @@ fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html
         ("bvh", "With the hierarchy (/bvh)", true),
     ] {
         let has_source = |entry: &&Entry<'_>| entry.record.culls();
-        let own: Vec<Entry<'_>> = all
+        let chosen: Vec<Entry<'_>> = all
             .iter()
             .filter(|entry| !has_source(entry) || entry.record.strategy.is_bvh() == bvh)
             .copied()
             .collect();
-        if own.iter().any(|entry| entry.record.culls()) {
-            shown.push((text.to_owned(), body(source, &own)));
+        if chosen.iter().any(|entry| entry.record.culls()) {
+            shown.push((text.to_owned(), body(source, &chosen)));
         }
     }
     panels("Where strategies look for lights", &shown)
@@ -140,7 +141,6 @@ fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html
 pub(crate) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyChart {
     let mut series = Vec::new();
     for (id, records) in lines {
-        let class = id.class();
         let line = fit(records, time).filter(|fit| fit.points > 2);
         let ends = (records.first(), records.last());
         if let (Some(line), (Some(first), Some(last))) = (line, ends) {
@@ -152,32 +152,15 @@ pub(crate) fn fitted_chart(title: String, lines: &[Line<'_>], time: Time) -> XyC
                 .filter(|x| line.at(*x) > 0.0)
                 .map(|x| Point { x, y: line.at(x), ..Point::default() })
                 .collect();
-            let marks = Marks::Dashed;
-            series.push(Series {
-                name: id.short(),
-                class: class.clone(),
-                marks,
-                points,
-                ..Series::default()
-            });
+            series.push(Series::new(id.short(), id.class(), Marks::Dashed, points));
         }
         series.push(times_series(id, records, time, Marks::Points));
     }
-    XyChart {
-        title,
-        x: lights_axis(Scale::Log),
-        y: time_axis(Scale::Log),
-        series,
-        note: String::new(),
-    }
+    XyChart::new(title, axes(), series)
 }
 
-fn lights_axis(scale: Scale) -> Axis {
-    Axis { label: "Lights".to_owned(), unit: String::new(), scale }
-}
-
-fn time_axis(scale: Scale) -> Axis {
-    Axis { label: "Assign + shade".to_owned(), unit: "ms".to_owned(), scale }
+fn axes() -> [Axis; 2] {
+    [Axis::new("Lights", "", Scale::Log), Axis::new("Assign + shade", "ms", Scale::Log)]
 }
 
 /// The lines through a strategy's times, and how straight these are.
@@ -200,12 +183,9 @@ fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
         };
         let (assign, shade) =
             (of_pass(|record| record.times.assign_ms), of_pass(|record| record.times.shade_ms));
-        Some(Row::new(id.to_string(), Fits { id, both, straight, assign, shade }))
+        Some(Row::new(marked_name(entries, id), Fits { id, both, straight, assign, shade }))
     };
     let rows: Vec<Row<Fits<'a>>> = lines(entries).into_iter().filter_map(row).collect();
-    if rows.is_empty() {
-        return Html::default();
-    }
     let off = |fits: &Fits<'_>| Some(fits.straight.as_ref()?.worst);
     let straight_over = |fits: &Fits<'_>| match fits.straight.and_then(|found| found.range) {
         Some([low, high]) => format!("{} to {}", number(low as f64), number(high as f64)),
@@ -238,7 +218,7 @@ fn line_columns<'a>(
     let offset = move |fits: &Fits<'a>| line(fits).map(|fit| fit.offset);
     [
         Column::figure(slope, "\u{b5}s per 1,000 lights", Better::Less, slope_of, significant),
-        Column::figure("offset", "ms", Better::Less, offset, significant),
+        Column::ms("offset", offset),
         Column::figure("R\u{b2}", "", Better::More, r2, |r2| format!("{r2:.3}")),
     ]
 }
@@ -252,66 +232,50 @@ fn density(done: &Done, scene: &str, charts: &mut Charts) -> Html {
         ("growing", "More lights in the same box", &scaling),
         ("constant", "More lights in a larger scene, at the same density", &scaling),
     ] {
-        let own = entries(done, scene, section);
-        if own.is_empty() {
+        let chosen = entries(done, scene, section);
+        if chosen.is_empty() {
             continue;
         }
         let from =
             |entry: &&Entry<'_>| section == "growing" || Some(entry.record.setting.lights) == most;
         let known = |entry: &&Entry<'_>| {
-            own.iter().any(|other| other.record.strategy == entry.record.strategy)
+            chosen.iter().any(|other| other.record.strategy == entry.record.strategy)
         };
         let mut all: Vec<Entry<'_>> =
             base.iter().filter(bvh).filter(from).filter(known).copied().collect();
-        all.extend(&own);
+        all.extend(&chosen);
         let time: Time = Record::assign_and_shade_ms;
         let series = lines(&all)
             .iter()
             .map(|(id, records)| times_series(id, records, time, Marks::LineAndPoints))
             .collect();
-        let chart = XyChart {
-            title: title.to_owned(),
-            x: lights_axis(Scale::Log),
-            y: time_axis(Scale::Log),
-            series,
-            note: String::new(),
-        };
-        html += charts.xy(&format!("{scene}-{section}"), &chart);
+        html += charts.xy(&format!("{scene}-{section}"), &XyChart::new(title, axes(), series));
     }
     if html.is_empty() { html } else { html!("<div class=\"pair\">{}</div>", html) }
 }
 
-fn radii(done: &Done, scene: &str) -> Html {
+fn radii<'a>(done: &'a Done, scene: &'a str) -> Html {
     let all = entries(done, scene, "radii");
-    let mut kinds: Vec<&str> = Vec::new();
-    for entry in &all {
-        let kind = entry.record.setting.radii.as_deref().unwrap_or("unknown");
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    let rows: Vec<Vec<Html>> = lines(&all)
-        .into_iter()
-        .map(|(id, records)| {
-            let of = |kind: &str| {
-                let found =
-                    records.iter().find(|record| record.setting.radii.as_deref() == Some(kind));
-                found.map(|record| record.assign_and_shade_ms())
+    let radii = all.iter().map(|entry| entry.record.setting.radii.as_deref());
+    let kinds = distinct(radii.map(|kind| kind.unwrap_or("unknown")));
+    let time = |(_, records): &Line<'_>, kind: &str| {
+        let mut records = records.iter();
+        let found = records.find(|record| record.setting.radii.as_deref() == Some(kind));
+        found.map(|record| record.assign_and_shade_ms())
+    };
+    let column = |kind| {
+        Column::ms(kind, move |line: &Line<'_>| time(line, kind)).note(move |line| {
+            let factor = || {
+                let gamma = time(line, "gamma").filter(|gamma| kind != "gamma" && *gamma > 0.0)?;
+                Some(html!(" (\u{d7} {})", significant(time(line, kind)? / gamma)))
             };
-            let cell = |kind: &&str| match (of(kind), of("gamma")) {
-                (Some(time), Some(gamma)) if *kind != "gamma" && gamma > 0.0 => {
-                    format!("{} (\u{d7} {})", significant(time), significant(time / gamma))
-                }
-                (Some(time), _) => significant(time),
-                (None, _) => "\u{2013}".to_owned(),
-            };
-            std::iter::once(name(id)).chain(kinds.iter().map(cell).map(Html::from)).collect()
+            factor().unwrap_or_default()
         })
-        .collect();
-    if rows.is_empty() {
-        return Html::default();
-    }
-    let kinds = kinds.iter().map(|kind| unit(kind, "ms"));
-    let heads: Vec<Html> = std::iter::once("strategy".into()).chain(kinds).collect();
-    table("Times by the distribution of radii", &heads, &rows)
+    };
+    let columns: Vec<_> = kinds.into_iter().map(column).collect();
+    let row = |line: Line<'a>| Row::new(marked_name(&all, line.0), line);
+    Table::new("strategy", columns, lines(&all).into_iter().map(row).collect())
+        .competing(|_| false)
+        .dotted(|(id, _)| id.class())
+        .html("Times by the distribution of radii", Look::Plain)
 }

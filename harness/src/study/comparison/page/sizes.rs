@@ -1,14 +1,17 @@
 //! Which parameters and which intersection tests are best.
 
-use crate::chart::{Axis, BarChart, BarRow, Scale, Segment};
+use crate::chart::{Axis, BarChart, Scale};
+use crate::grouping::{distinct, grouped_by};
+use crate::report::column::{Better, Column};
 use crate::report::format::{ABSENT, number, significant};
 use crate::report::markup::{Html, html};
 use crate::report::metrics::interval;
 use crate::report::rank::{first, listed, ranks};
+use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::study::data::{Entry, entries, stand, tests};
+use crate::study::data::{Entry, entries, mark, stand, tests};
 use crate::study::manifest::Done;
-use crate::study::page::figure::{Charts, name, panels, table, unit};
+use crate::study::page::figure::{Charts, panels, time_bar};
 use crate::study::page::part::Part;
 
 /// A family with the source of its lights: `SC-E`, `SC-E/bvh`. Sizes of one compete.
@@ -19,15 +22,7 @@ fn searched(record: &Record) -> String {
 
 /// The records of each family and source, in the order of the jobs.
 fn families<'a>(entries: &[Entry<'a>]) -> Vec<(String, Vec<&'a Record>)> {
-    let mut all: Vec<(String, Vec<&Record>)> = Vec::new();
-    for Entry { record, .. } in entries {
-        let name = searched(record);
-        match all.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, records)) => records.push(record),
-            None => all.push((name, vec![record])),
-        }
-    }
-    all
+    grouped_by(entries.iter().map(|entry| (searched(entry.record), entry.record)))
 }
 
 /// The parameters of a record, or what it has instead.
@@ -38,6 +33,14 @@ fn size(record: &Record) -> &str {
     }
 }
 
+/// A family of a search, with the sizes that lead.
+struct Searched<'a> {
+    best: &'a Record,
+    /// Others that tie with it.
+    same: Vec<&'a str>,
+    count: usize,
+}
+
 /// Group sizes and intersection tests of a scene.
 pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] {
     let searches = entries(done, scene, "sizes");
@@ -45,33 +48,33 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] 
     let mut rows = Vec::new();
     let mut shown = Vec::new();
     for (family, records) in &families {
-        let ranked = ranks(records.iter().copied());
-        let Some(best) = first(&ranked).first().copied() else { continue };
-        let same: Vec<&str> = first(&ranked).iter().skip(1).map(|record| size(record)).collect();
-        rows.push(vec![
-            name(family),
-            size(best).into(),
-            Html::from(significant(best.assign_and_shade_ms())) + interval(best),
-            if same.is_empty() { ABSENT.into() } else { listed(&same).into() },
-            number(records.len() as f64).into(),
-            stand(best).into(),
-        ]);
+        let leaders = first(&ranks(records.iter().copied()));
+        let Some((&best, others)) = leaders.split_first() else { continue };
+        let same = others.iter().map(|record| size(record)).collect();
+        let mark = mark(&searches, &best.strategy);
+        rows.push(Row::new(
+            format!("{family}{mark}"),
+            Searched { best, same, count: records.len() },
+        ));
         let slug = format!("{scene}-sizes-{family}");
         shown.push((family.clone(), charts.bars(&slug, &bars(family, records))));
     }
-    let heads = [
-        "family".into(),
-        "best size".into(),
-        unit("assign + shade", "ms"),
-        "ties with it".into(),
-        "sizes tried".into(),
-        "mean of".into(),
+    let columns = [
+        Column::words("best size", "", |row: &Searched<'_>| size(row.best).to_owned()),
+        Column::ms("assign + shade", |row: &Searched<'_>| Some(row.best.assign_and_shade_ms()))
+            .note(|row| interval(row.best)),
+        Column::words("ties with it", "", |row: &Searched<'_>| match row.same.as_slice() {
+            [] => ABSENT.to_owned(),
+            same => listed(same),
+        }),
+        Column::words("sizes tried", "", |row: &Searched<'_>| number(row.count as f64)),
+        Column::words("mean of", "", |row: &Searched<'_>| stand(row.best)),
     ];
-    let body = if rows.is_empty() {
-        Html::default()
-    } else {
-        table("The best size of each family", &heads, &rows) + panels("Family", &shown)
-    };
+    let body = Table::new("family", columns, rows)
+        .competing(|_| false)
+        .dotted(|row| row.best.strategy.class())
+        .html("The best size of each family", Look::Plain)
+        + panels("Family", &shown);
     let sizes = Part::new(
         "sizes",
         "Group sizes",
@@ -97,81 +100,41 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] 
 fn bars(family: &str, records: &[&Record]) -> BarChart {
     let mut sorted = records.to_vec();
     sorted.sort_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()));
-    let rows = sorted
-        .iter()
-        .map(|record| BarRow {
-            name: size(record).to_owned(),
-            class: record.strategy.class(),
-            segments: vec![
-                Segment {
-                    name: "assign".to_owned(),
-                    class: "pass-assign-0".to_owned(),
-                    value: record.times.assign_ms,
-                },
-                Segment {
-                    name: "shade".to_owned(),
-                    class: "pass-shade-0".to_owned(),
-                    value: record.times.shade_ms,
-                },
-            ],
-            value_text: format!("{} ms", significant(record.assign_and_shade_ms())),
-            tip: format!(
-                "{}\nassign {} ms\nshade {} ms",
-                record.strategy,
-                significant(record.times.assign_ms),
-                significant(record.times.shade_ms)
-            ),
-        })
-        .collect();
+    let bar = |record: &&Record| time_bar(size(record).to_owned(), record.strategy.class(), record);
     BarChart {
         title: format!("{family} by size"),
-        axis: Axis {
-            label: "Assign + shade".to_owned(),
-            unit: "ms".to_owned(),
-            scale: Scale::LinearFromZero,
-        },
-        rows,
+        axis: Axis::new("Assign + shade", "ms", Scale::LinearFromZero),
+        rows: sorted.iter().map(bar).collect(),
         note: String::new(),
     }
 }
 
-fn tests_table(done: &Done, scene: &str) -> Html {
+fn tests_table<'a>(done: &'a Done, scene: &'a str) -> Html {
     let all = entries(done, scene, "tests");
     let families = families(&all);
-    let mut unions: Vec<String> = Vec::new();
-    for union in all.iter().filter_map(|entry| tests(entry.record)) {
-        if !unions.contains(&union) {
-            unions.push(union);
-        }
-    }
-    let best: Vec<Vec<&Record>> =
-        families.iter().map(|(_, records)| first(&ranks(records.iter().copied()))).collect();
-    let rows: Vec<Vec<Html>> = unions
-        .iter()
-        .map(|union| {
-            let cell = |((_, records), best): (&(String, Vec<&Record>), &Vec<&Record>)| {
-                let found =
-                    records.iter().find(|record| tests(record).as_deref() == Some(union.as_str()));
-                found.map_or_else(
-                    || ABSENT.into(),
-                    |record| {
-                        let time = significant(record.assign_and_shade_ms());
-                        let is_best = best.iter().any(|best| std::ptr::eq(*best, *record));
-                        if is_best { html!("<b class=\"best\">{}</b>", time) } else { time.into() }
-                    },
-                )
-            };
-            let name = Html::from(union.to_uppercase());
-            std::iter::once(name).chain(families.iter().zip(&best).map(cell)).collect()
-        })
-        .collect();
-    if rows.is_empty() {
-        return Html::default();
-    }
-    let names = families.iter().map(|(family, _)| name(family));
-    let heads: Vec<Html> = std::iter::once("tests".into()).chain(names).collect();
-    table("Times by intersection tests", &heads, &rows)
+    let unions = distinct(all.iter().filter_map(|entry| tests(entry.record)));
+    let column = |(family, records): (String, Vec<&'a Record>)| {
+        let leaders = first(&ranks(records.iter().copied()));
+        let class = records.first().map_or_else(String::new, |record| record.strategy.class());
+        let find = move |union: &String| {
+            records.iter().copied().find(|record| tests(record).as_ref() == Some(union))
+        };
+        let leads = find.clone();
+        let time = move |union: &String| Some(find(union)?.assign_and_shade_ms());
+        Column::figure(family, "", Better::Less, time, significant).dotted(class).best(
+            move |union| {
+                let record = leads(union);
+                leaders.iter().any(|leader| record.is_some_and(|r| std::ptr::eq(*leader, r)))
+            },
+        )
+    };
+    let columns: Vec<_> = families.into_iter().map(column).collect();
+    let rows = unions.into_iter().map(|union| Row::new(union.to_uppercase(), union)).collect();
+    Table::new("tests", columns, rows).html("Times by intersection tests", Look::Plain)
 }
+
+/// A size with the geometric mean and the greatest of its factors over the best size of each scene.
+type Overall<'a> = (&'a Record, f64, f64);
 
 /// The size of each family that is best over all scenes: least geometric mean of its time over that
 /// of the best size in the scene.
@@ -186,21 +149,22 @@ pub(crate) fn best_overall(done: &Done) -> Html {
     };
     let mut rows = Vec::new();
     for (family, records) in families(leading) {
-        let factor = |id: &str| -> Option<(f64, f64)> {
+        let factor = |record: &'_ Record| -> Option<(f64, f64)> {
             let (mut logs, mut worst, mut count) = (0.0, 0.0_f64, 0.0);
             for entries in &complete {
-                let own = || {
-                    entries
-                        .iter()
-                        .map(|entry| entry.record)
-                        .filter(|record| searched(record) == family)
+                let same_family = || {
+                    let records = entries.iter().map(|entry| entry.record);
+                    records.filter(|record| searched(record) == family)
                 };
                 // A heavy scene searches fewer families.
-                if own().next().is_none() {
+                if same_family().next().is_none() {
                     continue;
                 }
-                let best = own().map(Record::assign_and_shade_ms).fold(f64::INFINITY, f64::min);
-                let time = own().find(|record| record.strategy == id)?.assign_and_shade_ms();
+                let best =
+                    same_family().map(Record::assign_and_shade_ms).fold(f64::INFINITY, f64::min);
+                let time = same_family()
+                    .find(|known| known.strategy == record.strategy)?
+                    .assign_and_shade_ms();
                 logs += (time / best).ln();
                 count += 1.0;
                 worst = worst.max(time / best);
@@ -208,36 +172,34 @@ pub(crate) fn best_overall(done: &Done) -> Html {
             let mean = (logs / count).exp();
             mean.is_finite().then_some((mean, worst))
         };
-        let mut factors: Vec<(&Record, f64, f64)> = records
+        let factors = records
             .iter()
-            .filter_map(|record| {
-                factor(&record.strategy).map(|(mean, worst)| (*record, mean, worst))
-            })
-            .collect();
-        factors.sort_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((record, mean, worst)) = factors.first() {
-            rows.push(vec![
-                name(&family),
-                size(record).into(),
-                significant(*mean).into(),
-                significant(*worst).into(),
-            ]);
+            .filter_map(|record| factor(record).map(|(mean, worst)| (*record, mean, worst)));
+        if let Some(best) = factors.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            rows.push(Row::new(format!("{family}{}", mark(leading, &best.0.strategy)), best));
         }
     }
-    if rows.is_empty() {
-        return Html::default();
-    }
-    let heads = [
-        "family".into(),
-        "size".into(),
-        unit("geometric mean over the best", "\u{d7}"),
-        unit("worst scene", "\u{d7}"),
+    let times = |head, value: fn(&Overall<'_>) -> f64| {
+        let value = move |row: &Overall<'_>| Some(value(row));
+        Column::figure(head, "\u{d7}", Better::Less, value, significant)
+    };
+    let columns = [
+        Column::words("size", "", |row: &Overall<'_>| size(row.0).to_owned()),
+        times("geometric mean over the best", |row| row.1),
+        times("worst scene", |row| row.2),
     ];
+    let table = Table::new("family", columns, rows)
+        .competing(|_| false)
+        .dotted(|row| row.0.strategy.class())
+        .html("The best size over all scenes", Look::Plain);
+    if table.is_empty() {
+        return table;
+    }
     html!(
         "<section aria-labelledby=\"overall\"><h2 id=\"overall\">The size for all scenes</h2>\n<p \
          class=\"note\">We divide the time of each size by the time of the best size in the same \
                        scene. The table shows the size for which the geometric mean of these \
                        ratios over the scenes is least.</p>\n{}</section>\n",
-        table("The best size over all scenes", &heads, &rows)
+        table
     )
 }

@@ -1,6 +1,7 @@
 //! The views with the least and the most depth discontinuity: heat maps and lengths of lists.
 
 use crate::chart::Histogram;
+use crate::grouping::distinct;
 use crate::report::format::{number, significant};
 use crate::report::markup::{Html, html};
 use crate::results::Record;
@@ -17,19 +18,16 @@ const FIRST: [&str; 4] = ["T-E", "SC-E", "G", "M/2"];
 /// Both views of each strategy.
 pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut Shots<'_>) -> Part {
     let all = entries(done, scene, "views");
-    let mut ids: Vec<&StrategyId> = Vec::new();
-    for entry in all.iter().filter(|entry| entry.record.culls()) {
-        if !ids.contains(&&entry.record.strategy) {
-            ids.push(&entry.record.strategy);
-        }
-    }
+    let culled = all.iter().filter(|entry| entry.record.culls());
+    let mut ids = distinct(culled.map(|entry| &entry.record.strategy));
     ids.sort_by_key(|id| FIRST.iter().position(|first| *first == id.short()).unwrap_or(usize::MAX));
-    let of = |ids: &[&StrategyId], view: Option<bool>| -> Vec<Entry<'_>> {
-        let own = |entry: &&Entry<'_>| ids.contains(&&entry.record.strategy);
+    let select = |ids: &[&StrategyId], view: Option<bool>| -> Vec<Entry<'_>> {
+        let is_of_id = |entry: &&Entry<'_>| ids.contains(&&entry.record.strategy);
         let seen = |entry: &&Entry<'_>| view.is_none_or(|low| is_of_view(entry, low));
-        let mut own: Vec<Entry<'_>> = all.iter().filter(own).filter(seen).copied().collect();
-        own.sort_by_key(|entry| ids.iter().position(|id| **id == entry.record.strategy));
-        own
+        let mut chosen: Vec<Entry<'_>> =
+            all.iter().filter(is_of_id).filter(seen).copied().collect();
+        chosen.sort_by_key(|entry| ids.iter().position(|id| **id == entry.record.strategy));
+        chosen
     };
     let first: Vec<&StrategyId> =
         ids.iter().filter(|id| FIRST.contains(&id.short().as_str())).copied().collect();
@@ -37,7 +35,7 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     if first.len() > 1 {
         let (mut maps, mut drawn) = (Html::default(), Html::default());
         for low in [true, false] {
-            let entries = of(&first, Some(low));
+            let entries = select(&first, Some(low));
             let Some(view) = entries.first().map(view) else { continue };
             maps += heat_maps(&entries, "views four", shots);
             let title = format!("Lists by length, {view}: {}", counted(&entries));
@@ -47,7 +45,7 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
         shown.push((names.join(", "), html!("{}<div class=\"pair\">{}</div>\n", maps, drawn)));
     }
     for id in &ids {
-        let entries = of(&[*id], None);
+        let entries = select(&[*id], None);
         let title = format!("Lists by length, {id}: {}", counted(&entries));
         let slug = format!("{scene}-views-{}", id.short());
         let mut body = heat_maps(&entries, "views", shots);

@@ -3,8 +3,8 @@
 use crate::report::format::{number, percent, significant};
 use crate::report::rank::listed;
 use crate::results::Record;
-use crate::study::claims::{Answer, Verdict};
-use crate::study::culling::claims::modes::{Mode, Tally, bounding_sphere, capped, whole};
+use crate::study::claims::{Answer, Tally, Verdict};
+use crate::study::culling::claims::modes::{Mode, bounding_sphere, capped, whole};
 use crate::study::manifest::Done;
 
 /// The paper's cap.

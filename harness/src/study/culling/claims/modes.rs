@@ -2,9 +2,8 @@
 
 use crate::report::format::significant;
 use crate::results::Record;
-use crate::strategy::{RASTER_SPHERE, Role};
-use crate::study::claims::order::Order;
-use crate::study::claims::{Answer, Verdict};
+use crate::strategy::Role;
+use crate::study::culling::jobs::CLUSTERS;
 use crate::study::data::{counts, entries};
 use crate::study::manifest::Done;
 
@@ -21,13 +20,13 @@ pub(crate) struct Mode<'a> {
 impl<'a> Mode<'a> {
     /// Both renderers, where they were measured.
     pub(crate) fn all(done: &'a Done, scene: &'a str) -> Vec<Self> {
-        let of = |name: &'static str| {
+        let mode = |name: &'static str| {
             let entries = entries(done, scene, name);
             let counts = counts(&entries);
             let times = entries.iter().map(|entry| entry.record);
             Self { name, records: times.filter(|r| r.times.frame_ms.is_finite()).collect(), counts }
         };
-        MODES.into_iter().map(of).filter(|mode| !mode.records.is_empty()).collect()
+        MODES.into_iter().map(mode).filter(|mode| !mode.records.is_empty()).collect()
     }
 
     pub(crate) fn most(&self) -> u64 {
@@ -64,11 +63,11 @@ pub(crate) fn bounding_sphere(record: &Record) -> bool {
 }
 
 pub(crate) fn raster_sphere(record: &Record) -> bool {
-    record.strategy.family() == RASTER_SPHERE
+    record.strategy.shade_rasterises()
 }
 
 pub(crate) fn is_cluster(record: &Record) -> bool {
-    record.strategy.family() == "DC-I"
+    record.strategy.row().is_some_and(|row| row.family == CLUSTERS)
 }
 
 /// The paper's clusters, whose lists end at the cap.
@@ -88,59 +87,4 @@ pub(crate) fn of_the_survey(record: &Record) -> bool {
 
 pub(crate) fn timed(record: &Record) -> String {
     format!("{} {} ms", record.strategy, significant(record.times.frame_ms))
-}
-
-/// What modes said, and how many of them held.
-#[derive(Default)]
-pub(crate) struct Tally {
-    pub(crate) figures: Vec<String>,
-    pub(crate) good: usize,
-    pub(crate) all: usize,
-    /// Parts that few laps cannot order.
-    unsure: usize,
-    ties: usize,
-}
-
-impl Tally {
-    pub(crate) fn add(&mut self, holds: bool, figure: String) {
-        self.good += usize::from(holds);
-        self.all += 1;
-        self.figures.push(figure);
-    }
-
-    /// Adds a part that holds where one frame is shorter than another.
-    pub(crate) fn add_order(&mut self, order: Order, figure: String) {
-        self.count(order);
-        self.figures.push(figure);
-    }
-
-    /// Counts a part without a figure.
-    pub(crate) fn count(&mut self, order: Order) {
-        self.all += 1;
-        match order {
-            Order::Less => self.good += 1,
-            Order::Tie => self.ties += 1,
-            Order::Unsure => self.unsure += 1,
-            Order::More => {}
-        }
-    }
-
-    pub(crate) fn answer(self, parts: &str, missing: &str) -> Answer {
-        if self.all == 0 {
-            return Answer::unknown(missing);
-        }
-        let some = |count: usize, what: &str| (count > 0).then(|| format!("{what} for {count}"));
-        let notes: Vec<String> = [some(self.ties, "a tie"), some(self.unsure, "too few laps")]
-            .into_iter()
-            .flatten()
-            .collect();
-        let verdict = match notes.is_empty() {
-            true => Verdict::of_parts(self.good, self.all, parts),
-            false => {
-                let (good, all) = (self.good, self.all);
-                Verdict::Differs(format!("holds for {good} of {all} {parts}; {}", notes.join("; ")))
-            }
-        };
-        Answer { figure: self.figures.join("; "), verdict }
-    }
 }

@@ -6,9 +6,9 @@ use crate::results::Record;
 use crate::strategy::Role;
 use crate::study::claims::on_another_gpu;
 use crate::study::claims::order::Order;
-use crate::study::claims::{Answer, Verdict};
+use crate::study::claims::{Answer, Tally, Verdict};
 use crate::study::culling::claims::modes::{
-    Mode, Tally, bounding_sphere, capped, none, of_the_survey, raster_sphere, timed,
+    Mode, bounding_sphere, capped, none, of_the_survey, raster_sphere, timed,
 };
 use crate::study::data::{entries, lines};
 use crate::study::manifest::Done;
@@ -50,14 +50,13 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
             let Some(fit) = Fit::through(&points).filter(|fit| fit.points > 2) else { continue };
             let growth = fit.slope.abs() * mode.most() as f64;
             let off = fit.residual / growth.max(LEVEL * fit.offset);
+            tally.count(off <= ASTRAY);
             straight += usize::from(off <= ASTRAY);
             count += 1;
             if off >= worst.0 {
-                worst = (off, id);
+                worst = (off, id.as_str());
             }
         }
-        tally.good += straight;
-        tally.all += count;
         if count > 0 {
             tally.figures.push(format!(
                 "{}: straight in {straight} of {count} methods over {} counts, 0 to {} lights; {} is \
@@ -85,8 +84,7 @@ pub(crate) fn clay(done: &Done, scene: &str) -> Answer {
             else {
                 continue;
             };
-            tally.good += usize::from(!is_below(least, clay));
-            tally.all += 1;
+            tally.count(!is_below(least, clay));
             if lights == mode.most() {
                 let figure = format!("{}, {} lights", mode.name, number(lights as f64));
                 tally.figures.push(format!("{figure}: {}, {}", timed(clay), timed(least)));
@@ -113,7 +111,7 @@ pub(crate) fn slowest(done: &Done, scene: &str) -> Answer {
             .max_by(|a, b| a.times.frame_ms.total_cmp(&b.times.frame_ms));
         let Some(next) = next else { continue };
         let figure = format!("{}: {}, {}", mode.name, timed(none), timed(next));
-        tally.add_order(Order::of_frames(next, none), figure);
+        tally.add(Order::of_frames(next, none), figure);
     }
     tally.answer("renderers", "no culling")
 }
@@ -201,7 +199,7 @@ pub(crate) fn deferred(done: &Done, scene: &str) -> Answer {
             significant(other.times.frame_ms)
         );
         // Renderers run in jobs of their own: their rounds are not pairs.
-        tally.add_order(Order::of_figures(own.times.frame_ms, other.times.frame_ms), figure);
+        tally.add(Order::of_figures(own.times.frame_ms, other.times.frame_ms), figure);
     }
     let mut answer = tally.answer("methods", "no culling in both renderers");
     if done.results.values().any(|results| results.machine.weak_raster().is_some()) {

@@ -3,9 +3,9 @@
 use crate::report::format::{percent, significant};
 use crate::report::rank::listed;
 use crate::results::{Operations, Record};
-use crate::study::claims::{Answer, Verdict};
+use crate::study::claims::{Answer, Outcome, Tally, Verdict};
 use crate::study::endless::cases::{Case, Cut, Setting, cases, lost, seen, setting};
-use crate::study::endless::claims::rows::{Outcome, by_case, error, verdict};
+use crate::study::endless::claims::rows::{by_case, error};
 use crate::study::endless::claims::times::shares;
 use crate::study::manifest::Done;
 
@@ -24,19 +24,19 @@ fn outer(done: &Done, scene: &str, count: u32, papers: f64) -> Answer {
     by_case(done, scene, true, &|case, rows| {
         let meant = rows.cones(count)?;
         let share = left_out(meant, rows.position)?;
-        let of = |record: &Record, share: f64| {
+        let figure_of = |record: &Record, share: f64| {
             format!("{} {} %{}", setting(&record.strategy), percent(share), error(record))
         };
-        let mut said = vec![of(meant, share)];
+        let mut figures = vec![figure_of(meant, share)];
         let position = case.position();
         for record in case.culled().filter(|record| !std::ptr::eq(*record, meant)) {
-            let own = Setting::of(&record.strategy);
-            let is_ours = !matches!(own.cut, Cut::ConeTest(_)) && own.exits;
-            if own.cones == Some(count) && is_ours {
-                said.push(of(record, left_out(record, position?)?));
+            let other = Setting::read(&record.strategy);
+            let is_ours = !matches!(other.cut, Cut::ConeTest(_)) && other.exits;
+            if other.cones == Some(count) && is_ours {
+                figures.push(figure_of(record, left_out(record, position?)?));
             }
         }
-        Some((said.join(", "), Outcome::good_if((share - papers).abs() <= NEAR)))
+        Some((figures.join(", "), Outcome::from((share - papers).abs() <= NEAR)))
     })
 }
 
@@ -85,24 +85,21 @@ pub(crate) fn in_vain(done: &Done, scene: &str) -> Answer {
     by_case(done, scene, true, &|_, rows| {
         let all = waste(rows.position)?;
         let cones = shares(rows, waste);
-        let said: Vec<String> = cones
+        let shown: Vec<String> = cones
             .iter()
             .map(|(count, waste)| format!("{count} cones {}", significant(*waste)))
             .collect();
         let many = cones.iter().filter(|(count, _)| *count >= 24);
         let is_less = many.clone().count() > 0 && many.clone().all(|(_, waste)| *waste < all);
-        Some((
-            format!("position {}, {}", significant(all), listed(&said)),
-            Outcome::good_if(is_less),
-        ))
+        Some((format!("position {}, {}", significant(all), listed(&shown)), Outcome::from(is_less)))
     })
 }
 
 /// The share of terms that would be seen and that cones lose.
 fn lost_share(record: &Record, position: &Operations) -> Option<f64> {
-    let own = record.lists.operations?;
-    own.perceptible_listed?;
-    Some(lost(&own, position).0 as f64 / seen(position).max(1) as f64)
+    let operations = record.lists.operations?;
+    operations.perceptible_listed?;
+    Some(lost(&operations, position).0 as f64 / seen(position).max(1) as f64)
 }
 
 /// The paper's cones lose 6 and 9 % of the terms that would be seen.
@@ -110,31 +107,31 @@ pub(crate) fn seen_lost(done: &Done, scene: &str) -> Answer {
     by_case(done, scene, true, &|_, rows| {
         let position = rows.position.lists.operations?;
         let shares = shares(rows, |record| lost_share(record, &position));
-        let of = |wanted: u32| shares.iter().find(|(count, _)| *count == wanted).map(|(_, s)| *s);
-        let (few, many) = (of(24)?, of(54)?);
+        let find = |wanted: u32| shares.iter().find(|(count, _)| *count == wanted).map(|(_, s)| *s);
+        let (few, many) = (find(24)?, find(54)?);
         let is_near = (few - 0.057).abs() <= 0.03 && (many - 0.092).abs() <= 0.03;
-        let said: Vec<String> = shares
+        let shown: Vec<String> = shares
             .iter()
             .filter_map(|(count, share)| {
                 let record = rows.cones(*count)?;
                 Some(format!("{count} cones {} %{}", percent(*share), error(record)))
             })
             .collect();
-        Some((listed(&said), Outcome::good_if(is_near)))
+        Some((listed(&shown), Outcome::from(is_near)))
     })
 }
 
 /// 54 cones over the whole radius: our cut by radiance, the mildest, against the paper's estimate.
 pub(crate) fn inner(done: &Done, scene: &str) -> Answer {
     const PAPERS: f64 = 1.25;
-    let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
+    let mut tally = Tally::default();
     for case in cases(done, scene) {
         let mut cut: Vec<(f32, &Record)> = case
             .culled()
             .filter_map(|record| {
-                let own = Setting::of(&record.strategy);
-                match own.cut {
-                    Cut::Below(radiance) if own.cones == Some(54) => Some((radiance, record)),
+                let setting = Setting::read(&record.strategy);
+                match setting.cut {
+                    Cut::Below(radiance) if setting.cones == Some(54) => Some((radiance, record)),
                     _ => None,
                 }
             })
@@ -142,20 +139,16 @@ pub(crate) fn inner(done: &Done, scene: &str) -> Answer {
         cut.sort_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, mildest)) = cut.first() else { continue };
         let Some(ratio) = waste(mildest) else { continue };
-        outcomes.push(Outcome::good_if(ratio <= PAPERS + NEAR));
-        let said: Vec<String> = cut
+        let shown: Vec<String> = cut
             .iter()
             .filter_map(|(_, record)| {
                 let ratio = significant(waste(record)?);
                 Some(format!("{} {ratio}{}", setting(&record.strategy), error(record)))
             })
             .collect();
-        figures.push(format!("{}: {}", case.name(), said.join(", ")));
+        tally.add(ratio <= PAPERS + NEAR, format!("{}: {}", case.name(), shown.join(", ")));
     }
-    if outcomes.is_empty() {
-        return Answer::unknown("light operations by 54 cones with a cut");
-    }
-    Answer { figure: figures.join("; "), verdict: verdict(&outcomes) }
+    tally.answer("cases", "light operations by 54 cones with a cut")
 }
 
 fn flip(record: &Record) -> Option<f64> {
@@ -166,15 +159,15 @@ fn flip(record: &Record) -> Option<f64> {
 pub(crate) fn tracking(done: &Done, scene: &str) -> Answer {
     by_case(done, scene, true, &|_, rows| {
         let flips = shares(rows, flip);
-        let of = |wanted: u32| flips.iter().find(|(count, _)| *count == wanted).map(|(_, f)| *f);
-        let six = of(6)?;
+        let find = |wanted: u32| flips.iter().find(|(count, _)| *count == wanted).map(|(_, f)| *f);
+        let six = find(6)?;
         let others = flips.iter().filter(|(count, _)| *count != 6);
         let is_worst = others.clone().count() > 0 && others.clone().all(|(_, flip)| *flip < six);
-        let said: Vec<String> = flips
+        let shown: Vec<String> = flips
             .iter()
             .map(|(count, flip)| format!("{count} cones FLIP {}", significant(*flip)))
             .collect();
-        Some((listed(&said), Outcome::good_if(is_worst)))
+        Some((listed(&shown), Outcome::from(is_worst)))
     })
 }
 
@@ -183,16 +176,12 @@ const SHOWS: f64 = 0.01;
 
 /// `dif` shows at B, and not at A and C.
 pub(crate) fn artefact(done: &Done, scene: &str) -> Answer {
-    let (mut figures, mut good, mut all) = (Vec::new(), 0, 0);
+    let mut tally = Tally::default();
     for case in cases(done, scene) {
         let dif = |case: &Case<'_>| case.find(|s| s.cut == Cut::Diffuse).and_then(flip);
         let Some(flip) = dif(&case) else { continue };
-        all += 1;
-        good += usize::from((flip >= SHOWS) == (case.place == "b"));
-        figures.push(format!("{}: FLIP {}", case.name(), significant(flip)));
+        let figure = format!("{}: FLIP {}", case.name(), significant(flip));
+        tally.add((flip >= SHOWS) == (case.place == "b"), figure);
     }
-    if all == 0 {
-        return Answer::unknown("specular light that ends with diffuse light");
-    }
-    Answer { figure: figures.join("; "), verdict: Verdict::of_parts(good, all, "cases") }
+    tally.answer("cases", "specular light that ends with diffuse light")
 }

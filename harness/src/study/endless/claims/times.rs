@@ -3,9 +3,9 @@
 use crate::report::format::{percent, significant};
 use crate::report::rank::listed;
 use crate::results::Record;
-use crate::study::claims::{Answer, Verdict};
+use crate::study::claims::{Answer, Outcome, Tally, Verdict};
 use crate::study::endless::cases::{Case, Cut, HALF_SLICES, PAPER_SLICES, USUAL, cases, setting};
-use crate::study::endless::claims::rows::{Outcome, Rows, by_case, error, verdict, with_time};
+use crate::study::endless::claims::rows::{Rows, by_case, error, faster, with_time};
 use crate::study::manifest::Done;
 
 /// Cones against position in assign + shade.
@@ -13,7 +13,7 @@ fn beats(done: &Done, scene: &str, count: u32) -> Answer {
     by_case(done, scene, false, &|_, rows| {
         let cones = rows.cones(count)?;
         let figure = format!("{}, {}", with_time(cones), with_time(rows.position));
-        Some((figure, Outcome::faster(cones, rows.position)))
+        Some((figure, faster(cones, rows.position)))
     })
 }
 
@@ -31,8 +31,7 @@ pub(crate) fn balance(done: &Done, scene: &str) -> Answer {
         let six = rows.cones(6)?;
         let others: Vec<&Record> =
             rows.all_cones().filter(|(count, _)| *count != 6).map(|(_, record)| record).collect();
-        let outcomes: Vec<Outcome> =
-            others.iter().map(|other| Outcome::faster(six, other)).collect();
+        let outcomes: Vec<Outcome> = others.iter().map(|other| faster(six, other)).collect();
         let outcome = match outcomes.as_slice() {
             [] => return None,
             all if all.contains(&Outcome::Bad) => Outcome::Bad,
@@ -40,8 +39,8 @@ pub(crate) fn balance(done: &Done, scene: &str) -> Answer {
             all if all.contains(&Outcome::Tie) => Outcome::Tie,
             _ => Outcome::Good,
         };
-        let said: Vec<String> = std::iter::once(six).chain(others).map(with_time).collect();
-        Some((listed(&said), outcome))
+        let times: Vec<String> = std::iter::once(six).chain(others).map(with_time).collect();
+        Some((listed(&times), outcome))
     })
 }
 
@@ -55,7 +54,7 @@ pub(crate) fn dif(done: &Done, scene: &str) -> Answer {
             .iter()
             .min_by(|a, b| a.assign_and_shade_ms().total_cmp(&b.assign_and_shade_ms()))?;
         let figure = format!("{}, the fastest other {}", with_time(dif), with_time(fastest));
-        Some((figure, Outcome::faster(dif, fastest)))
+        Some((figure, faster(dif, fastest)))
     });
     match answer.verdict {
         Verdict::Unknown(_) => Answer::unknown("specular light that ends with diffuse light"),
@@ -78,7 +77,7 @@ pub(crate) fn shading(done: &Done, scene: &str) -> Answer {
             times[1],
             error(cones)
         );
-        Some((figure, Outcome::good_if(share <= HALVED)))
+        Some((figure, Outcome::from(share <= HALVED)))
     })
 }
 
@@ -91,7 +90,7 @@ pub(crate) fn assignment(done: &Done, scene: &str) -> Answer {
         let ratio = many.times.assign_ms / few.times.assign_ms;
         let times = [few, many].map(|record| significant(record.times.assign_ms));
         let figure = format!("\u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
-        Some((figure, Outcome::good_if(FOUR_TIMES.contains(&ratio))))
+        Some((figure, Outcome::from(FOUR_TIMES.contains(&ratio))))
     })
 }
 
@@ -108,7 +107,7 @@ const SIXTEENFOLD: std::ops::RangeInclusive<f64> = 1.05..=1.2;
 /// copies: A and B.
 pub(crate) fn sixteenfold(done: &Done, scene: &str) -> Answer {
     let cases = cases(done, scene);
-    let (mut figures, mut outcomes, mut less) = (Vec::new(), Vec::new(), 0);
+    let (mut tally, mut less) = (Tally::default(), 0);
     for place in ["a", "b"] {
         let ends = [false, true].map(|most| case_of(&cases, place, most));
         let [Some(few), Some(many)] = ends else { continue };
@@ -119,25 +118,17 @@ pub(crate) fn sixteenfold(done: &Done, scene: &str) -> Answer {
         let ratio = all.times.shade_ms / one.times.shade_ms;
         let times = [one, all].map(|record| significant(record.times.shade_ms));
         let name = place.to_uppercase();
-        figures.push(format!(
-            "{name}: \u{d7} {}, {} to {} ms",
-            significant(ratio),
-            times[0],
-            times[1]
-        ));
-        outcomes.push(Outcome::good_if(SIXTEENFOLD.contains(&ratio)));
+        let figure =
+            format!("{name}: \u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
+        tally.add(SIXTEENFOLD.contains(&ratio), figure);
         less += usize::from(ratio < *SIXTEENFOLD.start());
     }
-    if outcomes.is_empty() {
-        return Answer::unknown("few lights and many from one place");
+    let all = tally.all;
+    let mut answer = tally.answer("cases", "few lights and many from one place");
+    if less > 0 {
+        answer.verdict = Verdict::Differs(format!("less than 5 % more in {less} of {all} cases"));
     }
-    let verdict = match less {
-        0 => verdict(&outcomes),
-        less => {
-            Verdict::Differs(format!("less than 5 % more in {less} of {} cases", outcomes.len()))
-        }
-    };
-    Answer { figure: figures.join("; "), verdict }
+    answer
 }
 
 /// How many times as long a frame takes in the paper without culling.
@@ -171,8 +162,8 @@ pub(crate) fn without(done: &Done, scene: &str) -> Answer {
 /// on the other.
 pub(crate) fn far(done: &Done, scene: &str) -> Answer {
     let cases = cases(done, scene);
-    let of = |place| case_of(&cases, place, true).and_then(Case::position);
-    let (Some(near), Some(far)) = (of("a"), of("c")) else {
+    let position = |place| case_of(&cases, place, true).and_then(Case::position);
+    let (Some(near), Some(far)) = (position("a"), position("c")) else {
         return Answer::unknown("near fragments and far ones");
     };
     let ratio = far.times.shade_ms / near.times.shade_ms;
@@ -184,7 +175,7 @@ pub(crate) fn far(done: &Done, scene: &str) -> Answer {
 
 /// Twice the slices: fewer listed terms, and twice the time to assign.
 pub(crate) fn slices(done: &Done, scene: &str) -> Answer {
-    let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
+    let mut tally = Tally::default();
     for case in cases(done, scene) {
         let by_position = |slices| case.find(|s| s.is_position() && s.slices == Some(slices));
         let (Some(half), Some(full)) = (by_position(HALF_SLICES), by_position(PAPER_SLICES)) else {
@@ -195,28 +186,23 @@ pub(crate) fn slices(done: &Done, scene: &str) -> Answer {
         };
         let fewer = 1.0 - few.listed() as f64 / many.listed().max(1) as f64;
         let ratio = full.times.assign_ms / half.times.assign_ms;
-        figures.push(format!(
+        let figure = format!(
             "{}: {} % fewer terms, \u{d7} {} to assign",
             case.name(),
             percent(fewer),
             significant(ratio)
-        ));
-        let is_alike = (0.1..=0.2).contains(&fewer) && (1.7..=2.3).contains(&ratio);
-        outcomes.push(Outcome::good_if(is_alike));
+        );
+        tally.add((0.1..=0.2).contains(&fewer) && (1.7..=2.3).contains(&ratio), figure);
     }
-    if outcomes.is_empty() {
-        return Answer::unknown("12 slices and 24");
-    }
-    let verdict = verdict(&outcomes);
-    Answer { figure: figures.join("; "), verdict }
+    tally.answer("cases", "12 slices and 24")
 }
 
 /// The early exit, which the paper's shading lacks: the gain of cones without a loss, with and without
 /// it.
 pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
-    let (mut figures, mut outcomes) = (Vec::new(), Vec::new());
+    let mut tally = Tally::default();
     for case in cases(done, scene) {
-        let of = |cones: Option<u32>, exits: bool| {
+        let record = |cones: Option<u32>, exits: bool| {
             case.find(|s| {
                 s.cones == cones && s.cut == Cut::None && s.exits == exits && s.grid == USUAL
             })
@@ -224,27 +210,24 @@ pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
         let shares: Option<Vec<f64>> = [true, false]
             .into_iter()
             .map(|exits| {
-                Some(of(Some(54), exits)?.times.shade_ms / of(None, exits)?.times.shade_ms)
+                Some(record(Some(54), exits)?.times.shade_ms / record(None, exits)?.times.shade_ms)
             })
             .collect();
         let Some(shares) = shares else { continue };
-        figures.push(format!(
+        let figure = format!(
             "{}: shading by 54 cones \u{d7} {} with the early exit, \u{d7} {} without",
             case.name(),
             significant(shares[0]),
             significant(shares[1])
-        ));
-        let cones = of(Some(54), false).zip(of(None, false));
-        outcomes.push(match cones.map(|(cones, position)| Outcome::faster(cones, position)) {
+        );
+        let cones = record(Some(54), false).zip(record(None, false));
+        let outcome = match cones.map(|(cones, position)| faster(cones, position)) {
             Some(alike @ (Outcome::Tie | Outcome::Unsure)) => alike,
-            _ => Outcome::good_if(shares[1] < shares[0]),
-        });
+            _ => (shares[1] < shares[0]).into(),
+        };
+        tally.add(outcome, figure);
     }
-    if outcomes.is_empty() {
-        return Answer::unknown("shading without the early exit");
-    }
-    let verdict = verdict(&outcomes);
-    Answer { figure: figures.join("; "), verdict }
+    tally.answer("cases", "shading without the early exit")
 }
 
 /// Nothing here can answer this claim.

@@ -1,0 +1,66 @@
+//! Cases of lights that change in every frame, which the GPU sorts.
+
+use super::{
+    cases::{Lit, Plan, default_view, in_room},
+    lights::{Kinds, bad_lights, mix},
+    stage::Rng,
+    views,
+};
+use crate::{Light, LightShape};
+
+/// Frames of lights that the GPU sorts.
+pub(super) struct Living {
+    /// Each frame's lights, faulty ones among them, with one instance.
+    pub(super) frames: Vec<Lit>,
+    /// The number of faulty lights of each frame.
+    pub(super) bad: usize,
+    /// The lights are sorted in every `every`th frame.
+    pub(super) every: u32,
+    /// Whether the lights are written into buffers of the renderer's own, which the CPU never reads.
+    pub(super) from_gpu: bool,
+}
+
+/// Frames in which all lights move, some teleport, and their number changes.
+pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {
+    let stage = in_room(rng, &default_view()).thinned(600);
+    let bad: Vec<Light> = bad_lights(&mix(rng, &stage, 1, (0.2, 5.0), Kinds::Points))
+        .into_iter()
+        .filter(is_bad_record)
+        .collect();
+    let lights = mix(rng, &stage, 900, (0.2, 5.0), Kinds::Mixed);
+    let frames = [700, 640, 900, 0, 820, 33].map(|count| {
+        let mut lights = lights[..count].to_vec();
+        for (ix, light) in lights.iter_mut().enumerate() {
+            let far = if ix % 5 == 0 { 3.0 } else { 0.3 };
+            light.position += rng.direction().as_vec3() * far;
+        }
+        if from_gpu {
+            for (ix, light) in bad.iter().enumerate() {
+                lights.insert((ix * 13).min(lights.len()), *light);
+            }
+        }
+        Lit { lights, stage: stage.clone(), opaque_only: false }
+    });
+    let bad = if from_gpu { bad.len() } else { 0 };
+    Plan::Living(Living { frames: frames.into(), bad, every, from_gpu })
+}
+
+/// Whether a light's record shows its fault. The record has the square of a distance, which hides
+/// its sign.
+fn is_bad_record(light: &Light) -> bool {
+    !matches!(light.shape, LightShape::Vpl { min_distance_m, .. } if min_distance_m < 0.0)
+}
+
+/// Frames of so many lights that their hierarchy has two levels.
+pub(super) fn many(rng: &mut Rng) -> Plan {
+    let stage = in_room(rng, &views::sized([32, 24])).thinned(100);
+    let lights = mix(rng, &stage, 40_000, (0.05, 0.8), Kinds::Points);
+    let frames = [40_000, 39_000, 40_000].map(|count| {
+        let mut lights = lights[..count].to_vec();
+        for light in &mut lights {
+            light.position += rng.direction().as_vec3() * 0.1;
+        }
+        Lit { lights, stage: stage.clone(), opaque_only: false }
+    });
+    Plan::Living(Living { frames: frames.into(), bad: 0, every: 2, from_gpu: false })
+}

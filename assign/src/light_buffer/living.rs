@@ -1,0 +1,339 @@
+//! Lights that change in every frame: where they come from, and when they are sorted.
+
+use bytemuck::{bytes_of, pod_collect_to_vec, pod_read_unaligned};
+use glam::Vec3;
+
+use super::{
+    MAX_LIGHTS, decode,
+    given::{Given, Records},
+};
+use crate::{
+    AssignError, Gpu, Light, LightEmission, LightKinds, LightSphere, MAX_RANGE_M, MIN_RANGE_M,
+    Passes,
+    light_sorter::{GivenBuffers, LightSorter, OrderUniform, SlotState},
+};
+
+/// Lights that a renderer's own kernel writes, in its own buffers.
+///
+/// The records are those of [`LightSphere`], [`LightEmission`] and the shape vectors that
+/// [`LightKind`](crate::LightKind) lists. Faulty records light nothing and are counted
+/// ([`LightBuffer::read_counts`](crate::LightBuffer::read_counts)).
+#[derive(Clone, Copy, Debug)]
+pub struct GpuLights<'a> {
+    /// `array<LightSphere>`, usage `STORAGE`.
+    pub spheres: &'a wgpu::Buffer,
+    /// `array<LightEmission>`, usage `STORAGE`.
+    pub emissions: &'a wgpu::Buffer,
+    /// `array<vec4f>`: the shapes that the emissions' indices point to, usage `STORAGE`.
+    pub shapes: &'a wgpu::Buffer,
+    /// The buffer that holds the number of lights, usage `COPY_SRC`. A number above `capacity`
+    /// counts as `capacity`.
+    pub count: &'a wgpu::Buffer,
+    /// Where the number of lights is in `count`, bytes; a multiple of 4.
+    pub count_offset: u64,
+    /// The most lights.
+    pub capacity: u32,
+    /// The kinds of lights that may occur. Shaders are compiled for these; others are faulty.
+    pub kinds: LightKinds,
+    /// A box that holds all positions in every frame: lowest and highest corner, world space,
+    /// metres. A light outside is faulty.
+    pub bounds: (Vec3, Vec3),
+    /// The largest radius of a light's ball, metres. A larger light is faulty.
+    pub radius_max_m: f32,
+}
+
+/// What the GPU found in the slots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SlotCounts {
+    /// Lights that were given.
+    pub given: u32,
+    /// Slots in use: lights, and empty slots among them.
+    pub slots: u32,
+    /// Faulty lights, which light nothing.
+    pub faulty: u32,
+    /// Lights of intensity 0.
+    pub dark: u32,
+}
+
+/// Where the lights come from.
+#[derive(Debug)]
+pub(super) enum Source {
+    /// From the CPU, with what is on the GPU already.
+    Cpu { uploaded: Records },
+    /// From the renderer's own buffers.
+    Gpu { count: wgpu::Buffer, count_offset: u64, bounds: (Vec3, Vec3), radius_max_m: f32 },
+}
+
+/// Lights that change in every frame.
+#[derive(Debug)]
+pub(super) struct Living {
+    /// The lights are sorted in every `every`th frame.
+    every: u32,
+    /// Frames since the last sort; `None` if the next frame must sort.
+    age: Option<u32>,
+    /// Number of lights at the last sort.
+    sorted: u32,
+    slots: u32,
+    uploaded_bytes: u64,
+    sorter: Option<(LightSorter, GivenBuffers)>,
+    source: Option<Source>,
+}
+
+/// Bytes whose change uploads all of them: one write per run of changed blocks.
+const UPLOAD_BLOCK: usize = 1024;
+
+impl Living {
+    pub(super) fn new(every: u32) -> Result<Self, AssignError> {
+        if every == 0 {
+            return Err(AssignError::Parameter {
+                field: "frames between two sorts of the lights".into(),
+                value: "0".into(),
+                accepted: "1 or more".into(),
+            });
+        }
+        Ok(Self {
+            every,
+            age: None,
+            sorted: 0,
+            slots: 0,
+            uploaded_bytes: 0,
+            sorter: None,
+            source: None,
+        })
+    }
+
+    /// The next frame's lights, from the CPU.
+    pub(super) fn update(&mut self, gpu: &Gpu, given: &Given) -> Result<(), AssignError> {
+        let records = Records::new(&given.lights);
+        let count = given.lights.len() as u32;
+        let [spheres, emissions, shapes] = records.bytes();
+        let fits = self.sorter.as_ref().is_some_and(|(sorter, buffers)| {
+            matches!(self.source, Some(Source::Cpu { .. }))
+                && sorter.serves(count, given.kinds, buffers)
+                && buffers.shapes.size() >= shapes.len() as u64
+        });
+        let mut known = Records::default();
+        if fits {
+            if let Some(Source::Cpu { uploaded }) = self.source.take() {
+                known = uploaded;
+            }
+        } else {
+            // Room for a quarter more, so that a growing number does not replace buffers each frame.
+            let room = |bytes: usize| bytes as u64 + bytes as u64 / 4;
+            let capacity = (room(count as usize) as u32).max(64).min(MAX_LIGHTS as u32);
+            let buffers = GivenBuffers {
+                spheres: gpu.storage("given light spheres", u64::from(capacity) * 16)?,
+                emissions: gpu.storage("given light emissions", u64::from(capacity) * 16)?,
+                shapes: gpu.storage("given light shapes", room(shapes.len()))?,
+            };
+            let sorter = LightSorter::new(gpu, capacity, given.kinds, buffers.clone())?;
+            self.sorter = Some((sorter, buffers));
+            self.age = None;
+        }
+        let Some((sorter, buffers)) = &self.sorter else { return Ok(()) };
+        let [known_spheres, known_emissions, known_shapes] = known.bytes();
+        self.uploaded_bytes = upload(gpu, &buffers.spheres, known_spheres, spheres)
+            + upload(gpu, &buffers.emissions, known_emissions, emissions)
+            + upload(gpu, &buffers.shapes, known_shapes, shapes);
+        gpu.queue.write_buffer(sorter.state(), SlotState::GIVEN_AT, bytes_of(&count));
+        let bounds = given.position_bounds.unwrap_or_default();
+        let sorts = next_sorts(&mut self.age, self.every);
+        if sorts {
+            self.sorted = count;
+        }
+        self.slots = count.max(self.sorted);
+        // The CPU has checked the radii.
+        sorter.prepare(gpu, OrderUniform::in_box(bounds, f32::MAX, sorts));
+        self.source = Some(Source::Cpu { uploaded: records });
+        Ok(())
+    }
+
+    /// The next frame's lights, from the renderer's own buffers.
+    pub(super) fn update_from_gpu(
+        &mut self,
+        gpu: &Gpu,
+        lights: &GpuLights<'_>,
+    ) -> Result<(), AssignError> {
+        lights.check()?;
+        let buffers = GivenBuffers {
+            spheres: lights.spheres.clone(),
+            emissions: lights.emissions.clone(),
+            shapes: lights.shapes.clone(),
+        };
+        let fits = self.sorter.as_ref().is_some_and(|(sorter, _)| {
+            matches!(self.source, Some(Source::Gpu { .. }))
+                && sorter.capacity() == lights.capacity
+                && sorter.serves(lights.capacity, lights.kinds, &buffers)
+        });
+        if !fits {
+            let sorter = LightSorter::new(gpu, lights.capacity, lights.kinds, buffers.clone())?;
+            self.sorter = Some((sorter, buffers));
+            self.age = None;
+        }
+        self.source = Some(Source::Gpu {
+            count: lights.count.clone(),
+            count_offset: lights.count_offset,
+            bounds: lights.bounds,
+            radius_max_m: lights.radius_max_m,
+        });
+        self.uploaded_bytes = 0;
+        self.slots = lights.capacity;
+        let sorts = next_sorts(&mut self.age, self.every);
+        if let Some((sorter, _)) = &self.sorter {
+            sorter.prepare(gpu, OrderUniform::in_box(lights.bounds, lights.radius_max_m, sorts));
+        }
+        Ok(())
+    }
+
+    /// Records `order`, if this frame sorts, and `boxes`.
+    pub(super) fn record(&self, passes: &mut dyn Passes) {
+        let Some((sorter, _)) = &self.sorter else { return };
+        if let Some(Source::Gpu { count, count_offset, .. }) = &self.source {
+            let encoder = passes.encoder();
+            let at = SlotState::GIVEN_AT;
+            encoder.copy_buffer_to_buffer(count, *count_offset, sorter.state(), at, 4);
+        }
+        sorter.record(self.age == Some(0), passes);
+    }
+
+    /// The sorter and the shapes.
+    pub(super) fn buffers(&self) -> Option<(&LightSorter, &wgpu::Buffer)> {
+        self.sorter.as_ref().map(|(sorter, given)| (sorter, &given.shapes))
+    }
+
+    pub(super) fn source(&self) -> Option<&Source> {
+        self.source.as_ref()
+    }
+
+    pub(super) fn slots(&self) -> u32 {
+        self.slots
+    }
+
+    pub(super) fn uploaded_bytes(&self) -> u64 {
+        self.uploaded_bytes
+    }
+
+    pub(super) fn live_count(&self) -> Option<&wgpu::Buffer> {
+        match (&self.source, &self.sorter) {
+            (Some(Source::Gpu { .. }), Some((sorter, _))) => Some(sorter.state()),
+            _ => None,
+        }
+    }
+
+    pub(super) fn read_counts(&self, gpu: &Gpu) -> Result<SlotCounts, AssignError> {
+        let Some((sorter, _)) = &self.sorter else { return Ok(SlotCounts::default()) };
+        let state = gpu.read(sorter.state(), size_of::<SlotState>() as u64)?;
+        let SlotState { slots, given, faulty, dark, .. } = pod_read_unaligned(&state);
+        Ok(SlotCounts { given, slots, faulty, dark })
+    }
+
+    /// The lights by slot. `given` are those that the CPU knows.
+    pub(super) fn read(&self, gpu: &Gpu, given: &[Light]) -> Result<Vec<Light>, AssignError> {
+        let Some((sorter, buffers)) = &self.sorter else { return Ok(Vec::new()) };
+        let slots = self.read_counts(gpu)?.slots;
+        if matches!(self.source, Some(Source::Cpu { .. })) {
+            let order: Vec<u32> =
+                pod_collect_to_vec(&gpu.read(sorter.order(), u64::from(slots) * 4)?);
+            let light = |&ix: &u32| given.get(ix as usize).copied().unwrap_or(decode::EMPTY);
+            return Ok(order.iter().map(light).collect());
+        }
+        let [spheres, emissions, _] = sorter.ordered();
+        let spheres: Vec<LightSphere> =
+            pod_collect_to_vec(&gpu.read(spheres, u64::from(slots) * 16)?);
+        let emissions: Vec<LightEmission> =
+            pod_collect_to_vec(&gpu.read(emissions, u64::from(slots) * 16)?);
+        let shapes: Vec<Vec3x4> =
+            pod_collect_to_vec(&gpu.read(&buffers.shapes, buffers.shapes.size())?);
+        let records = spheres.iter().zip(&emissions);
+        Ok(records.map(|(sphere, emission)| decode::light(sphere, emission, &shapes)).collect())
+    }
+}
+
+/// A shape vector.
+type Vec3x4 = [f32; 4];
+
+/// Whether the next frame sorts, after `age` frames without a sort.
+fn next_sorts(age: &mut Option<u32>, every: u32) -> bool {
+    let next = age.map_or(0, |age| (age + 1) % every);
+    *age = Some(next);
+    next == 0
+}
+
+/// Uploads the blocks of `bytes` that differ from `known`. Returns how many bytes it uploaded.
+fn upload(gpu: &Gpu, buffer: &wgpu::Buffer, known: &[u8], bytes: &[u8]) -> u64 {
+    let mut uploaded = 0;
+    let mut write = |begin: usize, end: usize| {
+        if begin < end {
+            gpu.queue.write_buffer(buffer, begin as u64, &bytes[begin..end]);
+            uploaded += (end - begin) as u64;
+        }
+    };
+    // The run of changed blocks that is not written yet.
+    let mut run = 0..0;
+    for begin in (0..bytes.len()).step_by(UPLOAD_BLOCK) {
+        let end = (begin + UPLOAD_BLOCK).min(bytes.len());
+        if known.get(begin..end) == Some(&bytes[begin..end]) {
+            write(run.start, run.end);
+            run = end..end;
+        } else {
+            run = if run.end == begin { run.start..end } else { begin..end };
+        }
+    }
+    write(run.start, run.end);
+    uploaded
+}
+
+impl GpuLights<'_> {
+    fn check(&self) -> Result<(), AssignError> {
+        let fail = |field: &str, value: String, accepted: String| {
+            Err(AssignError::Parameter {
+                field: format!("lights from the GPU: {field}"),
+                value,
+                accepted,
+            })
+        };
+        if self.capacity as usize > MAX_LIGHTS {
+            return fail("capacity", self.capacity.to_string(), format!("at most {MAX_LIGHTS}"));
+        }
+        let records = u64::from(self.capacity) * 16;
+        for (name, buffer, least, usage) in [
+            ("spheres", self.spheres, records, wgpu::BufferUsages::STORAGE),
+            ("emissions", self.emissions, records, wgpu::BufferUsages::STORAGE),
+            ("shapes", self.shapes, 16, wgpu::BufferUsages::STORAGE),
+            (
+                "count",
+                self.count,
+                self.count_offset.saturating_add(4),
+                wgpu::BufferUsages::COPY_SRC,
+            ),
+        ] {
+            if buffer.size() < least {
+                return fail(
+                    name,
+                    format!("{} bytes", buffer.size()),
+                    format!("at least {least} bytes"),
+                );
+            }
+            if !buffer.usage().contains(usage) {
+                return fail(name, format!("{:?}", buffer.usage()), format!("usage {usage:?}"));
+            }
+        }
+        if !self.count_offset.is_multiple_of(4) {
+            return fail("count_offset", self.count_offset.to_string(), "a multiple of 4".into());
+        }
+        let (low, high) = self.bounds;
+        if !(low.is_finite() && high.is_finite() && low.cmple(high).all()) {
+            return fail(
+                "bounds",
+                format!("{low} to {high}"),
+                "finite corners, lowest first".into(),
+            );
+        }
+        // An emitter may add to the range.
+        if !(MIN_RANGE_M..=2.0 * MAX_RANGE_M).contains(&self.radius_max_m) {
+            let accepted = format!("{MIN_RANGE_M} to {} metres", 2.0 * MAX_RANGE_M);
+            return fail("radius_max_m", self.radius_max_m.to_string(), accepted);
+        }
+        Ok(())
+    }
+}
