@@ -197,9 +197,8 @@ fn losses<'a>() -> Vec<Metric<'a>> {
         figure("missed", "missed", "pairs", Zero, |m| m.record.lists.missed_pairs.map(count), number)
             .terminal("missed")
             .about(
-                "Pairs of a light and a sample that the light reaches, although the \
-                 sample\u{2019}s list does not hold the light. If this is not 0, the image is \
-                 wrong.",
+                "Pairs of a light and a sample in which the light reaches the sample, but is \
+                 missing from its list. If this is not 0, the image is wrong.",
             ),
         figure("max_diff", "largest difference", "linear", Zero, largest, difference)
             .terminal("max diff")

@@ -181,7 +181,7 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
     ];
     let failed: Vec<&str> = parts.iter().filter(|part| !part.0).map(|part| part.1).collect();
     let verdict = match Verdict::of_parts(parts.len() - failed.len(), parts.len(), "parts") {
-        Verdict::Differs(why) => Verdict::Differs(format!("{why}: {}", listed(&failed))),
+        Verdict::Differs(why) => Verdict::Differs(format!("{why}, but {}", listed(&failed))),
         other => other,
     };
     Answer { figure, verdict }

@@ -32,9 +32,9 @@ pub(crate) const PAPER: Paper = Paper {
     checks: &CHECKS,
 };
 
-const NO_PRE_PASS: &str = "the time of the depth pre-pass is left out. The paper counts it for the \
-                           methods that need it, which makes these slower. With few lights the \
-                           difference is greatest";
+const NO_PRE_PASS: &str = "the time of the depth pre-pass is left out. The paper adds it to the \
+                           times of the methods that read depth, which matters most with few \
+                           lights";
 
 const WHOLE_FRAMES: &str = "times are assign + shade. The paper times whole frames, and the time \
                             to draw surfaces also varies with the view";
@@ -95,7 +95,8 @@ const CHECKS: [Check; 28] = [
         place: "figures 4.6 and 4.7",
         words: "The best intersection test is HS+SAT-N: half-spaces, then the axis towards the \
                 nearest corner.",
-        paper: "T-E: best in all scenes. SC-E: best in two, among the best in the third",
+        paper: "for T-E it is the best in all scenes. For SC-E it is the best in two scenes, and \
+                among the best in the third",
         departure: "our SC-E tests boxes, not frusta, so SC-I and DC-I stand in for it",
         decide: search::tests,
     },
@@ -123,8 +124,8 @@ const CHECKS: [Check; 28] = [
         id: "spread",
         place: "table 4.4",
         words: "By SD, SC-E and SC-I come before T-E, DC-I and G, and these before T-I and M.",
-        paper: "SD of M: 84.43 ms in Sponza and 403.30 ms in Viking Village. The others are bars \
-                without numbers",
+        paper: "M has an SD of 84.43 ms in Sponza and 403.30 ms in Viking Village. The others are \
+                bars without numbers",
         departure: WHOLE_FRAMES,
         decide: spread::groups,
     },
@@ -253,8 +254,9 @@ const CHECKS: [Check; 28] = [
         id: "bounds",
         place: "table 4.6",
         words: "Explicit bounds lower the slope and raise the offset.",
-        paper: "slope: SC-E lowest, T-E medium, T-I very high. Offset: T-I, G and DC-I low, T-E \
-                medium. SC-I and SC-E are high, because of the depth pre-pass and the bounds",
+        paper: "the slope of SC-E is lowest, that of T-E medium, and that of T-I very high. The \
+                offset is low for T-I, G and DC-I, medium for T-E, and high for SC-I and SC-E, \
+                because of the depth pre-pass and the bounds",
         departure: "in this row, methods that read depth pay for the depth pre-pass. SC-I reads \
                     depth too, so SC-I and SC-E both pay. The paper draws a pre-pass and lights \
                     hidden surfaces all the same. Here lighting is deferred, so they are not lit",
@@ -288,7 +290,7 @@ const CHECKS: [Check; 28] = [
         id: "model-slopes",
         place: "table 4.6",
         words: "M has the least slope of assignment and the greatest of shading.",
-        paper: "shading of M: 9.23, 226.07 and 169.57 \u{b5}s per light",
+        paper: "shading of M takes 9.23, 226.07 and 169.57 \u{b5}s per light",
         departure: DEFERRED,
         decide: growth::model_slopes,
     },
