@@ -75,8 +75,8 @@ How to read the result:
   listed         mean number of lights in the list that a pixel reads
   contributing   mean number of lights that reach a pixel: the length of a perfect list
   missed         (light, pixel) pairs missing from the lists: above 0 the image is wrong
-  max diff       largest difference to the image of no culling: 0 means identical in every bit,
-                 light volumes may differ by a stated tolerance
+  max diff       largest difference to the image of no culling: 0 means identical in every bit;
+                 only light volumes may differ, by a stated tolerance
   memory         GPU memory that assignment needs, MiB
   overflow       groups whose list did not fit; they use all lights, which is slow and correct
 

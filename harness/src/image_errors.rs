@@ -44,64 +44,66 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
         id: "missing_energy",
         head: "missing energy",
         unit: "",
-        about: "Luminance that is lacking, summed where the image is darker than it should be, over \
-                the luminance there should be.",
+        about: "Luminance that is lost in pixels that are darker than they should be, as a share \
+                of the total luminance that the image should have.",
         value: |sums, _| share(sums.darker, sums.reference),
     },
     ErrorMetric {
         id: "rel_mse",
         head: "relMSE",
         unit: "",
-        about: "Mean over channels of the squared difference over the squared value, to which the \
-                squared tenth of the mean is added.",
+        about: "Mean over channels of (a - b)^2 / (b^2 + (0.1 \u{d7} mean)^2). Here a is the \
+                channel, b what it should be, and mean the mean luminance that the image should \
+                have.",
         value: |sums, pair| rel_mse(sums, pair),
     },
     ErrorMetric {
         id: "bias",
         head: "bias",
         unit: "",
-        about: "Luminance of the whole image less what it should be, as a share of it: negative is \
-                darker.",
+        about: "Luminance of the whole image minus what it should be, as a share of what it should \
+                be. Negative means too dark.",
         value: |sums, _| share(sums.image - sums.reference, sums.reference),
     },
     ErrorMetric {
         id: "tile",
         head: "worst tile",
         unit: "",
-        about: "Greatest error of the mean luminance of a tile of 16 x 16 pixels, over that of the \
-                whole image.",
+        about: "Largest error of the mean luminance of a tile of 16 x 16 pixels, divided by the \
+                mean luminance that the whole image should have.",
         value: |sums, pair| worst_tile(sums, pair),
     },
     ErrorMetric {
         id: "pixels_off",
         head: "pixels off",
         unit: "",
-        about: "Share of pixels whose luminance is off by more than a twentieth of it and a \
-                hundredth of the mean.",
+        about: "Share of pixels whose luminance is off by more than 5 % of what it should be, plus \
+                1 % of the mean luminance.",
         value: |sums, pair| pixels_off(sums, pair),
     },
     ErrorMetric {
         id: "mean_error",
         head: "mean error",
         unit: "",
-        about: "Mean over pixels of the absolute difference of luminance, over the mean luminance there \
-                should be.",
+        about: "Mean over pixels of the absolute difference of luminance, divided by the mean \
+                luminance that the image should have.",
         value: |sums, _| share(sums.off, sums.reference),
     },
     ErrorMetric {
         id: "log_error",
         head: "log error",
         unit: "",
-        about: "Mean over channels of |log2((a + e) / (b + e))|, with a what is and b what should be, and e a \
-                hundredth of the mean: 1 is off by a factor of two, whichever way.",
+        about: "Mean over channels of |log2((a + e) / (b + e))|. Here a is the channel, b what it \
+                should be, and e 1 % of the mean luminance. 1 means off by a factor of two, up or \
+                down.",
         value: |sums, pair| log_error(sums, pair.image.pixels.iter().zip(&pair.reference.pixels)),
     },
     ErrorMetric {
         id: "highlights",
         head: "highlights",
         unit: "",
-        about: "The log error over the hundredth of the pixels that are brightest in either image: highlights \
-                that lack, and those that should not be.",
+        about: "The log error of the brightest 1 % of the pixels, by the brighter of both images. \
+                It shows highlights that are missing and highlights that should not be there.",
         value: |sums, pair| log_error(sums, brightest(pair)),
     },
     ErrorMetric {

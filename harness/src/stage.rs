@@ -211,8 +211,9 @@ impl Stage {
     fn note_plain_vpls(&mut self) {
         if self.vpls.is_some() && self.has_dielectrics() {
             self.notes.push(
-                "virtual point lights come from surfaces as if these were plain dielectrics: \
-                 KHR_materials_ior and KHR_materials_specular only change how surfaces reflect their light"
+                "surfaces send out virtual point lights as plain dielectrics would: \
+                 KHR_materials_ior and KHR_materials_specular change only how a surface reflects \
+                 light that reaches it"
                     .to_owned(),
             );
         }

@@ -138,7 +138,7 @@ fn a_built_hierarchy_leads_for_still_lights_only() {
     results.records[1].strategy = "SC-E/48x48x40/bvh".into();
     results.records[1].times.light_build_ms = Some(9.7);
     let headline = &finding(&results)[0];
-    let limit = "as fast as no culling (still lights only)";
+    let limit = "as fast as no culling (if no light moves)";
     assert!(headline.contains(limit), "{headline}");
     assert!(
         headline.contains("The hierarchy over the lights is built once in 9.70 ms"),
@@ -146,7 +146,7 @@ fn a_built_hierarchy_leads_for_still_lights_only() {
     );
     results.records.push(copy(&results.records[1], "SC-E/48x48x40", 1.0));
     let headline = &finding(&results)[0];
-    assert!(headline.contains("(ids with /bvh: still lights only)"), "{headline}");
+    assert!(headline.contains("(ids with /bvh: only if no light moves)"), "{headline}");
     results.records.remove(1);
     assert!(!finding(&results)[0].contains("still"));
 }

@@ -195,8 +195,8 @@ fn a_level_start_is_not_linear() {
     }
     let page = write(&done).page;
     assert_eq!(verdict(&page, "linear"), "differs");
-    assert!(page.contains("nowhere straight over four counts"), "the range is told");
-    assert!(page.contains("straight from 100 to 10,000"));
+    assert!(page.contains("not linear over any four counts"), "the range is told");
+    assert!(page.contains("linear from 100 to 10,000 lights"));
 }
 
 /// T-E pays for the depth pre-pass of 21.4 ms, T-I does not, and a renderer that draws one anyway bills

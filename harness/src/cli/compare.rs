@@ -71,8 +71,8 @@ pub struct CompareArgs {
     /// Even out the brightness of virtual point lights: multiply each sample by N / (number of lights that
     /// light it)
     ///
-    /// The factor stays between 1/4 and 4. It hides where these lights are dense or sparse, and hides errors
-    /// with them. N is a number from 1 to 1e9.
+    /// The factor stays between 1/4 and 4. It hides where these lights are dense or sparse, and so hides part of
+    /// the error. N is a number from 1 to 1e9.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::number_from(1.0, 1e9), help_heading = BOUNCE, hide_short_help = true)]
     pub compensate: Option<f64>,
 

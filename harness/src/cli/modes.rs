@@ -12,7 +12,7 @@ pub(super) const MODES: [(Mode, &str); 4] = [
     (Mode::DeferredIds, "From a G-buffer that also holds the model of each pixel"),
     (
         Mode::ForwardNoPrepass,
-        "As forward, without a depth pre-pass; strategies that read depth draw one, in their time",
+        "As forward, without a depth pre-pass; a strategy that reads depth draws one and pays for it",
     ),
 ];
 

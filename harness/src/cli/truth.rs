@@ -28,7 +28,7 @@ pub struct TruthArgs {
     #[arg(long, display_order = 8)]
     pub indirect: bool,
 
-    /// With --primary and --bounces 1: light bounces off surfaces diffusely, as virtual point lights emit it
+    /// With --primary and --bounces 1: surfaces reflect the bounced light only diffusely, as virtual point lights do
     #[arg(long, display_order = 9)]
     pub matte_bounces: bool,
 

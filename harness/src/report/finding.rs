@@ -199,8 +199,9 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
 fn over_exit(comparison: &Comparison<'_>, subject: &Subject<'_>) -> Option<String> {
     let leader = comparison.speedup(subject.records[0])?;
     let factors = subject.span(|record| comparison.speedup_over_exit(record))?;
-    (leader > 1.0 + EQUAL)
-        .then(|| format!("No culling with the same early exit takes {factors} times as long."))
+    (leader > 1.0 + EQUAL).then(|| {
+        format!("Sphere, which exits early but does not cull, takes {factors} times as long.")
+    })
 }
 
 /// Follows the speed of a strategy whose image is that of no culling.

@@ -23,12 +23,12 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
         ),
         FrameKind::Deferred => (
             "deferred",
-            "The renderer draws depth and a G-buffer anyway. A strategy that needs \
-             the model of each pixel pays for a pass that draws it.",
+            "The renderer draws depth and a G-buffer anyway. A strategy that needs to know the model at each \
+             pixel pays for a pass that draws model ids.",
         ),
         FrameKind::DeferredIds => (
             "deferred, ids",
-            "The G-buffer also holds the model of each pixel, so no strategy pays for a pass that draws it.",
+            "The G-buffer also holds the model id of each pixel, so no strategy pays for a pass that draws them.",
         ),
     }
 }
@@ -98,10 +98,14 @@ pub(crate) fn table(caption: &str, records: &[&Record], machine: &Machine) -> Ht
 }
 
 /// What a cell holds.
-pub(crate) const READING: &str = "The large figure is assign + shade. The small figures are assign, shade, the sum of all \
-    passes of the frame, and the span from the first pass to the last with the gaps between them, where it is \
-    known. A figure is derived if another kind of frame was measured instead. Such a \
-    figure adds the depth pre-pass to a strategy that reads depth, or leaves out the pass that draws model ids.";
+pub(crate) const READING: &str = "The large figure is assign + shade. The small figures are \
+                                  assign, shade, and the sum of all passes of the frame. Span is \
+                                  the time from the start of the first pass that assigns to the \
+                                  end of the last pass that shades, gaps included. It is missing \
+                                  where it was not measured. \u{201c}Derived\u{201d} marks a cell \
+                                  that was not measured. It is computed from another kind of \
+                                  frame: by adding the depth pre-pass of a strategy that reads \
+                                  depth, or by leaving out the pass that draws model ids.";
 
 /// A section per set of lights that was measured in several modes; empty where there is none.
 pub(crate) fn sections(results: &Results) -> Html {

@@ -61,7 +61,7 @@ pub fn render_html(results: &Results, images: &[(String, Vec<u8>)]) -> String {
             ("findings", page::paragraphs("finding", &others)),
             ("notices", page::notices(&notices(results))),
             ("comparisons", sections(results, &kept) + frames::sections(results)),
-            ("columns", page::columns()),
+            ("columns", page::columns([results])),
             ("terms", terms()),
             ("reading", Html::default()),
             ("file", "report-data.json".into()),

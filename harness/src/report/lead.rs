@@ -83,7 +83,13 @@ impl<'a> Lead<'a> {
     pub(crate) fn headline(&self) -> String {
         let limits = format!("{}{}", self.still_lights(), self.doubt());
         match (self.is_tie(), self.leader().strategy.row()) {
-            (false, Some(row)) => format!("{} ({}) is fastest{limits}", self.names(), row.name),
+            (false, Some(row)) => {
+                let source = match needs_built_hierarchy(self.leader()) {
+                    true => ", hierarchy over the lights",
+                    false => "",
+                };
+                format!("{} ({}{source}) is fastest{limits}", self.names(), row.name)
+            }
             _ => format!("{}{limits}", self.is_fastest()),
         }
     }
@@ -103,8 +109,8 @@ impl<'a> Lead<'a> {
     pub(crate) fn still_lights(&self) -> &'static str {
         match self.built().count() {
             0 => "",
-            count if count == self.records.len() => " (still lights only)",
-            _ => " (ids with /bvh: still lights only)",
+            count if count == self.records.len() => " (if no light moves)",
+            _ => " (ids with /bvh: only if no light moves)",
         }
     }
 

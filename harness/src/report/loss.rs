@@ -20,20 +20,21 @@ pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
         )
         .terminal("missing energy")
         .about(
-            "Luminance that is missing where the image is darker than that of no culling, as a share of the \
-             luminance of the image of no culling.",
+            "Luminance that is lost in pixels that are darker than without culling, as a share of \
+             the total luminance without culling.",
         ),
         figure("rel_mse", "relMSE", "", Better::Zero, |m| error(m.record, "rel_mse"), difference)
             .terminal("relMSE")
             .about(
-                "Mean over channels of the squared difference from no culling, divided by the squared value plus the \
-                 square of a tenth of the mean value.",
+                "Mean over channels of (a - b)^2 / (b^2 + (0.1 \u{d7} mean)^2). Here a is the \
+                 channel with this strategy, b the same channel without culling, and mean the mean \
+                 luminance without culling.",
             ),
         figure("flip", "FLIP", "", Better::Zero, |m| error(m.record, "flip"), difference)
             .terminal("FLIP")
             .about(
-                "Mean FLIP against no culling: the difference that an eye sees when it flips between the two \
-                 images.",
+                "Mean FLIP against no culling: the difference that an eye sees when it flips \
+                 between the two images, from 0 to 1.",
             ),
     ]
     .map(Column::optional)

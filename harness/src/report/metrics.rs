@@ -65,28 +65,44 @@ fn times<'a>() -> Vec<Metric<'a>> {
         figure("rank", "rank", "", Neither, |m| m.comparison.rank(m.record), number)
             .terminal("rank")
             .about(
-                "Place by assign + shade among the strategies that cull without a loss. Two strategies tie \
-                 and share a place if the interval of the ratio of their times, paired by round, contains \
-                 1, or if the median of that ratio is within 0.5 % of 1.",
+                "Place by assign + shade among the strategies of the table that cull without a \
+                 loss. For each round, we take the ratio of two strategies\u{2019} times. The \
+                 strategies tie and share a place if the confidence interval of the median ratio \
+                 contains 1, or if the median ratio is within 0.5 % of 1.",
             ),
-        figure("both_ms", "assign + shade", "ms", Less, |m| finite(m.record.assign_and_shade_ms()), significant)
-            .terminal("both")
-            .best(Measured::leads)
-            .note(|m| interval(m.record))
-            .about(
-                "Assign and shade together: compare strategies by this time. It is the median over frames, \
-                 or the mean along a path. The small figures below it are the interval that contains the \
-                 median, from order statistics of the rounds. A tooltip shows its coverage, which is at \
-                 least 95 % from six rounds on.",
-            ),
-        figure("span_ms", "span", "ms", Less, |m| m.record.times.span_ms.and_then(finite), significant)
-            .terminal("span")
-            .optional()
-            .about(
-                "Time from the start of the first pass that assigns lights to the end of the last pass that \
-                 lights pixels, gaps between passes included; median. Assign + shade sums the passes \
-                 without the gaps. The span is unknown where each pass is submitted separately.",
-            ),
+        figure(
+            "both_ms",
+            "assign + shade",
+            "ms",
+            Less,
+            |m| finite(m.record.assign_and_shade_ms()),
+            significant,
+        )
+        .terminal("both")
+        .best(Measured::leads)
+        .note(|m| interval(m.record))
+        .about(
+            "Assign and shade together: compare strategies by this time. It is the median over \
+                 frames, or the mean along a path. The small figures below it are a confidence \
+                 interval for the median over rounds or laps, from order statistics. A tooltip \
+                 shows its coverage, which is at least 95 % from six rounds on.",
+        ),
+        figure(
+            "span_ms",
+            "span",
+            "ms",
+            Less,
+            |m| m.record.times.span_ms.and_then(finite),
+            significant,
+        )
+        .terminal("span")
+        .optional()
+        .about(
+            "Time from the start of the first pass that assigns lights to the end of the last \
+                 pass that lights pixels, gaps between passes included: median over frames, or the \
+                 mean along a path. Assign + shade sums the passes without the gaps. The span is \
+                 unknown where each pass is submitted separately.",
+        ),
     ]
 }
 
@@ -96,8 +112,9 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
             .terminal("faster")
             .best(Measured::leads)
             .about(
-                "How many times as fast as None. None evaluates every light at every sample; others \
-                 exit early where a light adds nothing, unless their id says no-exit.",
+                "How many times as fast as None, which evaluates every light at every sample. All \
+                 other strategies skip a light that adds nothing to the sample (early exit), \
+                 unless their id has no-exit.",
             ),
         figure(
             "speedup_sphere",
@@ -137,14 +154,15 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
         )
         .optional()
         .about(
-            "Time from the start of the first pass of the frame to the end of its last pass, gaps between \
-             passes included; median.",
+            "Time from the start of the first pass of the frame to the end of its last pass, gaps \
+             between passes included: median over frames, or the mean along a path.",
         ),
         figure("efficiency", "efficiency", "%", More, |m| m.comparison.efficiency(m.record), percent)
             .best(Measured::leads)
             .about(
-                "Efficiency = ideal time / measured time. The ideal time is what no culling would need, at \
-                 its own rate, if it evaluated only the lights that reach each sample.",
+                "Efficiency = ideal time / measured time. The ideal time is the shade time of None \
+                 \u{d7} contributing / all lights. None would take about this long if it evaluated \
+                 only the lights that reach each sample.",
             ),
     ]
 }
@@ -179,7 +197,8 @@ fn losses<'a>() -> Vec<Metric<'a>> {
         figure("missed", "missed", "pairs", Zero, |m| m.record.lists.missed_pairs.map(count), number)
             .terminal("missed")
             .about(
-                "(light, sample) pairs that are missing from the lists. If this is not 0, the image is wrong.",
+                "Pairs of a light and a sample in which the light reaches the sample, but is \
+                 missing from its list. If this is not 0, the image is wrong.",
             ),
         figure("max_diff", "largest difference", "linear", Zero, largest, difference)
             .terminal("max diff")
@@ -204,19 +223,27 @@ fn memory<'a>() -> Vec<Metric<'a>> {
         is_stored.then(|| count(m.record.lists.list_bytes))
     };
     vec![
-        figure("memory_bytes", "memory", "MiB", Less, |m| m.record.lists.assignment_bytes.map(count), mebibytes)
-            .terminal("memory")
-            .optional()
-            .about(
-                "GPU memory of everything that assignment needs: lists, marks, bounds, pools, the hierarchy \
-                 over the lights, and images that the renderer draws for this strategy only.",
-            ),
+        figure(
+            "memory_bytes",
+            "memory",
+            "MiB",
+            Less,
+            |m| m.record.lists.assignment_bytes.map(count),
+            mebibytes,
+        )
+        .terminal("memory")
+        .optional()
+        .about(
+            "GPU memory of everything that assignment needs: lists, bounds, working buffers, \
+                 the hierarchy over the lights, and images that the renderer draws for this \
+                 strategy only.",
+        ),
         figure("lists_bytes", "lists", "MiB", Less, lists_only, mebibytes)
             .terminal("lists")
             .optional()
             .about(
-                "GPU memory of groups and lists only. When these results were measured, lightbench did not count a \
-                 strategy\u{2019}s marks, bounds and second pools.",
+                "GPU memory of groups and lists only. When these results were measured, lightbench \
+                 did not count bounds and other working buffers.",
             ),
         figure(
             "overflow",
@@ -228,7 +255,8 @@ fn memory<'a>() -> Vec<Metric<'a>> {
         )
         .terminal("overflow")
         .about(
-            "Groups whose list did not fit, so that they use the list of all lights: slow but correct.",
+            "Groups whose list did not fit into memory. They use the list of all lights, which is \
+             slow but correct.",
         ),
     ]
 }

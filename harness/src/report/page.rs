@@ -1,9 +1,10 @@
 //! The parts of a page that are text: paragraphs, notices, settings, the meaning of columns, provenance.
 
+use super::comparison::{Comparison, comparisons};
 use super::format::number;
-use super::loss::error_columns;
+use super::loss::errors_of;
 use super::markup::{Html, html, with_names_whole};
-use super::metrics::{Metric, metrics};
+use super::metrics::{Measured, Metric, metrics};
 use crate::digits::rounded;
 use crate::grouping;
 use crate::results::{Clock, DeviceType, Record, Results, TruthLevel};
@@ -58,8 +59,10 @@ pub(crate) fn setting(record: &Record) -> String {
     parts.join(" \u{b7} ")
 }
 
-/// What each column means.
-pub(crate) fn columns() -> Html {
+/// What each column means: all columns that a table of these results may have.
+pub(crate) fn columns<'r>(all: impl IntoIterator<Item = &'r Results>) -> Html {
+    let comparisons: Vec<Comparison<'r>> = all.into_iter().flat_map(comparisons).collect();
+    let errors = comparisons.iter().map(errors_of).find(|errors| !errors.is_empty());
     let about = |column: &Metric<'_>| {
         html!(
             "<dt>{} <span class=\"unit\">{}</span></dt><dd>{}</dd>\n",
@@ -68,7 +71,17 @@ pub(crate) fn columns() -> Html {
             column.about
         )
     };
-    metrics().iter().chain(&error_columns()).map(about).collect()
+    let columns = metrics().into_iter().chain(errors.into_iter().flatten());
+    columns.filter(|column| is_shown(column, &comparisons)).map(|column| about(&column)).collect()
+}
+
+/// Whether a table shows a column: an optional one only where it has a value.
+fn is_shown<'a>(column: &Metric<'a>, comparisons: &'a [Comparison<'a>]) -> bool {
+    let has_value = |comparison: &'a Comparison<'a>| {
+        let mut records = comparison.all();
+        records.any(|record| column.value(&Measured { comparison, record }).is_some())
+    };
+    !column.is_optional || comparisons.iter().any(has_value)
 }
 
 /// Where, when and from what the figures came.
@@ -95,7 +108,7 @@ pub(crate) fn provenance(results: &Results) -> Html {
                 )
             }),
         ),
-        ("Truth", truth(results)),
+        ("Check of lists", truth(results)),
         ("Schema", format!("results.json version {}", results.schema_version)),
     ];
     rows.retain(|(_, value)| !value.trim().is_empty());
@@ -134,10 +147,12 @@ fn clock(clock: Clock) -> &'static str {
 fn truth(results: &Results) -> String {
     match results.truth.level {
         TruthLevel::Full => format!(
-            "every pair of a light and a sample, on the CPU in f64, except samples that lie within {:e} of the range from its edge",
+            "for every pair of a light and a sample, on the CPU in double precision. Left out are \
+             pairs whose sample is closer to the edge of what the light reaches than {:e} of its \
+             range",
             results.truth.edge_tolerance
         ),
-        TruthLevel::None => "images only: the lists were not checked".to_owned(),
+        TruthLevel::None => "the lists were not checked, only images".to_owned(),
     }
 }
 

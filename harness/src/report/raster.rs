@@ -37,22 +37,25 @@ pub(crate) fn notice<'a>(
     // Strategies by mode and passes, in the order of the records.
     let marked = records.into_iter().filter_map(|record| {
         let passes = record.raster_passes();
-        let key = format!("{} in {}", listed(&passes), record.setting.mode.name());
+        let key = (record.setting.mode.name(), listed(&passes));
         (!passes.is_empty()).then_some((key, record.strategy.as_str()))
     });
-    let parts: Vec<String> = grouped_by(marked)
+    let of_passes = |((mode, passes), names): ((&'static str, String), Vec<&str>)| {
+        let names = distinct(names);
+        let names = match names.len() {
+            count if count > NAMED => format!("{count} strategies"),
+            _ => listed(&names),
+        };
+        (mode, format!("{passes} of {names}"))
+    };
+    let marked: String = grouped_by(grouped_by(marked).into_iter().map(of_passes))
         .into_iter()
-        .map(|(key, names)| (key, distinct(names)))
-        .map(|(key, names)| match names.len() {
-            count if count > NAMED => format!("{key} of {count} strategies"),
-            _ => format!("{key} of {}", listed(&names)),
-        })
+        .map(|(mode, parts)| format!(" Marked passes in {mode} frames: {}.", parts.join("; ")))
         .collect();
-    (!parts.is_empty()).then(|| {
+    (!marked.is_empty()).then(|| {
         format!(
-            "{MARK} {chip} runs fragment shaders on only a few of its processors. Do not compare marked figures \
-             across chips. These passes are marked: {}.",
-            parts.join("; ")
+            "{MARK} {chip} runs fragment shaders on only a few of its processors, so passes that draw triangles \
+             are slow there. Do not compare marked figures across chips.{marked}"
         )
     })
 }
@@ -67,7 +70,7 @@ pub(crate) fn unmarked_note(record: &Record) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Mode, PassKind, PassTimes, Results};
+    use crate::results::{PassKind, PassTimes, Results};
 
     #[test]
     fn stored_rows_are_marked_by_their_passes() {
@@ -97,9 +100,8 @@ mod tests {
         let all = notice(&machine, [&tiles, &volumes, &models, &forward]).expect("three rows");
         for part in [
             "H200 runs",
-            "shade in deferred of RasterSphere",
-            "model-ids in deferred of M/2",
-            "shade in forward of T-E/28x28",
+            "Marked passes in deferred frames: shade of RasterSphere; model-ids of M/2.",
+            "Marked passes in forward frames: shade of T-E/28x28.",
         ] {
             assert!(all.contains(part), "{part}: {all}");
         }

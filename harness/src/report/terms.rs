@@ -1,7 +1,8 @@
 //! The list of terms at the foot of every page, from `docs/terms.md`.
 //!
 //! Of that file this reads headings (`## Groups`) and terms (`**tile**: a rectangle of pixels.`), with
-//! `` `code` `` and `*emphasis*` in definitions.
+//! `` `code` ``, `*emphasis*` and `[links](to.md)` in definitions. Of a link it shows the text only, because a
+//! page may lie anywhere.
 
 use super::markup::{Html, html};
 
@@ -40,18 +41,25 @@ fn list(document: &str) -> (Html, usize) {
     (body, count)
 }
 
-/// A line with its code and its emphasis. A mark without its end is text.
+/// A line with its code, its emphasis and the texts of its links. A mark without its end is text.
 fn inline(line: &str) -> Html {
     let mut shown = Html::default();
     let mut rest = line;
-    while let Some(start) = rest.find(['`', '*']) {
+    while let Some(start) = rest.find(['`', '*', '[']) {
         let (before, marked) = rest.split_at(start);
-        let mark = &marked[..1];
-        let Some((inside, after)) = marked[1..].split_once(mark) else { break };
+        let (mark, behind) = marked.split_at(1);
+        let parts = match mark {
+            "[" => behind
+                .split_once("](")
+                .and_then(|(text, link)| Some((text, link.split_once(')')?.1))),
+            _ => behind.split_once(mark),
+        };
+        let Some((inside, after)) = parts else { break };
         shown += Html::from(before);
         shown += match mark {
             "`" => html!("<code>{}</code>", inside),
-            _ => html!("<em>{}</em>", inside),
+            "*" => html!("<em>{}</em>", inside),
+            _ => Html::from(inside),
         };
         rest = after;
     }
@@ -63,12 +71,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headings_terms_code_and_emphasis_are_read() {
-        let document = "# Terms\n\nWords.\n\n## Lists\n\n**list**: <lights> of a *group*, `a * b`.\n\n\
+    fn headings_terms_code_emphasis_and_links_are_read() {
+        let document = "# Terms\n\nWords.\n\n## Lists\n\n**list**: <lights> of a *group*, `a * b`, see [the rule](a.md#b).\n\n\
                         **`/bvh`**: a half * mark\n";
         let (body, count) = list(document);
         let expected = "<h3>Lists</h3>\n<dl class=\"columns\">\n\
-             <dt>list</dt><dd>&lt;lights&gt; of a <em>group</em>, <code>a * b</code>.</dd>\n\
+             <dt>list</dt><dd>&lt;lights&gt; of a <em>group</em>, <code>a * b</code>, see the rule.</dd>\n\
              <dt><code>/bvh</code></dt><dd>a half * mark</dd>\n</dl>\n";
         assert_eq!((body.as_str(), count), (expected, 2));
     }
@@ -102,6 +110,7 @@ mod tests {
             );
         }
         assert_eq!(count, body.as_str().matches("<dt>").count());
+        assert!(!body.as_str().contains("]("), "a link shows its text only");
         let bold_lines = TERMS.lines().filter(|line| line.starts_with("**")).count();
         assert_eq!(
             count, bold_lines,

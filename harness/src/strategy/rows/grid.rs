@@ -7,8 +7,9 @@ use super::super::{Axis, Colour, Method, Role, Row, Sizes, StandIn};
 pub(super) const ROWS: &[Row] = &[Row {
     family: "G",
     name: "a grid of cells in world space",
-    about: "every cell has a list; the cells divide the box around the lights' positions, around all \
-            that lights reach, or around the surfaces",
+    about: "every cell has a list; the cells divide the box around the lights' positions, with \
+            /supports the box around all that lights reach, and with /surfaces only the part of \
+            that box around the surfaces",
     role: Role::ComparisonPaper,
     source: "Enhuber 2019, section 3.3, table 4.3",
     krate: "assign-grid",

@@ -143,7 +143,7 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
         let verdict = match nearer(own, other_error, noise) {
             _ if [cast, other].iter().any(|entry| is_stale(entry.record)) => STALE,
             Nearer::First => "rays are nearer to the truth",
-            Nearer::Second => "rays are further from the truth",
+            Nearer::Second => "rays are farther from the truth",
             Nearer::Tie => "a tie",
         };
         format!(
@@ -176,10 +176,10 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     let constant = best(&all, named("constant-discard"), of_map);
     for (other, what) in [
         (same_map, "the best random ranges from the same map"),
-        (same_lights, "the best random ranges of the same lights"),
-        (constant, "the best one range of the same lights"),
-        (same_count, "the best random ranges of no more lights"),
-        (same_time, "the best random ranges in no more time"),
+        (same_lights, "the best random ranges for the same lights"),
+        (constant, "the best single range for the same lights"),
+        (same_count, "the best random ranges for at most as many lights"),
+        (same_time, "the best random ranges in at most the same time"),
     ] {
         found.extend(other.map(|other| say(other, what)));
     }
@@ -280,11 +280,11 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     };
     let others: Vec<String> = [
         (
-            "random ranges of the same lights",
+            "random ranges for the same lights",
             best_in_common(done, |job| is_swept(job, &["random-discard"])),
         ),
         (
-            "one range for them all",
+            "one range for all of them",
             best_in_common(done, |job| is_swept(job, &["constant-discard"])),
         ),
     ]
@@ -292,14 +292,14 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     .filter_map(|(what, found)| {
         let (mean, worst) = found?;
         let (tie, mean, worst) = (tie(mean), significant(mean), significant(worst));
-        Some(format!(", with {what} by {mean} ({worst}{tie})"))
+        Some(format!(", with {what} it is {mean} ({worst}{tie})"))
     })
     .collect();
     let tie = tie(theirs);
     let stale = if is_stale { format!(": {STALE}") } else { String::new() };
     Some(format!(
         "With one setting for all {} scenes, the mean error of lights with ranges from rays is {} \
-         of the mean ({} at worst); with random ranges of all lights it is {} ({}{tie}){}{stale}.",
+         of the mean ({} in the worst scene). With random ranges for all lights it is {} ({}{tie}){}{stale}.",
         scenes.len(),
         significant(own),
         significant(own_worst),

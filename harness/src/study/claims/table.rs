@@ -6,6 +6,12 @@ use crate::report::column::Column;
 use crate::report::markup::{Html, html};
 use crate::report::table::{Look, Row, Table};
 
+/// What a verdict means.
+const SCALE: &str = "A claim \u{201c}holds\u{201d} if the figures of all scenes confirm it, and \
+                     \u{201c}does not hold\u{201d} if all contradict it. Otherwise it \
+                     \u{201c}differs\u{201d}, and the text says where or why. A scene that decides nothing does \
+                     not count.";
+
 /// All claims as a table.
 pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool) -> Html {
     if claims.is_empty() {
@@ -34,10 +40,11 @@ pub(crate) fn claims_html(paper: &Paper, claims: &[Claim<'_>], is_software: bool
     };
     html!(
         "<section class=\"claims\" aria-labelledby=\"claims\"><h2 id=\"claims\">What {} says, and what was \
-         measured</h2>\n<p class=\"note\">{}{}</p>\n{}</section>\n",
+         measured</h2>\n<p class=\"note\">{}{}</p>\n<p class=\"note\">{}</p>\n{}</section>\n",
         paper.name,
         paper.about,
         caveat,
+        SCALE,
         table
     )
 }
@@ -59,9 +66,18 @@ fn verdict(claim: &Claim<'_>) -> Html {
     )
 }
 
+/// A figure with each of its parts, which semicolons separate, on a line of its own.
+fn line_by_line(figure: &str) -> Html {
+    let line = |(ix, part): (usize, &str)| {
+        let end = if ix == 0 { Html::default() } else { html!("<br>") };
+        end + Html::from(part)
+    };
+    figure.split("; ").enumerate().map(line).collect()
+}
+
 /// The answer of one scene, with its own verdict if there are several.
 fn measured((scene, answer): &(&str, Answer), is_one_of_several: bool) -> Html {
-    let (verdict, figure) = (answer.verdict.text(), &answer.figure);
+    let (verdict, figure) = (answer.verdict.text(), line_by_line(&answer.figure));
     let badge = html!("<span class=\"verdict {}\">{}</span>", answer.verdict.id(), verdict);
     match (is_one_of_several, figure.is_empty()) {
         (false, true) => html!("<p>{}</p>", verdict),

@@ -13,6 +13,7 @@ use crate::report::rank::listed;
 use crate::report::terms::terms;
 use crate::report::{page, raster};
 use crate::results::{DeviceType, Results, TruthLevel};
+use crate::strategy::{Row, rows};
 use crate::study::claims;
 use crate::study::manifest::Done;
 use crate::study::slice::Study;
@@ -64,6 +65,7 @@ pub(crate) fn page(study: &Study, done: &Done) -> Page {
             sections.push(section(scene, &texts, &parts));
         }
     }
+    body += legend(done);
     if !done.results.is_empty() {
         let claims = claims::judge(done, study.paper);
         body += claims::claims_html(study.paper, &claims, is_software(done));
@@ -94,7 +96,7 @@ pub(crate) fn page(study: &Study, done: &Done) -> Page {
             ("reading", Html::trusted(READING)),
             ("file", DATA.into()),
             ("link", DATA.into()),
-            ("columns", page::columns()),
+            ("columns", page::columns(done.results.values())),
             ("terms", terms()),
             ("provenance", provenance(done)),
             ("data", in_script(embedded)),
@@ -105,15 +107,60 @@ pub(crate) fn page(study: &Study, done: &Done) -> Page {
     Page { html, charts, data, words }
 }
 
-const READING: &str = "<p>Frames are drawn in rounds. Each round draws a few frames of every method, the \
-                       methods in random order, so that drift affects all methods alike. Whiskers \
-                       and small figures are intervals of the median over rounds. Two methods \
-                       <b>tie</b> if the interval of their ratio, round by round, contains 1, or if \
-                       their median ratio is within 0.5 % of 1. Two to five rounds always tie. A \
-                       <b>lossy</b> setting is shown with its error. Culling error compares with no \
-                       culling under the same shader. Range error compares with lights that have no \
-                       range. Model error compares a model of area lights with a truth image. Every \
-                       chart is also a file in <code>charts/</code>.</p>";
+const READING: &str = "<p>Frames are drawn in rounds. Each round draws a few frames of every \
+                       method, the methods in random order, so that drift affects all methods \
+                       alike. Along a path, a lap takes the place of a round. Whiskers and small \
+                       figures are confidence intervals for the median over rounds. For each \
+                       round, we take the ratio of two methods\u{2019} times. The methods \
+                       <b>tie</b> if the confidence interval of the median ratio contains 1, or if \
+                       the median ratio is within 0.5 % of 1. With two to five rounds, all methods \
+                       share a rank, because so few rounds cannot show a difference. A \
+                       <b>lossy</b> setting is shown with its error. Culling error compares with \
+                       no culling under the same shader. Range error compares with lights that \
+                       have no range. Model error compares a model of area lights with a truth \
+                       image. Every chart is also a file in <code>charts/</code>.</p>";
+
+/// How to read an id, for the legend.
+const IDS: &str = "A strategy puts samples into groups and gives each group a list of lights. A sample is \
+                   a pixel that shows a surface. An id consists of the family, a size and options. In \
+                   SC-E/48x48x40/bvh, the family is SC-E. Its clusters are tiles of 48 x 48 pixels, cut \
+                   into 40 depth slices. /bvh is an option. All words are explained at the end of the page.";
+
+/// The bounds and the source of lights, which several families share: what an id has, and what it means.
+const SHARED: [(&str, &str); 3] = [
+    ("-I", "implicit bounds: the whole volume of the group"),
+    ("-E", "explicit bounds: the box or the depth range around the samples in the group"),
+    (
+        "/bvh",
+        "hierarchy over the lights: a group first tests boxes around 64 lights each. Without it, a group tests \
+         the list of all lights",
+    ),
+];
+
+/// What the families on a page are, a line each; empty where no strategy has groups.
+fn legend(done: &Done) -> Html {
+    let records = || done.results.values().flat_map(|results| &results.records);
+    let is_used = |row: &&Row| records().any(|record| record.strategy.family() == row.family);
+    let used: Vec<&Row> = rows().filter(is_used).collect();
+    if !used.iter().any(|row| row.has_groups) {
+        return Html::default();
+    }
+    let line = |id: &str, words: String| html!("<dt>{}</dt><dd>{}.</dd>\n", id, words);
+    let families: Html = used.iter().map(|row| line(row.family, row.description())).collect();
+    let is_shared = |id: &str| match id {
+        "/bvh" => records().any(|record| record.strategy.is_bvh()),
+        ending => used.iter().any(|row| row.family.ends_with(ending)),
+    };
+    let shared = SHARED.iter().filter(|(id, _)| is_shared(id));
+    let shared: Html = shared.map(|(id, words)| line(id, (*words).to_owned())).collect();
+    html!(
+        "<section class=\"families\" aria-labelledby=\"families\"><h2 id=\"families\">What the strategies are \
+         called</h2>\n<p class=\"note\">{}</p>\n<dl class=\"columns\">\n{}{}</dl></section>\n",
+        IDS,
+        families,
+        shared
+    )
+}
 
 /// The section of a scene: what it found, links to its parts, and the parts.
 fn section(scene: &str, texts: &Html, parts: &[Part]) -> Html {
@@ -180,7 +227,7 @@ fn notices(study: &Study, done: &Done, pictures_left_out: usize) -> Vec<String> 
     for (job, results) in &done.results {
         for record in results.records.iter().filter(|r| !r.is_lossy && !r.is_lossless()) {
             notices.push(format!(
-                "{job}, {}: this method claims to lose nothing, but its lists or its image show a \
+                "{job}, {}: this method should lose nothing, but its lists or its image show a \
                  loss.",
                 record.strategy
             ));
@@ -212,8 +259,9 @@ fn provenance(done: &Done) -> Html {
     let count = done.results.values().filter(checked).count();
     let remark = if count < done.results.len() {
         html!(
-            "<p class=\"note\">The lists of {} of {} jobs were checked pair by pair. For the other \
-             jobs only the image was compared, where there is an image without culling.</p>\n",
+            "<p class=\"note\">In {} of {} jobs, the lists were checked for every pair of a light \
+                              and a sample. The other jobs only compared images with the image \
+                              without culling, where they have one.</p>\n",
             count,
             done.results.len()
         )

@@ -85,7 +85,7 @@ pub(crate) const ONE_LIGHT: Check = Check {
     place: "section 5.5.3, figure 5.22",
     words: "With one light MRP is fastest and LTC second.",
     paper: "MRP is 0.21 ms faster",
-    departure: "one stochastic sample takes the third place; MRP is mrp-published, our reading of \
+    departure: "one stochastic sample takes the third place. MRP is mrp-published, our reading of \
                 equation 5.5",
     decide: |done, scene| {
         let record = |name: &str| at(done, scene, name, 1);
@@ -114,8 +114,8 @@ pub(crate) const MRP_GAIN: Check = Check {
     place: "section 5.5.3, figure 5.23",
     words: "MRP is about 30 % faster than LTC for 16 lights, and 35 % for 64.",
     paper: "30 and 35 % of the frame",
-    departure: "every light shades every pixel; the paper\u{2019}s frames hold less shading and more of \
-                everything else. MRP is mrp-published, our reading of equation 5.5",
+    departure: "every light shades every pixel. The paper\u{2019}s frames hold less shading and \
+                more of everything else. MRP is mrp-published, our reading of equation 5.5",
     decide: |done, scene| {
         let (mut figures, mut parts) = (Vec::new(), Vec::new());
         for (lights, least) in GAINS {
@@ -172,7 +172,7 @@ pub(crate) const LIGHTS_OR_SAMPLES: Check = Check {
     place: "section 5.5.3",
     words: "Four times the lights cost the stochastic algorithm more than four times the samples.",
     paper: "a figure without numbers",
-    departure: "from 16 lights and one sample",
+    departure: "compared with 16 lights and one sample",
     decide: |done, scene| {
         let record = |samples, lights| at(done, scene, &stochastic(samples), lights);
         let (Some(base), Some(samples), Some(lights)) =
@@ -203,8 +203,8 @@ pub(crate) const SPOTS_RATIO: Check = Check {
     place: "section 5.6, figures 5.25 and 5.26",
     words: "Area lights take about twice as long as spots.",
     paper: "about 2, of the frame, at 22 lights and at varying counts",
-    departure: "1, 16 and 64 lights; about twice means 1.5 to 2.5 times; every light shades every \
-                pixel; neither casts shadows",
+    departure: "measured with 1, 16 and 64 lights. \u{201c}About twice\u{201d} means 1.5 to 2.5 \
+                times. Every light shades every pixel, and neither kind casts shadows",
     decide: |done, scene| {
         by_lights(done, scene, ["ltc", SPOTS], |ltc, spots| {
             let ratio = ltc.times.frame_ms / spots.times.frame_ms;
@@ -223,7 +223,8 @@ pub(crate) const FASTER: Check = Check {
     place: "table 7.1",
     words: "MRP is very fast, LTC fast and the stochastic algorithm slow.",
     paper: "ratings without numbers",
-    departure: "the stochastic algorithm with 4 samples; MRP is mrp-published, our reading of equation 5.5",
+    departure: "the stochastic algorithm has 4 samples. MRP is mrp-published, our reading of \
+                equation 5.5",
     decide: |done, scene| {
         let record = |name: &str| at(done, scene, name, 64);
         let stochastic = record(&stochastic(4));

@@ -66,7 +66,7 @@ pub(crate) const BALLS: Check = Check {
     words: "A box bounds an area light\u{2019}s reach better than a sphere.",
     paper: "the sphere is larger than the box by a factor of \u{3c0} / 3 at least",
     departure: "the tighter bound here is the reach itself, which lies inside the paper\u{2019}s \
-                box; we compare lists of clusters and tiles, not volumes",
+                box. We compare lists of clusters and tiles, not volumes",
     decide: |done, scene| {
         let all = entries(done, scene, BOUNDS);
         let mut tally = Tally::default();
@@ -109,7 +109,7 @@ pub(crate) const REGION_NOISE: Check = Check {
     place: "section 5.2, figures 5.4 and 5.5",
     words: "Taking specular samples from the reflected region lessens the noise.",
     paper: "pictures only",
-    departure: "relMSE against the truth decides; where the cone misses the light, samples cover \
+    departure: "judged by relMSE against the truth. Where the cone misses the light, samples cover \
                 the whole light",
     decide: |done, scene| {
         let pairs = paired(done, scene, "rel_mse");
@@ -133,7 +133,8 @@ pub(crate) const MORE_SAMPLES: Check = Check {
     place: "table 5.2",
     words: "Mean FLIP does not respond to the number of stochastic samples.",
     paper: "FLIP 0.51994, 0.52200, 0.52226 and 0.52211 at 2, 8, 32 and 128 samples",
-    departure: "2 to 32 samples; the paper\u{2019}s FLIP is mostly the difference between two renderers",
+    departure: "measured with 2 to 32 samples. The paper\u{2019}s FLIP is mostly the difference \
+                between two renderers",
     decide: |done, scene| {
         let errors = by_samples(done, scene, REFLECTED, "flip");
         let (Some(first), Some(last)) = (errors.first(), errors.last()) else {
@@ -161,7 +162,8 @@ pub(crate) const REGION_BIAS: Check = Check {
     place: "section 5.5.2",
     words: "Samples of the reflected region underestimate specular light from elsewhere.",
     paper: "pictures only",
-    departure: "the signed bias at the most samples decides, compared with that of uniform samples",
+    departure: "judged by the signed bias at the most samples, compared with that of uniform \
+                samples",
     decide: |done, scene| {
         let Some((samples, uniform, reflected)) = paired(done, scene, "bias").pop() else {
             return Answer::unknown("both ways of sampling");
@@ -186,8 +188,8 @@ pub(crate) const FRESNEL: Check = Check {
     id: "fresnel",
     place: "section 5.5.2",
     words: "MRP has nearly no Fresnel reflections.",
-    paper: "pictures only: curtains and banners",
-    departure: "missing energy is that of both terms; mrp-published is our reading of equation 5.5",
+    paper: "only pictures of curtains and banners",
+    departure: "missing energy is that of both terms. mrp-published is our reading of equation 5.5",
     decide: |done, scene| {
         let error = |name| error_of(done, scene, name, "missing_energy");
         let (Some(mrp), Some(ltc)) = (error("mrp-published"), error("ltc")) else {

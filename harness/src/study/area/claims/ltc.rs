@@ -18,7 +18,7 @@ pub(crate) const TABLES: Check = Check {
     words: "The engine\u{2019}s table and that of the exact GGX give nearly equal errors; the exact one\u{2019}s is \
             slightly less.",
     paper: "FLIP 0.39606 and 0.39435; LPIPS 0.20339 and 0.20316",
-    departure: "no LPIPS; nearly equal is within 1 %",
+    departure: "no LPIPS. \u{201c}Nearly equal\u{201d} means within 1 %",
     decide: |done, scene| {
         let models = [("ltc-hammon", "engine\u{2019}s (ltc-hammon)"), ("ltc", "exact (ltc)")];
         by_flip(done, scene, models, "both tables", |engine, exact| {
@@ -43,7 +43,8 @@ pub(crate) const POLYNOMIAL_FIT: Check = Check {
     place: "section 5.4.3, figure 5.15",
     words: "Polynomials of low degree fit the table.",
     paper: "root mean square error below 0.11 for every component at degree 5",
-    departure: "degree 6 over roughness and sqrt(1 - cos view), of M^-1; the paper fits M over the angle",
+    departure: "we fit M^-1 with degree 6 over roughness and sqrt(1 - cos view). The paper fits M \
+                over the angle",
     decide: |_, _| {
         let Ok(table) = Table::ggx() else { return Answer::unknown("the table") };
         let errors = Polynomial::ggx().rms_errors(&table);
@@ -74,8 +75,8 @@ pub(crate) const TABLE_OR_POLYNOMIAL: Check = Check {
     place: "section 5.4.3, figure 5.18",
     words: "The table is as fast as polynomials for one light, and faster for many.",
     paper: "a figure without numbers: similar at 16 lights, then a gap that grows",
-    departure: "both find the lobe once per light, as the paper does; the table is in a storage \
-                buffer, not in a texture; whole frames decide, and shading is shown",
+    departure: "both find the lobe once per light, as the paper does. The table is in a storage \
+                buffer, not in a texture. Judged by whole frames; shading is shown too",
     decide: |done, scene| {
         let pair = |lights| {
             let polynomial = at(done, scene, "ltc-polynomial-per-light", lights)?;
@@ -116,8 +117,8 @@ pub(crate) const SPLITTING: Check = Check {
     place: "section 5.4.4, figure 5.19",
     words: "Long edges give noisy highlights, and splitting them removes the noise.",
     paper: "pictures only",
-    departure: "the lights of the study are at most five times as long as wide; a test of shading has one of \
-                1,000 to 1, on which the noise shows and splitting removes it",
+    departure: "the lights of the study are at most five times as long as wide. A test of shading \
+                has a light of 1,000 to 1: it shows the noise, and splitting removes it",
     decide: |done, scene| {
         let models = [("ltc-unsplit", "unsplit"), ("ltc", "split")];
         by_flip(done, scene, models, "ltc-unsplit", |before, after| {
@@ -140,7 +141,8 @@ pub(crate) const SPLITTING_COST: Check = Check {
     place: "section 5.5.3",
     words: "Splitting edges costs little.",
     paper: "without it MRP\u{2019}s lead of 30 % is only slightly lower",
-    departure: "split edges take another polynomial for the angle than unsplit ones; little is 10 % of shading",
+    departure: "split edges use another polynomial for the angle than unsplit ones. \
+                \u{201c}Little\u{201d} means at most 10 % of shading",
     decide: |done, scene| {
         by_lights(done, scene, ["ltc", "ltc-unsplit"], |split, unsplit| {
             let ratio = split.times.shade_ms / unsplit.times.shade_ms;
@@ -155,8 +157,8 @@ pub(crate) const LEAST: Check = Check {
     place: "table 5.2",
     words: "LTC is nearest to the truth of all algorithms.",
     paper: "FLIP 0.39245; MRP 0.51880, stochastic 0.51994 to 0.52226",
-    departure: "stochastic up to 32 samples; uniform samples, which are not the paper\u{2019}s, compete too. \
-                mrp-published is our reading of equation 5.5, so MRP counts where mrp agrees with it",
+    departure: "stochastic algorithms have up to 32 samples. Uniform samples, which are not the \
+                paper\u{2019}s, compete too. mrp-published is our reading of equation 5.5, so MRP counts where mrp agrees with it",
     decide: least,
 };
 

@@ -44,14 +44,17 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
                 ("slope", Order::of_fits(explicit.slope, implicit.slope)),
                 ("offset", Order::of_fits(implicit.offset, explicit.offset)),
             ] {
-                let names = match what {
-                    "slope" => [format!("{group}-E{source}"), format!("{group}-I{source}")],
-                    _ => [format!("{group}-I{source}"), format!("{group}-E{source}")],
+                let [explicit, implicit] =
+                    ["E", "I"].map(|kind| format!("{group}-{kind}{source}\u{2019}s {what}"));
+                let [less, more] = match what {
+                    "slope" => [explicit, implicit],
+                    _ => [implicit, explicit],
                 };
-                pairs.add(&format!("{} ({what})", names[0]), &names[1], order);
+                pairs.add(&less, &more, order);
             }
             figures.push(format!(
-                "{group}{source}: slope times {}, offset from {} to {} ms{mark} with the depth pre-pass counted, from {} to {} ms without",
+                "from {group}-I{source} to {group}-E{source}: slope \u{d7} {}, offset from {} to {} ms{mark} with the \
+                 depth pre-pass, from {} to {} ms without it",
                 significant(explicit.slope / implicit.slope),
                 significant(implicit.offset),
                 significant(explicit.offset),

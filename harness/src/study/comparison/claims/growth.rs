@@ -59,8 +59,8 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
     Answer { figure, verdict: Verdict::of_parts(good, all, "strategies") }
 }
 
-/// `T-I off its line by 9.0 % at most, at 1,000 (plain least squares 9.8 % at 100), straight from 100 to
-/// 30,000`. Both distances are of `records`, those of the paper's range.
+/// `T-I: at most 9.0 % off its line, at 1,000 (plain least squares: 9.8 % at 100), linear from 100 to
+/// 30,000 lights`. Both distances are of `records`, those of the paper's range.
 fn straightness(
     id: &StrategyId,
     within: &Straight,
@@ -68,7 +68,7 @@ fn straightness(
     records: &[&Record],
 ) -> String {
     let mut text = format!(
-        "{} off its line by {} % at most, at {}",
+        "{}: at most {} % off its line, at {}",
         id.short(),
         percent(within.worst),
         number(within.at as f64)
@@ -77,13 +77,14 @@ fn straightness(
         let points: Vec<(f64, f64)> =
             records.iter().map(|r| (r.setting.lights as f64, r.assign_and_shade_ms())).collect();
         let (off, at) = plain.worst(&points);
-        text += &format!(" (plain least squares {} % at {})", percent(off), number(at));
+        text += &format!(" (plain least squares: {} % at {})", percent(off), number(at));
     }
     match whole.or(Some(*within)).and_then(|whole| whole.range) {
         Some([low, high]) => {
-            text += &format!(", straight from {} to {}", number(low as f64), number(high as f64));
+            text +=
+                &format!(", linear from {} to {} lights", number(low as f64), number(high as f64));
         }
-        None => text += ", nowhere straight over four counts",
+        None => text += ", not linear over any four counts",
     }
     text
 }
@@ -194,8 +195,12 @@ pub(crate) fn model_slopes(done: &Done, scene: &str) -> Answer {
     let more = ordered(&shade, &[&others, &["M"]], slope);
     let verdict = match (less.leader_verdict(), more.leader_verdict()) {
         (Verdict::Fails, Verdict::Fails) => Verdict::Fails,
-        (_, Verdict::Fails) => Verdict::Differs("not the greatest in shading".to_owned()),
-        (Verdict::Fails, _) => Verdict::Differs("not the least in assignment".to_owned()),
+        (_, Verdict::Fails) => {
+            Verdict::Differs("M does not have the greatest slope of shading".to_owned())
+        }
+        (Verdict::Fails, _) => {
+            Verdict::Differs("M does not have the least slope of assignment".to_owned())
+        }
         (Verdict::Holds, other) | (other, _) => other,
     };
     let names = [&["M"][..], &others].concat();

@@ -39,10 +39,10 @@ fn searched<'a>(all: &[Entry<'a>], name: &str) -> Vec<&'a Record> {
     if linear.is_empty() { from_source(true) } else { linear }
 }
 
-/// `; through the hierarchy` where the records are not the paper's.
+/// ` (measured only with /bvh)` where the records are not the paper's.
 fn source(records: &[&Record]) -> &'static str {
     match records.iter().any(|record| record.strategy.is_bvh()) {
-        true => " (through the hierarchy)",
+        true => " (measured only with /bvh)",
         false => "",
     }
 }
@@ -83,7 +83,7 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
             figures.push(format!("{name} {selected} {} ms", significant(time(chosen))));
         } else {
             figures.push(format!(
-                "{name} {selected} {} ms, {} % over {}",
+                "{name} {selected} {} ms, {} % longer than {}",
                 significant(time(chosen)),
                 percent(time(chosen) / time(leader) - 1.0),
                 leader.strategy.size()
@@ -106,13 +106,15 @@ pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
         grids.min_by(|a, b| time(a).total_cmp(&time(b)))
     };
     let (Some(equal), Some(shaped)) = (least(true), least(false)) else {
-        return Answer::unknown("a grid shaped like its box, beside grids with equal counts");
+        return Answer::unknown(
+            "a grid with the proportions of its box, and grids with equal counts",
+        );
     };
     let mut pairs = Pairs::default();
     let names = [shaped, equal].map(|record| record.strategy.size());
     pairs.add(names[0], names[1], Order::of_times(shaped, equal));
     let figure = format!(
-        "{}{}: {} {} ms, the best of equal counts {} {} ms",
+        "{}{}: {} {} ms, the best grid of equal counts, {}, {} ms",
         stand(shaped),
         source(&records),
         names[0],
@@ -150,7 +152,7 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
             .map(|ranked| ranked.record)
             .filter(|record| tests_of(record).as_deref() != Some(BEST))
             .min_by(|a, b| time(a).total_cmp(&time(b)))
-            .map_or_else(String::new, |other| format!(", the fastest other {}", shown(other)));
+            .map_or_else(String::new, |other| format!(", fastest of the others {}", shown(other)));
         figures.push(format!("{name}: {}{fastest}", shown(meant)));
     }
     if decided == 0 {

@@ -78,10 +78,11 @@ pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     Part::new(
         "main",
         "All strategies",
-        "All strategies run at the comparison paper\u{2019}s parameters, from the list of all \
-         lights and through the hierarchy (/bvh). Times that were measured along the path are \
-         means over it, and only these rank. A table of one pose is an example with pictures and \
-         lists. Click a heading to sort by its column.",
+        "All strategies run at the comparison paper\u{2019}s parameters. They test the list of all \
+         lights, or the hierarchy over the lights (/bvh). Times along the path are means over its \
+         poses. Findings and claims use them wherever they were measured. A table of one pose is \
+         an example with pictures and lists, and its ranks hold for that pose only. Click a \
+         heading to sort by its column.",
         panels("Lights", &shown),
     )
 }
@@ -169,7 +170,10 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
         );
     }
     if let Some(faster) = comparison.speedup(leader) {
-        text += &format!(". No culling takes {} times as long", significant(faster));
+        text += &format!(
+            ". None, which does not cull, takes {} times as long as the fastest",
+            significant(faster)
+        );
     }
     text += ".";
     if let Some(hierarchy) = lead.hierarchy() {

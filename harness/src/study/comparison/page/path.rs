@@ -67,9 +67,10 @@ pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Part {
     Part::new(
         "path",
         "Along the path",
-        "The time to assign and shade at each pose of the camera, mean over laps. SD is the \
-         standard deviation over poses; the comparison paper ranks by it. SD / mean and worst / \
-         median are shown too. Slow methods have fewer poses.",
+        "The chart shows the time to assign and shade at each pose of the camera, as a mean over \
+         laps. SD is the standard deviation over poses, by which the comparison paper ranks. The \
+         table also shows SD / mean, and the time of the worst pose divided by that of the median \
+         pose. Slow methods have fewer poses.",
         panels("Lights", &shown),
     )
 }

@@ -80,10 +80,11 @@ pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3
         "scaling",
         "Scaling",
         format!(
-            "{} Whiskers are intervals. Dashes show the least-squares line through each \
-             strategy\u{2019}s times, which is curved on these logarithmic axes. The column \
-             \u{201c}off a straight line\u{201d} uses another line, fitted to relative distances, \
-             so that few lights count as much as many.",
+            "{} Whiskers are confidence intervals over rounds or laps. Dashes show the \
+             least-squares line through each strategy\u{2019}s times, which is curved on these \
+             logarithmic axes. The column \u{201c}off a straight line by at most\u{201d} uses a \
+             second line. Its fit minimises relative errors, so that a time at few lights weighs \
+             as much as a time at many.",
             stands(&scaling)
         ),
         html,
@@ -99,8 +100,8 @@ pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3
     let radii = Part::new(
         "radii",
         "Other radii",
-        "The same mean radius with other distributions. Brackets hold the time over that with the \
-         gamma distribution.",
+        "The lights have the same mean radius, but other distributions of radii. Brackets hold the \
+         time divided by the time with the gamma distribution.",
         radii(done, scene),
     );
     [scaled, density, radii]
@@ -119,9 +120,10 @@ fn stands(entries: &[Entry<'_>]) -> String {
 /// A panel per source of lights: strategies without one, such as None, are in both.
 fn by_source(all: &[Entry<'_>], mut body: impl FnMut(&str, &[Entry<'_>]) -> Html) -> Html {
     let mut shown = Vec::new();
-    for (source, text, bvh) in
-        [("linear", "From the list of all lights", false), ("bvh", "Through the hierarchy", true)]
-    {
+    for (source, text, bvh) in [
+        ("linear", "With the list of all lights", false),
+        ("bvh", "With the hierarchy (/bvh)", true),
+    ] {
         let has_source = |entry: &&Entry<'_>| entry.record.culls();
         let chosen: Vec<Entry<'_>> = all
             .iter()

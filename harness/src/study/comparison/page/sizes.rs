@@ -78,20 +78,20 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] 
     let sizes = Part::new(
         "sizes",
         "Group sizes",
-        "Sizes of tiles and clusters are in pixels and depth slices, those of grids in cells along \
-         each side of the box, and those of model parts in metres. Small groups cost more \
-         assignment, large groups more shading. Sizes are searched separately for both sources of \
-         lights: the list of all lights, and the hierarchy (/bvh).",
+        "Sizes of tiles and clusters are in pixels and depth slices. Sizes of grids are numbers of \
+         cells along the sides of the grid\u{2019}s box. Sizes of model parts are in metres. Small \
+         groups take longer to assign, and large groups take longer to shade. We search a family \
+         once with the list of all lights, and some families again with the hierarchy (/bvh).",
         body,
     );
     let tests = Part::new(
         "tests",
         "Intersection tests",
-        "Each row combines tests of a light\u{2019}s bounds against a group\u{2019}s frustum: \
-         half-spaces (HS), and separating axes along its edges (SAT-E), towards its nearest \
-         corner (SAT-N), along its planes' normals (SAT-P) and towards every corner (SAT-V). \
-         Figures are assign + shade in ms. The fastest of each family, and all that tie with it, \
-         are bold.",
+        "Each row is a combination of tests that compare a light\u{2019}s bounds with a \
+         group\u{2019}s frustum. HS: half-spaces, one per plane of the frustum. SAT: separating \
+         axes, along the frustum\u{2019}s edges (SAT-E), towards its nearest corner (SAT-N), along \
+         its planes\u{2019} normals (SAT-P) or towards every corner (SAT-V). Figures are assign + \
+         shade in ms. The fastest of each family, and all that tie with it, are bold.",
         tests_table(done, scene),
     );
     [sizes, tests]
@@ -197,9 +197,9 @@ pub(crate) fn best_overall(done: &Done) -> Html {
     }
     html!(
         "<section aria-labelledby=\"overall\"><h2 id=\"overall\">The size for all scenes</h2>\n<p \
-         class=\"note\">Each size has a factor per scene: its time over that of the \
-         scene\u{2019}s best size. The size with the least geometric mean of these factors is \
-         shown.</p>\n{}</section>\n",
+         class=\"note\">We divide the time of each size by the time of the best size in the same \
+                       scene. The table shows the size for which the geometric mean of these \
+                       ratios over the scenes is least.</p>\n{}</section>\n",
         table
     )
 }

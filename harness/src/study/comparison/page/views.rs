@@ -55,11 +55,12 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     Part::new(
         "views",
         "Views of low and high depth discontinuity",
-        "Two views along the path: the one in which the fewest neighbouring pixels differ by a \
-         tenth in depth, and the one in which the most do. A tile that holds near and far \
-         surfaces also lists the lights between them; a cluster does not. The lists of G and M do \
-         not depend on the view. Heat maps show how many lights each pixel\u{2019}s list holds: \
-         blue is none, red is 150, green is more.",
+        "These are two views from the path: the one with the fewest edges in depth, and the one \
+         with the most. Two neighbouring pixels form such an edge if one is more than 10 % deeper \
+         than the other. A tile that holds near and far surfaces also lists the lights between \
+         them. A cluster does not. The lists of G and M do not depend on the view. Heat maps show \
+         how many lights each pixel\u{2019}s list holds, from blue for none to red for 150. Longer \
+         lists are green.",
         panels("Strategy", &shown),
     )
 }

@@ -30,8 +30,8 @@ const CHECKS: [Check; 12] = [
         place: "evaluation, figure 2",
         words: "The frame time of each method grows linearly with the number of lights.",
         paper: "0 to 1,500 lights",
-        departure: "fewer counts of lights; straight means that points are off by at most 5 % of \
-                    the growth",
+        departure: "we measured fewer counts of lights. \u{201c}Linearly\u{201d} means that points \
+                    are off the line by at most 5 % of the growth",
         decide: linear,
     },
     Check {
@@ -64,7 +64,7 @@ const CHECKS: [Check; 12] = [
         words: "The bounding sphere cuts the cost of lights nearly in half.",
         paper: "nearly half",
         departure: "no culling also runs the test of the early exit here, which makes it 9 % \
-                    slower; nearly half means that 40 to 60 % is left",
+                    slower. \u{201c}Nearly in half\u{201d} means that 40 to 60 % is left",
         decide: sphere,
     },
     Check {
@@ -88,8 +88,8 @@ const CHECKS: [Check; 12] = [
         place: "evaluation",
         words: "Clusters greatly outperform all other methods, in both renderers.",
         paper: "",
-        departure: "we take \u{201c}greatly\u{201d} to mean half the frame or less; we test \
-                    clusters as frusta (HS+SAT-N), the paper as boxes",
+        departure: "\u{201c}greatly\u{201d} means half the frame time or less. We test clusters as \
+                    frusta (HS+SAT-N), and the paper tests them as boxes",
         decide: clusters,
     },
     Check {
@@ -97,7 +97,7 @@ const CHECKS: [Check; 12] = [
         place: "evaluation",
         words: "Clusters light 1,500 lights in 10 ms per frame.",
         paper: "10 ms on an RTX 3080",
-        departure: "decided on the paper\u{2019}s GPU only; holds from 5 to 20 ms",
+        departure: "decided on the paper\u{2019}s GPU only. The claim holds from 5 to 20 ms",
         decide: rate,
     },
     Check {
@@ -113,7 +113,8 @@ const CHECKS: [Check; 12] = [
         place: "failure modes, figure 3a",
         words: "Ranges lose visible light, most of all on reflective surfaces.",
         paper: "pictures",
-        departure: "the whole image of the path\u{2019}s first pose, not only its reflective surfaces",
+        departure: "we compare the whole image of the path\u{2019}s first pose, not only its \
+                    reflective surfaces",
         decide: range,
     },
     Check {
