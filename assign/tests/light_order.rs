@@ -128,6 +128,20 @@ fn boxes_hold_the_lights_in_every_frame_of_a_stale_order() {
 }
 
 #[test]
+fn a_sort_that_was_not_recorded_is_made_up_for() {
+    let gpu = gpu();
+    let order = LightOrder::Gpu { every: 8 };
+    let mut buffer = LightBuffer::ordered(&gpu, &lights(300, 0), order).unwrap();
+    let given = lights(300, 1);
+    // No frame was recorded yet.
+    buffer.update(&gpu, &given).unwrap();
+    record(&gpu, &buffer);
+    let mut sorted = buffer.read(&gpu).unwrap();
+    sorted.sort_by_key(|light| light.intensity.x as u32);
+    assert_eq!(sorted, given);
+}
+
+#[test]
 fn only_changed_lights_are_uploaded() {
     let gpu = gpu();
     let mut given = lights(10_000, 1);

@@ -1,5 +1,7 @@
 //! Lights that change in every frame: where they come from, and when they are sorted.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use bytemuck::{bytes_of, pod_collect_to_vec, pod_read_unaligned};
 use glam::Vec3;
 
@@ -71,6 +73,8 @@ pub(super) struct Living {
     every: u32,
     /// Frames since the last sort; `None` if the next frame must sort.
     age: Option<u32>,
+    /// Whether the sort of the last frame that sorts was recorded.
+    is_sorted: AtomicBool,
     /// Number of lights at the last sort.
     sorted: u32,
     slots: u32,
@@ -94,6 +98,7 @@ impl Living {
         Ok(Self {
             every,
             age: None,
+            is_sorted: AtomicBool::new(false),
             sorted: 0,
             slots: 0,
             uploaded_bytes: 0,
@@ -130,6 +135,11 @@ impl Living {
             self.sorter = Some((sorter, buffers));
             self.age = None;
         }
+        let sorts = self.next_sorts();
+        if sorts {
+            self.sorted = count;
+        }
+        self.slots = count.max(self.sorted);
         let Some((sorter, buffers)) = &self.sorter else { return Ok(()) };
         let [known_spheres, known_emissions, known_shapes] = known.bytes();
         self.uploaded_bytes = upload(gpu, &buffers.spheres, known_spheres, spheres)
@@ -137,11 +147,6 @@ impl Living {
             + upload(gpu, &buffers.shapes, known_shapes, shapes);
         gpu.queue.write_buffer(sorter.state(), SlotState::GIVEN_AT, bytes_of(&count));
         let bounds = given.position_bounds.unwrap_or_default();
-        let sorts = next_sorts(&mut self.age, self.every);
-        if sorts {
-            self.sorted = count;
-        }
-        self.slots = count.max(self.sorted);
         // The CPU has checked the radii.
         sorter.prepare(gpu, OrderUniform::in_box(bounds, f32::MAX, sorts));
         self.source = Some(Source::Cpu { uploaded: records });
@@ -178,11 +183,26 @@ impl Living {
         });
         self.uploaded_bytes = 0;
         self.slots = lights.capacity;
-        let sorts = next_sorts(&mut self.age, self.every);
+        let sorts = self.next_sorts();
         if let Some((sorter, _)) = &self.sorter {
             sorter.prepare(gpu, OrderUniform::in_box(lights.bounds, lights.radius_max_m, sorts));
         }
         Ok(())
+    }
+
+    /// Whether the next frame sorts. It does so after `every` frames, and if the frame that should have
+    /// sorted was never recorded.
+    fn next_sorts(&mut self) -> bool {
+        let is_sorted = *self.is_sorted.get_mut();
+        let next = match self.age {
+            Some(age) if is_sorted => (age + 1) % self.every,
+            _ => 0,
+        };
+        self.age = Some(next);
+        if next == 0 {
+            *self.is_sorted.get_mut() = false;
+        }
+        next == 0
     }
 
     /// Has the next frame sort.
@@ -198,7 +218,11 @@ impl Living {
             let at = SlotState::GIVEN_AT;
             encoder.copy_buffer_to_buffer(count, *count_offset, sorter.state(), at, 4);
         }
-        sorter.record(self.age == Some(0), passes);
+        let sorts = self.age == Some(0);
+        sorter.record(sorts, passes);
+        if sorts {
+            self.is_sorted.store(true, Ordering::Relaxed);
+        }
     }
 
     /// The sorter and the shapes.
@@ -256,13 +280,6 @@ impl Living {
 
 /// A shape vector.
 type Vec3x4 = [f32; 4];
-
-/// Whether the next frame sorts, after `age` frames without a sort.
-fn next_sorts(age: &mut Option<u32>, every: u32) -> bool {
-    let next = age.map_or(0, |age| (age + 1) % every);
-    *age = Some(next);
-    next == 0
-}
 
 /// Uploads the blocks of `bytes` that differ from `known`. Returns how many bytes it uploaded.
 fn upload(gpu: &Gpu, buffer: &wgpu::Buffer, known: &[u8], bytes: &[u8]) -> u64 {
