@@ -48,7 +48,9 @@ pub use hierarchy::{BuildEffort, DistinctTriangles, build_hierarchy};
 pub use light_animation::LightAnimation;
 pub use lights::{LightSpec, MAX_LIGHTS, MIN_RADIUS_M, THRESHOLD, scatter_lights};
 pub use material::{Dielectric, Encoding, Filter, Image, Material, Sampler, TextureRef, Wrap};
-pub use motion::{MAX_SPEED_M_S, MAX_TIME_S, Motion, MotionLaw};
+pub use motion::{
+    MAX_SPEED_M_S, MAX_TIME_S, Motion, MotionClock, MotionLaw, MotionRules, motion_constants,
+};
 pub use nearest::DepthSpan;
 pub use open_ranges::{LOST, close_ranges};
 pub use path::CameraPath;

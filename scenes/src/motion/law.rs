@@ -1,6 +1,7 @@
 //! The arithmetic of the laws of motion, in u32 and f32 only.
 //!
-//! A shader can repeat this file line by line. Every function is pure. The laws use hashes instead
+//! The shader `motion_law.wesl` of crate `shading` repeats this file, with the constants that
+//! `constants.rs` passes to it. Every function is pure. The laws use hashes instead
 //! of tables, and add, multiply, divide, square root, floor, min and max of f32. [`sine`] is a
 //! polynomial, because the accuracy of a built-in `sin` differs between platforms.
 //!
@@ -16,16 +17,19 @@ use glam::Vec3;
 use super::MotionLaw;
 use crate::noise::mix;
 
-/// What all lights have in common: a shader's uniform.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rules {
-    pub(super) seed: u32,
-    /// Above 0.
-    pub(super) speed_m_s: f32,
-    /// The box of the lights' positions.
-    pub(super) min: Vec3,
-    pub(super) max: Vec3,
-    pub(super) diagonal_m: f32,
+/// What all lights of a motion have in common, as a shader's uniform holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// The 32 bits of the seed that the laws use.
+    pub seed: u32,
+    /// The speed, metres per second. At 0 the laws must not be used: all lights stay.
+    pub speed_m_s: f32,
+    /// The lowest corner of the box of the lights' positions, metres.
+    pub min: Vec3,
+    /// The highest corner of that box, metres.
+    pub max: Vec3,
+    /// The diagonal of that box, metres.
+    pub diagonal_m: f32,
 }
 
 /// What a law does to a light at a moment.
@@ -48,10 +52,11 @@ pub(super) struct Turn {
 
 /// A time, split into whole seconds and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Clock {
-    whole_s: u32,
-    /// 0 to below 1.
-    part_s: f32,
+pub struct Clock {
+    /// Whole seconds.
+    pub whole_s: u32,
+    /// The rest, 0 to below 1 second.
+    pub part_s: f32,
 }
 
 /// How often something has turned, and how far into the next turn it is.
@@ -64,43 +69,48 @@ pub(super) struct Beat {
 }
 
 /// The largest radius of drifting and orbiting, as a share of the box's diagonal.
-const WANDER_SHARE: f32 = 1.0 / 32.0;
+pub(super) const WANDER_SHARE: f32 = 1.0 / 32.0;
 
 /// The way of a drifting light per turn of its first wave, in amplitudes: `2 pi * sqrt(3) *
 /// (WAVE[0] + WAVE[1] * WAVE_RATIO)` for the fastest moment of all three axes, rounded up.
-const DRIFT_WAY: f32 = 15.3;
+pub(super) const DRIFT_WAY: f32 = 15.3;
 
 /// Amplitudes of the two waves that drifting adds per axis. Their sum is 1.
-const WAVE: [f32; 2] = [0.75, 0.25];
+pub(super) const WAVE: [f32; 2] = [0.75, 0.25];
 
 /// Frequency of the second wave over that of the first: 1 plus the golden ratio, so that the sum
 /// hardly repeats.
-const WAVE_RATIO: f32 = 2.618;
+pub(super) const WAVE_RATIO: f32 = 2.618;
 
 /// One in this many lights jumps under [`MotionLaw::Teleport`].
-const JUMPERS: u32 = 4;
+pub(super) const JUMPERS: u32 = 4;
 
 /// The way per jump, and the shortest way per life, as a share of the box's diagonal.
-const JUMP_SHARE: f32 = 0.5;
+pub(super) const JUMP_SHARE: f32 = 0.5;
 
 /// A light is dead in the last quarter of each life's turn.
-const DEATH: u32 = 0xc000_0000;
+pub(super) const DEATH: u32 = 0xc000_0000;
 
 /// The most turns per second.
-const MAX_HZ: f32 = 1_048_576.0;
+pub(super) const MAX_HZ: f32 = 1_048_576.0;
+
+/// Coefficients of [`sine`], lowest power first. Hastings 1955, "Approximations for digital
+/// computers", sheet 16: `sin(pi/2 x)` for -1 to 1.
+pub(super) const SINE: [f32; 5] =
+    [1.570_796_4, -0.645_963_7, 0.079_689_68, -0.004_673_765_6, 0.000_151_484_19];
 
 /// 2^32.
-const STEPS: f32 = 4_294_967_296.0;
+pub(super) const STEPS: f32 = 4_294_967_296.0;
 
 // Streams of random values. Values of vectors take three streams.
-const AMPLITUDE: u32 = 1;
-const PACE: u32 = 2;
-const START: u32 = 5;
-const AXIS: u32 = 11;
-const JUMPS: u32 = 13;
-const PLACE: u32 = 14;
-const LEVEL: u32 = 17;
-const LAW: u32 = 18;
+pub(super) const AMPLITUDE: u32 = 1;
+pub(super) const PACE: u32 = 2;
+pub(super) const START: u32 = 5;
+pub(super) const AXIS: u32 = 11;
+pub(super) const JUMPS: u32 = 13;
+pub(super) const PLACE: u32 = 14;
+pub(super) const LEVEL: u32 = 17;
+pub(super) const LAW: u32 = 18;
 
 /// The change of a light with this index, whose own place is `place`.
 pub(super) fn change(
@@ -301,8 +311,7 @@ fn mul_high(a: u32, b: u32) -> u32 {
     a1 * b1 + (upper >> 16) + (lower >> 16)
 }
 
-/// The sine of a phase, to 1e-7. Hastings 1955, "Approximations for digital computers", sheet 16:
-/// `sin(pi/2 x)` for -1 to 1.
+/// The sine of a phase, to 1e-7.
 pub(super) fn sine(phase: u32) -> f32 {
     // Quarter turns from -2 to below 2, exact.
     let quarters = (phase.cast_signed() >> 8) as f32 / 4_194_304.0;
@@ -314,8 +323,8 @@ pub(super) fn sine(phase: u32) -> f32 {
         quarters
     };
     let x2 = x * x;
-    let tail = 0.079_689_68 + x2 * (-0.004_673_765_6 + x2 * 0.000_151_484_19);
-    let sine = x * (1.570_796_4 + x2 * (-0.645_963_7 + x2 * tail));
+    let tail = SINE[2] + x2 * (SINE[3] + x2 * SINE[4]);
+    let sine = x * (SINE[0] + x2 * (SINE[1] + x2 * tail));
     sine.clamp(-1.0, 1.0)
 }
 

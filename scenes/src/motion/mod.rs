@@ -18,13 +18,15 @@
 //!
 //! The radius of drifting and orbiting is 1/64 to 1/32 of the diagonal of the box. At a wall,
 //! drifting and orbiting lights bounce off. Until its first jump or death, a light is where it was
-//! given. `law.rs` holds the arithmetic, in a form that shaders can repeat.
+//! given. `law.rs` holds the arithmetic, in a form that shaders can repeat: `shading::MovingLights`
+//! moves lights on the GPU.
 //!
 //! Positions never leave the box: a light outside is moved to the closest point in it first. The
 //! middle of an area light is its position, so its rim may stick out. At speed 0 all lights are
 //! exactly those given. Faulty lights with a number that is not finite also stay as they are, so
 //! that uploading reports them.
 
+mod constants;
 mod kind;
 mod law;
 #[cfg(test)]
@@ -36,7 +38,9 @@ use rayon::prelude::*;
 
 use crate::{Aabb, SceneError, error::one_line};
 
+pub use constants::motion_constants;
 pub use kind::MotionLaw;
+pub use law::{Clock as MotionClock, Rules as MotionRules};
 
 /// The largest accepted speed, metres per second.
 pub const MAX_SPEED_M_S: f32 = 1e6;
@@ -98,7 +102,17 @@ impl Motion {
         self.rules.speed_m_s
     }
 
-    /// The box that holds the position of every light at any time.
+    /// What a shader needs to repeat the laws, besides [`motion_constants`].
+    pub fn rules(&self) -> MotionRules {
+        self.rules
+    }
+
+    /// A time as the laws read it. It is limited to 0 to [`MAX_TIME_S`]; a NaN counts as 0.
+    pub fn clock(time_s: f32) -> MotionClock {
+        law::clock(if time_s > 0.0 { time_s.min(MAX_TIME_S) } else { 0.0 })
+    }
+
+    /// The box that holds the position of every light at any time, unless the speed is 0.
     pub fn reach(&self) -> Aabb {
         Aabb::new(self.rules.min, self.rules.max)
     }
@@ -108,8 +122,7 @@ impl Motion {
         if !self.moves(light) {
             return Some(*light);
         }
-        // A NaN counts as 0.
-        let clock = law::clock(if time_s > 0.0 { time_s.min(MAX_TIME_S) } else { 0.0 });
+        let clock = Self::clock(time_s);
         let change = law::change(&self.rules, self.law, index, light.position, clock);
         if !change.is_alive {
             return None;
