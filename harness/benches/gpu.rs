@@ -45,7 +45,8 @@ fn arguments() -> Result<CompareArgs, HarnessError> {
     ];
     let motion = setting("LIGHTBENCH_MOTION", STILL);
     let moving = (motion != STILL).then_some(("--motion", motion));
-    let words = options.into_iter().chain(moving).flat_map(|(option, value)| [option.to_owned(), value]);
+    let words =
+        options.into_iter().chain(moving).flat_map(|(option, value)| [option.to_owned(), value]);
     // Whatever strategies are asked for: some take no source.
     match cli::parse_stored(std::iter::once("lightbench".to_owned()).chain(words))? {
         Invocation::Compare(args) => Ok(args),

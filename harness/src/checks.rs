@@ -33,7 +33,9 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         let refuse =
             |accepted: &str| Err(CliError::out_of_range("--laps", &laps.to_string(), accepted));
         if is_still {
-            return refuse("left out without --path and --motion, because a still frame makes no laps");
+            return refuse(
+                "left out without --path and --motion, because a still frame makes no laps",
+            );
         }
         let most = MAX_SAMPLES / args.frames.unwrap_or(MOST_POSES);
         if laps > most.max(1) {

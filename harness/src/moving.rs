@@ -1,12 +1,17 @@
 //! Lights that move: where they are in a frame, and what it costs to bring them to the GPU.
 
-use std::time::Instant;
+use std::{borrow::Cow, time::Instant};
 
-use assign::{AssignError, Gpu, Light, LightBuffer};
+use assign::{AssignError, EncoderPasses, Gpu, Light, LightBuffer};
 use glam::Vec3;
 use scenes::{Aabb, Motion};
+use shading::MovingLights;
 
-use crate::{cli::StageArgs, error::HarnessError, results::MotionSetting};
+use crate::{
+    cli::{MovedBy, StageArgs},
+    error::HarnessError,
+    results::MotionSetting,
+};
 
 /// Frames per second of the lights' clock.
 const FRAMES_PER_S: f32 = 60.0;
@@ -24,18 +29,31 @@ pub struct Upload {
 /// Lights that move by a law.
 pub struct Moving {
     motion: Motion,
-    /// The lights at rest.
-    lights: Vec<Light>,
-    /// The lights of the last frame.
-    now: Vec<Light>,
-    /// The frame that `now` shows.
+    /// The frame that the lights show.
     frame: Option<u32>,
-    upload: Upload,
+    /// Lights of each kind at rest.
+    kinds: [u64; 5],
+    mover: Mover,
+}
+
+/// Who moves the lights.
+enum Mover {
+    Cpu {
+        /// The lights at rest, and those of the last frame.
+        rest: Vec<Light>,
+        now: Vec<Light>,
+        upload: Upload,
+    },
+    Gpu(Box<MovingLights>),
 }
 
 impl Moving {
     /// Lights that rest at `lights` and move as the arguments say; `None` if they stand still.
-    pub fn new(args: &StageArgs, lights: Vec<Light>) -> Result<Option<Self>, HarnessError> {
+    pub fn new(
+        gpu: &Gpu,
+        args: &StageArgs,
+        lights: Vec<Light>,
+    ) -> Result<Option<Self>, HarnessError> {
         let Some(law) = args.motion.motion else { return Ok(None) };
         let mut bounds = Aabb::EMPTY;
         for light in lights.iter().filter(|light| light.check().is_ok()) {
@@ -45,11 +63,15 @@ impl Moving {
             bounds = bounds.extended(Vec3::ZERO);
         }
         let motion = Motion::new(law, args.motion.speed as f32, args.seed, bounds)?;
-        let upload = Upload::default();
-        Ok(Some(Self { motion, lights, now: Vec::new(), frame: None, upload }))
+        let kinds = kinds_of(&lights);
+        let mover = match args.motion.moved_by {
+            MovedBy::Cpu => Mover::Cpu { rest: lights, now: Vec::new(), upload: Upload::default() },
+            MovedBy::Gpu => Mover::Gpu(Box::new(MovingLights::new(gpu, &motion, &lights)?)),
+        };
+        Ok(Some(Self { motion, frame: None, kinds, mover }))
     }
 
-    /// Brings the lights of a frame to the GPU.
+    /// Brings the lights of a frame to the GPU. A kernel's work is submitted, off the clock.
     pub fn go_to(
         &mut self,
         gpu: &Gpu,
@@ -59,16 +81,33 @@ impl Moving {
         if self.frame == Some(frame) {
             return Ok(());
         }
-        self.motion.lights_at(&self.lights, frame as f32 / FRAMES_PER_S, &mut self.now);
-        let began = Instant::now();
-        buffer.update(gpu, &self.now)?;
-        // The copies run with the next submission.
-        gpu.queue.submit([]);
-        gpu.wait()?;
-        let bytes = buffer.uploaded_bytes();
-        self.upload = Upload { ms: began.elapsed().as_secs_f64() * 1e3, bytes };
+        let time_s = frame as f32 / FRAMES_PER_S;
+        match &mut self.mover {
+            Mover::Cpu { rest, now, upload } => {
+                self.motion.lights_at(rest, time_s, now);
+                let began = Instant::now();
+                buffer.update(gpu, now)?;
+                // The copies run with the next submission.
+                gpu.queue.submit([]);
+                gpu.wait()?;
+                let bytes = buffer.uploaded_bytes();
+                *upload = Upload { ms: began.elapsed().as_secs_f64() * 1e3, bytes };
+            }
+            Mover::Gpu(lights) => {
+                lights.prepare(gpu, time_s);
+                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+                lights.record(&mut EncoderPasses { encoder: &mut encoder });
+                gpu.queue.submit([encoder.finish()]);
+                buffer.update_from_gpu(gpu, &lights.lights())?;
+            }
+        }
         self.frame = Some(frame);
         Ok(())
+    }
+
+    /// The number of lights of each kind at rest, by the kind's number.
+    pub fn kinds(&self) -> [u64; 5] {
+        self.kinds
     }
 
     /// The motion as results name it.
@@ -76,25 +115,46 @@ impl Moving {
         MotionSetting {
             law: self.motion.law().to_string(),
             speed_m_s: f64::from(self.motion.speed_m_s()),
-            moved_by: "cpu".to_owned(),
+            moved_by: match self.mover {
+                Mover::Cpu { .. } => "cpu".to_owned(),
+                Mover::Gpu(_) => "gpu".to_owned(),
+            },
         }
-    }
-
-    /// The law.
-    pub fn motion(&self) -> &Motion {
-        &self.motion
     }
 
     /// The cost of the last frame's lights; `None` if no light crosses to the GPU.
     pub fn upload(&self) -> Option<Upload> {
-        Some(self.upload)
+        match self.mover {
+            Mover::Cpu { upload, .. } => Some(upload),
+            Mover::Gpu(_) => None,
+        }
     }
+}
+
+/// The lights of the frame, in any order. Those that only the GPU knows are read back.
+pub fn known_lights<'a>(
+    gpu: &Gpu,
+    lights: &'a LightBuffer,
+) -> Result<Cow<'a, [Light]>, AssignError> {
+    Ok(match lights.live_count() {
+        Some(_) => Cow::Owned(lights_by_slot(gpu, lights)?),
+        None => Cow::Borrowed(lights.lights()),
+    })
 }
 
 /// The lights by slot. Lights that the GPU orders are ordered first.
 pub fn lights_by_slot(gpu: &Gpu, lights: &LightBuffer) -> Result<Vec<Light>, AssignError> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    lights.record(&mut assign::EncoderPasses { encoder: &mut encoder });
+    lights.record(&mut EncoderPasses { encoder: &mut encoder });
     gpu.queue.submit([encoder.finish()]);
     lights.read(gpu)
+}
+
+/// The number of sound lights of each kind, by the kind's number.
+pub(crate) fn kinds_of(lights: &[Light]) -> [u64; 5] {
+    let mut kinds = [0; 5];
+    for light in lights.iter().filter(|light| light.check().is_ok()) {
+        kinds[light.kind() as usize] += 1;
+    }
+    kinds
 }

@@ -8,7 +8,7 @@ use assign::{Assignment, EncoderPasses, Everything, Gpu};
 use rayon::prelude::*;
 use shading::{LightBvh, Samples, probe, record_for_probe};
 
-use crate::{error::HarnessError, results::Untested, stage::Stage};
+use crate::{error::HarnessError, moving::known_lights, results::Untested, stage::Stage};
 
 /// Samples to test against every light before building a hierarchy over the lights.
 const TRIED: usize = 64;
@@ -43,7 +43,7 @@ fn untested_here(gpu: &Gpu, stage: &Stage) -> Result<Option<Untested>, HarnessEr
     if samples.positions.is_empty() {
         return Ok(Some(Untested::NoSurface));
     }
-    let lights = stage.lights.lights();
+    let lights = known_lights(gpu, &stage.lights)?;
     let step = samples.positions.len().div_ceil(TRIED);
     let is_reached = |point: &[f32; 3]| {
         let point = glam::Vec3::from(*point).as_dvec3();
@@ -53,7 +53,7 @@ fn untested_here(gpu: &Gpu, stage: &Stage) -> Result<Option<Untested>, HarnessEr
         return Ok(None);
     }
     if !lights.is_empty() {
-        let bvh = LightBvh::new(lights);
+        let bvh = LightBvh::new(&lights);
         let is_reached = |point: &[f32; 3]| {
             let mut any = false;
             bvh.lights_at(*point, |_, _| any = true);

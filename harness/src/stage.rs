@@ -1,7 +1,8 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
 use assign::{
-    Gpu, Light, LightBuffer, LightKind, LightOrder, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M, Suns, View,
+    Gpu, Light, LightBuffer, LightKind, LightOrder, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M,
+    Suns, View,
 };
 use glam::{DVec3, Vec3};
 use scenes::{
@@ -13,7 +14,7 @@ use crate::{
     camera,
     cli::{CliError, LightBox, StageArgs},
     error::HarnessError,
-    moving::Moving,
+    moving::{Moving, kinds_of},
     open_lights::OpenLights,
     optics::Optics,
     results::{Planes, Vpls},
@@ -111,7 +112,7 @@ impl Stage {
             open_lights: lit.open,
             suns: lit.suns,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order())?,
-            moving: Moving::new(args, lit.lights)?,
+            moving: Moving::new(gpu, args, lit.lights)?,
             area_model: AreaModel::default(),
             compensation: None,
             vpls: None,
@@ -138,7 +139,7 @@ impl Stage {
         self.open_lights = lit.open;
         self.suns = lit.suns;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order())?;
-        self.moving = Moving::new(args, lit.lights)?;
+        self.moving = Moving::new(gpu, args, lit.lights)?;
         self.walks = false;
         self.view = view;
         self.notes = notes;
@@ -233,7 +234,8 @@ impl Stage {
     /// Time in which the CPU ordered the lights and built the hierarchy over them, ms; `None` if that is part
     /// of the pass `upload`, or the GPU's work.
     pub fn light_build_ms(&self) -> Option<f64> {
-        let is_once = self.moving.is_none() && !matches!(self.lights.order(), LightOrder::Gpu { .. });
+        let is_once =
+            self.moving.is_none() && !matches!(self.lights.order(), LightOrder::Gpu { .. });
         is_once.then(|| self.lights.build_time().as_secs_f64() * 1e3)
     }
 
@@ -242,9 +244,13 @@ impl Stage {
         self.optics.planes(&self.view)
     }
 
-    /// Lights of each kind, by name, and suns.
+    /// Lights of each kind, by name, and suns. Lights that the GPU moves count as at rest.
     pub fn light_kinds(&self) -> [(&'static str, u64); 6] {
-        let count = |kind| self.lights.lights().iter().filter(|l| l.kind() == kind).count() as u64;
+        let kinds = match &self.moving {
+            Some(moving) => moving.kinds(),
+            None => kinds_of(self.lights.lights()),
+        };
+        let count = |kind: LightKind| kinds[kind as usize];
         [
             ("point", count(LightKind::Point)),
             ("spot", count(LightKind::Spot)),

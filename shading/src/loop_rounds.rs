@@ -3,7 +3,7 @@
 //! llvmpipe counts the rounds of all loops of an invocation together, and ends the loops silently
 //! at its limit. The image would be wrong, so such a scene is refused.
 
-use assign::{AssignError, Gpu, Light, LightKinds, LightShape};
+use assign::{AssignError, Gpu, Light, LightBuffer, LightKinds, LightShape, MAX_VERTICES};
 
 use crate::{AreaModel, LightingOptions, ShadingError};
 
@@ -18,7 +18,6 @@ pub(crate) struct LightTotals {
 
 /// Four corners with two steps each, and the end of every loop: `angle_above` of
 /// `area_mrp_published.wesl`.
-/// `area_mrp_published.wesl`.
 const PUBLISHED_ROUNDS: u64 = 5 + 4 * 3;
 
 impl LightTotals {
@@ -29,6 +28,16 @@ impl LightTotals {
         });
         let (areas, vertices) = areas.fold((0, 0), |(areas, sum), n| (areas + 1, sum + n));
         Self { kinds: LightKinds::among(lights), count: lights.len() as u64, areas, vertices }
+    }
+
+    /// The totals of a buffer. Lights that only the GPU knows count as the kinds that take the most rounds.
+    pub(crate) fn of_buffer(lights: &LightBuffer) -> Self {
+        if lights.live_count().is_none() {
+            return Self::new(lights.lights());
+        }
+        let (kinds, count) = (lights.kinds(), u64::from(lights.count()));
+        let areas = if kinds.areas { count } else { 0 };
+        Self { kinds, count, areas, vertices: areas * MAX_VERTICES as u64 }
     }
 
     /// The rounds of lighting a sample by all of the lights. A light takes one round. An area light

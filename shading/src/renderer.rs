@@ -141,7 +141,7 @@ impl Renderer {
             }
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights))?;
-        self.lights = LightTotals::new(lights.lights());
+        self.lights = LightTotals::of_buffer(lights);
         Ok(())
     }
 
