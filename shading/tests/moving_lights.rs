@@ -249,7 +249,7 @@ fn turned_area_lights_stay_within_their_half_axes() {
                 for half in &shape[1..3] {
                     let half = half.truncate().as_dvec3();
                     let along = vertex.truncate().as_dvec3().dot(half).abs();
-                    // The rest may touch its rectangle to the last place.
+                    // A vertex is rounded along both half axes, of which one may be longer.
                     assert!(along <= half.length_squared() * (1.0 + 1e-6), "{light}: {shape:?}");
                 }
             }

@@ -69,6 +69,8 @@ pub(crate) fn unmarked_note(record: &Record) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use shading::Mode;
+
     use super::*;
     use crate::results::{PassKind, PassTimes, Results};
 
