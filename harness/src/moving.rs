@@ -143,6 +143,11 @@ impl Moving {
         Ok(())
     }
 
+    /// Has the next frame bring its lights to the GPU, also if it is the frame that is shown.
+    pub fn forget_frame(&mut self) {
+        self.frame = None;
+    }
+
     /// The number of lights of each kind at rest, by the kind's number.
     pub fn kinds(&self) -> [u64; 5] {
         self.kinds

@@ -224,6 +224,14 @@ impl Stage {
         }
     }
 
+    /// Has the next frame sort the lights anew, also if it is the frame that is shown.
+    pub fn expire_order(&mut self) {
+        self.lights.expire_order();
+        if let Some(moving) = &mut self.moving {
+            moving.forget_frame();
+        }
+    }
+
     /// Whether a material differs from glTF's default dielectric.
     pub fn has_dielectrics(&self) -> bool {
         let plain = Dielectric::default();

@@ -1,24 +1,12 @@
 //! Cases of lights that change in every frame, which the GPU sorts.
 
 use super::{
-    cases::{Lit, Plan, default_view, in_room},
     lights::{Kinds, bad_lights, mix},
+    plan::{Lit, Living, Plan, default_view, in_room},
     stage::Rng,
     views,
 };
 use crate::{Light, LightShape};
-
-/// Frames of lights that the GPU sorts.
-pub(super) struct Living {
-    /// Each frame's lights, faulty ones among them, with one instance.
-    pub(super) frames: Vec<Lit>,
-    /// The number of faulty lights of each frame.
-    pub(super) bad: usize,
-    /// The lights are sorted in every `every`th frame.
-    pub(super) every: u32,
-    /// Whether the lights are written into buffers of the renderer's own, which the CPU never reads.
-    pub(super) from_gpu: bool,
-}
 
 /// Frames in which all lights move, some teleport, and their number changes.
 pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {

@@ -24,6 +24,13 @@ pub struct MotionArgs {
     pub moved_by: MovedBy,
 }
 
+impl MotionArgs {
+    /// Whether the GPU moves the lights.
+    pub fn is_on_gpu(&self) -> bool {
+        self.motion.is_some() && self.moved_by == MovedBy::Gpu
+    }
+}
+
 /// How lights move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionChoice {
