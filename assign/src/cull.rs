@@ -8,7 +8,7 @@ use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
     LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader, StrategyModule,
     StrategyWesl,
-    frame::{entry, storage_entry},
+    entries::{entry, storage_entry},
     kernel::MAX_WORKGROUPS,
 };
 

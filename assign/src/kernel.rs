@@ -6,7 +6,7 @@
 
 use crate::{
     Gpu,
-    frame::{entry, storage_entry, uniform_entry},
+    entries::{entry, storage_entry, uniform_entry},
 };
 
 /// The most workgroups of a dispatch along one axis.

@@ -30,6 +30,7 @@ pub mod conformance;
 mod cull;
 mod cull_settings;
 mod emitter;
+mod entries;
 mod error;
 mod everything;
 mod frame;
@@ -62,12 +63,10 @@ pub use assignment::{Assignment, Lookup};
 pub use cull::{Culler, CullerDescriptor};
 pub use cull_settings::{AreaBounds, Bounds, CullSettings, FrustumTests, LightSource};
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
+pub use entries::{UNFILTERED, entry, storage_entry, texture, texture_entry, uniform_entry};
 pub use error::AssignError;
 pub use everything::Everything;
-pub use frame::{
-    Frame, FrameBindings, Needs, SampleDomain, UNFILTERED, entry, storage_entry, texture,
-    texture_entry, uniform_entry,
-};
+pub use frame::{Frame, FrameBindings, Needs, SampleDomain};
 pub use gpu::Gpu;
 pub use groups::{Facing, GroupShape, Groups};
 pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};

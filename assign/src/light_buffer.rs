@@ -11,22 +11,14 @@ use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, Light, LightFault, LightKinds, LightOrder, LightTraits, Passes,
+    AssignError, Gpu, Light, LightKinds, LightOrder, LightTraits, Passes,
     light_nodes::{LightNode, NodeLevels, nodes},
 };
 use given::Given;
 pub(crate) use given::Records;
+pub use given::{MAX_LIGHTS, RejectedLight};
 pub use living::{GpuLights, SlotCounts};
 use living::{Living, Source};
-
-/// A faulty light that was omitted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RejectedLight {
-    /// The light's index in the renderer's list.
-    pub index: usize,
-    /// What is wrong with it.
-    pub fault: LightFault,
-}
 
 /// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
 /// shading.
@@ -52,9 +44,6 @@ pub struct LightBuffer {
     build_time: Duration,
     living: Option<Living>,
 }
-
-/// The most lights that a list entry's 30 bits can index.
-pub const MAX_LIGHTS: usize = (1 << 30) - 1;
 
 impl LightBuffer {
     /// Uploads `lights` in the order of the slice. Omits the lights that [`Light::check`] rejects.
@@ -236,6 +225,11 @@ impl LightBuffer {
     /// How long the CPU took to sort the lights and to build the hierarchy over them.
     pub fn build_time(&self) -> Duration {
         self.build_time
+    }
+
+    /// Changes with every new order of the lights. Lists of an earlier order name other lights.
+    pub fn order_generation(&self) -> u32 {
+        self.living.as_ref().map_or(0, Living::generation)
     }
 
     /// Bytes that the last [`update`](Self::update) uploaded with [`LightOrder::Gpu`].

@@ -195,11 +195,9 @@ impl LightLists {
             self.lists = lists;
             changed = true;
         }
-        // A number that the GPU wrote replaces the one of the record in every frame.
-        if changed || self.counts.0 != light_count || lights.live_count().is_some() {
-            let all = LightList { first: 0, count: light_count };
-            gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
-        }
+        // In every frame, because a number that the GPU wrote may have replaced it.
+        let all = LightList { first: 0, count: light_count };
+        gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
         self.counts = (light_count, group_count);
         let cull = CullUniform {
             light_count,

@@ -3,7 +3,7 @@
 
 use crate::{
     Gpu, LightLists,
-    frame::{entry, storage_entry, uniform_entry},
+    entries::{entry, storage_entry, uniform_entry},
 };
 
 /// First binding of a strategy's own resources, both in the kernel and in the look-up.

@@ -23,6 +23,8 @@ struct Made {
     group_count: u32,
     samples: SampleDomain,
     generation: u32,
+    /// Lists name places in an order of the lights.
+    order: u32,
 }
 
 impl Reuse {
@@ -58,6 +60,7 @@ impl Assignment for Reuse {
             group_count: lists.group_count(),
             samples: frame.samples,
             generation: lists.generation(),
+            order: frame.lights.order_generation(),
         };
         // A new buffer holds no lists.
         if self.made.as_ref() != Some(&now) {

@@ -17,7 +17,7 @@ use assign::Gpu;
 use criterion::{Criterion, criterion_group, criterion_main};
 use harness::{
     choice::Choice,
-    cli::{self, CompareArgs, Invocation},
+    cli::{self, CompareArgs, Invocation, MotionChoice},
     clock::PassClock,
     error::HarnessError,
     messages::say_error,
@@ -25,7 +25,6 @@ use harness::{
     results::{PassKind, pass_kind},
     stage::Stage,
 };
-use scenes::MotionLaw;
 use shading::{Cut, Mode};
 
 /// The motion of lights that do not move.
@@ -100,7 +99,7 @@ fn methods(criterion: &mut Criterion) {
         };
         for choice in args.choices()? {
             let scene = args.stage.scene.rsplit('/').next().unwrap_or_default();
-            let motion = args.stage.motion.motion.map_or(STILL, MotionLaw::name);
+            let motion = args.stage.motion.motion.map_or(STILL, MotionChoice::name);
             let name = format!("{}/{scene}/{}/{motion}", choice.id(), args.stage.lights);
             for (kind, family) in [(PassKind::Assign, "assign"), (PassKind::Shade, "shade")] {
                 // No lists, nothing to assign.

@@ -25,6 +25,10 @@ const MOST_POSES: u32 = 1_200;
 pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
     check_effect(args, choices)?;
     let is_still = !args.path && args.stage.motion.motion.is_none();
+    if args.unbounded && args.stage.motion.is_on_gpu() {
+        let accepted = "cpu with --unbounded, which makes other lights of them on the CPU";
+        return Err(CliError::out_of_range("--moved-by", "gpu", accepted));
+    }
     if let Some(checks) = args.checks.filter(|_| is_still) {
         let accepted = "left out without --path and --motion, because all frames are the same";
         return Err(CliError::out_of_range("--checks", &checks.to_string(), accepted));

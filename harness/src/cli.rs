@@ -35,7 +35,7 @@ pub use compare::{CompareArgs, PicturesChoice, SourceChoice};
 pub use error::{BAD_INPUT, CliError};
 pub use fit_ltc::FitLtcArgs;
 pub use modes::Modes;
-pub use motion::{MotionArgs, MovedBy};
+pub use motion::{MotionArgs, MotionChoice, MovedBy};
 pub use named::name_of;
 pub use names::{did_you_mean, nearest};
 pub use parse::{parse, parse_stored};

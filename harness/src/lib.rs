@@ -39,6 +39,7 @@ pub mod results;
 pub mod schedule;
 pub mod sight;
 pub mod stage;
+mod stage_lights;
 pub mod stored;
 pub mod stored_report;
 pub mod strategy;

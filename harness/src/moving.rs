@@ -4,11 +4,11 @@ use std::{borrow::Cow, time::Instant};
 
 use assign::{AssignError, EncoderPasses, Gpu, Light, LightBuffer};
 use glam::Vec3;
-use scenes::{Aabb, Motion};
+use scenes::{Aabb, LightAnimation, Motion, Scene};
 use shading::MovingLights;
 
 use crate::{
-    cli::{MovedBy, StageArgs},
+    cli::{CliError, MotionChoice, MovedBy, StageArgs},
     error::HarnessError,
     results::MotionSetting,
 };
@@ -28,12 +28,32 @@ pub struct Upload {
 
 /// Lights that move by a law.
 pub struct Moving {
-    motion: Motion,
+    law: Law,
     /// The frame that the lights show.
     frame: Option<u32>,
     /// Lights of each kind at rest.
     kinds: [u64; 5],
     mover: Mover,
+}
+
+/// Where a light is at a time.
+enum Law {
+    Motion(Motion),
+    /// The animation of the scene's own lights, which come first, and the speed of its clock.
+    File(Box<LightAnimation>, f32),
+}
+
+impl Law {
+    fn lights_at(&self, rest: &[Light], time_s: f32, now: &mut Vec<Light>) {
+        match self {
+            Self::Motion(motion) => motion.lights_at(rest, time_s, now),
+            Self::File(animation, speed) => {
+                now.clear();
+                now.extend_from_slice(rest);
+                animation.pose_lights(time_s * speed, now);
+            }
+        }
+    }
 }
 
 /// Who moves the lights.
@@ -52,23 +72,41 @@ impl Moving {
     pub fn new(
         gpu: &Gpu,
         args: &StageArgs,
+        scene: &Scene,
         lights: Vec<Light>,
     ) -> Result<Option<Self>, HarnessError> {
-        let Some(law) = args.motion.motion else { return Ok(None) };
-        let mut bounds = Aabb::EMPTY;
-        for light in lights.iter().filter(|light| light.check().is_ok()) {
-            bounds = bounds.extended(light.position);
-        }
-        if bounds.is_empty() {
-            bounds = bounds.extended(Vec3::ZERO);
-        }
-        let motion = Motion::new(law, args.motion.speed as f32, args.seed, bounds)?;
+        let Some(choice) = args.motion.motion else { return Ok(None) };
         let kinds = kinds_of(&lights);
-        let mover = match args.motion.moved_by {
-            MovedBy::Cpu => Mover::Cpu { rest: lights, now: Vec::new(), upload: Upload::default() },
-            MovedBy::Gpu => Mover::Gpu(Box::new(MovingLights::new(gpu, &motion, &lights)?)),
+        let speed = args.motion.speed as f32;
+        let law = match choice {
+            MotionChoice::Law(law) => {
+                Law::Motion(Motion::new(law, speed, args.seed, places_of(&lights))?)
+            }
+            MotionChoice::File => {
+                let animation = scene.light_animation.clone().filter(|_| !args.no_own_lights);
+                let missing = || {
+                    let accepted = format!(
+                        "one of the laws, because {} animates no light of its own",
+                        scene.name
+                    );
+                    CliError::out_of_range("--motion", "file", &accepted)
+                };
+                Law::File(Box::new(animation.ok_or_else(missing)?), speed)
+            }
         };
-        Ok(Some(Self { motion, frame: None, kinds, mover }))
+        let mover = match (args.motion.moved_by, &law) {
+            (MovedBy::Cpu, _) => {
+                Mover::Cpu { rest: lights, now: Vec::new(), upload: Upload::default() }
+            }
+            (MovedBy::Gpu, Law::Motion(motion)) => {
+                Mover::Gpu(Box::new(MovingLights::new(gpu, motion, &lights)?))
+            }
+            (MovedBy::Gpu, Law::File(..)) => {
+                let accepted = "cpu with --motion file: only the CPU plays a file's animation";
+                return Err(CliError::out_of_range("--moved-by", "gpu", accepted).into());
+            }
+        };
+        Ok(Some(Self { law, frame: None, kinds, mover }))
     }
 
     /// Brings the lights of a frame to the GPU. A kernel's work is submitted, off the clock.
@@ -84,7 +122,7 @@ impl Moving {
         let time_s = frame as f32 / FRAMES_PER_S;
         match &mut self.mover {
             Mover::Cpu { rest, now, upload } => {
-                self.motion.lights_at(rest, time_s, now);
+                self.law.lights_at(rest, time_s, now);
                 let began = Instant::now();
                 buffer.update(gpu, now)?;
                 // The copies run with the next submission.
@@ -105,6 +143,11 @@ impl Moving {
         Ok(())
     }
 
+    /// Has the next frame bring its lights to the GPU, also if it is the frame that is shown.
+    pub fn forget_frame(&mut self) {
+        self.frame = None;
+    }
+
     /// The number of lights of each kind at rest, by the kind's number.
     pub fn kinds(&self) -> [u64; 5] {
         self.kinds
@@ -112,9 +155,13 @@ impl Moving {
 
     /// The motion as results name it.
     pub fn setting(&self) -> MotionSetting {
+        let (law, speed) = match &self.law {
+            Law::Motion(motion) => (motion.law().name(), motion.speed_m_s()),
+            Law::File(_, speed) => (MotionChoice::File.name(), *speed),
+        };
         MotionSetting {
-            law: self.motion.law().to_string(),
-            speed_m_s: f64::from(self.motion.speed_m_s()),
+            law: law.to_owned(),
+            speed_m_s: f64::from(speed),
             moved_by: match self.mover {
                 Mover::Cpu { .. } => "cpu".to_owned(),
                 Mover::Gpu(_) => "gpu".to_owned(),
@@ -148,6 +195,13 @@ pub fn lights_by_slot(gpu: &Gpu, lights: &LightBuffer) -> Result<Vec<Light>, Ass
     lights.record(&mut EncoderPasses { encoder: &mut encoder });
     gpu.queue.submit([encoder.finish()]);
     lights.read(gpu)
+}
+
+/// The box around the positions of the sound lights; the origin without any.
+fn places_of(lights: &[Light]) -> Aabb {
+    let sound = lights.iter().filter(|light| light.check().is_ok());
+    let bounds = Aabb::from_points(sound.map(|light| light.position));
+    if bounds.is_empty() { bounds.extended(Vec3::ZERO) } else { bounds }
 }
 
 /// The number of sound lights of each kind, by the kind's number.

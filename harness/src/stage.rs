@@ -1,23 +1,19 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{
-    Gpu, Light, LightBuffer, LightKind, LightOrder, LightShape, MAX_RANGE_M, MAX_SUNS, MIN_RANGE_M,
-    Suns, View,
-};
-use glam::{DVec3, Vec3};
-use scenes::{
-    Aabb, Dielectric, LightSpec, Places, Scene, close_ranges, primary_light, scatter_lights,
-};
+use assign::{Gpu, LightBuffer, LightKind, LightOrder, Suns, View};
+use glam::DVec3;
+use scenes::{Aabb, Dielectric, Scene, primary_light};
 use shading::{AreaModel, Renderer};
 
 use crate::{
     camera,
-    cli::{CliError, LightBox, StageArgs},
+    cli::StageArgs,
     error::HarnessError,
     moving::{Moving, kinds_of},
     open_lights::OpenLights,
     optics::Optics,
     results::{Planes, Vpls},
+    stage_lights::Lit,
     vpls::VplMaker,
 };
 
@@ -103,6 +99,14 @@ impl Stage {
             scene = scene.without_emission();
         }
         let Set { optics, view, notes, radius_scale, lit } = Set::new(&scene, unscaled_m, args)?;
+        if let Some(animation) =
+            scene.light_animation.as_ref().filter(|_| args.motion.motion.is_none())
+        {
+            scene.warnings.push(format!(
+                "the file animates {} of its lights: they stand still without --motion file",
+                animation.count()
+            ));
+        }
         scene.warnings.extend(lit.warnings.iter().map(|line| format!("--lights-from: {line}")));
         Ok(Self {
             scene_hash: scene.hash(),
@@ -112,7 +116,7 @@ impl Stage {
             open_lights: lit.open,
             suns: lit.suns,
             lights: LightBuffer::ordered(gpu, &lit.lights, args.light_order())?,
-            moving: Moving::new(gpu, args, lit.lights)?,
+            moving: Moving::new(gpu, args, &scene, lit.lights)?,
             area_model: AreaModel::default(),
             compensation: None,
             vpls: None,
@@ -139,7 +143,7 @@ impl Stage {
         self.open_lights = lit.open;
         self.suns = lit.suns;
         self.lights = LightBuffer::ordered(gpu, &lit.lights, args.light_order())?;
-        self.moving = Moving::new(gpu, args, lit.lights)?;
+        self.moving = Moving::new(gpu, args, &self.scene, lit.lights)?;
         self.walks = false;
         self.view = view;
         self.notes = notes;
@@ -220,6 +224,14 @@ impl Stage {
         }
     }
 
+    /// Has the next frame sort the lights anew, also if it is the frame that is shown.
+    pub fn expire_order(&mut self) {
+        self.lights.expire_order();
+        if let Some(moving) = &mut self.moving {
+            moving.forget_frame();
+        }
+    }
+
     /// Whether a material differs from glTF's default dielectric.
     pub fn has_dielectrics(&self) -> bool {
         let plain = Dielectric::default();
@@ -262,122 +274,6 @@ impl Stage {
     }
 }
 
-/// The lights of a stage.
-struct Lit {
-    lights: Vec<Light>,
-    suns: Suns,
-    bounds: Aabb,
-    own: usize,
-    /// Warnings of the file of --lights-from.
-    warnings: Vec<String>,
-    open: Option<OpenLights>,
-}
-
-impl Lit {
-    /// The scene's own lights, those of --lights-from and the scattered ones, with their final ranges.
-    fn new(scene: &Scene, radius_scale: f64, args: &StageArgs) -> Result<Self, HarnessError> {
-        let bounds = match args.light_box {
-            LightBox::Core | LightBox::Cylinders => scene.core_bounds,
-            LightBox::Bounds => scene.bounds,
-        };
-        if args.bounce.is_on() {
-            let (lights, suns) = (Vec::new(), Suns::default());
-            return Ok(Self { lights, suns, bounds, own: 0, warnings: Vec::new(), open: None });
-        }
-        let (mut lights, mut suns, mut open) = match args.no_own_lights {
-            true => (Vec::new(), Vec::new(), Vec::new()),
-            false => (scene.lights.clone(), scene.suns.clone(), scene.open_lights.clone()),
-        };
-        let mut warnings = Vec::new();
-        if let Some(file) = &args.lights_from {
-            let origin = scene.origin / args.scene_scale;
-            let mut other = scenes::open_lights(file, origin)?.scaled(args.scene_scale)?;
-            if other.lights.is_empty() && other.suns.is_empty() {
-                let accepted = "a file with lights (KHR_lights_punctual)";
-                return Err(CliError::out_of_range("--lights-from", file, accepted).into());
-            }
-            // The size of the lit scene sets the ranges of lights without one.
-            let first = lights.len() as u32;
-            let closed = close_ranges(&mut other.lights, scene.core_bounds.diagonal());
-            open.extend(closed.into_iter().map(|ix| first + ix));
-            lights.extend(other.lights);
-            warnings = other.warnings;
-            suns.extend(other.suns);
-            if suns.len() > MAX_SUNS {
-                let message = format!(
-                    "--lights-from is {file}: with the scene's there are {} directional lights, and at \
-                     most {MAX_SUNS} are possible",
-                    suns.len()
-                );
-                return Err(CliError::new(message).into());
-            }
-        }
-        let own = lights.len();
-        let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
-        // The scene's own lights are copied already.
-        let total = u64::from(args.lights) * copies_of + lights.len() as u64;
-        if total > u64::from(scenes::MAX_LIGHTS) {
-            let message = format!(
-                "--lights is {} and --replicate makes {copies_of} copies: with the scene's own lights there \
-                 are {total}, and at most {} are possible",
-                args.lights,
-                scenes::MAX_LIGHTS
-            );
-            return Err(CliError::new(message).into());
-        }
-        let scattered = scatter_lights(&LightSpec {
-            count: args.lights,
-            seed: args.seed,
-            radius_scale: radius_scale as f32,
-            radii: args.radii,
-            bounds,
-            places: match args.light_box {
-                LightBox::Cylinders => Places::Cylinders,
-                LightBox::Core | LightBox::Bounds => Places::Box,
-            },
-            spot_share: args.spots as f32,
-            area_share: args.areas as f32,
-            outlines: args.outlines,
-            diffuse_share: args.diffuse_share as f32,
-        })?;
-        lights.extend(copies(scene, args, &scattered));
-        if let Some(threshold) = args.threshold {
-            for light in &mut lights {
-                light.range_m = Light::range_from_threshold(light.intensity, threshold as f32)
-                    .clamp(MIN_RANGE_M, MAX_RANGE_M);
-            }
-        }
-        if let Some(least) = args.influence {
-            set_influence(&mut lights, least as f32);
-        }
-        let open = OpenLights::new(&lights, &open);
-        Ok(Self { lights, suns: Suns::new(&suns)?, bounds, own, warnings, open })
-    }
-}
-
-/// Gives area lights the range of the polygon-light paper's rule. Other lights keep their range.
-fn set_influence(lights: &mut [Light], least: f32) {
-    for light in lights {
-        if let LightShape::Area(emitter) = &light.shape {
-            let diffuse_m = Light::influence_radius(light.intensity, least);
-            let range_m = diffuse_m / emitter.diffuse_share;
-            light.range_m = range_m.clamp(MIN_RANGE_M, MAX_RANGE_M);
-        }
-    }
-}
-
-/// The scattered lights of all copies of the scene, copy by copy.
-fn copies(scene: &Scene, args: &StageArgs, lights: &[Light]) -> Vec<Light> {
-    let side = args.replicate;
-    let step = (scene.bounds.max - scene.bounds.min) / side as f32;
-    let offsets = (0..side).flat_map(|x| (0..side).map(move |z| (x as f32, z as f32)));
-    let moved = |(x, z): (f32, f32)| {
-        let by = Vec3::new(x * step.x, 0.0, z * step.z);
-        lights.iter().map(move |light| Light { position: light.position + by, ..*light })
-    };
-    offsets.flat_map(moved).collect()
-}
-
 /// The factor that makes scattered lights as large in their scene as lights of one metre are in a hall: lights
 /// of one metre would leave a town dark. Rooms and halls keep the comparison paper's radii.
 fn radius_scale_of(diagonal_m: f32) -> f64 {
@@ -388,19 +284,6 @@ fn radius_scale_of(diagonal_m: f32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn influence_ends_diffuse_light_and_specular_light_goes_on() {
-        let emitter = assign::Emitter::rectangle(Vec3::X, Vec3::Y).with_diffuse_share(0.5);
-        let intensity = Vec3::new(1.0, 2.0, 3.0);
-        let point = Light::point(Vec3::ZERO, 7.0, intensity);
-        let mut lights = [point, Light::area(emitter, Vec3::ZERO, 7.0, intensity)];
-        set_influence(&mut lights, 0.02);
-        // sqrt(4.4 * (1 + 2 + 3) / (2 pi * 0.02)), by hand.
-        assert_eq!(lights[0].range_m, 7.0);
-        assert!((lights[1].diffuse_range_m() - 14.494).abs() < 1e-3, "{lights:?}");
-        assert!((lights[1].range_m - 28.988).abs() < 2e-3, "{lights:?}");
-    }
 
     #[test]
     fn halls_keep_the_papers_radii_and_towns_get_larger_ones() {

@@ -54,6 +54,10 @@ pub fn truth(args: &TruthArgs, command: Vec<String>) -> Result<String, HarnessEr
 
 /// Checks the options before a device is opened.
 fn check(args: &TruthArgs) -> Result<(), CliError> {
+    if args.stage.motion.is_on_gpu() {
+        let accepted = "cpu, because the CPU renders the truth";
+        return Err(CliError::out_of_range("--moved-by", "gpu", accepted));
+    }
     if args.bounces > 0 && !args.shadows {
         let accepted = "0 without --shadows, because reflected light needs shadows";
         return Err(CliError::out_of_range("--bounces", &args.bounces.to_string(), accepted));

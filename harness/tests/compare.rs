@@ -366,10 +366,10 @@ fn lights_without_a_range_are_visible_and_noted() {
     );
     assert!(dim.pixels.iter().all(|pixel| pixel[0] > 1e-5), "a black pixel");
     for place in [words, results.warnings.concat()] {
-        assert!(place.contains("1 light has no range in its file, and ends at 70.7 m"), "{place}");
+        assert!(place.contains("1 light has no range in its file, and ends at 70.71 m"), "{place}");
     }
     let (results, _, words) = run(&lamp, &["--threshold", "0.02"]);
-    assert!(words.contains("ends at 1.58 m"), "{words}");
+    assert!(words.contains("ends at 1.581 m"), "{words}");
     assert!(results.records[0].image.unbounded_errors["rel_mse"] > Some(0.9), "{results:?}");
     let (results, sunny, words) = run(&floor_file(folder.path(), true), &[]);
     assert!(words.contains("1 lights, 1 sun"), "{words}");

@@ -5,34 +5,12 @@ use glam::Vec3;
 
 use super::{
     lights::{Kinds, at_horizon, bad_lights, lights_at, mix, reaching},
-    living::{self, Living},
+    living,
+    plan::{Lit, Plan, default_view, in_room},
     stage::{IN_THE_OPEN, Rng, Solid, Stage, room},
     views::{self, SIZE},
 };
 use crate::{DepthMapping, Light, View};
-
-/// A stage with its lights.
-#[derive(Clone, Debug)]
-pub(super) struct Lit {
-    pub(super) stage: Stage,
-    pub(super) lights: Vec<Light>,
-    /// Whether look-ups are only on opaque surfaces.
-    pub(super) opaque_only: bool,
-}
-
-/// What a case draws.
-pub(super) enum Plan {
-    /// One stage.
-    Still(Lit),
-    /// Several stages in sequence with one instance.
-    Sequence(Vec<Lit>),
-    /// Lights that change in every frame, which the GPU sorts.
-    Living(Living),
-    /// A pool that is far too small, then a sufficient one.
-    Overflow(Lit),
-    /// A stage without and with faulty lights, and the faulty lights' indices.
-    Quarantine { clean: Lit, dirty: Box<Lit>, bad: Vec<usize> },
-}
 
 /// A named case of the suite.
 #[derive(Clone, Copy, Debug)]
@@ -142,7 +120,7 @@ pub const CASES: &[Case] = &[
     case("light-count-changes", "lights come and go, spots among them", counts_change),
     case("gpu-order", "the GPU sorts lights that move in every frame", |r| living::few(r, 1, false)),
     case("gpu-order-stale", "lights move, come and go without a new order", |r| living::few(r, 3, false)),
-    case("gpu-order-many", "40,000 lights that move, in a hierarchy of two levels", living::many),
+    case("gpu-order-many", "14,000 lights that move, in a hierarchy of two levels", living::many),
     case("lights-from-gpu", "the GPU writes lights, faulty ones among them, and their number", |r| {
         living::few(r, 2, true)
     }),
@@ -157,19 +135,8 @@ pub const CASES: &[Case] = &[
 /// Makes lights for a stage.
 type Lights = fn(&mut Rng, &Stage, usize) -> Vec<Light>;
 
-pub(super) fn default_view() -> View {
-    views::sized(SIZE)
-}
-
 fn default_mix(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Light> {
     mix(rng, stage, count, (0.1, 8.0), Kinds::Mixed)
-}
-
-/// `view` of a room.
-pub(super) fn in_room(rng: &mut Rng, view: &View) -> Stage {
-    let port = view.viewport;
-    let target = [port.x + port.width, port.y + port.height];
-    Stage::new(*view, target, &room(rng, 1.0), 1_000)
 }
 
 fn lit(rng: &mut Rng, view: &View, count: usize, lights: Lights) -> Lit {

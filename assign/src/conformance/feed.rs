@@ -3,7 +3,7 @@
 use bytemuck::cast_slice;
 use glam::Vec3;
 
-use super::{cases::Lit, run_kernel::upload};
+use super::{plan::Lit, run_kernel::upload};
 use crate::{AssignError, Gpu, GpuLights, Light, LightKinds, light_buffer::Records};
 
 /// A renderer's own buffers.

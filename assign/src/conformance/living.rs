@@ -1,24 +1,12 @@
 //! Cases of lights that change in every frame, which the GPU sorts.
 
 use super::{
-    cases::{Lit, Plan, default_view, in_room},
     lights::{Kinds, bad_lights, mix},
+    plan::{Lit, Living, Plan, default_view, in_room},
     stage::Rng,
     views,
 };
 use crate::{Light, LightShape};
-
-/// Frames of lights that the GPU sorts.
-pub(super) struct Living {
-    /// Each frame's lights, faulty ones among them, with one instance.
-    pub(super) frames: Vec<Lit>,
-    /// The number of faulty lights of each frame.
-    pub(super) bad: usize,
-    /// The lights are sorted in every `every`th frame.
-    pub(super) every: u32,
-    /// Whether the lights are written into buffers of the renderer's own, which the CPU never reads.
-    pub(super) from_gpu: bool,
-}
 
 /// Frames in which all lights move, some teleport, and their number changes.
 pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {
@@ -51,11 +39,12 @@ fn is_bad_record(light: &Light) -> bool {
     !matches!(light.shape, LightShape::Vpl { min_distance_m, .. } if min_distance_m < 0.0)
 }
 
-/// Frames of so many lights that their hierarchy has two levels.
+/// Frames of so many lights that their hierarchy has two levels. The buffer has room for a quarter
+/// more.
 pub(super) fn many(rng: &mut Rng) -> Plan {
     let stage = in_room(rng, &views::sized([32, 24])).thinned(100);
-    let lights = mix(rng, &stage, 40_000, (0.05, 0.8), Kinds::Points);
-    let frames = [40_000, 39_000, 40_000].map(|count| {
+    let lights = mix(rng, &stage, 14_000, (0.05, 0.8), Kinds::Points);
+    let frames = [14_000, 13_500].map(|count| {
         let mut lights = lights[..count].to_vec();
         for light in &mut lights {
             light.position += rng.direction().as_vec3() * 0.1;

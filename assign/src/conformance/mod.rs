@@ -54,6 +54,7 @@ mod flat_depth;
 mod lights;
 mod linked;
 mod living;
+mod plan;
 mod reaching;
 mod rig;
 mod run_kernel;

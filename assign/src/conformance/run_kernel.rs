@@ -24,7 +24,7 @@ use bytemuck::{NoUninit, Pod};
 
 use crate::{
     AssignError, Gpu,
-    frame::entry,
+    entries::entry,
     kernel::{Slot, bind_entries},
 };
 

@@ -4,10 +4,10 @@ use bytemuck::cast_slice;
 
 use super::{
     Make,
-    cases::{Case, Lit, Plan},
+    cases::Case,
     check::{self, Seen, UNWRITTEN},
     feed::Feed,
-    living::Living,
+    plan::{Lit, Living, Plan},
     rig::{Rig, Surfaces},
     stage::Rng,
     violation::{Breach, Figures, Findings, Outcome, Place},

@@ -3,8 +3,19 @@
 use bytemuck::cast_slice;
 use glam::Vec3;
 
-use super::RejectedLight;
-use crate::{Light, LightEmission, LightKinds, LightSphere};
+use crate::{Light, LightEmission, LightFault, LightKinds, LightSphere};
+
+/// A faulty light that was omitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RejectedLight {
+    /// The light's index in the renderer's list.
+    pub index: usize,
+    /// What is wrong with it.
+    pub fault: LightFault,
+}
+
+/// The most lights that a list entry's 30 bits can index.
+pub const MAX_LIGHTS: usize = (1 << 30) - 1;
 
 /// The sound lights of a renderer's list, and what was found on the way.
 #[derive(Clone, Debug, Default)]

@@ -6,8 +6,8 @@ use bytemuck::{bytes_of, pod_collect_to_vec, pod_read_unaligned};
 use glam::Vec3;
 
 use super::{
-    MAX_LIGHTS, decode,
-    given::{Given, Records},
+    decode,
+    given::{Given, MAX_LIGHTS, Records},
 };
 use crate::{
     AssignError, Gpu, Light, LightEmission, LightKinds, LightSphere, MAX_RANGE_M, MIN_RANGE_M,
@@ -73,6 +73,10 @@ pub(super) struct Living {
     every: u32,
     /// Frames since the last sort; `None` if the next frame must sort.
     age: Option<u32>,
+    /// Number of sorts so far.
+    generation: u32,
+    /// Whether the next frame must sort, whatever the age.
+    is_expired: bool,
     /// Whether the sort of the last frame that sorts was recorded.
     is_sorted: AtomicBool,
     /// Number of lights at the last sort.
@@ -98,6 +102,8 @@ impl Living {
         Ok(Self {
             every,
             age: None,
+            generation: 0,
+            is_expired: false,
             is_sorted: AtomicBool::new(false),
             sorted: 0,
             slots: 0,
@@ -194,20 +200,22 @@ impl Living {
     /// sorted was never recorded.
     fn next_sorts(&mut self) -> bool {
         let is_sorted = *self.is_sorted.get_mut();
+        let is_expired = std::mem::take(&mut self.is_expired);
         let next = match self.age {
-            Some(age) if is_sorted => (age + 1) % self.every,
+            Some(age) if is_sorted && !is_expired => (age + 1) % self.every,
             _ => 0,
         };
         self.age = Some(next);
         if next == 0 {
+            self.generation = self.generation.wrapping_add(1);
             *self.is_sorted.get_mut() = false;
         }
         next == 0
     }
 
-    /// Has the next frame sort.
+    /// Has the next frame sort. This frame stays as it is.
     pub(super) fn expire(&mut self) {
-        self.age = None;
+        self.is_expired = true;
     }
 
     /// Records `order`, if this frame sorts, and `boxes`.
@@ -236,6 +244,10 @@ impl Living {
 
     pub(super) fn slots(&self) -> u32 {
         self.slots
+    }
+
+    pub(super) fn generation(&self) -> u32 {
+        self.generation
     }
 
     pub(super) fn uploaded_bytes(&self) -> u64 {

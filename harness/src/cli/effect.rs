@@ -64,6 +64,11 @@ const STAGE: &[Rule<StageArgs>] = &[
         needs: "scattered lights, which --vpls and --primary replace",
     },
     Rule {
+        options: &["motion"],
+        has_effect: |args| !args.bounce.is_on(),
+        needs: "lights that can move: --vpls and --primary replace them",
+    },
+    Rule {
         options: &["speed", "moved-by"],
         has_effect: |args| args.motion.motion.is_some(),
         needs: "--motion LAW",

@@ -12,10 +12,10 @@ pub struct MotionArgs {
     ///
     /// Frame F shows the time F / 60 s, and is the same on every run. The camera stands still unless --path
     /// moves it. Lights are ordered and boxed on the GPU in every frame, on the clock (see --light-order).
-    #[arg(long, value_name = "LAW", value_parser = named(LAWS, MotionLaw::name), help_heading = MOTION, hide_short_help = true)]
-    pub motion: Option<MotionLaw>,
+    #[arg(long, value_name = "LAW", value_parser = named(MOTIONS, MotionChoice::name), help_heading = MOTION, hide_short_help = true)]
+    pub motion: Option<MotionChoice>,
 
-    /// Speed of the lights in metres per second, 0 to 1e6
+    /// Speed of the lights in metres per second, 0 to 1e6; with --motion file, a factor on its clock
     #[arg(long, value_name = "M/S", default_value = "1", allow_hyphen_values = true, value_parser = values::number_from(0.0, 1e6), help_heading = MOTION, hide_short_help = true)]
     pub speed: f64,
 
@@ -24,16 +24,43 @@ pub struct MotionArgs {
     pub moved_by: MovedBy,
 }
 
-/// The laws of motion, with what each does.
-const LAWS: [(MotionLaw, &str); MotionLaw::LIST.len()] = {
-    let mut laws = [(MotionLaw::Drift, ""); MotionLaw::LIST.len()];
-    let mut ix = 0;
-    while ix < laws.len() {
-        laws[ix] = (MotionLaw::LIST[ix], MotionLaw::LIST[ix].summary());
-        ix += 1;
+impl MotionArgs {
+    /// Whether the GPU moves the lights.
+    pub fn is_on_gpu(&self) -> bool {
+        self.motion.is_some() && self.moved_by == MovedBy::Gpu
     }
-    laws
-};
+}
+
+/// How lights move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionChoice {
+    /// By a law.
+    Law(MotionLaw),
+    /// As the scene's file animates its own lights.
+    File,
+}
+
+impl MotionChoice {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Law(law) => law.name(),
+            Self::File => "file",
+        }
+    }
+}
+
+/// The motions, with what each does.
+const MOTIONS: [(MotionChoice, &str); MotionLaw::LIST.len() + 1] = [
+    (MotionChoice::Law(MotionLaw::Drift), "Each light wanders smoothly around its place"),
+    (MotionChoice::Law(MotionLaw::Orbit), "Each light circles around its place"),
+    (MotionChoice::Law(MotionLaw::Teleport), "All lights drift; one in four also jumps"),
+    (MotionChoice::Law(MotionLaw::Flicker), "The intensity of each light swings and jumps"),
+    (MotionChoice::Law(MotionLaw::Births), "Lights die and are born again at other places"),
+    (MotionChoice::Law(MotionLaw::Turn), "Spots and area lights turn; point lights stay"),
+    (MotionChoice::Law(MotionLaw::All), "Each light follows one of the laws above"),
+    (MotionChoice::File, "The scene's own lights move as its file animates them"),
+];
 
 /// Who moves the lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -92,7 +92,7 @@ impl Contest<'_> {
     /// Has lists and orders of lights that are used for several frames made anew, so that they are of the
     /// same age at a pose in every lap and on every run.
     fn expire_lists(&mut self, stage: &mut Stage) {
-        stage.lights.expire_order();
+        stage.expire_order();
         for contender in &mut self.contenders {
             contender.painter.expire();
         }

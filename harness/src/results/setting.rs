@@ -97,9 +97,9 @@ pub struct Setting {
 /// How lights move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionSetting {
-    /// The law, such as `drift`.
+    /// The law, such as `drift`, or `file` for the animation of the scene's file.
     pub law: String,
-    /// Metres per second.
+    /// Metres per second; for `file` the factor on its clock.
     pub speed_m_s: f64,
     /// Who moves the lights: `cpu` or `gpu`.
     pub moved_by: String,
