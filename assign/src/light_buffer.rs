@@ -91,15 +91,15 @@ impl LightBuffer {
     /// [`LightOrder::Gpu`] it uploads only what changed. After an error, the old lights stay.
     pub fn update(&mut self, gpu: &Gpu, lights: &[Light]) -> Result<(), AssignError> {
         check_count(lights.len())?;
+        let mut given = Given::new(lights);
         if let Some(living) = &mut self.living {
-            let given = Given::new(lights, |sound| (0..sound.len() as u32).collect());
             living.update(gpu, &given)?;
             self.given = given;
             self.take_living();
             return Ok(());
         }
         let began = Instant::now();
-        let given = Given::new(lights, |sound| self.order.indices(sound));
+        given.reorder(&self.order.indices(&given.lights));
         let nodes = nodes(&given.lights);
         let build_time = began.elapsed();
         let records = Records::new(&given.lights);
@@ -235,11 +235,6 @@ impl LightBuffer {
     /// Bytes that the last [`update`](Self::update) uploaded with [`LightOrder::Gpu`].
     pub fn uploaded_bytes(&self) -> u64 {
         self.living.as_ref().map_or(0, Living::uploaded_bytes)
-    }
-
-    /// Bytes of what only the sort on the GPU needs.
-    pub fn sort_bytes(&self) -> u64 {
-        self.living.as_ref().and_then(Living::buffers).map_or(0, |(sorter, _)| sorter.bytes())
     }
 
     /// The faulty lights that [`update`](Self::update) omitted.

@@ -191,13 +191,4 @@ impl LightSorter {
     pub(crate) fn state(&self) -> &wgpu::Buffer {
         &self.state
     }
-
-    /// Bytes of what only the sort needs, without the ordered records and the hierarchy.
-    pub(crate) fn bytes(&self) -> u64 {
-        let sort = match &self.sort {
-            Sort::Few(_) => 0,
-            Sort::Radix(sort) => sort.bytes(),
-        };
-        sort + self.order.size() + self.state.size() + self.uniform.size()
-    }
 }

@@ -191,10 +191,15 @@ pub fn known_lights<'a>(
 
 /// The lights by slot. Lights that the GPU orders are ordered first.
 pub fn lights_by_slot(gpu: &Gpu, lights: &LightBuffer) -> Result<Vec<Light>, AssignError> {
+    order_off_clock(gpu, lights);
+    lights.read(gpu)
+}
+
+/// Has the GPU order the lights, off the clock, if it is the GPU that does so.
+pub fn order_off_clock(gpu: &Gpu, lights: &LightBuffer) {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     lights.record(&mut EncoderPasses { encoder: &mut encoder });
     gpu.queue.submit([encoder.finish()]);
-    lights.read(gpu)
 }
 
 /// The box around the positions of the sound lights; the origin without any.

@@ -1,9 +1,9 @@
 //! A strategy with the pipelines that draw its frames.
 
-use assign::{Assignment, EncoderPasses, Gpu, LightBuffer, LightOrder, Passes};
+use assign::{Assignment, Gpu, LightBuffer, LightOrder, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
-use crate::{error::HarnessError, stage::Stage, strategy::Method};
+use crate::{error::HarnessError, moving::order_off_clock, stage::Stage, strategy::Method};
 
 /// A strategy with the pipelines that draw its frames.
 pub enum Painter<'a> {
@@ -108,11 +108,7 @@ impl<'a> Painter<'a> {
 fn order_lights(gpu: &Gpu, lights: &LightBuffer, is_billed: bool, passes: &mut dyn Passes) {
     match (lights.order(), is_billed) {
         (LightOrder::Gpu { .. }, true) => lights.record(passes),
-        (LightOrder::Gpu { .. }, false) => {
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            lights.record(&mut EncoderPasses { encoder: &mut encoder });
-            gpu.queue.submit([encoder.finish()]);
-        }
+        (LightOrder::Gpu { .. }, false) => order_off_clock(gpu, lights),
         _ => {}
     }
 }

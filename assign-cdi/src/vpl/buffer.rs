@@ -1,8 +1,7 @@
 //! The buffer of VPLs, from the map to the lights.
 
-use assign::{AssignError, Gpu, Light, LightEmission, LightShape, LightSphere, Passes, Readback};
+use assign::{AssignError, Gpu, Light, LightEmission, LightSphere, Passes, Readback};
 use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
-use glam::Vec3;
 
 use super::{
     choose::{Choose, Chosen},
@@ -195,20 +194,11 @@ impl VplBuffer {
         let spheres: Vec<LightSphere> = pod_collect_to_vec(&gpu.read(self.spheres(), kept * 16)?);
         let emissions: Vec<LightEmission> =
             pod_collect_to_vec(&gpu.read(self.emissions(), kept * 16)?);
-        let shapes: Vec<[[f32; 4]; 2]> = pod_collect_to_vec(&gpu.read(self.shapes(), kept * 32)?);
-        let light = |((sphere, emission), [first, second]): (
-            (LightSphere, LightEmission),
-            [[f32; 4]; 2],
-        )| Light {
-            position: sphere.position_world.into(),
-            range_m: sphere.radius_m,
-            intensity: emission.intensity.into(),
-            shape: LightShape::Vpl {
-                normal: Vec3::from_slice(&first[..3]),
-                min_distance_m: second[2].sqrt(),
-            },
-        };
-        Ok(spheres.into_iter().zip(emissions).zip(shapes).map(light).collect())
+        let shapes: Vec<[f32; 4]> = pod_collect_to_vec(&gpu.read(self.shapes(), kept * 32)?);
+        let records = spheres.iter().zip(&emissions);
+        Ok(records
+            .map(|(sphere, emission)| Light::from_record(sphere, emission, &shapes))
+            .collect())
     }
 
     /// Bytes of its buffers on the GPU.

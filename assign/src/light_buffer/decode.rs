@@ -3,8 +3,12 @@
 use glam::Vec3;
 
 use crate::{
-    Emitter, Light, LightEmission, LightKind, LightShape, LightSphere, MIN_RANGE_M, Outline,
+    Emitter, Light, LightEmission, LightKind, LightShape, LightSphere, MAX_VERTICES, MIN_RANGE_M,
+    Outline,
 };
+
+/// More vertices than any emitter has: an emitter of so many is refused.
+const MAX_SHAPES: f32 = MAX_VERTICES as f32 + 1.0;
 
 /// The light of an empty slot.
 pub(super) const EMPTY: Light = Light {
@@ -14,57 +18,69 @@ pub(super) const EMPTY: Light = Light {
     shape: LightShape::Point,
 };
 
-/// The light of a record. A spot's angles are those of its cosine, and its ramp is not kept: its
-/// inner angle is 0. A record with shapes that make no light is an empty slot.
-pub(super) fn light(sphere: &LightSphere, emission: &LightEmission, shapes: &[[f32; 4]]) -> Light {
-    let vector = |ix: u32| {
-        let place = (emission.kind_and_shape & 0x0fff_ffff) as usize + ix as usize;
-        shapes.get(place).copied().unwrap_or_default()
-    };
-    let direction = |v: [f32; 4]| Vec3::from_slice(&v[..3]);
-    let light = |range_m, shape| Light {
-        position: sphere.position_world.into(),
-        range_m,
-        intensity: emission.intensity.into(),
-        shape,
-    };
-    let kinds = [
-        LightKind::Point,
-        LightKind::Spot,
-        LightKind::Rectangle,
-        LightKind::Polygon,
-        LightKind::Vpl,
-    ];
-    let kind = kinds.into_iter().find(|&kind| kind as u32 == emission.kind_and_shape >> 28);
-    match kind {
-        Some(LightKind::Point) => light(sphere.radius_m, LightShape::Point),
-        Some(LightKind::Spot) => {
-            let axis = vector(0);
-            let outer_angle = vector(1)[1].atan2(axis[3]);
-            let shape =
-                LightShape::Spot { direction: direction(axis), inner_angle: 0.0, outer_angle };
-            light(sphere.radius_m, shape)
+impl Light {
+    /// The light of a record on the GPU; `shapes` are the shape vectors that its index points into. A
+    /// spot's inner angle is 0, because the record has only the outer one. A record with shapes that
+    /// make no light gives a light of intensity 0.
+    pub fn from_record(
+        sphere: &LightSphere,
+        emission: &LightEmission,
+        shapes: &[[f32; 4]],
+    ) -> Self {
+        let vector = |ix: u32| {
+            let place = (emission.kind_and_shape & 0x0fff_ffff) as usize + ix as usize;
+            shapes.get(place).copied().unwrap_or_default()
+        };
+        let direction = |v: [f32; 4]| Vec3::from_slice(&v[..3]);
+        let light = |range_m, shape| Light {
+            position: sphere.position_world.into(),
+            range_m,
+            intensity: emission.intensity.into(),
+            shape,
+        };
+        let kinds = [
+            LightKind::Point,
+            LightKind::Spot,
+            LightKind::Rectangle,
+            LightKind::Polygon,
+            LightKind::Vpl,
+        ];
+        let kind = kinds.into_iter().find(|&kind| kind as u32 == emission.kind_and_shape >> 28);
+        match kind {
+            Some(LightKind::Point) => light(sphere.radius_m, LightShape::Point),
+            Some(LightKind::Spot) => {
+                let axis = vector(0);
+                let outer_angle = vector(1)[1].atan2(axis[3]);
+                let shape =
+                    LightShape::Spot { direction: direction(axis), inner_angle: 0.0, outer_angle };
+                light(sphere.radius_m, shape)
+            }
+            Some(LightKind::Vpl) => {
+                let min_distance_m = vector(1)[2].max(0.0).sqrt();
+                let shape = LightShape::Vpl { normal: direction(vector(0)), min_distance_m };
+                light(sphere.radius_m, shape)
+            }
+            Some(kind @ (LightKind::Rectangle | LightKind::Polygon)) => {
+                let (normal_range, x_diffuse, y_count) = (vector(0), vector(1), vector(2));
+                let range_m = normal_range[3];
+                let outline = if kind == LightKind::Rectangle {
+                    Outline::Rectangle
+                } else {
+                    Outline::Polygon
+                };
+                let corners: Vec<Vec3> = (4..)
+                    .take(y_count[3].abs().min(MAX_SHAPES) as usize)
+                    .map(|ix| direction(vector(ix)))
+                    .collect();
+                let half_axes = [direction(x_diffuse), direction(y_count)];
+                let Some(mut emitter) = Emitter::from_parts(outline, half_axes, &corners) else {
+                    return EMPTY;
+                };
+                emitter.two_sided = y_count[3] < 0.0;
+                emitter.diffuse_share = x_diffuse[3] / range_m;
+                light(range_m, LightShape::Area(emitter))
+            }
+            None => EMPTY,
         }
-        Some(LightKind::Vpl) => {
-            let min_distance_m = vector(1)[2].max(0.0).sqrt();
-            let shape = LightShape::Vpl { normal: direction(vector(0)), min_distance_m };
-            light(sphere.radius_m, shape)
-        }
-        Some(kind @ (LightKind::Rectangle | LightKind::Polygon)) => {
-            let (normal_range, x_diffuse, y_count) = (vector(0), vector(1), vector(2));
-            let range_m = normal_range[3];
-            let outline =
-                if kind == LightKind::Rectangle { Outline::Rectangle } else { Outline::Polygon };
-            let corners: Vec<Vec3> =
-                (4..).take(y_count[3].abs() as usize).map(|ix| direction(vector(ix))).collect();
-            let half_axes = [direction(x_diffuse), direction(y_count)];
-            let Some(mut emitter) = Emitter::from_parts(outline, half_axes, &corners) else {
-                return EMPTY;
-            };
-            emitter.two_sided = y_count[3] < 0.0;
-            emitter.diffuse_share = x_diffuse[3] / range_m;
-            light(range_m, LightShape::Area(emitter))
-        }
-        None => EMPTY,
     }
 }

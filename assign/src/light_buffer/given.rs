@@ -33,23 +33,20 @@ pub(super) struct Given {
 }
 
 impl Given {
-    /// Checks `lights`, and sorts the sound ones by what `order` returns: their indices.
-    pub(super) fn new(lights: &[Light], order: impl Fn(&[Light]) -> Vec<u32>) -> Self {
-        let mut sound = Vec::with_capacity(lights.len());
-        let mut sound_indices = Vec::with_capacity(lights.len());
+    /// The sound lights in the renderer's order.
+    pub(super) fn new(all: &[Light]) -> Self {
+        let mut lights = Vec::with_capacity(all.len());
+        let mut indices = Vec::with_capacity(all.len());
         let mut rejected = Vec::new();
-        for (index, light) in lights.iter().enumerate() {
+        for (index, light) in all.iter().enumerate() {
             match light.check() {
                 Ok(()) => {
-                    sound.push(*light);
-                    sound_indices.push(index as u32);
+                    lights.push(*light);
+                    indices.push(index as u32);
                 }
                 Err(fault) => rejected.push(RejectedLight { index, fault }),
             }
         }
-        let order = order(&sound);
-        let lights: Vec<Light> = order.iter().map(|&ix| sound[ix as usize]).collect();
-        let indices = order.iter().map(|&ix| sound_indices[ix as usize]).collect();
         let around = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
         let support = |l: &Light| (l.position - l.radius_m(), l.position + l.radius_m());
         Self {
@@ -60,6 +57,12 @@ impl Given {
             indices,
             rejected,
         }
+    }
+
+    /// Puts the lights in an order, a permutation of their places.
+    pub(super) fn reorder(&mut self, order: &[u32]) {
+        self.lights = order.iter().map(|&ix| self.lights[ix as usize]).collect();
+        self.indices = order.iter().map(|&ix| self.indices[ix as usize]).collect();
     }
 }
 

@@ -286,7 +286,9 @@ impl Living {
         let shapes: Vec<Vec3x4> =
             pod_collect_to_vec(&gpu.read(&buffers.shapes, buffers.shapes.size())?);
         let records = spheres.iter().zip(&emissions);
-        Ok(records.map(|(sphere, emission)| decode::light(sphere, emission, &shapes)).collect())
+        Ok(records
+            .map(|(sphere, emission)| Light::from_record(sphere, emission, &shapes))
+            .collect())
     }
 }
 

@@ -51,8 +51,6 @@ impl Digit {
 pub(super) struct RadixSort {
     blocks: u32,
     passes: Vec<DigitPass>,
-    items: [wgpu::Buffer; 2],
-    counts: wgpu::Buffer,
 }
 
 /// The kernels of one digit, from one buffer of items to the other.
@@ -95,7 +93,7 @@ impl RadixSort {
                 items: bind_buffers(gpu, &item_layout, &[from, to, &counts]),
             });
         }
-        Ok(Self { blocks, passes, items, counts })
+        Ok(Self { blocks, passes })
     }
 
     /// Records the dispatches. Bind group 0 is set.
@@ -116,10 +114,5 @@ impl RadixSort {
     /// Number of blocks.
     pub(super) fn blocks(&self) -> u32 {
         self.blocks
-    }
-
-    /// Bytes of its buffers.
-    pub(super) fn bytes(&self) -> u64 {
-        self.items[0].size() + self.items[1].size() + self.counts.size()
     }
 }
