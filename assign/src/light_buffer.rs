@@ -24,7 +24,6 @@ pub use gpu_lights::GpuLights;
 pub use living::SlotCounts;
 use living::{Living, Source};
 pub use travel::Travel;
-use travel::step_m;
 use wide::WideLights;
 
 /// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
@@ -81,10 +80,7 @@ impl LightBuffer {
     }
 
     fn empty(gpu: &Gpu, order: LightOrder) -> Result<Self, AssignError> {
-        let living = match order {
-            LightOrder::Gpu { every } => Some(Living::new(every)?),
-            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => None,
-        };
+        let living = Living::new(order)?;
         Ok(Self {
             order,
             given: Given::default(),
@@ -107,8 +103,10 @@ impl LightBuffer {
         check_count(lights.len())?;
         let mut given = Given::new(lights);
         if let Some(living) = &mut self.living {
-            living.update(gpu, &given)?;
-            self.take_given(given);
+            // After an error it only counts too much.
+            self.travel.add(self.given.step_to(&given));
+            living.update(gpu, &given, self.travel)?;
+            self.given = given;
             self.take_living();
             return Ok(());
         }
@@ -132,20 +130,13 @@ impl LightBuffer {
         gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
         gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
-        self.take_given(given);
-        self.build_time = build_time;
-        Ok(())
-    }
-
-    /// Takes the CPU's lights, and notes how far they moved.
-    fn take_given(&mut self, given: Given) {
-        if self.given.indices == given.indices {
-            self.travel.add(step_m(&self.given.lights, &given.lights));
-        } else {
-            self.travel.add(None);
+        if self.given.indices != given.indices {
             self.generation = self.generation.wrapping_add(1);
         }
+        self.travel.add(self.given.step_to(&given));
         self.given = given;
+        self.build_time = build_time;
+        Ok(())
     }
 
     /// Takes the next frame's lights from the renderer's own buffers.
@@ -167,8 +158,8 @@ impl LightBuffer {
                 accepted: "gpu or gpuN, for lights in the renderer's own buffers".into(),
             });
         };
-        living.update_from_gpu(gpu, lights)?;
         self.travel.add(lights.step_m());
+        living.update_from_gpu(gpu, lights, self.travel)?;
         self.given = Given { kinds: lights.kinds, ..Given::default() };
         self.take_living();
         Ok(())

@@ -187,6 +187,33 @@ fn a_sort_that_was_not_recorded_is_made_up_for() {
 }
 
 #[test]
+fn lights_are_sorted_as_soon_as_boxes_may_have_grown() {
+    let gpu = gpu();
+    let mut given = lights(1000, 1);
+    let order = "gpu25%".parse().unwrap();
+    let mut buffer = LightBuffer::ordered(&gpu, &given, order).unwrap();
+    record(&gpu, &buffer);
+    // A box of about 102 m has cubes of 41 m with 64 lights each: a quarter is 10 m, 5 m at each end.
+    let mut sorts = Vec::new();
+    for _ in 0..12 {
+        let before = buffer.order_generation();
+        for light in &mut given {
+            light.position += Vec3::new(0.9, 0.0, 0.0);
+        }
+        buffer.update(&gpu, &given).unwrap();
+        record(&gpu, &buffer);
+        sorts.push(buffer.order_generation() - before);
+    }
+    assert_eq!(sorts, [0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1]);
+    given[3].intensity = Vec3::ZERO;
+    buffer.update(&gpu, &given).unwrap();
+    given[3].intensity = Vec3::ONE;
+    let before = buffer.order_generation();
+    buffer.update(&gpu, &given).unwrap();
+    assert_eq!(buffer.order_generation() - before, 1, "a light that becomes bright");
+}
+
+#[test]
 fn only_changed_lights_are_uploaded() {
     let gpu = gpu();
     let mut given = lights(10_000, 1);

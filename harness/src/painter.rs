@@ -1,6 +1,6 @@
 //! A strategy with the pipelines that draw its frames.
 
-use assign::{Assignment, Gpu, LightBuffer, LightOrder, Passes};
+use assign::{Assignment, Gpu, LightBuffer, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
 use crate::{error::HarnessError, moving::order_off_clock, stage::Stage, strategy::Method};
@@ -106,10 +106,10 @@ impl<'a> Painter<'a> {
 /// only they pay for it. For the others it runs off the clock: all methods read the lights in the same order,
 /// so that their images can be compared bit for bit.
 fn order_lights(gpu: &Gpu, lights: &LightBuffer, is_billed: bool, passes: &mut dyn Passes) {
-    match (lights.order(), is_billed) {
-        (LightOrder::Gpu { .. }, true) => lights.record(passes),
-        (LightOrder::Gpu { .. }, false) => order_off_clock(gpu, lights),
-        _ => {}
+    match (lights.order().is_on_gpu(), is_billed) {
+        (true, true) => lights.record(passes),
+        (true, false) => order_off_clock(gpu, lights),
+        (false, _) => {}
     }
 }
 

@@ -1,6 +1,6 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, LightBuffer, LightKind, LightOrder, Suns, View};
+use assign::{Gpu, LightBuffer, LightKind, Suns, View};
 use glam::DVec3;
 use scenes::{Aabb, Dielectric, Scene, primary_light};
 use shading::{AreaModel, Renderer};
@@ -246,8 +246,7 @@ impl Stage {
     /// Time in which the CPU ordered the lights and built the hierarchy over them, ms; `None` if that is part
     /// of the pass `upload`, or the GPU's work.
     pub fn light_build_ms(&self) -> Option<f64> {
-        let is_once =
-            self.moving.is_none() && !matches!(self.lights.order(), LightOrder::Gpu { .. });
+        let is_once = self.moving.is_none() && !self.lights.order().is_on_gpu();
         is_once.then(|| self.lights.build_time().as_secs_f64() * 1e3)
     }
 

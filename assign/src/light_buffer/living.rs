@@ -9,9 +9,11 @@ use super::{
     decode,
     given::{Given, MAX_LIGHTS, Records},
     gpu_lights::GpuLights,
+    travel::Travel,
 };
 use crate::{
-    AssignError, Gpu, Light, LightEmission, LightSphere, Passes,
+    AssignError, Gpu, Light, LightEmission, LightOrder, LightSphere, Passes,
+    light_nodes::NODE_LIGHTS,
     light_sorter::{GivenBuffers, LightSorter, SlotState},
 };
 
@@ -40,8 +42,10 @@ pub(super) enum Source {
 /// Lights that change in every frame.
 #[derive(Debug)]
 pub(super) struct Living {
-    /// The lights are sorted in every `every`th frame.
-    every: u32,
+    /// When the lights are sorted.
+    order: LightOrder,
+    /// How far they had moved at the last sort.
+    sorted_at: Travel,
     /// Frames since the last sort; `None` if the next frame must sort.
     age: Option<u32>,
     /// Number of sorts so far.
@@ -66,16 +70,23 @@ pub(super) struct Living {
 const UPLOAD_BLOCK: usize = 1024;
 
 impl Living {
-    pub(super) fn new(every: u32) -> Result<Self, AssignError> {
-        if every == 0 {
+    /// Lights that the GPU sorts; `None` for the orders of the CPU.
+    pub(super) fn new(order: LightOrder) -> Result<Option<Self>, AssignError> {
+        let (field, number) = match order {
+            LightOrder::Gpu { every } => ("frames between two sorts of the lights", every),
+            LightOrder::GpuGrown { percent } => ("growth of boxes, percent", percent),
+            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => return Ok(None),
+        };
+        if number == 0 {
             return Err(AssignError::Parameter {
-                field: "frames between two sorts of the lights".into(),
+                field: field.into(),
                 value: "0".into(),
                 accepted: "1 or more".into(),
             });
         }
-        Ok(Self {
-            every,
+        Ok(Some(Self {
+            order,
+            sorted_at: Travel::default(),
             age: None,
             generation: 0,
             is_expired: false,
@@ -87,11 +98,16 @@ impl Living {
             uploaded_bytes: 0,
             sorter: None,
             source: None,
-        })
+        }))
     }
 
     /// The next frame's lights, from the CPU.
-    pub(super) fn update(&mut self, gpu: &Gpu, given: &Given) -> Result<(), AssignError> {
+    pub(super) fn update(
+        &mut self,
+        gpu: &Gpu,
+        given: &Given,
+        travel: Travel,
+    ) -> Result<(), AssignError> {
         let records = Records::new(&given.lights);
         let count = given.lights.len() as u32;
         let [spheres, emissions, shapes] = records.bytes();
@@ -118,7 +134,8 @@ impl Living {
             self.sorter = Some((sorter, buffers));
             self.age = None;
         }
-        let sorts = self.next_sorts();
+        let bounds = given.position_bounds.unwrap_or_default();
+        let sorts = self.next_sorts(bounds, travel, count);
         if sorts {
             self.sorted = count;
         }
@@ -129,7 +146,6 @@ impl Living {
             + upload(gpu, &buffers.emissions, known_emissions, emissions)
             + upload(gpu, &buffers.shapes, known_shapes, shapes);
         gpu.queue.write_buffer(sorter.state(), SlotState::GIVEN_AT, bytes_of(&count));
-        let bounds = given.position_bounds.unwrap_or_default();
         // The CPU has checked the radii.
         sorter.prepare(gpu, bounds, [f32::MAX; 2], sorts);
         self.source = Some(Source::Cpu { uploaded: records });
@@ -141,6 +157,7 @@ impl Living {
         &mut self,
         gpu: &Gpu,
         lights: &GpuLights<'_>,
+        travel: Travel,
     ) -> Result<(), AssignError> {
         lights.check()?;
         let buffers = GivenBuffers {
@@ -166,7 +183,7 @@ impl Living {
         });
         self.uploaded_bytes = 0;
         self.slots = lights.capacity;
-        let sorts = self.next_sorts();
+        let sorts = self.next_sorts(lights.bounds, travel, lights.capacity);
         if std::mem::take(self.is_recorded.get_mut()) {
             self.reach_m = 0.0;
         }
@@ -178,21 +195,33 @@ impl Living {
         Ok(())
     }
 
-    /// Whether the next frame sorts. It does so after `every` frames, and if the frame that should have
-    /// sorted was never recorded.
-    fn next_sorts(&mut self) -> bool {
+    /// Whether the next frame sorts `lights` lights in a box. It does so when it is time, and if the frame
+    /// that should have sorted was never recorded.
+    fn next_sorts(&mut self, bounds: (Vec3, Vec3), travel: Travel, lights: u32) -> bool {
         let is_sorted = *self.is_sorted.get_mut();
         let is_expired = std::mem::take(&mut self.is_expired);
         let next = match self.age {
-            Some(age) if is_sorted && !is_expired => (age + 1) % self.every,
+            Some(age) if is_sorted && !is_expired => age.wrapping_add(1),
             _ => 0,
         };
-        self.age = Some(next);
-        if next == 0 {
+        let is_time = match self.order {
+            LightOrder::Gpu { every } => next % every == 0,
+            LightOrder::GpuGrown { percent } => {
+                // Both ends of a box move.
+                let growth_m = 2.0 * (travel.metres - self.sorted_at.metres);
+                travel.jumps != self.sorted_at.jumps
+                    || growth_m > f64::from(percent) * 0.01 * box_side_m(bounds, lights)
+            }
+            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => false,
+        };
+        let sorts = next == 0 || is_time;
+        self.age = Some(if sorts { 0 } else { next });
+        if sorts {
             self.generation = self.generation.wrapping_add(1);
+            self.sorted_at = travel;
             *self.is_sorted.get_mut() = false;
         }
-        next == 0
+        sorts
     }
 
     /// Has the next frame sort. This frame stays as it is.
@@ -285,6 +314,12 @@ impl Living {
             .map(|(sphere, emission)| Light::from_record(sphere, emission, &shapes))
             .collect())
     }
+}
+
+/// The side of a cube that holds as many of the lights as a node, if they fill their box evenly, metres.
+fn box_side_m((low, high): (Vec3, Vec3), lights: u32) -> f64 {
+    let volume: f64 = (high - low).as_dvec3().element_product();
+    (volume * NODE_LIGHTS as f64 / f64::from(lights.max(1))).cbrt()
 }
 
 /// A shape vector.

@@ -1,6 +1,8 @@
 //! How far lights have moved.
 
-use crate::Light;
+use glam::Vec3;
+
+use super::given::Given;
 
 /// A bound on how far the lights' balls have moved and grown since the buffer was made.
 ///
@@ -29,24 +31,27 @@ impl Travel {
     }
 }
 
-/// How far the balls of `after` reach beyond those of `before` at the most, light by light, metres; `None`
-/// if a light was not there or dark before.
-pub(super) fn step_m(before: &[Light], after: &[Light]) -> Option<f32> {
-    if before.len() != after.len() {
-        return None;
-    }
-    let mut most_m = 0.0_f32;
-    for (before, after) in before.iter().zip(after) {
-        if before == after {
-            continue;
-        }
-        if before.intensity == glam::Vec3::ZERO && after.intensity != glam::Vec3::ZERO {
+impl Given {
+    /// How far the balls of later lights reach beyond these at the most, light by light, metres; `None` if
+    /// one was not there or dark before.
+    pub(super) fn step_to(&self, later: &Self) -> Option<f32> {
+        if self.indices != later.indices {
             return None;
         }
-        let way_m = before.position.distance(after.position) + after.radius_m() - before.radius_m();
-        // Each of the terms is rounded.
-        let rounding_m = 4e-7 * (way_m.abs() + before.radius_m() + after.radius_m());
-        most_m = most_m.max(way_m + rounding_m);
+        let mut most_m = 0.0_f32;
+        for (before, after) in self.lights.iter().zip(&later.lights) {
+            if before == after {
+                continue;
+            }
+            if before.intensity == Vec3::ZERO && after.intensity != Vec3::ZERO {
+                return None;
+            }
+            let radii_m = [before.radius_m(), after.radius_m()];
+            let way_m = before.position.distance(after.position) + radii_m[1] - radii_m[0];
+            // Each of the terms is rounded.
+            let rounding_m = 4e-7 * (way_m.abs() + radii_m[0] + radii_m[1]);
+            most_m = most_m.max(way_m + rounding_m);
+        }
+        Some(most_m)
     }
-    Some(most_m)
 }
