@@ -33,7 +33,7 @@ mod uniform;
 
 use glam::Vec3;
 
-use crate::{AssignError, Gpu, LightKinds, Passes, light_nodes::NodeLevels};
+use crate::{AssignError, Gpu, LightKinds, Passes};
 pub(crate) use boxes::{BoxInput, BoxPass};
 pub(crate) use kernels::BoxKernels;
 use radix::RadixSort;
@@ -112,11 +112,6 @@ impl LightSorter {
     /// The most lights.
     pub(crate) fn capacity(&self) -> u32 {
         self.boxes.capacity
-    }
-
-    /// The levels of its hierarchy.
-    pub(crate) fn levels(&self) -> NodeLevels {
-        self.boxes.levels
     }
 
     /// The records of the slots, and the hierarchy over them.

@@ -1,6 +1,6 @@
 //! A strategy that a command line asks for, ready to be made.
 
-use assign::{AssignError, Assignment, FrustumTests, Gpu, Keep, LightSource, Reuse};
+use assign::{AssignError, FrustumTests, Gpu, Keep, LightSource, Reuse};
 use assign_clustered::SpecularCut;
 use shading::Mode;
 

@@ -30,8 +30,12 @@ impl Blocks {
         match lights {
             0..=0x800 => Self { rounds: 8, one: true, many: false },
             0x801..=0x4000 => Self { rounds: 1, one: false, many: false },
-            0x4001..=0x1_0000 => Self { rounds: 4, one: false, many: false },
-            _ => Self { rounds: 16, one: false, many: true },
+            0x4001..=0x2_0000 => Self { rounds: 4, one: false, many: false },
+            _ => Self {
+                rounds: std::env::var("LB_ROUNDS").ok().and_then(|r| r.parse().ok()).unwrap_or(8),
+                one: false,
+                many: true,
+            },
         }
     }
 
