@@ -117,6 +117,16 @@ impl Passes for Recorder<'_> {
     }
 }
 
+#[test]
+fn making_the_lights_is_on_no_bill() {
+    for mode in Mode::ALL {
+        for name in ["rsm-depth", "cdi-ranges", "random-ranges", "vpl-keep", "vpl-order"] {
+            assert_eq!(pass_kind(name, mode), PassKind::Other, "{name} in {}", mode.name());
+        }
+        assert_eq!(pass_kind("order", mode), PassKind::Assign);
+    }
+}
+
 /// Names tell which passes rasterise and who pays, in every mode.
 #[test]
 fn passes_are_told_by_their_names() {

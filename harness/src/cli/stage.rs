@@ -127,8 +127,8 @@ pub struct StageArgs {
     /// All strategies use the same order. given keeps the order of the scene. morton follows a space-filling
     /// curve. bvh is the order of the leaves of a hierarchy. These three are made by the CPU, off the clock
     /// if the lights stand still. gpu is made by the GPU in every frame, on the clock; gpuN in every Nth
-    /// frame. With gpu, --vpls makes its lights in every frame, and they never leave the GPU; with the
-    /// others, it makes them once. [default: bvh, gpu8 with --motion, and gpu with --vpls]
+    /// frame. With gpu, --vpls makes its lights in every frame, with the others once. [default: bvh, gpu8
+    /// with --motion, gpu with --vpls]
     #[arg(long, value_name = "ORDER", value_parser = values::light_order, help_heading = RANGES, hide_short_help = true)]
     pub light_order: Option<LightOrder>,
 

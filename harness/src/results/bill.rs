@@ -221,16 +221,6 @@ mod tests {
     }
 
     #[test]
-    fn making_the_lights_is_on_no_bill() {
-        for name in ["rsm-depth", "cdi-ranges", "random-ranges", "vpl-keep", "vpl-order"] {
-            for mode in Mode::ALL {
-                assert_eq!(pass_kind(name, mode), PassKind::Other, "{name}");
-            }
-        }
-        assert_eq!(pass_kind("order", Mode::Deferred), PassKind::Assign);
-    }
-
-    #[test]
     fn a_frame_bills_only_passes_that_it_does_not_draw_for_all() {
         let explicit = [("depth", 0.5), ("bounds", 0.1), ("cull", 0.2), ("shade", 1.0)];
         let forward = record("SC-E/48x48x40/bvh", Mode::Forward, &explicit);

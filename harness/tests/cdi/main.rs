@@ -84,7 +84,10 @@ fn ranges_that_rays_do_not_measure_keep_the_lights_that_rays_keep() {
     let timed = ["--strategies", "HG", "--truth", "none", "--frames", "1", "--warmup", "0"];
     let made = |name: &str, rule: &[&str]| {
         let out = folder.path().join(name);
-        let (_, results) = run(&out, &[&drawn[..], &timed, rule].concat());
+        let (printed, results) = run(&out, &[&drawn[..], &timed, rule].concat());
+        for passes in ["Lights, made once, ms: rsm-depth ", "HG/48x48x40, ms: depth "] {
+            assert!(printed.contains(passes), "{passes}: {printed}");
+        }
         results.records[0].indirect.clone().expect("virtual point lights")
     };
     let cast = made("cast", &["--ranges", "average"]);
@@ -237,7 +240,9 @@ fn virtual_point_lights_are_as_bright_as_a_matte_bounce() {
         let scene = room(folder.path(), floor);
         let lights = ["--vpls", "64", "--ranges", "infinite"];
         let words = [&["compare", "--scene", &scene], &ROOM_VIEW[..], &lights, &timed].concat();
-        let (_, results) = run(&out, &words);
+        let (printed, results) = run(&out, &words);
+        // By default, each frame makes its lights.
+        assert!(printed.contains("HG/48x48x40, ms: rsm-depth "), "{printed}");
         let raw = results.records[0].image.files.raw.clone().expect("a linear image");
         mean(&HdrImage::read_exr(&out.join(raw)).expect("an image"))
     };
