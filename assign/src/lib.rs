@@ -68,7 +68,7 @@ pub use entries::{UNFILTERED, entry, storage_entry, texture, texture_entry, unif
 pub use error::AssignError;
 pub use everything::Everything;
 pub use frame::{Frame, FrameBindings, Needs, SampleDomain};
-pub use gpu::Gpu;
+pub use gpu::{Gpu, Mapped};
 pub use groups::{Facing, GroupShape, Groups};
 pub use keep::Keep;
 pub use light::{Light, LightShape, MAX_INTENSITY, MAX_RANGE_M, MIN_RANGE_M, MIN_SPOT_ANGLE};

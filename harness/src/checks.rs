@@ -175,7 +175,7 @@ pub(crate) fn check_area_options(args: &CompareArgs, stage: &Stage) -> Result<()
         ("--area-model", args.area_model.map(|model| model.to_string())),
         ("--influence", args.stage.influence.map(|least| least.to_string())),
     ];
-    let has_areas = stage.lights.kinds().areas || stage.lights.count() == 0;
+    let has_areas = stage.lights.kinds().areas || stage.light_count() == 0;
     match given.into_iter().find_map(|(option, value)| Some((option, value?))) {
         Some((option, value)) if !has_areas => {
             let accepted =
