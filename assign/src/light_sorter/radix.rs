@@ -18,24 +18,27 @@ const DIGIT_BITS: u32 = 8;
 pub(super) struct Blocks {
     /// Rounds of a block: each sorts as many lights as a workgroup has lanes.
     pub(super) rounds: u32,
-    /// Whether all lights are one block.
-    pub(super) one: bool,
-    /// Whether the blocks are too many for each to add up the counts of all.
-    pub(super) many: bool,
+    pub(super) counting: Counting,
+}
+
+/// How a block finds the places of its digits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Counting {
+    /// It counts the digits of all lights itself. One dispatch does.
+    Alone,
+    /// It adds up the counts of all blocks.
+    Together,
+    /// A pass of its own has added up the counts.
+    Summed,
 }
 
 impl Blocks {
     /// The blocks for at most `lights` lights.
     pub(super) fn over(lights: u32) -> Self {
         match lights {
-            0..=0x800 => Self { rounds: 8, one: true, many: false },
-            0x801..=0x4000 => Self { rounds: 1, one: false, many: false },
-            0x4001..=0x2_0000 => Self { rounds: 4, one: false, many: false },
-            _ => Self {
-                rounds: std::env::var("LB_ROUNDS").ok().and_then(|r| r.parse().ok()).unwrap_or(8),
-                one: false,
-                many: true,
-            },
+            0..=0x4000 => Self { rounds: 1, counting: Counting::Alone },
+            0x4001..=0x2_0000 => Self { rounds: 4, counting: Counting::Together },
+            _ => Self { rounds: 8, counting: Counting::Summed },
         }
     }
 
@@ -80,8 +83,8 @@ impl Digit {
             .flag("first", first)
             .flag("last", last)
             .flag("only", first && last)
-            .flag("one_block", blocks.one)
-            .flag("many", blocks.many)
+            .flag("alone", blocks.counting == Counting::Alone)
+            .flag("summed", blocks.counting == Counting::Summed)
     }
 }
 
@@ -129,16 +132,13 @@ impl RadixSort {
             let kernel = |entry_point, workgroups| {
                 (pipeline(gpu, &module, entry_point, &layouts), workgroups)
             };
-            let kernels = match cut {
-                Blocks { one: true, .. } => vec![kernel("sort_block", 1)],
-                Blocks { many: false, .. } => {
-                    vec![kernel("count_digits", blocks), kernel("move_items", blocks)]
+            let count = || kernel("count_digits", blocks);
+            let kernels = match cut.counting {
+                Counting::Alone => vec![kernel("sort_block", blocks)],
+                Counting::Together => vec![count(), kernel("move_items", blocks)],
+                Counting::Summed => {
+                    vec![count(), kernel("sum_digits", DIGITS), kernel("move_items", blocks)]
                 }
-                Blocks { many: true, .. } => vec![
-                    kernel("count_digits", blocks),
-                    kernel("sum_digits", DIGITS),
-                    kernel("move_items", blocks),
-                ],
             };
             let (from, to) = (&items[ix % 2], &items[1 - ix % 2]);
             let items = bind_buffers(gpu, &item_layout, &[from, to, &counts]);
