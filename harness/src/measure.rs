@@ -18,7 +18,7 @@ use crate::{
     drift::WarmUp,
     error::HarnessError,
     list_lengths::ListLengths,
-    moving::Moving,
+    moving::{Moving, known_lights},
     painter::Painter,
     pass_samples::PassSamples,
     results::{Passes, Spans},
@@ -73,8 +73,8 @@ pub struct Timetable<'a> {
     /// Of those, the ones whose lists depend on the frames before: along a path they must see every
     /// pose before the one that is compared.
     pub remember: &'a [usize],
-    /// The one whose image is that of no culling.
-    pub reference: usize,
+    /// The one whose image is that of no culling; `None` if images are not compared.
+    pub reference: Option<usize>,
 }
 
 /// Is handed the images of a frame, method by method, and that of no culling.
@@ -90,7 +90,7 @@ pub struct Plan {
     pub timed: u32,
     /// How often the camera goes along its path, one pose per frame; 0: it stands still.
     pub laps: u32,
-    /// Poses along the path at which images are compared, 8 at most.
+    /// Frames that differ whose images are compared, 8 at most.
     pub checks: u32,
     /// Decides the order of methods in each round.
     pub seed: u64,
@@ -241,7 +241,7 @@ impl<'a> Contest<'a> {
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
         let mut times = self.clock.finish_frame()?;
         if let Some(upload) = stage.moving.as_ref().and_then(Moving::upload) {
-            times.passes.insert(0, ("upload".to_owned(), upload.ms));
+            times.begin_with("upload", upload.ms);
         }
         contender.samples.collect_frame(times);
         contender.overflowed_frames += u32::from(!settled);
@@ -265,11 +265,13 @@ fn read(gpu: &Gpu, stage: &Stage) -> Result<HdrImage, HarnessError> {
     Ok(HdrImage::read(gpu, stage.renderer.targets(), stage.view.viewport)?)
 }
 
-/// The image of lights that have no range: inverse square to any distance, without culling. Leaves
-/// the stage as it was, to be prepared again.
+/// The image of lights that have no range: inverse square to any distance, without culling. Lights that only
+/// the GPU knows are read back. Leaves the stage as it was, to be prepared again.
 pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrImage, HarnessError> {
     let unbounded = |light: &Light| Light { range_m: MAX_RANGE_M, ..*light };
-    let lights: Vec<Light> = stage.lights.lights().iter().map(unbounded).collect();
+    let known = known_lights(gpu, &stage.lights)?;
+    let lights: Vec<Light> = known.iter().map(unbounded).collect();
+    drop(known);
     let bounded = std::mem::replace(&mut stage.lights, LightBuffer::new(gpu, &lights)?);
     let mut method = Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false };
     let image = stage.prepare().and_then(|()| {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use assign::LightOrder;
 use serde::{Deserialize, Serialize};
 
 use super::{Mode, Planes};
@@ -92,6 +93,16 @@ pub struct Setting {
     /// frames / poses. `null` for a still camera, and in older results, which have one lap.
     #[serde(default)]
     pub poses: Option<u32>,
+}
+
+impl Setting {
+    /// The GPU sorts the lights in every Nth frame: the number N. `None` if the CPU orders them.
+    pub fn sorted_every(&self) -> Option<u32> {
+        match self.light_order.as_ref()?.parse() {
+            Ok(LightOrder::Gpu { every }) => Some(every),
+            _ => None,
+        }
+    }
 }
 
 /// How lights move.
