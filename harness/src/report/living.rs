@@ -63,7 +63,7 @@ mod tests {
             record.setting.light_order = Some(order.to_owned());
             assert_eq!(motion_words(&record.setting).as_deref(), Some(words));
         }
-        assert!(cost_words(&record).contains("costs it nothing"));
+        assert!(cost_words(&record).contains("cost it nothing"));
         for (name, ms) in [("upload", 1.05), ("order", 0.0031)] {
             record.times.passes.insert(name, PassTimes::new(PassKind::Assign, vec![ms; 3]));
         }
