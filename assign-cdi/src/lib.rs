@@ -37,7 +37,8 @@
 //!
 //! In the frame, after the map is drawn, call `vpls.record_choose`, `images.record`, `caster.record` and
 //! `vpls.record_keep`. The lights are then in [`VplBuffer::spheres`] and the buffers next to it.
-//! [`VplBuffer::read`] fetches them for a [`LightBuffer`](assign::LightBuffer).
+//! [`VplBuffer::gpu_lights`] hands them to a [`LightBuffer`](assign::LightBuffer): call `update_from_gpu` with them
+//! before the frame, and `record` after `vpls.record_keep`. No light crosses to the CPU.
 //!
 //! Two settings matter: set [`VplSettings::large`] to [`Large::Discard`], which drops lights whose rays meet
 //! nothing, and [`VplSettings::min_distance_m`] to about a hundredth of the scene's size. The uniforms, kernels

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 mod vpl_map;
 
-use assign::{Light, LightShape, Projection};
+use assign::{EncoderPasses, Light, LightBuffer, LightShape, Projection};
 use assign_cdi::{Large, Rsm, VplBuffer, VplCounts, VplSettings};
 use bytemuck::pod_collect_to_vec;
 use glam::{Vec2, Vec3};
@@ -61,7 +61,7 @@ fn records_equal_those_of_uploaded_lights() {
     map.run(&mut buffer, |ix| 0.1 + ix as f32);
     let lights = buffer.read(&map.gpu).unwrap();
     assert!(buffer.read_counts(&map.gpu).unwrap().too_small > 0);
-    let uploaded = assign::LightBuffer::new(&map.gpu, &lights).unwrap();
+    let uploaded = LightBuffer::new(&map.gpu, &lights).unwrap();
     let count = lights.len() as u64;
     let same = |a, b, bytes| map.gpu.read(a, bytes).unwrap() == map.gpu.read(b, bytes).unwrap();
     assert!(same(buffer.spheres(), uploaded.spheres(), count * 16));
@@ -71,6 +71,40 @@ fn records_equal_those_of_uploaded_lights() {
     // `LightBuffer` normalises the normal once more, which may round it.
     let (kept, given) = (floats(buffer.shapes()), floats(uploaded.shapes()));
     assert!(kept.iter().zip(&given).all(|(a, b)| (a - b).abs() < 1e-6));
+}
+
+/// A light buffer takes the kept lights without a read-back, and has their number.
+#[test]
+fn a_light_buffer_takes_the_lights_from_the_gpu() {
+    let light = spot(1.2);
+    let map = Map::new([32, 32], light, room(&light));
+    let settings = VplSettings { min_range_m: 20.0, max_range_m: 900.0, ..VplSettings::default() };
+    let mut buffer = VplBuffer::new(&map.gpu, settings).unwrap();
+    map.run(&mut buffer, |ix| 0.1 + ix as f32);
+    let by_bits = |mut lights: Vec<Light>| {
+        lights.sort_by_key(|light| {
+            [light.position.x, light.position.y, light.position.z, light.range_m].map(f32::to_bits)
+        });
+        lights
+    };
+    let kept = by_bits(buffer.read(&map.gpu).unwrap());
+    let taken = |bounds| {
+        let lights = LightBuffer::from_gpu(&map.gpu, &buffer.gpu_lights(bounds), 1).unwrap();
+        let mut encoder = map.gpu.device.create_command_encoder(&Default::default());
+        lights.record(&mut EncoderPasses { encoder: &mut encoder });
+        map.gpu.queue.submit([encoder.finish()]);
+        let counts = lights.read_counts(&map.gpu).unwrap().unwrap();
+        (counts, by_bits(lights.read(&map.gpu).unwrap()))
+    };
+    let whole = (Vec3::splat(-4.0), Vec3::splat(4.0));
+    let (counts, lights) = taken(whole);
+    assert!(lights == kept && kept.len() > 100, "{} lights", kept.len());
+    assert_eq!((counts.given, counts.faulty, counts.dark), (kept.len() as u32, 0, 0));
+    assert!(lights.len() < buffer.capacity() as usize);
+    // A box that leaves the floor out makes its lights faulty.
+    let on_floor = kept.iter().filter(|light| light.position.y < 0.5).count() as u32;
+    let (counts, _) = taken((Vec3::new(-4.0, 0.5, -4.0), whole.1));
+    assert!(on_floor > 0 && counts.faulty == on_floor, "{counts:?}, {on_floor} on the floor");
 }
 
 #[test]

@@ -141,6 +141,10 @@ impl Assignment for Grid {
         Needs { hierarchy: self.culler.reads_hierarchy(), ..Needs::default() }
     }
 
+    fn is_view_bound(&self) -> bool {
+        false
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let cells = CellsUniform::new(self.counts, self.cut(frame)?, frame.lights.bounds());

@@ -101,6 +101,10 @@ impl Assignment for PerModel {
         Needs { models: true, hierarchy, ..Needs::default() }
     }
 
+    fn is_view_bound(&self) -> bool {
+        false
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         if frame.samples == SampleDomain::AnyDepth {

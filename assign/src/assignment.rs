@@ -14,6 +14,11 @@ pub trait Assignment {
     /// What the strategy reads besides the view and the lights.
     fn needs(&self) -> Needs;
 
+    /// Whether groups move with the camera. If not, their lists outlive its moves.
+    fn is_view_bound(&self) -> bool {
+        true
+    }
+
     /// Sizes buffers and uploads parameters. No clock counts it. After an error, do not draw the
     /// frame with this strategy.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError>;

@@ -1,6 +1,9 @@
 //! The device. A program opens it once; everything that records passes shares it.
 
-use std::sync::Arc;
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
 
 use crate::{AssignError, compiled::Compiled};
 
@@ -14,6 +17,22 @@ pub struct Gpu {
     /// Its adapter.
     pub info: wgpu::AdapterInfo,
     pub(crate) compiled: Arc<Compiled>,
+    mapped: Arc<MapCounter>,
+}
+
+/// How often the CPU mapped buffers to read them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Mapped {
+    /// Number of maps.
+    pub maps: u64,
+    /// Bytes of all of them.
+    pub bytes: u64,
+}
+
+#[derive(Debug, Default)]
+struct MapCounter {
+    maps: AtomicU64,
+    bytes: AtomicU64,
 }
 
 /// Features that the device uses if the adapter has them: GPU time, and blending of light volumes
@@ -24,7 +43,7 @@ const OPTIONAL_FEATURES: wgpu::Features =
 impl Gpu {
     /// Wraps a renderer's own device.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
-        Self { device, queue, info, compiled: Arc::default() }
+        Self { device, queue, info, compiled: Arc::default(), mapped: Arc::default() }
     }
 
     /// Opens the first adapter in this order: discrete, integrated, virtual, software. If `name` is
@@ -221,7 +240,7 @@ impl Gpu {
     /// Maps a staging buffer after its copy was submitted, and returns its bytes.
     pub fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u8>, AssignError> {
         let (sender, receiver) = std::sync::mpsc::channel();
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
+        self.begin_map(staging, move |result| {
             // The receiver lives until the wait below returns.
             let _ = sender.send(result);
         });
@@ -232,6 +251,25 @@ impl Gpu {
             .map_err(|e| AssignError::Device(e.to_string()))?;
         let view = staging.get_mapped_range(..).map_err(|e| AssignError::Device(e.to_string()))?;
         Ok(view.to_vec())
+    }
+
+    /// Begins to map a whole staging buffer for reading, and counts the map. Every map goes through here.
+    pub(crate) fn begin_map(
+        &self,
+        staging: &wgpu::Buffer,
+        done: impl FnOnce(Result<(), wgpu::BufferAsyncError>) + Send + 'static,
+    ) {
+        self.mapped.maps.fetch_add(1, Ordering::Relaxed);
+        self.mapped.bytes.fetch_add(staging.size(), Ordering::Relaxed);
+        staging.map_async(wgpu::MapMode::Read, .., done);
+    }
+
+    /// The maps so far, by this device and its clones.
+    pub fn mapped(&self) -> Mapped {
+        Mapped {
+            maps: self.mapped.maps.load(Ordering::Relaxed),
+            bytes: self.mapped.bytes.load(Ordering::Relaxed),
+        }
     }
 }
 

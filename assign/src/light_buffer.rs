@@ -3,7 +3,10 @@
 
 mod decode;
 mod given;
+mod gpu_lights;
 mod living;
+mod travel;
+mod wide;
 
 use std::time::{Duration, Instant};
 
@@ -17,8 +20,11 @@ use crate::{
 use given::Given;
 pub(crate) use given::Records;
 pub use given::{MAX_LIGHTS, RejectedLight};
-pub use living::{GpuLights, SlotCounts};
+pub use gpu_lights::GpuLights;
+pub use living::SlotCounts;
 use living::{Living, Source};
+pub use travel::Travel;
+use wide::WideLights;
 
 /// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for
 /// shading.
@@ -43,6 +49,10 @@ pub struct LightBuffer {
     nodes: wgpu::Buffer,
     build_time: Duration,
     living: Option<Living>,
+    wide: Option<WideLights>,
+    travel: Travel,
+    /// Number of orders so far, for the orders of the CPU.
+    generation: u32,
 }
 
 impl LightBuffer {
@@ -70,10 +80,7 @@ impl LightBuffer {
     }
 
     fn empty(gpu: &Gpu, order: LightOrder) -> Result<Self, AssignError> {
-        let living = match order {
-            LightOrder::Gpu { every } => Some(Living::new(every)?),
-            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => None,
-        };
+        let living = Living::new(order)?;
         Ok(Self {
             order,
             given: Given::default(),
@@ -83,6 +90,9 @@ impl LightBuffer {
             nodes: gpu.storage("light nodes", size_of::<LightNode>() as u64)?,
             build_time: Duration::ZERO,
             living,
+            wide: None,
+            travel: Travel::default(),
+            generation: 0,
         })
     }
 
@@ -93,7 +103,9 @@ impl LightBuffer {
         check_count(lights.len())?;
         let mut given = Given::new(lights);
         if let Some(living) = &mut self.living {
-            living.update(gpu, &given)?;
+            // After an error it only counts too much.
+            self.travel.add(self.given.step_to(&given));
+            living.update(gpu, &given, self.travel)?;
             self.given = given;
             self.take_living();
             return Ok(());
@@ -118,6 +130,10 @@ impl LightBuffer {
         gpu.queue.write_buffer(&self.emissions, 0, emission_bytes);
         gpu.queue.write_buffer(&self.shapes, 0, shape_bytes);
         gpu.queue.write_buffer(&self.nodes, 0, node_bytes);
+        if self.given.indices != given.indices {
+            self.generation = self.generation.wrapping_add(1);
+        }
+        self.travel.add(self.given.step_to(&given));
         self.given = given;
         self.build_time = build_time;
         Ok(())
@@ -142,7 +158,8 @@ impl LightBuffer {
                 accepted: "gpu or gpuN, for lights in the renderer's own buffers".into(),
             });
         };
-        living.update_from_gpu(gpu, lights)?;
+        self.travel.add(lights.step_m());
+        living.update_from_gpu(gpu, lights, self.travel)?;
         self.given = Given { kinds: lights.kinds, ..Given::default() };
         self.take_living();
         Ok(())
@@ -172,21 +189,26 @@ impl LightBuffer {
         if let Some(living) = &self.living {
             living.record(passes);
         }
+        if let Some(wide) = &self.wide {
+            wide.record(passes);
+        }
     }
 
     /// Number of slots that strategies see: the accepted lights. With [`LightOrder::Gpu`] there may
     /// be empty slots among them, and for lights from the GPU it is the most lights that fit.
     pub fn count(&self) -> u32 {
-        match &self.living {
-            Some(living) => living.slots(),
-            None => self.given.lights.len() as u32,
+        match (&self.living, &self.wide) {
+            (Some(living), _) => living.slots(),
+            (None, Some(wide)) => wide.slots(),
+            (None, None) => self.given.lights.len() as u32,
         }
     }
 
     /// The number of slots in use, a `u32` at the start of this buffer, if only the GPU knows it.
     /// It may be copied from.
     pub fn live_count(&self) -> Option<&wgpu::Buffer> {
-        self.living.as_ref().and_then(Living::live_count)
+        let wide = || self.wide.as_ref().and_then(WideLights::live_count);
+        self.living.as_ref().and_then(Living::live_count).or_else(wide)
     }
 
     /// The accepted lights that the CPU knows. Their order is that of the slots, except with
@@ -229,12 +251,30 @@ impl LightBuffer {
 
     /// Changes with every new order of the lights. Lists of an earlier order name other lights.
     pub fn order_generation(&self) -> u32 {
-        self.living.as_ref().map_or(0, Living::generation)
+        self.living.as_ref().map_or(self.generation, Living::generation)
+    }
+
+    /// How far the lights have moved since the buffer was made.
+    pub fn travel(&self) -> Travel {
+        self.travel
     }
 
     /// Bytes that the last [`update`](Self::update) uploaded with [`LightOrder::Gpu`].
     pub fn uploaded_bytes(&self) -> u64 {
         self.living.as_ref().map_or(0, Living::uploaded_bytes)
+    }
+
+    /// Bytes of its buffers on the GPU. Those of the renderer ([`from_gpu`](Self::from_gpu)) are not
+    /// included.
+    pub fn memory_bytes(&self) -> u64 {
+        if let Some(living) = &self.living {
+            return living.bytes();
+        }
+        if let Some(wide) = &self.wide {
+            return wide.bytes();
+        }
+        let buffers = [&self.spheres, &self.emissions, &self.shapes, &self.nodes];
+        buffers.into_iter().map(wgpu::Buffer::size).sum()
     }
 
     /// The faulty lights that [`update`](Self::update) omitted.
@@ -254,10 +294,14 @@ impl LightBuffer {
 
     /// The levels of the hierarchy.
     pub(crate) fn levels(&self) -> NodeLevels {
-        match self.living.as_ref().and_then(Living::buffers) {
-            Some((sorter, _)) => sorter.levels(),
-            None => NodeLevels::over(self.count()),
-        }
+        NodeLevels::over(self.capacity())
+    }
+
+    /// The most lights for which there is room in the hierarchy.
+    fn capacity(&self) -> u32 {
+        let living =
+            self.living.as_ref().and_then(Living::buffers).map(|(sorter, _)| sorter.capacity());
+        living.or(self.wide.as_ref().map(WideLights::capacity)).unwrap_or_else(|| self.count())
     }
 
     /// World-space box around all supports, metres; `None` without lights. For lights from the GPU

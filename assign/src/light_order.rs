@@ -22,13 +22,19 @@ pub enum LightOrder {
     /// The leaves, depth first, of a bounding volume hierarchy over the lights' supports. The CPU
     /// builds it, so it suits lights that do not move.
     Bvh,
-    /// By the Morton code of the lights' positions, 8 bits per axis. The GPU sorts the lights and
-    /// builds the hierarchy in every frame, on the clock: see
-    /// [`LightBuffer::record`](crate::LightBuffer::record).
+    /// By a code of the lights' positions. The GPU sorts the lights and builds the hierarchy, on the
+    /// clock: see [`LightBuffer::record`](crate::LightBuffer::record).
     Gpu {
         /// The lights are sorted anew in every `every`th frame. In the frames between, the order is
         /// that of earlier positions, and the boxes are larger. Lists are complete either way.
         every: u32,
+    },
+    /// As [`Gpu`](Self::Gpu), but the lights are sorted anew as soon as their boxes may have grown by a
+    /// share of the side that the boxes of 64 evenly spread lights have. How far lights moved
+    /// ([`LightBuffer::travel`](crate::LightBuffer::travel)) bounds the growth.
+    GpuGrown {
+        /// The share, in percent; at least 1.
+        percent: u32,
     },
 }
 
@@ -37,11 +43,18 @@ pub enum LightOrder {
 const MOST_COINCIDENT: usize = 20_000;
 
 impl LightOrder {
+    /// Whether the GPU sorts the lights.
+    pub fn is_on_gpu(self) -> bool {
+        matches!(self, Self::Gpu { .. } | Self::GpuGrown { .. })
+    }
+
     /// The lights' indices in this order.
     pub(crate) fn indices(self, lights: &[Light]) -> Vec<u32> {
         match self {
             // The GPU sorts them.
-            Self::Given | Self::Gpu { .. } => (0..lights.len() as u32).collect(),
+            Self::Given | Self::Gpu { .. } | Self::GpuGrown { .. } => {
+                (0..lights.len() as u32).collect()
+            }
             Self::Morton => morton(lights),
             Self::Bvh => bvh(lights),
         }
@@ -148,6 +161,7 @@ impl fmt::Display for LightOrder {
             Self::Bvh => f.write_str("bvh"),
             Self::Gpu { every: 1 } => f.write_str("gpu"),
             Self::Gpu { every } => write!(f, "gpu{every}"),
+            Self::GpuGrown { percent } => write!(f, "gpu{percent}%"),
         }
     }
 }
@@ -157,19 +171,26 @@ impl FromStr for LightOrder {
 
     fn from_str(text: &str) -> Result<Self, AssignError> {
         let lower = text.to_lowercase();
-        let frames = lower.strip_prefix("gpu").map(|frames| match frames {
-            "" => Some(1),
-            _ => frames.parse().ok().filter(|&every: &u32| every > 0),
+        let number = |digits: &str| {
+            let is_plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+            digits.parse().ok().filter(|&number: &u32| is_plain && number > 0)
+        };
+        let gpu = lower.strip_prefix("gpu").and_then(|rest| match rest.strip_suffix('%') {
+            _ if rest.is_empty() => Some(Self::Gpu { every: 1 }),
+            Some(percent) => Some(Self::GpuGrown { percent: number(percent)? }),
+            None => Some(Self::Gpu { every: number(rest)? }),
         });
-        match (lower.as_str(), frames.flatten()) {
+        match (lower.as_str(), gpu) {
             ("given", _) => Ok(Self::Given),
             ("morton", _) => Ok(Self::Morton),
             ("bvh", _) => Ok(Self::Bvh),
-            (_, Some(every)) => Ok(Self::Gpu { every }),
+            (_, Some(order)) => Ok(order),
             _ => Err(AssignError::Parameter {
                 field: "light order".into(),
                 value: text.into(),
-                accepted: "given, morton, bvh, gpu, or gpuN for a sort in every Nth frame".into(),
+                accepted: "given, morton, bvh, gpu, gpuN for a sort in every Nth frame, or gpuN% for one as \
+                           soon as boxes may have grown by N percent"
+                    .into(),
             }),
         }
     }
@@ -205,10 +226,10 @@ mod tests {
 
     #[test]
     fn names_are_read_back() {
-        for name in ["given", "morton", "bvh", "gpu", "gpu8"] {
+        for name in ["given", "morton", "bvh", "gpu", "gpu8", "gpu25%"] {
             assert_eq!(name.parse::<LightOrder>().unwrap().to_string(), name);
         }
-        for wrong in ["gpu0", "gpu-1", "gpux", "hilbert", ""] {
+        for wrong in ["gpu0", "gpu-1", "gpu+8", "gpu0%", "gpu%", "gpux", "hilbert", ""] {
             let error = wrong.parse::<LightOrder>().unwrap_err().to_string();
             assert!(error.contains("gpuN"), "{error}");
         }

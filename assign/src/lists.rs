@@ -153,6 +153,7 @@ impl LightLists {
         self.pool_capacity = self.pool_capacity.min(entries);
         // Forces the next `prepare` to lay the buffers out again.
         self.light_capacity = 0;
+        self.expire();
     }
 
     /// Keeps only the first `lights` of each list. **Lossy**: it drops the others, as renderers
@@ -160,6 +161,7 @@ impl LightLists {
     /// becomes all lights.
     pub fn cap_lists(&mut self, lights: u32) {
         self.list_cap = lights;
+        self.expire();
     }
 
     /// Marks the lists as outdated. A strategy that keeps lists over frames

@@ -67,7 +67,7 @@ impl<T: Pod> Readback<T> {
         for (buffer, state) in &mut self.slots {
             if let State::Recorded(number) = *state {
                 let (sender, receiver) = channel();
-                buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+                gpu.begin_map(buffer, move |result| {
                     // The receiver is gone if the lists were dropped meanwhile.
                     let _ = sender.send(result.is_ok());
                 });

@@ -50,6 +50,10 @@ impl Assignment for Reuse {
         self.inner.needs()
     }
 
+    fn is_view_bound(&self) -> bool {
+        self.inner.is_view_bound()
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         self.inner.prepare(gpu, frame)?;
         let lists = self.inner.lists();

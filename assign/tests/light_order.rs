@@ -1,4 +1,4 @@
-//! The GPU's order of lights: it is a permutation, stable, the same on every run, and by Morton code; its
+//! The GPU's order of lights: it is a permutation, stable, the same on every run, and by code; its
 //! boxes hold the lights below them; faulty lights light nothing.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -32,35 +32,53 @@ fn record(gpu: &Gpu, buffer: &LightBuffer) {
     gpu.queue.submit([encoder.finish()]);
 }
 
-/// The CPU's twin of the key: 8 bits per axis.
-fn key(light: &Light, low: Vec3, high: Vec3) -> u32 {
-    let cells_per_m = 255.999 / (high - low).max_element();
-    let cell = ((light.position - low) * cells_per_m).clamp(Vec3::ZERO, Vec3::splat(255.0));
-    let spread = |v: f32| (0..8).fold(0, |bits, bit| bits | ((v as u32 >> bit) & 1) << (3 * bit));
-    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+/// The axes along which a box is halved: each time the longest, 8 times at most.
+fn halvings(size: Vec3, bits: u32) -> Vec<usize> {
+    let (mut side, mut times) = (size, [0; 3]);
+    let mut axes = Vec::new();
+    for _ in 0..bits {
+        let longest = |a: &usize, b: &usize| side[*a].total_cmp(&side[*b]);
+        let axis = (0..3).filter(|&axis| times[axis] < 8).max_by(longest).unwrap();
+        side[axis] /= 2.0;
+        times[axis] += 1;
+        axes.push(axis);
+    }
+    axes
 }
 
-/// Bits of the code that decide the order of so many lights.
-fn deciding(count: usize) -> u32 {
-    match count {
-        0..=1638 => 0x00ff_fff8,
-        1639..=52_428 => 0x00ff_ff00,
-        _ => 0x00ff_ffff,
-    }
+/// The CPU's twin of the code: which half of each halving the position lies in.
+fn key(light: &Light, (low, high): (Vec3, Vec3), axes: &[usize]) -> u32 {
+    let mut cells = [0, 1, 2].map(|axis| {
+        let bits = axes.iter().filter(|&&a| a == axis).count();
+        let cells = ((1 << bits) as f32).next_down();
+        let per_m = cells / (high - low)[axis];
+        // The highest bit of the cell is the first halving.
+        ((light.position - low)[axis] * per_m) as u32 * (1 << (31 - bits))
+    });
+    axes.iter().fold(0, |key, &axis| {
+        let upper = cells[axis] >> 30 & 1;
+        cells[axis] <<= 1;
+        key << 1 | upper
+    })
+}
+
+/// Bits of the code of so many lights; there is room for a quarter more.
+fn bits(count: u32) -> u32 {
+    if count * 5 / 4 <= 16_384 { 8 } else { 16 }
 }
 
 #[test]
-fn lights_are_sorted_by_morton_code_and_equal_codes_stay_in_order() {
+fn lights_are_sorted_by_their_codes_and_equal_codes_stay_in_order() {
     let gpu = gpu();
-    for count in [0, 1, 2, 63, 64, 65, 1000, 1638, 1700, 2049, 5000, 20_000, 70_000] {
+    for count in [0, 1, 2, 63, 64, 65, 1000, 1638, 1700, 13_107, 13_108, 20_000, 70_000] {
         let given = lights(count, 1);
         let buffer = LightBuffer::ordered(&gpu, &given, LightOrder::Gpu { every: 1 }).unwrap();
         record(&gpu, &buffer);
         let sorted = buffer.read(&gpu).unwrap();
         let (low, high) = buffer.position_bounds().unwrap_or_default();
         let mut expected = given.clone();
-        let mask = deciding(given.len());
-        expected.sort_by_key(|light| key(light, low, high) & mask);
+        let axes = halvings(high - low, bits(count));
+        expected.sort_by_key(|light| key(light, (low, high), &axes));
         assert_eq!(sorted.len(), expected.len());
         for (slot, (found, expected)) in sorted.iter().zip(&expected).enumerate() {
             assert_eq!(found, expected, "slot {slot} of {count}");
@@ -75,6 +93,33 @@ fn lights_are_sorted_by_morton_code_and_equal_codes_stay_in_order() {
         record(&gpu, &buffer);
         assert_eq!(buffer.read(&gpu).unwrap(), sorted, "a second record changes nothing");
     }
+}
+
+/// A capacity for which a lane of the digit sum has more than one block, and the code has 24 bits. The
+/// first sort has all places, since none was sorted before.
+#[test]
+fn a_large_capacity_is_sorted_too() {
+    let gpu = gpu();
+    let capacity = 4_194_305;
+    let given = lights(3000, 1);
+    let mut own = Own::new(&gpu, &given);
+    for (buffer, bytes) in [(&mut own.spheres, 16), (&mut own.emissions, 16)] {
+        let larger = gpu.storage("own lights", bytes * u64::from(capacity)).unwrap();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &larger, 0, buffer.size());
+        gpu.queue.submit([encoder.finish()]);
+        *buffer = larger;
+    }
+    let described = own.lights(capacity);
+    let buffer = LightBuffer::from_gpu(&gpu, &described, 1).unwrap();
+    record(&gpu, &buffer);
+    let sorted = buffer.read(&gpu).unwrap();
+    let axes = halvings(described.bounds.1 - described.bounds.0, 24);
+    let mut expected = given;
+    expected.sort_by_key(|light| key(light, described.bounds, &axes));
+    assert_eq!(sorted.len(), expected.len());
+    let names = |lights: &[Light]| -> Vec<_> { lights.iter().map(|l| l.intensity).collect() };
+    assert_eq!(names(&sorted), names(&expected));
 }
 
 /// Checks that each box of level 1 holds its lights, and each box of the levels above its children.
@@ -142,6 +187,33 @@ fn a_sort_that_was_not_recorded_is_made_up_for() {
 }
 
 #[test]
+fn lights_are_sorted_as_soon_as_boxes_may_have_grown() {
+    let gpu = gpu();
+    let mut given = lights(1000, 1);
+    let order = "gpu25%".parse().unwrap();
+    let mut buffer = LightBuffer::ordered(&gpu, &given, order).unwrap();
+    record(&gpu, &buffer);
+    // A box of about 102 m has cubes of 41 m with 64 lights each: a quarter is 10 m, 5 m at each end.
+    let mut sorts = Vec::new();
+    for _ in 0..12 {
+        let before = buffer.order_generation();
+        for light in &mut given {
+            light.position += Vec3::new(0.9, 0.0, 0.0);
+        }
+        buffer.update(&gpu, &given).unwrap();
+        record(&gpu, &buffer);
+        sorts.push(buffer.order_generation() - before);
+    }
+    assert_eq!(sorts, [0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1]);
+    given[3].intensity = Vec3::ZERO;
+    buffer.update(&gpu, &given).unwrap();
+    given[3].intensity = Vec3::ONE;
+    let before = buffer.order_generation();
+    buffer.update(&gpu, &given).unwrap();
+    assert_eq!(buffer.order_generation() - before, 1, "a light that becomes bright");
+}
+
+#[test]
 fn only_changed_lights_are_uploaded() {
     let gpu = gpu();
     let mut given = lights(10_000, 1);
@@ -190,6 +262,7 @@ impl Own {
             kinds: LightKinds::default(),
             bounds: (Vec3::ZERO, Vec3::splat(103.0)),
             radius_max_m: 4.0,
+            step_max_m: None,
         }
     }
 }
@@ -239,6 +312,46 @@ fn faulty_lights_from_the_gpu_light_nothing_and_are_counted() {
 }
 
 #[test]
+fn lights_that_go_further_than_stated_are_faulty_until_the_next_sort() {
+    let gpu = gpu();
+    let mut given = lights(300, 1);
+    given.iter_mut().for_each(|light| light.position.z *= 0.9);
+    given[7].intensity = Vec3::ZERO;
+    let own = Own::new(&gpu, &given);
+    let described = GpuLights { step_max_m: Some(0.2), ..own.lights(300) };
+    let mut buffer = LightBuffer::from_gpu(&gpu, &described, 4).unwrap();
+    record(&gpu, &buffer);
+    let mut faulty = Vec::new();
+    for _ in 1..6 {
+        // All move by 0.15 m, light 3 by 0.3 m.
+        for (ix, light) in given.iter_mut().enumerate() {
+            light.position.z += if ix == 3 { 0.3 } else { 0.15 };
+        }
+        // It becomes bright, as a new light does.
+        given[7].intensity = Vec3::ONE;
+        let next = Own::new(&gpu, &given);
+        gpu.queue.write_buffer(&own.emissions, 0, &gpu.read(&next.emissions, 300 * 16).unwrap());
+        gpu.queue.write_buffer(&own.spheres, 0, &gpu.read(&next.spheres, 300 * 16).unwrap());
+        buffer.update_from_gpu(&gpu, &described).unwrap();
+        record(&gpu, &buffer);
+        faulty.push(buffer.read_counts(&gpu).unwrap().unwrap().faulty);
+    }
+    // The fourth of these frames sorts.
+    assert_eq!(faulty, [2, 2, 2, 0, 1]);
+    // Lights that were not drawn in a frame may have moved twice as far.
+    for light in &mut given {
+        light.position.z += 0.35;
+    }
+    given[3].position.z -= 0.35;
+    let next = Own::new(&gpu, &given);
+    gpu.queue.write_buffer(&own.spheres, 0, &gpu.read(&next.spheres, 300 * 16).unwrap());
+    buffer.update_from_gpu(&gpu, &described).unwrap();
+    buffer.update_from_gpu(&gpu, &described).unwrap();
+    record(&gpu, &buffer);
+    assert_eq!(buffer.read_counts(&gpu).unwrap().unwrap().faulty, 1, "light 3 stays faulty");
+}
+
+#[test]
 fn faulty_descriptions_are_refused() {
     let gpu = gpu();
     let own = Own::new(&gpu, &lights(100, 1));
@@ -255,6 +368,8 @@ fn faulty_descriptions_are_refused() {
         ("bounds", GpuLights { bounds: (Vec3::ONE, Vec3::ZERO), ..sound }),
         ("radius_max_m", GpuLights { radius_max_m: 0.0, ..sound }),
         ("radius_max_m", GpuLights { radius_max_m: f32::NAN, ..sound }),
+        ("step_max_m", GpuLights { step_max_m: Some(-1.0), ..sound }),
+        ("step_max_m", GpuLights { step_max_m: Some(f32::NAN), ..sound }),
     ] {
         let error = LightBuffer::from_gpu(&gpu, &faulty, 1).unwrap_err().to_string();
         assert!(error.contains(&format!("lights from the GPU: {field}")), "{error}");

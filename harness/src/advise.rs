@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
         let stage = bench.stage(&args.stage)?;
         let all: Vec<u32> = (0..poses.unwrap_or(0)).collect();
         if let Some(why) = untested(&gpu, stage, &all, poses.unwrap_or(0))? {
-            let why = why.words(u64::from(stage.lights.count()), poses.is_some());
+            let why = why.words(stage.light_count(), poses.is_some());
             let message = format!("advise: no advice for this view: {why}");
             return Err(CliError::new(message + " (--camera, --lights)").into());
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use assign::{AssignError, Gpu, LightOrder};
+use assign::{AssignError, Gpu};
 use shading::{Cut, Mode};
 
 use crate::{
@@ -82,8 +82,9 @@ pub(crate) fn check_motion(args: &StageArgs) -> Result<(), CliError> {
         return Err(CliError::out_of_range("--motion", "file", accepted));
     }
     let order = args.light_order();
-    if args.motion.is_on_gpu() && !matches!(order, LightOrder::Gpu { .. }) {
-        let accepted = "gpu or gpuN with --moved-by gpu, because the CPU does not know the lights";
+    if args.motion.is_on_gpu() && !order.is_on_gpu() {
+        let accepted =
+            "gpu, gpuN or gpuN% with --moved-by gpu, because the CPU does not know the lights";
         return Err(CliError::out_of_range("--light-order", &order.to_string(), accepted));
     }
     Ok(())
@@ -192,7 +193,7 @@ pub(crate) fn check_area_options(args: &CompareArgs, stage: &Stage) -> Result<()
         ("--area-model", args.area_model.map(|model| model.to_string())),
         ("--influence", args.stage.influence.map(|least| least.to_string())),
     ];
-    let has_areas = stage.lights.kinds().areas || stage.lights.count() == 0;
+    let has_areas = stage.lights.kinds().areas || stage.light_count() == 0;
     match given.into_iter().find_map(|(option, value)| Some((option, value?))) {
         Some((option, value)) if !has_areas => {
             let accepted =

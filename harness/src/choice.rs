@@ -1,6 +1,6 @@
 //! A strategy that a command line asks for, ready to be made.
 
-use assign::{AssignError, Assignment, FrustumTests, Gpu, LightSource, Reuse};
+use assign::{AssignError, FrustumTests, Gpu, Keep, LightSource, Reuse};
 use assign_clustered::SpecularCut;
 use shading::Mode;
 
@@ -56,13 +56,14 @@ impl Choice {
                 strategy.lists_mut().cap_lists(most);
             }
         }
-        Ok(match (method, options.reuse) {
-            (Method::Lists { strategy, early_exit }, Some(frames)) => {
-                let strategy: Box<dyn Assignment> = Box::new(Reuse::new(strategy, frames)?);
-                Method::Lists { strategy, early_exit }
-            }
-            (method, _) => method,
-        })
+        let Method::Lists { mut strategy, early_exit } = method else { return Ok(method) };
+        if let Some(frames) = options.keep {
+            strategy = Box::new(Keep::new(gpu, strategy, frames)?);
+        }
+        if let Some(frames) = options.reuse {
+            strategy = Box::new(Reuse::new(strategy, frames)?);
+        }
+        Ok(Method::Lists { strategy, early_exit })
     }
 
     /// The canonical id.
@@ -92,7 +93,8 @@ impl Choice {
 
     /// Whether lists are used for several frames.
     pub fn is_reused(&self) -> bool {
-        self.id.options().reuse.is_some_and(|frames| frames > 1)
+        let options = self.id.options();
+        [options.reuse, options.keep].into_iter().flatten().any(|frames| frames > 1)
     }
 
     /// Whether it cuts the samples into groups, and so has something to assign.

@@ -161,7 +161,7 @@ impl Run<'_> {
         if self.args.path {
             self.reset()?;
         }
-        let lights = u64::from(self.stage.lights.count());
+        let lights = self.stage.light_count();
         if let Some(why) = self.untested.map(|why| why.words(lights, self.args.path)) {
             let warning = format!("NOTHING WAS TESTED: {why}, so nothing here is exact or ranked");
             say(format!("warning  {warning}"));

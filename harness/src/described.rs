@@ -32,7 +32,7 @@ pub(crate) fn describe(stage: &Stage) {
         stage.scene.name,
         stage.scene.triangle_count(),
         stage.scene.models.len(),
-        stage.lights.count(),
+        stage.light_count(),
         match stage.suns.as_slice().len() {
             0 => String::new(),
             1 => ", 1 sun".to_owned(),

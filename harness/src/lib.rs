@@ -32,6 +32,7 @@ pub mod out_folder;
 pub mod painter;
 pub mod pass_samples;
 pub mod pictures;
+mod prefixed;
 pub mod range_errors;
 pub mod record;
 pub mod report;

@@ -153,7 +153,7 @@ impl<'a> Contest<'a> {
     /// lists against `truth`.
     pub fn check(
         &mut self,
-        stage: &Stage,
+        stage: &mut Stage,
         method: usize,
         truth: Option<&LightBvh<'_>>,
     ) -> Result<Checked, HarnessError> {
@@ -212,14 +212,14 @@ impl<'a> Contest<'a> {
     }
 
     /// One frame off the clock. Returns whether no list of the frame before overflowed.
-    fn draw(&mut self, stage: &Stage, method: usize) -> Result<bool, HarnessError> {
+    fn draw(&mut self, stage: &mut Stage, method: usize) -> Result<bool, HarnessError> {
         draw_unclocked(&self.gpu, stage, self.mode, &mut self.contenders[method].painter)
     }
 
     /// Draws all methods in turn until each was drawn often enough and the device is warm: a GPU's clock
     /// falls while the CPU compares images. The time of a round of all methods tells when it has risen,
     /// and [`WarmUp`] gives up after four seconds.
-    fn warm_up(&mut self, stage: &Stage, timed: &[usize]) -> Result<(), HarnessError> {
+    fn warm_up(&mut self, stage: &mut Stage, timed: &[usize]) -> Result<(), HarnessError> {
         let mut warm_up = WarmUp::new(self.gpu.is_software());
         let mut drawn = 0;
         while drawn < self.plan.warmup || (drawn > 0 && !warm_up.is_warm()) {
@@ -236,7 +236,7 @@ impl<'a> Contest<'a> {
     }
 
     /// One frame on the clock.
-    fn frame(&mut self, stage: &Stage, method: usize) -> Result<(), HarnessError> {
+    fn frame(&mut self, stage: &mut Stage, method: usize) -> Result<(), HarnessError> {
         let contender = &mut self.contenders[method];
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
         let mut times = self.clock.finish_frame()?;
@@ -269,24 +269,23 @@ fn read(gpu: &Gpu, stage: &Stage) -> Result<HdrImage, HarnessError> {
 /// the GPU knows are read back. Leaves the stage as it was, to be prepared again.
 pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrImage, HarnessError> {
     let unbounded = |light: &Light| Light { range_m: MAX_RANGE_M, ..*light };
-    let known = known_lights(gpu, &stage.lights)?;
-    let lights: Vec<Light> = known.iter().map(unbounded).collect();
-    drop(known);
+    let lights: Vec<Light> = known_lights(gpu, &stage.lights)?.iter().map(unbounded).collect();
     let bounded = std::mem::replace(&mut stage.lights, LightBuffer::new(gpu, &lights)?);
+    let bounce = stage.bounce.take();
     let mut method = Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false };
     let image = stage.prepare().and_then(|()| {
         let mut painter = Painter::new(stage, &mut method, mode, Cut::Hard)?;
         draw_unclocked(gpu, stage, mode, &mut painter)?;
         read(gpu, stage)
     });
-    stage.lights = bounded;
+    (stage.lights, stage.bounce) = (bounded, bounce);
     image
 }
 
 /// Draws one frame and waits for it. Returns whether no list of the frame before overflowed.
 fn draw_unclocked(
     gpu: &Gpu,
-    stage: &Stage,
+    stage: &mut Stage,
     mode: Mode,
     painter: &mut Painter<'_>,
 ) -> Result<bool, HarnessError> {

@@ -31,6 +31,8 @@ pub struct Moving {
     law: Law,
     /// The frame that the lights show.
     frame: Option<u32>,
+    /// The frame whose lights the buffer last took.
+    shown: Option<u32>,
     /// Lights of each kind at rest.
     kinds: [u64; 5],
     mover: Mover,
@@ -106,7 +108,7 @@ impl Moving {
                 return Err(CliError::out_of_range("--moved-by", "gpu", accepted).into());
             }
         };
-        Ok(Some(Self { law, frame: None, kinds, mover }))
+        Ok(Some(Self { law, frame: None, shown: None, kinds, mover }))
     }
 
     /// Brings the lights of a frame to the GPU. A kernel's work is submitted, off the clock.
@@ -133,13 +135,20 @@ impl Moving {
             }
             Mover::Gpu(lights) => {
                 lights.prepare(gpu, time_s);
+                let step_m = match (&self.law, self.shown) {
+                    (Law::Motion(motion), Some(before)) => {
+                        motion.farthest_ball_m(before as f32 / FRAMES_PER_S, time_s)
+                    }
+                    _ => None,
+                };
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 lights.record(&mut EncoderPasses { encoder: &mut encoder });
                 gpu.queue.submit([encoder.finish()]);
-                buffer.update_from_gpu(gpu, &lights.lights())?;
+                buffer.update_from_gpu(gpu, &lights.lights_within(step_m))?;
             }
         }
         self.frame = Some(frame);
+        self.shown = Some(frame);
         Ok(())
     }
 

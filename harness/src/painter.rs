@@ -1,9 +1,12 @@
 //! A strategy with the pipelines that draw its frames.
 
-use assign::{Assignment, Gpu, LightBuffer, LightOrder, Passes};
+use assign::{Assignment, Gpu, LightBuffer, Passes};
 use shading::{Cut, Lighting, LightingOptions, Mode, RasterSpheres, record_before_lighting};
 
-use crate::{error::HarnessError, moving::order_off_clock, stage::Stage, strategy::Method};
+use crate::{
+    error::HarnessError, moving::order_off_clock, prefixed::Prefixed, stage::Stage,
+    strategy::Method, vpls::Bounce,
+};
 
 /// A strategy with the pipelines that draw its frames.
 pub enum Painter<'a> {
@@ -63,54 +66,88 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// Records one frame: geometry, the strategy's passes, lighting. Returns whether all lists of the previous
-    /// frame did fit.
+    /// Prepares and records one frame. Returns whether all lists of the previous frame did fit.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
-        stage: &Stage,
+        stage: &mut Stage,
         mode: Mode,
         passes: &mut dyn Passes,
     ) -> Result<bool, HarnessError> {
-        let Stage { renderer, view, lights, .. } = stage;
+        let fitted = self.prepare(gpu, stage)?;
+        self.record(gpu, stage, mode, passes)?;
+        Ok(fitted)
+    }
+
+    /// Allocates and uploads what a frame needs, off the clock. Returns whether all lists of the previous frame
+    /// did fit.
+    pub fn prepare(&mut self, gpu: &Gpu, stage: &mut Stage) -> Result<bool, HarnessError> {
+        let Stage { renderer, view, lights, bounce, .. } = stage;
+        if let (Some(bounce), Self::Lists { .. } | Self::RasterSphere(_)) = (bounce, &self) {
+            bounce.prepare(gpu)?;
+        }
+        let Self::Lists { strategy, .. } = self else { return Ok(true) };
+        strategy.prepare(gpu, &renderer.frame(view, lights))?;
+        // These are the counters of the previous frame; `prepare` grew the pool to what it asked for.
+        Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
+    }
+
+    /// Records one frame: the lights, geometry, the strategy's passes, lighting. Only lights that the CPU makes
+    /// may be ordered by a submission of their own.
+    pub fn record(
+        &mut self,
+        gpu: &Gpu,
+        stage: &mut Stage,
+        mode: Mode,
+        passes: &mut dyn Passes,
+    ) -> Result<(), HarnessError> {
+        let Stage { renderer, view, lights, bounce, .. } = stage;
         match self {
             Self::Lists { strategy, lighting } => {
+                record_lights(gpu, lights, bounce, strategy.needs().hierarchy, passes)?;
                 let frame = renderer.frame(view, lights);
-                strategy.prepare(gpu, &frame)?;
-                order_lights(gpu, lights, strategy.needs().hierarchy, passes);
                 record_before_lighting(renderer, mode, *strategy, &frame, passes);
                 lighting.record(renderer, view, *strategy, passes)?;
-                // These are the counters of the previous frame; `prepare` grew the pool to what it asked for.
-                Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
             }
             Self::RasterSphere(spheres) => {
-                order_lights(gpu, lights, false, passes);
+                record_lights(gpu, lights, bounce, false, passes)?;
                 renderer.record_depth(view, passes);
                 match mode {
                     Mode::DeferredIds => renderer.record_gbuffer_with_ids(view, passes),
                     _ => renderer.record_gbuffer(view, passes),
                 }
                 spheres.record(renderer, view, lights, passes)?;
-                Ok(true)
             }
             Self::Clay => {
                 renderer.record_depth(view, passes);
                 renderer.record_clay(view, passes);
-                Ok(true)
             }
         }
+        Ok(())
     }
 }
 
-/// Has the GPU order the lights, if it does so in every frame. Only methods that read the hierarchy need it, and
-/// only they pay for it. For the others it runs off the clock: all methods read the lights in the same order,
-/// so that their images can be compared bit for bit.
-fn order_lights(gpu: &Gpu, lights: &LightBuffer, is_billed: bool, passes: &mut dyn Passes) {
-    match (lights.order(), is_billed) {
-        (LightOrder::Gpu { .. }, true) => lights.record(passes),
-        (LightOrder::Gpu { .. }, false) => order_off_clock(gpu, lights),
-        _ => {}
+/// Makes the lights and has the GPU order them, if it does so in every frame. Only methods that read the
+/// hierarchy need the order, and only they pay for it. All methods read the lights in the same order, so that
+/// their images can be compared bit for bit. So the others order them too: off the clock, or as part of making
+/// the lights, because lights that this frame makes can be ordered only within it.
+fn record_lights(
+    gpu: &Gpu,
+    lights: &LightBuffer,
+    bounce: &mut Option<Bounce>,
+    is_billed: bool,
+    passes: &mut dyn Passes,
+) -> Result<(), HarnessError> {
+    if let Some(bounce) = bounce {
+        bounce.record(passes)?;
     }
+    match (lights.order().is_on_gpu(), is_billed) {
+        (true, true) => lights.record(passes),
+        (true, false) if bounce.is_some() => lights.record(&mut Prefixed::new("vpl-", passes)),
+        (true, false) => order_off_clock(gpu, lights),
+        (false, _) => {}
+    }
+    Ok(())
 }
 
 /// Light volumes.

@@ -85,7 +85,7 @@ pub fn record(
     let Seen { lists, images, unbounded_errors, errors, .. } = seen;
     let truth = lists.truth;
     let known = |value: f64| (seen.compared && value.is_finite()).then_some(value);
-    let count = u64::from(stage.lights.count());
+    let count = stage.light_count();
     let has_lists = lists.bytes > 0;
     let mut record = Record {
         strategy: choice.id().clone(),

@@ -42,7 +42,7 @@ mod untested;
 use serde::{Deserialize, Serialize, Serializer};
 pub use shading::Mode;
 
-pub use bill::{Bill, FrameKind, is_raster_pass, pass_kind};
+pub use bill::{Bill, FrameKind, is_raster_pass, makes_lights, pass_kind};
 pub(crate) use file::remove_temporaries;
 pub use file::{ResultsError, write_atomically};
 pub use image::{Errors, ImageFigures, Images};

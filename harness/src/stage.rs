@@ -1,6 +1,6 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, LightBuffer, LightKind, LightOrder, Suns, View};
+use assign::{Gpu, LightBuffer, LightKind, Suns, View};
 use glam::DVec3;
 use scenes::{Aabb, Dielectric, Scene, primary_light};
 use shading::{AreaModel, Renderer};
@@ -14,7 +14,7 @@ use crate::{
     optics::Optics,
     results::{Planes, Vpls},
     stage_lights::Lit,
-    vpls::VplMaker,
+    vpls::{Bounce, Made, VplMaker},
 };
 
 /// What all strategies of a run share.
@@ -43,6 +43,8 @@ pub struct Stage {
     pub compensation: Option<f32>,
     /// How the virtual point lights were made, if the lights are such.
     pub vpls: Option<Vpls>,
+    /// What makes them in every frame, if they stay on the GPU.
+    pub bounce: Option<Bounce>,
     /// The camera.
     pub view: View,
     /// Notes about the view, one sentence each, such as surfaces that the camera's planes cut away.
@@ -50,6 +52,8 @@ pub struct Stage {
     /// The pipeline.
     pub renderer: Renderer,
     vpl_maker: VplMaker,
+    /// Virtual point lights that the GPU found faulty.
+    faulty_vpls: u32,
     optics: Optics,
     /// The diagonal of the scene's core before it was scaled, metres.
     unscaled_m: f32,
@@ -120,7 +124,9 @@ impl Stage {
             area_model: AreaModel::default(),
             compensation: None,
             vpls: None,
+            bounce: None,
             vpl_maker: VplMaker::default(),
+            faulty_vpls: 0,
             renderer: Renderer::new(gpu, &scene, &view)?,
             scene,
             view,
@@ -152,31 +158,33 @@ impl Stage {
         self.move_lights(0)
     }
 
-    /// Moves the lights to where they are in a frame, if they move.
+    /// Moves the lights to where they are in a frame, if they move. Lights that every frame makes are sorted
+    /// again if their order is old.
     fn move_lights(&mut self, frame: u32) -> Result<(), HarnessError> {
-        match &mut self.moving {
-            Some(moving) => moving.go_to(&self.gpu, frame, &mut self.lights),
-            None => Ok(()),
+        match (&mut self.moving, &self.bounce) {
+            (Some(moving), _) => moving.go_to(&self.gpu, frame, &mut self.lights),
+            (None, Some(bounce)) => Ok(self.lights.update_from_gpu(&self.gpu, &bounce.lights())?),
+            (None, None) => Ok(()),
         }
     }
 
     /// With `--primary` or `--vpls`, replaces the lights by the primary light or by its reflections.
     fn bounce(&mut self, gpu: &Gpu, args: &StageArgs) -> Result<(), HarnessError> {
-        self.vpls = None;
+        (self.vpls, self.bounce, self.faulty_vpls) = (None, None, 0);
         if !args.bounce.is_on() {
             return Ok(());
         }
         let primary = primary_light(&self.scene);
-        let lights = if args.bounce.primary {
-            vec![primary]
-        } else {
-            let made = self.vpl_maker.make(gpu, &self.scene, &self.renderer, primary, args)?;
-            self.vpls = Some(made.figures);
-            made.lights
-        };
         self.own_lights = 0;
-        self.lights = LightBuffer::ordered(gpu, &lights, args.light_order())?;
-        self.note_plain_vpls();
+        if args.bounce.primary {
+            self.lights = LightBuffer::ordered(gpu, &[primary], args.light_order())?;
+            return Ok(());
+        }
+        let Made { lights, bounce, figures, faulty } =
+            self.vpl_maker.make(gpu, &self.scene, &self.renderer, primary, args)?;
+        (self.lights, self.bounce) = (lights, bounce);
+        (self.vpls, self.faulty_vpls) = (Some(figures), faulty);
+        self.note_vpls();
         Ok(())
     }
 
@@ -209,11 +217,15 @@ impl Stage {
         self.view.near_m = self.optics.near_m();
         views.iter_mut().for_each(|view| view.near_m = self.view.near_m);
         self.notes = self.optics.notes(&self.scene, &views);
-        self.note_plain_vpls();
+        self.note_vpls();
     }
 
-    /// Adds a note about materials that virtual point lights simplify.
-    fn note_plain_vpls(&mut self) {
+    /// Adds notes about materials that virtual point lights simplify, and about faulty lights.
+    fn note_vpls(&mut self) {
+        if self.faulty_vpls > 0 {
+            let faulty = self.faulty_vpls;
+            self.notes.push(format!("{faulty} virtual point lights are faulty and light nothing"));
+        }
         if self.vpls.is_some() && self.has_dielectrics() {
             self.notes.push(
                 "surfaces send out virtual point lights as plain dielectrics would: \
@@ -246,8 +258,7 @@ impl Stage {
     /// Time in which the CPU ordered the lights and built the hierarchy over them, ms; `None` if that is part
     /// of the pass `upload`, or the GPU's work.
     pub fn light_build_ms(&self) -> Option<f64> {
-        let is_once =
-            self.moving.is_none() && !matches!(self.lights.order(), LightOrder::Gpu { .. });
+        let is_once = self.moving.is_none() && !self.lights.order().is_on_gpu();
         is_once.then(|| self.lights.build_time().as_secs_f64() * 1e3)
     }
 
@@ -256,12 +267,23 @@ impl Stage {
         self.optics.planes(&self.view)
     }
 
+    /// The number of lights. Lights that frames make were counted once, before the frames.
+    pub fn light_count(&self) -> u64 {
+        match (&self.bounce, &self.vpls) {
+            (Some(_), Some(vpls)) => vpls.kept,
+            _ => u64::from(self.lights.count()),
+        }
+    }
+
     /// Lights of each kind, by name, and suns. Lights that the GPU moves count as at rest.
     pub fn light_kinds(&self) -> [(&'static str, u64); 6] {
-        let kinds = match &self.moving {
+        let mut kinds = match &self.moving {
             Some(moving) => moving.kinds(),
             None => kinds_of(self.lights.lights()),
         };
+        if self.bounce.is_some() {
+            kinds[LightKind::Vpl as usize] = self.light_count();
+        }
         let count = |kind: LightKind| kinds[kind as usize];
         [
             ("point", count(LightKind::Point)),

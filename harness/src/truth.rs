@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use assign::{EncoderPasses, Gpu};
+use assign::{EncoderPasses, Gpu, Light};
 use indicatif::{ProgressBar, ProgressStyle};
 use shading::traced::{
     self, GBufferSamples, Paths, SurfaceSample, TracedScene, Transport, TruthSettings, truth_image,
@@ -22,6 +22,7 @@ use crate::{
     image_errors::{ImagePair, errors, stored},
     machine::machine,
     messages::say,
+    moving::known_lights,
     out_folder::OutFolder,
     results::{Errors, Results, Truth, TruthImage, TruthLevel, Untested, write_atomically},
     sight::untested,
@@ -102,7 +103,7 @@ pub fn render(
     remove_stale(&args.out)?;
     let began = Instant::now();
     let scene = TracedScene::new(&stage.scene);
-    let image = trace(stage, &scene, args)?;
+    let image = trace(&gpu, stage, &scene, args)?;
     let seconds = began.elapsed().as_secs_f64();
     let notes = notes(scene.emissive_count(), args);
     drop(scene);
@@ -115,7 +116,7 @@ pub fn render(
     note_faults(&mut results, stage);
     let why = untested(&gpu, stage, &[], 0)?.filter(|why| *why != Untested::OnlySuns);
     if let Some(why) = why {
-        let why = why.words(u64::from(stage.lights.count()), false);
+        let why = why.words(stage.light_count(), false);
         let warning = format!("NO DIRECT LIGHT: {why}");
         say(format!("warning  {warning}"));
         results.warnings.insert(0, warning);
@@ -153,7 +154,8 @@ fn gbuffer_errors(
     let scene = TracedScene::new(&stage.scene);
     let sample_of = |pixel| samples.sample(pixel, &scene);
     let settings = settings(stage, args, Transport::Unshadowed);
-    let image = lit(stage, &scene, sample_of, settings, "through the G-buffer");
+    let lights = known_lights(gpu, &stage.lights)?;
+    let image = lit((stage, &lights), &scene, sample_of, settings, "through the G-buffer");
     let exposure = truth.radiance.auto_exposure();
     let pair = ImagePair { image: &image.radiance, reference: &truth.radiance, exposure };
     Ok(stored(errors(&pair)))
@@ -161,20 +163,24 @@ fn gbuffer_errors(
 
 /// Direct light, and bounces if the options ask for them.
 fn trace(
+    gpu: &Gpu,
     stage: &Stage,
     scene: &TracedScene<'_>,
     args: &TruthArgs,
 ) -> Result<traced::TruthImage, HarnessError> {
-    let width = stage.view.viewport.width as usize;
-    let sample_of =
-        |pixel| scene.primary(&stage.view, [(pixel % width) as u32, (pixel / width) as u32]);
-    let bounce =
-        || lit(stage, scene, sample_of, settings(stage, args, Transport::Bounce), "bounces");
+    let view = stage.view;
+    let width = view.viewport.width as usize;
+    let sample_of = |pixel| scene.primary(&view, [(pixel % width) as u32, (pixel / width) as u32]);
+    let lights = &*known_lights(gpu, &stage.lights)?;
+    let traced = |transport, message| {
+        lit((stage, lights), scene, sample_of, settings(stage, args, transport), message)
+    };
+    let bounce = || traced(Transport::Bounce, "bounces");
     if args.indirect {
         return Ok(bounce());
     }
     let direct = if args.shadows { Transport::Direct } else { Transport::Unshadowed };
-    let image = lit(stage, scene, sample_of, settings(stage, args, direct), "direct light");
+    let image = traced(direct, "direct light");
     match args.bounces {
         0 => Ok(image),
         _ => Ok(image.plus(&bounce())?),
@@ -194,9 +200,9 @@ fn settings(stage: &Stage, args: &TruthArgs, transport: Transport) -> TruthSetti
     }
 }
 
-/// Evaluates the stage's lights at samples, with a progress bar.
+/// Evaluates lights at the stage's samples, with a progress bar.
 fn lit(
-    stage: &Stage,
+    (stage, lights): (&Stage, &[Light]),
     scene: &TracedScene<'_>,
     sample_of: impl Fn(usize) -> Option<SurfaceSample> + Sync,
     settings: TruthSettings,
@@ -206,7 +212,6 @@ fn lit(
     let bar = progress_bar(u64::from(viewport.height));
     bar.set_message(message);
     let progress = |done: u32, _| bar.set_position(u64::from(done));
-    let lights = stage.lights.lights();
     let size = [viewport.width, viewport.height];
     let image = truth_image(scene, lights, size, sample_of, settings, &progress);
     bar.finish_and_clear();
@@ -241,7 +246,7 @@ fn keep(
     Ok(TruthImage {
         scene: stage.scene.name.clone(),
         scene_hash: stage.scene_hash.clone(),
-        lights: u64::from(stage.lights.count()),
+        lights: stage.light_count(),
         width: radiance.width,
         height: radiance.height,
         raw: RAW.to_owned(),

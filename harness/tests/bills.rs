@@ -117,10 +117,20 @@ impl Passes for Recorder<'_> {
     }
 }
 
+#[test]
+fn making_the_lights_is_on_no_bill() {
+    for mode in Mode::ALL {
+        for name in ["rsm-depth", "cdi-ranges", "random-ranges", "vpl-keep", "vpl-order"] {
+            assert_eq!(pass_kind(name, mode), PassKind::Other, "{name} in {}", mode.name());
+        }
+        assert_eq!(pass_kind("order", mode), PassKind::Assign);
+    }
+}
+
 /// Names tell which passes rasterise and who pays, in every mode.
 #[test]
 fn passes_are_told_by_their_names() {
-    let (gpu, stage) = stage();
+    let (gpu, mut stage) = stage();
     let ids = ["None", "RasterSphere", "Clay", "T-I/28x28", "T-E/28x28", "SC-E/48x48x40/n6", "M/2"];
     let mut assigned: BTreeMap<(&str, &str), String> = BTreeMap::new();
     for mode in Mode::ALL {
@@ -136,7 +146,7 @@ fn passes_are_told_by_their_names() {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let inner = EncoderPasses { encoder: &mut encoder };
             let mut recorder = Recorder { inner, drawn: Vec::new() };
-            painter.draw(&gpu, &stage, mode, &mut recorder).expect("draws");
+            painter.draw(&gpu, &mut stage, mode, &mut recorder).expect("draws");
             let drawn = recorder.drawn;
             gpu.queue.submit([encoder.finish()]);
             for (name, is_render) in &drawn {

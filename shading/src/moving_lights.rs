@@ -189,7 +189,14 @@ impl MovingLights {
             kinds: self.kinds,
             bounds: self.bounds,
             radius_max_m: self.radius_max_m,
+            step_max_m: None,
         }
+    }
+
+    /// The moved lights, whose balls are those of an earlier time, moved by at most so many metres
+    /// ([`Motion::farthest_ball_m`]).
+    pub fn lights_within(&self, step_max_m: Option<f32>) -> GpuLights<'_> {
+        GpuLights { step_max_m, ..self.lights() }
     }
 
     /// Bytes of all its buffers.

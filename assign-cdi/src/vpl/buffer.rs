@@ -1,7 +1,12 @@
 //! The buffer of VPLs, from the map to the lights.
 
-use assign::{AssignError, Gpu, Light, LightEmission, LightSphere, Passes, Readback};
+use std::mem::offset_of;
+
+use assign::{
+    AssignError, Gpu, GpuLights, Light, LightEmission, LightKinds, LightSphere, Passes, Readback,
+};
 use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
+use glam::Vec3;
 
 use super::{
     choose::{Choose, Chosen},
@@ -155,6 +160,26 @@ impl VplBuffer {
         &self.kept.shapes
     }
 
+    /// The kept lights for [`LightBuffer::from_gpu`](assign::LightBuffer::from_gpu), which needs no read-back. Call it
+    /// after [`prepare`](Self::prepare).
+    ///
+    /// `bounds` is the box of the surfaces that the map shows: lowest and highest corner, world space, metres. Make it a
+    /// little larger, because positions come from rounded depths. A light outside is faulty.
+    pub fn gpu_lights(&self, bounds: (Vec3, Vec3)) -> GpuLights<'_> {
+        GpuLights {
+            spheres: &self.kept.spheres,
+            emissions: &self.kept.emissions,
+            shapes: &self.kept.shapes,
+            count: &self.counts,
+            count_offset: offset_of!(VplCounts, kept) as u64,
+            capacity: self.capacity,
+            kinds: LightKinds { spots: true, areas: false },
+            bounds,
+            radius_max_m: self.settings.max_range_m,
+            step_max_m: None,
+        }
+    }
+
     /// [`VplCounts`] on the GPU.
     pub fn counts(&self) -> &wgpu::Buffer {
         &self.counts
@@ -184,7 +209,7 @@ impl VplBuffer {
         Ok(counts)
     }
 
-    /// The kept lights, in their order. It blocks.
+    /// The kept lights on the CPU, in their order, for tests and figures. It blocks.
     ///
     /// # Errors
     ///

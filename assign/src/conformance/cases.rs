@@ -10,7 +10,7 @@ use super::{
     stage::{IN_THE_OPEN, Rng, Solid, Stage, room},
     views::{self, SIZE},
 };
-use crate::{DepthMapping, Light, View};
+use crate::{DepthMapping, Light, LightShape, View};
 
 /// A named case of the suite.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,7 @@ pub const CASES: &[Case] = &[
         still(r, &default_view(), 400, on_surface)
     }),
     case("lights-at-horizon", "lights that barely rise above a sample's horizon", |r| {
-        still(r, &default_view(), 600, at_horizon)
+        still(r, &default_view(), 600, |r, s, n| and_a_spot(at_horizon(r, s, n)))
     }),
     case("light-at-tile-corner", "large lights that barely reach one sample", grazing),
     case("spots-near-0", "spots of half angles of a degree and less", |r| spots(r, 0.0008, 0.02)),
@@ -61,10 +61,14 @@ pub const CASES: &[Case] = &[
     case("spots-135", "spots of half angle 135 degrees", |r| spots(r, 2.356, 2.357)),
     case("spots-180", "spots of half angles up to 180 degrees", |r| spots(r, 3.1, 3.2)),
     case("area-lights", "rectangles and polygons, faces, corners and edges on", |r| {
-        still(r, &default_view(), 600, |r, s, n| mix(r, s, n, (0.1, 8.0), Kinds::Areas))
+        still(r, &default_view(), 600, |r, s, n| {
+            and_a_spot(mix(r, s, n, (0.1, 8.0), Kinds::Areas))
+        })
     }),
     case("area-lights-grazing", "emitters that barely reach one sample", |r| {
-        still(r, &default_view(), 400, |r, s, n| lights_at(r, s, n, (0.05, 20.0), Kinds::Areas, 1.0))
+        still(r, &default_view(), 400, |r, s, n| {
+            and_a_spot(lights_at(r, s, n, (0.05, 20.0), Kinds::Areas, 1.0))
+        })
     }),
     case("mixed-kinds", "points, spots of every angle, rectangles and polygons", |r| {
         still(r, &default_view(), 600, |r, s, n| mix(r, s, n, (0.1, 8.0), Kinds::Mixed))
@@ -223,6 +227,14 @@ fn at_eye(rng: &mut Rng) -> Plan {
         lights.iter_mut().for_each(|l| l.position = s.view.eye());
         lights
     })
+}
+
+/// Adds a spot. Kernels are compiled for the kinds of the lights, and those for area lights take a software
+/// adapter seconds: with a spot they are the kernels of the mixed cases.
+fn and_a_spot(mut lights: Vec<Light>) -> Vec<Light> {
+    let shape = LightShape::Spot { direction: Vec3::NEG_Y, inner_angle: 0.2, outer_angle: 0.4 };
+    lights.extend(lights.first().map(|light| Light { shape, ..*light }));
+    lights
 }
 
 fn on_surface(rng: &mut Rng, stage: &Stage, count: usize) -> Vec<Light> {

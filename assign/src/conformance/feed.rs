@@ -62,6 +62,7 @@ impl Feed {
             kinds: LightKinds { spots: true, areas: true },
             bounds: self.bounds,
             radius_max_m: self.radius_max_m,
+            step_max_m: None,
         }
     }
 }

@@ -8,41 +8,14 @@ use glam::Vec3;
 use super::{
     decode,
     given::{Given, MAX_LIGHTS, Records},
+    gpu_lights::GpuLights,
+    travel::Travel,
 };
 use crate::{
-    AssignError, Gpu, Light, LightEmission, LightKinds, LightSphere, MAX_RANGE_M, MIN_RANGE_M,
-    Passes,
-    light_sorter::{GivenBuffers, LightSorter, OrderUniform, SlotState},
+    AssignError, Gpu, Light, LightEmission, LightOrder, LightSphere, Passes,
+    light_nodes::NODE_LIGHTS,
+    light_sorter::{GivenBuffers, LightSorter, SlotState},
 };
-
-/// Lights that a renderer's own kernel writes, in its own buffers.
-///
-/// The records are those of [`LightSphere`], [`LightEmission`] and the shape vectors that
-/// [`LightKind`](crate::LightKind) lists. Faulty records light nothing and are counted
-/// ([`LightBuffer::read_counts`](crate::LightBuffer::read_counts)).
-#[derive(Clone, Copy, Debug)]
-pub struct GpuLights<'a> {
-    /// `array<LightSphere>`, usage `STORAGE`.
-    pub spheres: &'a wgpu::Buffer,
-    /// `array<LightEmission>`, usage `STORAGE`.
-    pub emissions: &'a wgpu::Buffer,
-    /// `array<vec4f>`: the shapes that the emissions' indices point to, usage `STORAGE`.
-    pub shapes: &'a wgpu::Buffer,
-    /// The buffer that holds the number of lights, usage `COPY_SRC`. A number above `capacity`
-    /// counts as `capacity`.
-    pub count: &'a wgpu::Buffer,
-    /// Where the number of lights is in `count`, bytes; a multiple of 4.
-    pub count_offset: u64,
-    /// The most lights.
-    pub capacity: u32,
-    /// The kinds of lights that may occur. Shaders are compiled for these; others are faulty.
-    pub kinds: LightKinds,
-    /// A box that holds all positions in every frame: lowest and highest corner, world space,
-    /// metres. A light outside is faulty.
-    pub bounds: (Vec3, Vec3),
-    /// The largest radius of a light's ball, metres. A larger light is faulty.
-    pub radius_max_m: f32,
-}
 
 /// What the GPU found in the slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,8 +42,10 @@ pub(super) enum Source {
 /// Lights that change in every frame.
 #[derive(Debug)]
 pub(super) struct Living {
-    /// The lights are sorted in every `every`th frame.
-    every: u32,
+    /// When the lights are sorted.
+    order: LightOrder,
+    /// How far they had moved at the last sort.
+    sorted_at: Travel,
     /// Frames since the last sort; `None` if the next frame must sort.
     age: Option<u32>,
     /// Number of sorts so far.
@@ -79,6 +54,10 @@ pub(super) struct Living {
     is_expired: bool,
     /// Whether the sort of the last frame that sorts was recorded.
     is_sorted: AtomicBool,
+    /// How far balls may reach beyond those of the last recorded frame, metres.
+    reach_m: f32,
+    /// Whether the frame was recorded.
+    is_recorded: AtomicBool,
     /// Number of lights at the last sort.
     sorted: u32,
     slots: u32,
@@ -91,30 +70,44 @@ pub(super) struct Living {
 const UPLOAD_BLOCK: usize = 1024;
 
 impl Living {
-    pub(super) fn new(every: u32) -> Result<Self, AssignError> {
-        if every == 0 {
+    /// Lights that the GPU sorts; `None` for the orders of the CPU.
+    pub(super) fn new(order: LightOrder) -> Result<Option<Self>, AssignError> {
+        let (field, number) = match order {
+            LightOrder::Gpu { every } => ("frames between two sorts of the lights", every),
+            LightOrder::GpuGrown { percent } => ("growth of boxes, percent", percent),
+            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => return Ok(None),
+        };
+        if number == 0 {
             return Err(AssignError::Parameter {
-                field: "frames between two sorts of the lights".into(),
+                field: field.into(),
                 value: "0".into(),
                 accepted: "1 or more".into(),
             });
         }
-        Ok(Self {
-            every,
+        Ok(Some(Self {
+            order,
+            sorted_at: Travel::default(),
             age: None,
             generation: 0,
             is_expired: false,
             is_sorted: AtomicBool::new(false),
+            reach_m: 0.0,
+            is_recorded: AtomicBool::new(false),
             sorted: 0,
             slots: 0,
             uploaded_bytes: 0,
             sorter: None,
             source: None,
-        })
+        }))
     }
 
     /// The next frame's lights, from the CPU.
-    pub(super) fn update(&mut self, gpu: &Gpu, given: &Given) -> Result<(), AssignError> {
+    pub(super) fn update(
+        &mut self,
+        gpu: &Gpu,
+        given: &Given,
+        travel: Travel,
+    ) -> Result<(), AssignError> {
         let records = Records::new(&given.lights);
         let count = given.lights.len() as u32;
         let [spheres, emissions, shapes] = records.bytes();
@@ -141,7 +134,8 @@ impl Living {
             self.sorter = Some((sorter, buffers));
             self.age = None;
         }
-        let sorts = self.next_sorts();
+        let bounds = given.position_bounds.unwrap_or_default();
+        let sorts = self.next_sorts(bounds, travel, count);
         if sorts {
             self.sorted = count;
         }
@@ -152,9 +146,8 @@ impl Living {
             + upload(gpu, &buffers.emissions, known_emissions, emissions)
             + upload(gpu, &buffers.shapes, known_shapes, shapes);
         gpu.queue.write_buffer(sorter.state(), SlotState::GIVEN_AT, bytes_of(&count));
-        let bounds = given.position_bounds.unwrap_or_default();
         // The CPU has checked the radii.
-        sorter.prepare(gpu, OrderUniform::in_box(bounds, f32::MAX, sorts));
+        sorter.prepare(gpu, bounds, [f32::MAX; 2], sorts);
         self.source = Some(Source::Cpu { uploaded: records });
         Ok(())
     }
@@ -164,6 +157,7 @@ impl Living {
         &mut self,
         gpu: &Gpu,
         lights: &GpuLights<'_>,
+        travel: Travel,
     ) -> Result<(), AssignError> {
         lights.check()?;
         let buffers = GivenBuffers {
@@ -189,28 +183,45 @@ impl Living {
         });
         self.uploaded_bytes = 0;
         self.slots = lights.capacity;
-        let sorts = self.next_sorts();
+        let sorts = self.next_sorts(lights.bounds, travel, lights.capacity);
+        if std::mem::take(self.is_recorded.get_mut()) {
+            self.reach_m = 0.0;
+        }
+        self.reach_m = (self.reach_m + lights.step_max_m.unwrap_or(f32::MAX)).min(f32::MAX);
         if let Some((sorter, _)) = &self.sorter {
-            sorter.prepare(gpu, OrderUniform::in_box(lights.bounds, lights.radius_max_m, sorts));
+            let largest_m = [lights.radius_max_m, self.reach_m];
+            sorter.prepare(gpu, lights.bounds, largest_m, sorts);
         }
         Ok(())
     }
 
-    /// Whether the next frame sorts. It does so after `every` frames, and if the frame that should have
-    /// sorted was never recorded.
-    fn next_sorts(&mut self) -> bool {
+    /// Whether the next frame sorts `lights` lights in a box. It does so when it is time, and if the frame
+    /// that should have sorted was never recorded.
+    fn next_sorts(&mut self, bounds: (Vec3, Vec3), travel: Travel, lights: u32) -> bool {
         let is_sorted = *self.is_sorted.get_mut();
         let is_expired = std::mem::take(&mut self.is_expired);
         let next = match self.age {
-            Some(age) if is_sorted && !is_expired => (age + 1) % self.every,
+            Some(age) if is_sorted && !is_expired => age.wrapping_add(1),
             _ => 0,
         };
-        self.age = Some(next);
-        if next == 0 {
+        let is_time = match self.order {
+            LightOrder::Gpu { every } => next % every == 0,
+            LightOrder::GpuGrown { percent } => {
+                // Both ends of a box move.
+                let growth_m = 2.0 * (travel.metres - self.sorted_at.metres);
+                travel.jumps != self.sorted_at.jumps
+                    || growth_m > f64::from(percent) * 0.01 * box_side_m(bounds, lights)
+            }
+            LightOrder::Given | LightOrder::Morton | LightOrder::Bvh => false,
+        };
+        let sorts = next == 0 || is_time;
+        self.age = Some(if sorts { 0 } else { next });
+        if sorts {
             self.generation = self.generation.wrapping_add(1);
+            self.sorted_at = travel;
             *self.is_sorted.get_mut() = false;
         }
-        next == 0
+        sorts
     }
 
     /// Has the next frame sort. This frame stays as it is.
@@ -228,6 +239,7 @@ impl Living {
         }
         let sorts = self.age == Some(0);
         sorter.record(sorts, passes);
+        self.is_recorded.store(true, Ordering::Relaxed);
         if sorts {
             self.is_sorted.store(true, Ordering::Relaxed);
         }
@@ -252,6 +264,18 @@ impl Living {
 
     pub(super) fn uploaded_bytes(&self) -> u64 {
         self.uploaded_bytes
+    }
+
+    /// Bytes of its buffers, without those of the renderer.
+    pub(super) fn bytes(&self) -> u64 {
+        let Some((sorter, given)) = &self.sorter else { return 0 };
+        let uploaded = match self.source {
+            Some(Source::Cpu { .. }) => {
+                given.spheres.size() + given.emissions.size() + given.shapes.size()
+            }
+            _ => 0,
+        };
+        sorter.bytes() + uploaded
     }
 
     pub(super) fn live_count(&self) -> Option<&wgpu::Buffer> {
@@ -292,6 +316,12 @@ impl Living {
     }
 }
 
+/// The side of a cube that holds as many of the lights as a node, if they fill their box evenly, metres.
+fn box_side_m((low, high): (Vec3, Vec3), lights: u32) -> f64 {
+    let volume: f64 = (high - low).as_dvec3().element_product();
+    (volume * NODE_LIGHTS as f64 / f64::from(lights.max(1))).cbrt()
+}
+
 /// A shape vector.
 type Vec3x4 = [f32; 4];
 
@@ -317,59 +347,4 @@ fn upload(gpu: &Gpu, buffer: &wgpu::Buffer, known: &[u8], bytes: &[u8]) -> u64 {
     }
     write(run.start, run.end);
     uploaded
-}
-
-impl GpuLights<'_> {
-    fn check(&self) -> Result<(), AssignError> {
-        let fail = |field: &str, value: String, accepted: String| {
-            Err(AssignError::Parameter {
-                field: format!("lights from the GPU: {field}"),
-                value,
-                accepted,
-            })
-        };
-        if self.capacity as usize > MAX_LIGHTS {
-            return fail("capacity", self.capacity.to_string(), format!("at most {MAX_LIGHTS}"));
-        }
-        let records = u64::from(self.capacity) * 16;
-        for (name, buffer, least, usage) in [
-            ("spheres", self.spheres, records, wgpu::BufferUsages::STORAGE),
-            ("emissions", self.emissions, records, wgpu::BufferUsages::STORAGE),
-            ("shapes", self.shapes, 16, wgpu::BufferUsages::STORAGE),
-            (
-                "count",
-                self.count,
-                self.count_offset.saturating_add(4),
-                wgpu::BufferUsages::COPY_SRC,
-            ),
-        ] {
-            if buffer.size() < least {
-                return fail(
-                    name,
-                    format!("{} bytes", buffer.size()),
-                    format!("at least {least} bytes"),
-                );
-            }
-            if !buffer.usage().contains(usage) {
-                return fail(name, format!("{:?}", buffer.usage()), format!("usage {usage:?}"));
-            }
-        }
-        if !self.count_offset.is_multiple_of(4) {
-            return fail("count_offset", self.count_offset.to_string(), "a multiple of 4".into());
-        }
-        let (low, high) = self.bounds;
-        if !(low.is_finite() && high.is_finite() && low.cmple(high).all()) {
-            return fail(
-                "bounds",
-                format!("{low} to {high}"),
-                "finite corners, lowest first".into(),
-            );
-        }
-        // An emitter may add to the range.
-        if !(MIN_RANGE_M..=2.0 * MAX_RANGE_M).contains(&self.radius_max_m) {
-            let accepted = format!("{MIN_RANGE_M} to {} metres", 2.0 * MAX_RANGE_M);
-            return fail("radius_max_m", self.radius_max_m.to_string(), accepted);
-        }
-        Ok(())
-    }
 }

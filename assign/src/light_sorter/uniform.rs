@@ -2,21 +2,23 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// A frame's parameters: `struct Order`. 64 bytes.
+use super::code::{Code, MAX_BITS, code_bits};
+
+/// A frame's parameters: `struct Order`. 160 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct OrderUniform {
     /// Lowest corner of the box that holds all positions, metres.
     pub(crate) low_world: [f32; 3],
-    /// Cells of the Morton code per metre.
-    pub(crate) cells_per_m: f32,
-    /// Highest corner of that box, metres.
-    pub(crate) high_world: [f32; 3],
     /// The largest radius of a light's ball, metres.
     pub(crate) radius_max_m: f32,
+    /// Highest corner of that box, metres.
+    pub(crate) high_world: [f32; 3],
     /// The most lights.
     pub(crate) capacity: u32,
-    /// Blocks of the radix sort.
+    /// Cells of the code per metre.
+    pub(crate) cells_per_m: [f32; 3],
+    /// Blocks of the sort.
     pub(crate) blocks: u32,
     /// 1 if this frame sorts the lights.
     pub(crate) sorts: u32,
@@ -24,25 +26,30 @@ pub(crate) struct OrderUniform {
     pub(crate) first_parent: u32,
     /// Place of the first node of level 3.
     pub(crate) first_grandparent: u32,
-    /// Pads to 64 bytes.
-    pub(crate) padding: [u32; 3],
+    /// How far a light's ball may reach beyond its ball before, metres.
+    pub(crate) reach_m: f32,
+    /// The bits of the code, as [`Code::bits`].
+    pub(crate) code_bits: [u32; MAX_BITS as usize],
 }
 
 impl OrderUniform {
-    /// Parameters for lights in a box of positions.
+    /// Parameters for at most `capacity` lights in a box of positions.
     pub(crate) fn in_box(
-        (low, high): (glam::Vec3, glam::Vec3),
+        bounds: (glam::Vec3, glam::Vec3),
         radius_max_m: f32,
         sorts: bool,
+        capacity: u32,
     ) -> Self {
-        let side_m = (high - low).max_element();
-        let cells_per_m = if side_m > 0.0 { 255.999 / side_m } else { 0.0 };
+        let code = Code::in_box(bounds, code_bits(capacity));
         Self {
-            low_world: low.to_array(),
-            cells_per_m: if cells_per_m.is_finite() { cells_per_m } else { 0.0 },
-            high_world: high.to_array(),
+            low_world: bounds.0.to_array(),
+            high_world: bounds.1.to_array(),
             radius_max_m,
+            capacity,
+            cells_per_m: code.cells_per_m.to_array(),
             sorts: sorts.into(),
+            reach_m: f32::MAX,
+            code_bits: code.bits,
             ..Self::default()
         }
     }

@@ -122,12 +122,13 @@ pub struct StageArgs {
     #[arg(long, value_name = "X", allow_hyphen_values = true, conflicts_with = "threshold", value_parser = values::threshold, help_heading = RANGES, hide_short_help = true)]
     pub influence: Option<f64>,
 
-    /// Order of the lights in their buffer: given, morton, bvh, gpu or gpuN
+    /// Order of the lights in their buffer: given, morton, bvh, gpu, gpuN or gpuN%
     ///
     /// All strategies use the same order. given keeps the order of the scene. morton follows a space-filling
     /// curve. bvh is the order of the leaves of a hierarchy. These three are made by the CPU, off the clock
     /// if the lights stand still. gpu is made by the GPU in every frame, on the clock; gpuN in every Nth
-    /// frame. [default: bvh, and gpu8 with --motion]
+    /// frame; gpuN% as soon as boxes may have grown by N percent. With gpu, --vpls makes its lights in every
+    /// frame, with the others once. [default: bvh, gpu8 with --motion, gpu with --vpls]
     #[arg(long, value_name = "ORDER", value_parser = values::light_order, help_heading = RANGES, hide_short_help = true)]
     pub light_order: Option<LightOrder>,
 
@@ -149,6 +150,7 @@ impl StageArgs {
     pub fn light_order(&self) -> LightOrder {
         self.light_order.unwrap_or(match self.motion.motion {
             Some(_) => LightOrder::Gpu { every: SORTED_EVERY },
+            None if self.bounce.vpls > 0 => LightOrder::Gpu { every: 1 },
             None => LightOrder::Bvh,
         })
     }

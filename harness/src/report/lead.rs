@@ -1,5 +1,7 @@
 //! Who leads a comparison, with the limits of that lead: ties, too few rounds, lights that must stand still.
 
+use assign::LightOrder;
+
 use super::comparison::Comparison;
 use super::format::significant;
 use super::living;
@@ -147,7 +149,8 @@ impl<'a> Lead<'a> {
 /// holds for still lights only. The hierarchy over lights that move is made anew in every frame, on the clock.
 pub fn needs_built_hierarchy(record: &Record) -> bool {
     let setting = &record.setting;
-    record.strategy.is_bvh() && setting.motion.is_none() && setting.sorted_every().is_none()
+    let is_on_gpu = setting.order().is_some_and(LightOrder::is_on_gpu);
+    record.strategy.is_bvh() && setting.motion.is_none() && !is_on_gpu
 }
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` if the figure is

@@ -1,5 +1,7 @@
 //! Lights that move, in words: how they move, and what that costs in each frame.
 
+use assign::LightOrder;
+
 use super::format::{mebibytes, significant};
 use super::rank::listed;
 use crate::digits::rounded;
@@ -12,11 +14,17 @@ pub(crate) const PASSES: [&str; 3] = ["upload", "order", "boxes"];
 pub(crate) fn motion_words(setting: &Setting) -> Option<String> {
     let motion = setting.motion.as_ref()?;
     let mover = if motion.moved_by == "gpu" { "GPU" } else { "CPU" };
-    let order = match (setting.sorted_every(), setting.light_order.as_deref()) {
-        (Some(1), _) => "sorted in every frame".to_owned(),
-        (Some(every), _) => format!("sorted every {every} frames"),
-        (None, Some("given")) => "in the order of the scene".to_owned(),
-        (None, order) => format!("ordered by the CPU ({})", order.unwrap_or("unknown")),
+    let order = match setting.order() {
+        Some(LightOrder::Gpu { every: 1 }) => "sorted in every frame".to_owned(),
+        Some(LightOrder::Gpu { every }) => format!("sorted every {every} frames"),
+        Some(LightOrder::GpuGrown { percent }) => {
+            format!("sorted when boxes may have grown by {percent} %")
+        }
+        Some(LightOrder::Given) => "in the order of the scene".to_owned(),
+        Some(order @ (LightOrder::Morton | LightOrder::Bvh)) => {
+            format!("ordered by the CPU ({order})")
+        }
+        None => "in an unknown order".to_owned(),
     };
     let speed = rounded(motion.speed_m_s);
     Some(format!("{} at speed {speed}, moved by the {mover}, {order}", motion.law))
@@ -57,6 +65,10 @@ mod tests {
         for (order, words) in [
             ("gpu8", "drift at speed 1, moved by the CPU, sorted every 8 frames"),
             ("gpu", "drift at speed 1, moved by the CPU, sorted in every frame"),
+            (
+                "gpu25%",
+                "drift at speed 1, moved by the CPU, sorted when boxes may have grown by 25 %",
+            ),
             ("given", "drift at speed 1, moved by the CPU, in the order of the scene"),
             ("bvh", "drift at speed 1, moved by the CPU, ordered by the CPU (bvh)"),
         ] {

@@ -1,7 +1,7 @@
 //! Decides which methods pay for a pass, and computes the cost of a method in each kind of frame.
 //!
 //! The bill depends only on the name of a pass, the mode and the method, so stored results get the same bill
-//! as new ones.
+//! as new ones. Making the lights is on no bill ([`makes_lights`]): every method needs them.
 //!
 //! A renderer draws one of these frames:
 //!
@@ -17,11 +17,18 @@ use shading::Mode;
 use super::{PassKind, Record};
 use crate::strategy::StrategyId;
 
+/// Whether a pass makes the lights of a frame: the reflective shadow map, deep images, virtual point lights.
+/// Methods that read no hierarchy need no order of the lights: `vpl-order` and `vpl-boxes`.
+pub fn makes_lights(name: &str) -> bool {
+    ["rsm-", "cdi-", "vpl-"].iter().any(|start| name.starts_with(start)) || name == "random-ranges"
+}
+
 /// The kind of a pass, which decides its bill. A pass that the pipeline does not know belongs to the strategy.
 /// In forward shading, the G-buffer is drawn only for a strategy that reads normals. Without a pre-pass, depth
 /// is drawn only for a strategy that reads it.
 pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
     match (name, mode) {
+        (name, _) if makes_lights(name) => PassKind::Other,
         ("gbuffer", mode) if mode.is_forward() => PassKind::Assign,
         ("depth", Mode::ForwardNoPrepass) => PassKind::Assign,
         ("depth" | "gbuffer", _) => PassKind::Scene,
@@ -33,7 +40,7 @@ pub fn pass_kind(name: &str, mode: Mode) -> PassKind {
 /// Whether a pass of a method in a mode rasterises triangles and runs fragment shaders.
 pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
-        "depth" | "gbuffer" | "model-ids" | "clay" => true,
+        "depth" | "gbuffer" | "model-ids" | "clay" | "rsm-depth" | "rsm-gbuffer" => true,
         "shade" => mode.is_forward() || strategy.shade_rasterises(),
         _ => false,
     }

@@ -51,21 +51,31 @@ pub struct Vpls {
     /// same lights with ranges from deep images built in one pass.
     #[serde(default)]
     pub build_errors: Errors,
-    /// The passes and their times: the shadow map, the lights, and the deep images.
+    /// The passes and their times: the shadow map, the lights, and the deep images. Empty if every frame makes
+    /// the lights: then these passes are among those of the record.
     pub passes: Passes,
+    /// The wall-clock time to read the lights back, to order them on the CPU, and to upload them, ms. `None`
+    /// if they stay on the GPU, and in older results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub read_back_ms: Option<f64>,
 }
 
 impl Vpls {
     /// A summary: `1,042 of 2,515 lights, ranges average, 3.15 m on average, made in 1.15 ms`.
     pub fn summary(&self) -> String {
+        let made = match self.are_made_in_frames() {
+            true => "made in every frame".to_owned(),
+            false => format!("made in {:.3} ms", self.total_ms()),
+        };
         format!(
-            "{} of {} lights, ranges {}, {:.2} m on average, made in {:.3} ms",
-            self.kept,
-            self.candidates,
-            self.ranges,
-            self.mean_range_m,
-            self.total_ms()
+            "{} of {} lights, ranges {}, {:.2} m on average, {made}",
+            self.kept, self.candidates, self.ranges, self.mean_range_m,
         )
+    }
+
+    /// Whether every frame makes the lights.
+    pub fn are_made_in_frames(&self) -> bool {
+        self.passes.iter().next().is_none()
     }
 
     /// Why their times are unsteady ([`unsteady`]); `None` for steady times.

@@ -18,7 +18,7 @@ pub enum PassKind {
     Assign,
     /// Lights pixels.
     Shade,
-    /// Anything else, such as the tone map.
+    /// Anything else: makes the lights.
     #[default]
     Other,
 }

@@ -63,8 +63,8 @@ pub struct Setting {
     /// With `--compensate`: its number of lights.
     #[serde(default)]
     pub compensation: Option<f64>,
-    /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, or `gpuN` for a sort on the GPU in
-    /// every Nth frame.
+    /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, `gpuN` for a sort on the GPU in every
+    /// Nth frame, or `gpuN%` for one as soon as boxes may have grown by N percent.
     #[serde(default)]
     pub light_order: Option<String>,
     /// How the lights move; absent if they stand still.
@@ -96,12 +96,9 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The GPU sorts the lights in every Nth frame: the number N. `None` if the CPU orders them.
-    pub fn sorted_every(&self) -> Option<u32> {
-        match self.light_order.as_ref()?.parse() {
-            Ok(LightOrder::Gpu { every }) => Some(every),
-            _ => None,
-        }
+    /// The order of the lights; `None` if it is unknown.
+    pub fn order(&self) -> Option<LightOrder> {
+        self.light_order.as_ref()?.parse().ok()
     }
 }
 

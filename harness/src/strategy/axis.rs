@@ -13,6 +13,8 @@ const NORMALS: &str = "n";
 const CAP: &str = "cap";
 /// The prefix of a segment that sets for how many frames lists are used.
 const REUSE: &str = "reuse";
+/// The prefix of a segment that sets for how many frames lists of larger lights are kept.
+const KEEP: &str = "keep";
 /// The segment that turns the early exit off.
 const NO_EXIT: &str = "no-exit";
 
@@ -33,6 +35,8 @@ pub enum Axis {
     AreaBounds,
     /// For how many frames lists are used: `reuse4`. Lossy where groups or lights move.
     Reuse,
+    /// For how many frames lists are kept that hold all lights wherever they may move: `keep4`.
+    Keep,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
     /// Whether shading evaluates every listed light, also where it adds nothing: `no-exit`.
@@ -41,7 +45,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Box,
         Self::Normals,
         Self::Specular,
@@ -49,6 +53,7 @@ impl Axis {
         Self::Source,
         Self::AreaBounds,
         Self::Reuse,
+        Self::Keep,
         Self::Cap,
         Self::Exit,
     ];
@@ -70,6 +75,9 @@ impl Axis {
             Self::Reuse => {
                 "reuse and the number of frames for which lists are used, such as reuse4"
             }
+            Self::Keep => {
+                "keep and the most frames for which lists of larger lights are kept, such as keep4"
+            }
             Self::Exit => "no-exit, which evaluates every listed light",
         }
     }
@@ -85,6 +93,7 @@ impl Axis {
             NO_EXIT => Some(Self::Exit),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
+            _ if segment.starts_with(KEEP) => Some(Self::Keep),
             _ => segment.parse::<FrustumTests>().ok().map(|_| Self::Tests),
         }
     }
@@ -114,6 +123,7 @@ impl Axis {
             Self::Specular => options.specular = specular::parse(segment)?,
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
+            Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
             Self::Exit => options.evaluates_all = true,
         }
         Some(())
@@ -140,6 +150,7 @@ impl Axis {
             Self::Specular => specular::segment(options.specular),
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
+            Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
         }
     }
@@ -171,6 +182,7 @@ impl Axis {
             },
             Self::Cap => ("list_cap", options.cap?.into()),
             Self::Reuse => ("reuse_frames", options.reuse?.into()),
+            Self::Keep => ("keep_frames", options.keep?.into()),
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
             Self::Exit => return None,
         })

@@ -47,6 +47,8 @@ pub struct Options {
     pub cap: Option<u32>,
     /// The number of frames for which lists are used.
     pub reuse: Option<u32>,
+    /// The most frames for which lists of larger lights are kept.
+    pub keep: Option<u32>,
     /// Whether shading evaluates every listed light.
     pub evaluates_all: bool,
 }

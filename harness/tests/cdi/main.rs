@@ -1,5 +1,6 @@
 //! Indirect light as a user asks for it: deep images, virtual point lights, and their study.
 
+mod frame;
 mod stored;
 
 use std::{
@@ -72,14 +73,21 @@ fn deep_images_are_built_cast_through_and_compared() {
     assert!(none.range_errors.is_none());
 }
 
+/// The CPU orders the lights, so that they are made once and not in every frame.
+const ONCE: [&str; 2] = ["--light-order", "bvh"];
+
 #[test]
 fn ranges_that_rays_do_not_measure_keep_the_lights_that_rays_keep() {
     let folder = tempfile::tempdir().expect("a folder");
     let drawn = ["compare", "--scene", "town-small", "--size", "32x18", "--vpls", "32"];
+    let drawn = [&drawn[..], &ONCE].concat();
     let timed = ["--strategies", "HG", "--truth", "none", "--frames", "1", "--warmup", "0"];
     let made = |name: &str, rule: &[&str]| {
         let out = folder.path().join(name);
-        let (_, results) = run(&out, &[&drawn[..], &timed, rule].concat());
+        let (printed, results) = run(&out, &[&drawn[..], &timed, rule].concat());
+        for passes in ["Lights, made once, ms: rsm-depth ", "HG/48x48x40, ms: depth "] {
+            assert!(printed.contains(passes), "{passes}: {printed}");
+        }
         results.records[0].indirect.clone().expect("virtual point lights")
     };
     let cast = made("cast", &["--ranges", "average"]);
@@ -107,6 +115,7 @@ fn ranges_that_rays_do_not_measure_keep_the_lights_that_rays_keep() {
 fn every_strategy_shows_the_same_indirect_light() {
     let folder = tempfile::tempdir().expect("a folder");
     let drawn = ["compare", "--scene", "town-small", "--size", "96x54", "--vpls", "24"];
+    let drawn = [&drawn[..], &ONCE].concat();
     let all = ["--strategies", "None,T-I,T-E,DC-I,DC-E,SC-I,SC-E,SC-E/48x48x40/n6,G,M/4,HG"];
     let timed = ["--source", "both", "--mode", "both", "--frames", "1", "--warmup", "0"];
     let (_, results) = run(folder.path(), &[&drawn[..], &all, &timed].concat());
@@ -231,7 +240,9 @@ fn virtual_point_lights_are_as_bright_as_a_matte_bounce() {
         let scene = room(folder.path(), floor);
         let lights = ["--vpls", "64", "--ranges", "infinite"];
         let words = [&["compare", "--scene", &scene], &ROOM_VIEW[..], &lights, &timed].concat();
-        let (_, results) = run(&out, &words);
+        let (printed, results) = run(&out, &words);
+        // By default, each frame makes its lights.
+        assert!(printed.contains("HG/48x48x40, ms: rsm-depth "), "{printed}");
         let raw = results.records[0].image.files.raw.clone().expect("a linear image");
         mean(&HdrImage::read_exr(&out.join(raw)).expect("an image"))
     };
@@ -251,7 +262,7 @@ fn virtual_point_lights_are_as_bright_as_a_matte_bounce() {
 #[test]
 fn light_of_long_range_leaks_and_light_of_short_range_lacks() {
     let folder = tempfile::tempdir().expect("a folder");
-    let drawn = ["--scene", "atrium", "--size", "64x36"];
+    let drawn = ["--scene", "atrium", "--size", "64x36", ONCE[0], ONCE[1]];
     let lit = |name: &str, rule: &[&str]| -> f64 {
         let out = folder.path().join(name);
         let timed = ["--strategies", "HG", "--truth", "none", "--frames", "1", "--warmup", "0"];

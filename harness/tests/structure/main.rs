@@ -200,6 +200,25 @@ fn no_source_file_is_too_long() {
     assert!(long.is_empty(), "at most {MAX_LINES} lines are accepted: {long:#?}");
 }
 
+/// Ways of wgpu to map a buffer for reading.
+const MAPS: [&str; 3] = ["map_async", "map_buffer_on_submit", "DownloadBuffer"];
+
+/// All maps go through one function, which counts them (`Gpu::mapped`).
+#[test]
+fn buffers_are_mapped_in_one_place() {
+    let mut places = Vec::new();
+    for (_, folder) in crates() {
+        // This test names them too.
+        for file in source_files(&folder).iter().filter(|file| !file.ends_with(file!())) {
+            let source = fs::read_to_string(file).unwrap();
+            let name = file.strip_prefix(workspace()).unwrap().display().to_string();
+            let found = MAPS.iter().flat_map(|way| source.matches(way));
+            places.extend(found.map(|way| format!("{way} in {name}")));
+        }
+    }
+    assert_eq!(places, ["map_async in assign/src/gpu.rs"]);
+}
+
 /// The Rust and WESL files of a crate, build outputs left out.
 fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();

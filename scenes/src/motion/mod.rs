@@ -168,6 +168,21 @@ impl Motion {
         }
     }
 
+    /// A bound on how far the ball around any light's support moves between two times, metres; `None` if
+    /// lights jump, or die and are born. It allows for shaders that repeat the laws less accurately.
+    pub fn farthest_ball_m(&self, from_s: f32, to_s: f32) -> Option<f32> {
+        let most_s = from_s.abs().max(to_s.abs()).min(MAX_TIME_S);
+        // Positions are rounded to f32 a few times, and a shader's time is off by 1e-7 of it.
+        let rounding_m = 4e-6 * self.reach_m() + 2.5e-7 * self.rules.speed_m_s * most_s;
+        match self.law {
+            _ if self.rules.speed_m_s == 0.0 || from_s == to_s => Some(0.0),
+            MotionLaw::Drift | MotionLaw::Orbit => Some(self.way_m(to_s - from_s) + rounding_m),
+            // The ball of an area light that turns is rounded.
+            MotionLaw::Flicker | MotionLaw::Turn => Some(rounding_m),
+            MotionLaw::Teleport | MotionLaw::Births | MotionLaw::All => None,
+        }
+    }
+
     /// The way at the speed of the law, metres, rounded up. Within a second, time is accurate to
     /// 2^-24 of it.
     fn way_m(&self, dt_s: f32) -> f32 {

@@ -61,6 +61,7 @@ pub(super) const ROWS: &[Row] = &[
             Axis::AreaBounds,
             Axis::Cap,
             Axis::Reuse,
+            Axis::Keep,
             Axis::Exit,
         ],
         needs: NEEDS_DEPTH,
@@ -82,8 +83,9 @@ const CLUSTERS: Row = Row {
 };
 
 const FRUSTA: &[Axis] =
-    &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit];
-const BOXES: &[Axis] = &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit];
+    &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit];
+const BOXES: &[Axis] =
+    &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit];
 
 /// Sizes that `advise` tries for all clusters.
 pub(super) const FEW: &[&str] =

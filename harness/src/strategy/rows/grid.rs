@@ -15,7 +15,15 @@ pub(super) const ROWS: &[Row] = &[Row {
     krate: "assign-grid",
     parameters: &["cells_x", "cells_y", "cells_z"],
     default: "20x20x20",
-    axes: &[Axis::Box, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit],
+    axes: &[
+        Axis::Box,
+        Axis::Source,
+        Axis::AreaBounds,
+        Axis::Cap,
+        Axis::Reuse,
+        Axis::Keep,
+        Axis::Exit,
+    ],
     sizes: Sizes {
         few: &["12x12x12", "16x16x16", "28x28x28", "40x40x40"],
         many: &["12x12x12", "16x16x16", "20x20x20", "24x24x24", "28x28x28", "40x12x20"],

@@ -14,7 +14,7 @@ pub(super) const ROWS: &[Row] = &[Row {
     krate: "assign-model",
     parameters: &["part_size_m"],
     variants: &["2"],
-    axes: &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit],
+    axes: &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit],
     sizes: Sizes { few: &["1", "3", "4", "8"], many: &["1", "2", "4"] },
     has_groups: true,
     needs: Needs { models: true, ..NEEDS_NOTHING },

@@ -44,7 +44,15 @@ const TILES: Row = Row {
     krate: "assign-tiled",
     parameters: &["tile_width_px", "tile_height_px"],
     default: "28x28",
-    axes: &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Exit],
+    axes: &[
+        Axis::Tests,
+        Axis::Source,
+        Axis::AreaBounds,
+        Axis::Cap,
+        Axis::Reuse,
+        Axis::Keep,
+        Axis::Exit,
+    ],
     sizes: Sizes {
         few: &["16x16", "20x20", "24x24", "32x32", "48x48"],
         many: &["16x16", "20x20", "24x24", "28x28", "32x32", "40x40"],

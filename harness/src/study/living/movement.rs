@@ -1,5 +1,7 @@
 //! How the lights of a job move: four cases, in the order in which pages show them.
 
+use assign::LightOrder;
+
 use crate::results::Record;
 
 /// Frames between two sorts, where lights are not sorted in every frame.
@@ -26,7 +28,7 @@ impl Movement {
         match &record.setting.motion {
             None => Self::Still,
             Some(motion) if motion.moved_by == "cpu" => Self::Cpu,
-            Some(_) if record.setting.sorted_every() == Some(1) => Self::Sorted,
+            Some(_) if record.setting.order() == Some(LightOrder::Gpu { every: 1 }) => Self::Sorted,
             Some(_) => Self::Gpu,
         }
     }

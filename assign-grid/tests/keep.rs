@@ -1,0 +1,111 @@
+//! Lists that are kept for several frames lose no light, wherever the lights move.
+
+use std::collections::BTreeMap;
+
+use assign::{
+    AssignError, Assignment, CullSettings, EncoderPasses, Frame, Gpu, Keep, Light, LightBuffer,
+    LightOrder, Passes, View, conformance,
+};
+use assign_grid::{Grid, GridBox};
+use glam::Vec3;
+
+/// A grid that keeps its lists for some frames.
+fn kept(frames: u32) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    move |gpu| {
+        let counts = "8x8x8".parse()?;
+        let grid = Grid::new(gpu, counts, GridBox::Positions, CullSettings::default())?;
+        Ok(Box::new(Keep::new(gpu, Box::new(grid), frames)?))
+    }
+}
+
+#[test]
+fn kept_lists_conform() {
+    for case in [
+        "33-lights",
+        "overflow",
+        "light-at-tile-corner",
+        "mixed-kinds",
+        "lights-move",
+        "gpu-order",
+        "gpu-order-stale",
+        "lights-from-gpu",
+    ] {
+        conformance::run_case(case, &kept(3)).expect(case);
+    }
+}
+
+/// Counts the passes of each name.
+struct Counted<'a> {
+    passes: EncoderPasses<'a>,
+    counts: &'a mut BTreeMap<String, u32>,
+}
+
+impl Passes for Counted<'_> {
+    fn compute(&mut self, name: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)) {
+        *self.counts.entry(name.to_owned()).or_default() += 1;
+        self.passes.compute(name, record);
+    }
+
+    fn render(
+        &mut self,
+        name: &str,
+        descriptor: &wgpu::RenderPassDescriptor<'_>,
+        record: &mut dyn FnMut(&mut wgpu::RenderPass<'_>),
+    ) {
+        self.passes.render(name, descriptor, record);
+    }
+
+    fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        self.passes.encoder()
+    }
+}
+
+/// How often lists are made in 9 frames, in each of which every light moves by `step_m`.
+fn made(order: LightOrder, step_m: f32, view_step_m: f32) -> u32 {
+    let gpu = Gpu::open(None).expect("a GPU");
+    let mut strategy = kept(4)(&gpu).expect("a strategy");
+    let mut lights: Vec<Light> = (0..100)
+        .map(|ix| Light::point(Vec3::new((ix % 10) as f32, (ix / 10) as f32, 0.0), 2.0, Vec3::ONE))
+        .collect();
+    let mut buffer = LightBuffer::ordered(&gpu, &lights, order).expect("lights");
+    let mut counts = BTreeMap::new();
+    for frame_ix in 0..9 {
+        let eye = Vec3::new(5.0, 5.0, 9.0 + frame_ix as f32 * view_step_m);
+        let view = View::look_at(eye, Vec3::ZERO, 1.0, 0.1, [64, 48]);
+        for light in &mut lights {
+            light.position.z += step_m;
+        }
+        buffer.update(&gpu, &lights).expect("lights");
+        let frame = Frame::new(&view, &buffer);
+        strategy.prepare(&gpu, &frame).expect("prepares");
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let passes = EncoderPasses { encoder: &mut encoder };
+        let mut passes = Counted { passes, counts: &mut counts };
+        buffer.record(&mut passes);
+        strategy.record(&frame, &mut passes);
+        gpu.queue.submit([encoder.finish()]);
+    }
+    assert_eq!(counts.get("widen"), counts.get("cull"));
+    counts["cull"]
+}
+
+#[test]
+fn lists_are_kept_as_long_as_they_hold_all_lights() {
+    let still = LightOrder::Given;
+    // Frames 0, 4 and 8.
+    assert_eq!(made(still, 0.0, 0.0), 3);
+    // A grid's cells do not move with the camera.
+    assert_eq!(made(still, 0.0, 0.1), 3);
+    // The second frame is the first that knows how fast lights are: frames 0, 1, 5.
+    assert_eq!(made(still, 0.01, 0.0), 3);
+    assert_eq!(made(LightOrder::Gpu { every: 100 }, 0.01, 0.0), 3);
+    // Each new order makes the lists anew: frames 0, 1, 2, 4, 6 and 8.
+    assert_eq!(made(LightOrder::Gpu { every: 2 }, 0.01, 0.0), 6);
+}
+
+#[test]
+fn frames_and_strategies_are_checked() {
+    let gpu = Gpu::open(None).expect("a GPU");
+    assert!(kept(0)(&gpu).is_err());
+    assert_eq!(kept(4)(&gpu).expect("a strategy").id(), "G/8x8x8/keep4");
+}
