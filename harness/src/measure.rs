@@ -18,7 +18,7 @@ use crate::{
     drift::WarmUp,
     error::HarnessError,
     list_lengths::ListLengths,
-    moving::{Moving, known_lights},
+    moving::{Moving, known_lights, order_bytes},
     painter::Painter,
     pass_samples::PassSamples,
     results::{Passes, Spans},
@@ -296,6 +296,14 @@ fn draw_unclocked(
     Ok(settled)
 }
 
+/// Bytes of everything that a strategy needs on the GPU in a mode: its own, images that are drawn only for it,
+/// and what orders the lights in every frame if it reads the hierarchy.
+pub fn memory_bytes(stage: &Stage, strategy: &dyn Assignment, mode: Mode) -> u64 {
+    let needs = strategy.needs();
+    let order = if needs.hierarchy { order_bytes(&stage.lights) } else { 0 };
+    strategy.memory_bytes() + order + stage.renderer.targets().bytes_for(mode, needs)
+}
+
 /// Reads the lists of the last frame back and checks them; `seen` asks for light operations.
 fn count(
     gpu: &Gpu,
@@ -334,8 +342,7 @@ fn count(
         groups: u64::from(strategy.lists().group_count()),
         counters: snapshot.counters,
         bytes: strategy.lists().bytes(),
-        memory_bytes: strategy.memory_bytes()
-            + renderer.targets().bytes_for(mode, strategy.needs()),
+        memory_bytes: memory_bytes(stage, strategy, mode),
         truth,
         lengths,
         operations,
