@@ -11,6 +11,8 @@
 //! All rounds judge several poses along the scene's path, each pose several times, so that ties are
 //! seen. A scene without a path, or a camera that the user placed, is judged from one view.
 //!
+//! With `--motion`, the lights move in all rounds, and what that costs is on the bill of each method.
+//!
 //! The answer is a [`verdict`] on the last round.
 
 mod answer;
@@ -23,6 +25,7 @@ use std::time::Instant;
 
 use crate::{
     bench::Bench,
+    checks::check_motion,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
     compare::compare_on,
     error::HarnessError,
@@ -54,6 +57,10 @@ const FRAMES: [[u32; 2]; 2] = [[16, 48], [2, 6]];
 /// adapter.
 const POSES: [u32; 2] = [24, 3];
 
+/// The same where the lights move, and the frames of a lap from one view. By default, lights are sorted in
+/// every eighth frame, so that laps of these lengths have as many sorts as they should.
+const MOVING_POSES: [u32; 2] = [24, 8];
+
 /// What is said where the command line asks for one pose.
 const ONE_POSE: &str = "--poses 1: the camera stood still in the path's first view, which says nothing \
                         of the others; --poses 2 or more judge several";
@@ -80,6 +87,7 @@ const CAPPED: usize = 2;
 ///
 /// Whatever a comparison fails with, and a choice of several modes.
 pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, HarnessError> {
+    check_motion(&args.stage)?;
     let _held = OutFolder::hold(&args.out, &command)?;
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
@@ -125,7 +133,8 @@ impl<'a> Search<'a> {
         bench: &'a mut Bench,
         command: &[String],
     ) -> Result<Self, HarnessError> {
-        let default = POSES[usize::from(bench.gpu().is_software())];
+        let poses = if args.stage.motion.motion.is_some() { MOVING_POSES } else { POSES };
+        let default = poses[usize::from(bench.gpu().is_software())];
         let moves = bench.stage(&args.stage)?.scene.path.moves();
         if args.poses.is_some() && !moves {
             let scene = &args.stage.scene;
@@ -159,7 +168,9 @@ impl<'a> Search<'a> {
         say(format!("round    {name}: {} strategies", strategies.split(',').count()));
         let began = Instant::now();
         let out = self.args.out.join(name);
-        let frames = FRAMES[usize::from(self.bench.gpu().is_software())][last];
+        let device = usize::from(self.bench.gpu().is_software());
+        let lights_move = self.args.stage.motion.motion.is_some();
+        let frames = if lights_move { MOVING_POSES[device] } else { FRAMES[device][last] };
         let frames = self.poses.unwrap_or(frames).to_string();
         let laps = LAPS[last].to_string();
         let mut words = vec!["lightbench".to_owned(), "compare".to_owned()];
@@ -167,7 +178,10 @@ impl<'a> Search<'a> {
         let mut option = |all: &[&str]| words.extend(all.iter().map(|word| (*word).to_owned()));
         option(&["--strategies", strategies, "--frames", &frames]);
         if self.poses.is_some() {
-            option(&["--path", "--laps", &laps]);
+            option(&["--path"]);
+        }
+        if self.poses.is_some() || lights_move {
+            option(&["--laps", &laps]);
             if last == 0 {
                 option(&["--checks", SEARCH_CHECKS]);
             }

@@ -7,7 +7,7 @@ use shading::{Cut, Mode};
 
 use crate::{
     choice::Choice,
-    cli::{CliError, CompareArgs},
+    cli::{CliError, CompareArgs, MotionChoice, PicturesChoice, StageArgs},
     error::HarnessError,
     painter::raster_spheres,
     results::ResultsError,
@@ -25,9 +25,11 @@ const MOST_POSES: u32 = 1_200;
 pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<(), CliError> {
     check_effect(args, choices)?;
     let is_still = !args.path && args.stage.motion.motion.is_none();
-    if args.unbounded && args.stage.motion.is_on_gpu() {
-        let accepted = "cpu with --unbounded, which makes other lights of them on the CPU";
-        return Err(CliError::out_of_range("--moved-by", "gpu", accepted));
+    check_motion(&args.stage)?;
+    if args.checks == Some(0) && (args.unbounded || args.pictures == PicturesChoice::All) {
+        let accepted =
+            "1 or more without --pictures none, and with --unbounded: both draw no culling";
+        return Err(CliError::out_of_range("--checks", "0", accepted));
     }
     if let Some(checks) = args.checks.filter(|_| is_still) {
         let accepted = "left out without --path and --motion, because all frames are the same";
@@ -68,6 +70,22 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
         let names: Vec<&str> = modes.iter().map(|mode| mode.name()).collect();
         let accepted = accepted.join("; ");
         return Err(CliError::out_of_range("--mode", &names.join(" and "), &accepted));
+    }
+    Ok(())
+}
+
+/// Refuses lights that cannot move as they are asked to, whatever the scene.
+pub(crate) fn check_motion(args: &StageArgs) -> Result<(), CliError> {
+    if args.motion.motion == Some(MotionChoice::File) && args.no_own_lights {
+        let accepted =
+            "one of the laws with --no-own-lights, which leaves out what the file animates";
+        return Err(CliError::out_of_range("--motion", "file", accepted));
+    }
+    let order = args.light_order();
+    if args.motion.is_on_gpu() && !order.is_on_gpu() {
+        let accepted =
+            "gpu, gpuN or gpuN% with --moved-by gpu, because the CPU does not know the lights";
+        return Err(CliError::out_of_range("--light-order", &order.to_string(), accepted));
     }
     Ok(())
 }
@@ -222,5 +240,28 @@ mod tests {
             assert!(error.starts_with(&expected), "{line}: {error}");
         }
         assert_eq!(check("--strategies None,T-E --test hs --source both --operations"), Ok(()));
+    }
+
+    #[test]
+    fn lights_that_cannot_move_as_asked_are_refused() {
+        for (line, refused) in [
+            ("--motion drift --moved-by gpu --light-order given", "--light-order is given: "),
+            ("--motion drift --moved-by gpu --light-order bvh", "--light-order is bvh: "),
+            ("--motion file --no-own-lights", "--motion is file: "),
+            ("--path --checks 0", "--checks is 0: "),
+            ("--path --checks 0 --pictures none --unbounded", "--checks is 0: "),
+            ("--checks 0 --pictures none", "--checks is 0: "),
+        ] {
+            let error = check(line).expect_err(line).to_string();
+            assert!(error.starts_with(refused), "{line}: {error}");
+        }
+        for line in [
+            "--motion drift --moved-by gpu",
+            "--motion drift --moved-by gpu --unbounded",
+            "--motion drift --light-order given --laps 2 --checks 3",
+            "--path --checks 0 --pictures none",
+        ] {
+            assert_eq!(check(line), Ok(()), "{line}");
+        }
     }
 }

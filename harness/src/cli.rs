@@ -147,6 +147,7 @@ enum Command {
     /// Run a study on this GPU, or continue an interrupted one
     ///
     /// A study is a set of comparisons with their charts and findings.
+    #[command(after_help = MORE_OPTIONS, after_long_help = "")]
     Study(StudyArgs),
     /// Write the report of a comparison or a study again
     ///

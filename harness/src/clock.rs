@@ -48,6 +48,14 @@ impl FrameTimes {
         Self { passes, intervals }
     }
 
+    /// Puts work of the CPU before the first pass. It counts as a pass, and in spans.
+    pub fn begin_with(&mut self, name: &str, ms: f64) {
+        self.passes.insert(0, (name.to_owned(), ms));
+        if let Some(intervals) = &mut self.intervals {
+            intervals.insert(0, (name.to_owned(), [-ms, 0.0]));
+        }
+    }
+
     /// The time from the start of the first of some passes to the end of the last, ms. It includes the gaps
     /// between two of them, but not other passes in between and the gaps beside these. `None` if only sums
     /// are known.
@@ -329,6 +337,15 @@ mod tests {
         ]);
         assert_eq!(frame.span_ms(|name| name != "gbuffer"), Some(1.0 + 3.0));
         assert_eq!(frame.passes[0], ("cull".to_owned(), 2.0));
+    }
+
+    #[test]
+    fn work_of_the_cpu_counts_in_both_totals() {
+        let mut frame = together(&[("order", 0.0, 1.0), ("depth", 1.0, 2.0), ("shade", 2.0, 5.0)]);
+        frame.begin_with("upload", 7.0);
+        let is_billed = |name: &str| name != "depth";
+        assert_eq!(frame.passes[0], ("upload".to_owned(), 7.0));
+        assert_eq!((frame.span_ms(is_billed), frame.span_ms(|_| true)), (Some(11.0), Some(12.0)));
     }
 
     #[test]

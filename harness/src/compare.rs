@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use assign::Gpu;
+use assign::{Gpu, LightOrder};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use shading::{EDGE, HdrImage, LightBvh, Mode};
@@ -194,12 +194,32 @@ impl Run<'_> {
                 listed(&corners)
             ));
         }
+        if self.plan.checks == 0 {
+            let words = "images were not compared with no culling (--checks 0)";
+            self.results.warnings.push(words.to_owned());
+        }
+        self.results.warnings.extend(self.uneven_sorts());
         let name = &self.stage.scene.name;
         if self.args.path && !self.stage.scene.path.moves() {
             self.results
                 .warnings
                 .push(format!("{name} has no camera path: the camera stood still"));
         }
+    }
+
+    /// Says how often a lap sorts the lights, where that is more often than it should: each lap begins with a
+    /// sort.
+    fn uneven_sorts(&self) -> Option<String> {
+        let LightOrder::Gpu { every } = self.stage.lights.order() else { return None };
+        let frames = self.plan.timed;
+        let is_uneven = self.plan.laps > 0 && !frames.is_multiple_of(every);
+        is_uneven.then(|| {
+            let sorts = frames.div_ceil(every);
+            format!(
+                "a lap of {frames} frames sorts the lights {sorts} times, which is more than once every {every} \
+                 frames: the pass order takes less with --frames a multiple of {every}"
+            )
+        })
     }
 
     fn measure_all(&mut self, choices: &[Choice]) -> Result<(), HarnessError> {
@@ -235,10 +255,14 @@ impl Run<'_> {
         bar: &ProgressBar,
     ) -> Result<(), HarnessError> {
         let timed: Vec<usize> = (0..choices.len()).collect();
-        let reference_ix = choices.iter().position(Choice::is_reference).unwrap_or_else(|| {
-            // Drawn for its image, and not timed.
-            choices.extend(Choice::parse(BASELINE));
-            choices.len() - 1
+        let is_compared = self.plan.checks > 0;
+        let known = choices.iter().position(Choice::is_reference);
+        let reference_ix = is_compared.then(|| {
+            known.unwrap_or_else(|| {
+                // Drawn for its image, and not timed.
+                choices.extend(Choice::parse(BASELINE));
+                choices.len() - 1
+            })
         });
         let unbounded = match self.args.unbounded {
             true => Some(unbounded_image(&self.gpu, self.stage, mode)?),
@@ -250,13 +274,19 @@ impl Run<'_> {
         }
         let mut contest = Contest::new(&self.gpu, self.stage, &mut methods, mode, self.plan)?;
         bar.set_message(format!("images, {}", mode.name()));
-        let mut none = Some(contest.check(self.stage, reference_ix, bvh)?);
-        let image = none.as_ref().map(|checked| checked.image.clone()).unwrap_or_default();
-        let (reference, pictures) = Reference::new(self.args, image, unbounded, mode)?;
-        self.pictures.extend(pictures);
+        let mut none = match reference_ix {
+            Some(ix) => Some(contest.check(self.stage, ix, bvh)?),
+            None => None,
+        };
+        let mut reference = None;
+        if let Some(none) = &none {
+            let (made, pictures) = Reference::new(self.args, none.image.clone(), unbounded, mode)?;
+            self.pictures.extend(pictures);
+            reference = Some(made);
+        }
         let mut all_checked = Vec::new();
         for &ix in &timed {
-            let checked = match none.take_if(|_| ix == reference_ix) {
+            let checked = match none.take_if(|_| Some(ix) == reference_ix) {
                 Some(checked) => checked,
                 None => contest.check(self.stage, ix, bvh)?,
             };
@@ -264,12 +294,12 @@ impl Run<'_> {
             bar.inc(1);
         }
         let args = self.args;
-        let see = |(choice, checked)| see(args, choice, mode, checked, &reference);
+        let see = |(choice, checked)| see(args, choice, mode, checked, reference.as_ref());
         let all: Result<Vec<_>, _> = all_checked.into_par_iter().map(see).collect();
         let (mut all_seen, pictures): (Vec<Seen>, Vec<Pictures>) = all?.into_iter().unzip();
         self.pictures.extend(pictures.into_iter().flatten());
         bar.set_message(format!("times, {}", mode.name()));
-        let exposure = reference.exposure;
+        let exposure = reference.as_ref().map_or(1.0, |reference| reference.exposure);
         let mut compared = |images: &[HdrImage], reference: &HdrImage| {
             all_seen.par_iter_mut().zip(images).try_for_each(|(seen, image)| {
                 seen.compare(&ImagePair { image, reference, exposure })

@@ -18,7 +18,7 @@ use crate::{
     drift::WarmUp,
     error::HarnessError,
     list_lengths::ListLengths,
-    moving::{Moving, known_lights},
+    moving::{Moving, known_lights, order_bytes},
     painter::Painter,
     pass_samples::PassSamples,
     results::{Passes, Spans},
@@ -73,8 +73,8 @@ pub struct Timetable<'a> {
     /// Of those, the ones whose lists depend on the frames before: along a path they must see every
     /// pose before the one that is compared.
     pub remember: &'a [usize],
-    /// The one whose image is that of no culling.
-    pub reference: usize,
+    /// The one whose image is that of no culling; `None` if images are not compared.
+    pub reference: Option<usize>,
 }
 
 /// Is handed the images of a frame, method by method, and that of no culling.
@@ -90,7 +90,7 @@ pub struct Plan {
     pub timed: u32,
     /// How often the camera goes along its path, one pose per frame; 0: it stands still.
     pub laps: u32,
-    /// Poses along the path at which images are compared, 8 at most.
+    /// Frames that differ whose images are compared, 8 at most.
     pub checks: u32,
     /// Decides the order of methods in each round.
     pub seed: u64,
@@ -241,7 +241,7 @@ impl<'a> Contest<'a> {
         let settled = contender.painter.draw(&self.gpu, stage, self.mode, &mut self.clock)?;
         let mut times = self.clock.finish_frame()?;
         if let Some(upload) = stage.moving.as_ref().and_then(Moving::upload) {
-            times.passes.insert(0, ("upload".to_owned(), upload.ms));
+            times.begin_with("upload", upload.ms);
         }
         contender.samples.collect_frame(times);
         contender.overflowed_frames += u32::from(!settled);
@@ -265,8 +265,8 @@ fn read(gpu: &Gpu, stage: &Stage) -> Result<HdrImage, HarnessError> {
     Ok(HdrImage::read(gpu, stage.renderer.targets(), stage.view.viewport)?)
 }
 
-/// The image of lights that have no range: inverse square to any distance, without culling. Leaves
-/// the stage as it was, to be prepared again.
+/// The image of lights that have no range: inverse square to any distance, without culling. Lights that only
+/// the GPU knows are read back. Leaves the stage as it was, to be prepared again.
 pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrImage, HarnessError> {
     let unbounded = |light: &Light| Light { range_m: MAX_RANGE_M, ..*light };
     let lights: Vec<Light> = known_lights(gpu, &stage.lights)?.iter().map(unbounded).collect();
@@ -294,6 +294,14 @@ fn draw_unclocked(
     gpu.queue.submit([encoder.finish()]);
     gpu.wait()?;
     Ok(settled)
+}
+
+/// Bytes of everything that a strategy needs on the GPU in a mode: its own, images that are drawn only for it,
+/// and what orders the lights in every frame if it reads the hierarchy.
+pub fn memory_bytes(stage: &Stage, strategy: &dyn Assignment, mode: Mode) -> u64 {
+    let needs = strategy.needs();
+    let order = if needs.hierarchy { order_bytes(&stage.lights) } else { 0 };
+    strategy.memory_bytes() + order + stage.renderer.targets().bytes_for(mode, needs)
 }
 
 /// Reads the lists of the last frame back and checks them; `seen` asks for light operations.
@@ -334,8 +342,7 @@ fn count(
         groups: u64::from(strategy.lists().group_count()),
         counters: snapshot.counters,
         bytes: strategy.lists().bytes(),
-        memory_bytes: strategy.memory_bytes()
-            + renderer.targets().bytes_for(mode, strategy.needs()),
+        memory_bytes: memory_bytes(stage, strategy, mode),
         truth,
         lengths,
         operations,

@@ -211,6 +211,24 @@ pub fn order_off_clock(gpu: &Gpu, lights: &LightBuffer) {
     gpu.queue.submit([encoder.finish()]);
 }
 
+/// Bytes of what the GPU needs to order lights in every frame: the sort, and the copies of the lights in their
+/// order. Without the hierarchy, which strategies count, and without the lights as they were given, which every
+/// method needs. 0 if the CPU orders the lights.
+pub fn order_bytes(lights: &LightBuffer) -> u64 {
+    if !lights.order().is_on_gpu() {
+        return 0;
+    }
+    // Lights from the CPU lie there twice: as given and in their order, but for their shapes.
+    let given = match lights.live_count() {
+        Some(_) => 0,
+        None => [lights.spheres(), lights.emissions(), lights.shapes()]
+            .map(wgpu::Buffer::size)
+            .iter()
+            .sum(),
+    };
+    lights.memory_bytes().saturating_sub(lights.nodes().size() + given)
+}
+
 /// The box around the positions of the sound lights; the origin without any.
 fn places_of(lights: &[Light]) -> Aabb {
     let sound = lights.iter().filter(|light| light.check().is_ok());

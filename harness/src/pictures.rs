@@ -80,20 +80,21 @@ fn keep(
     Ok((name.to_owned(), png))
 }
 
-/// Compares a strategy's image with the reference, and keeps its pictures.
+/// Compares a strategy's image with the reference, and keeps its pictures. Without a reference it does neither.
 pub(crate) fn see(
     args: &CompareArgs,
     choice: &Choice,
     mode: Mode,
     checked: Checked,
-    reference: &Reference,
+    reference: Option<&Reference>,
 ) -> Result<(Seen, Pictures), HarnessError> {
     let is_control = choice.is_control();
     let Checked { image, lists } = checked;
+    let mut seen = Seen::new(lists.unwrap_or_default(), is_control);
+    let Some(reference) = reference else { return Ok((seen, Pictures::new())) };
     let is_same = image.pixels == reference.image.pixels;
     let exposure = reference.exposure;
     let pair = ImagePair { image: &image, reference: &reference.image, exposure };
-    let mut seen = Seen::new(lists.unwrap_or_default(), is_control);
     if !is_control {
         seen.compare(&pair)?;
         seen.unbounded_errors = match &reference.unbounded {

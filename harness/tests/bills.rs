@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use assign::{EncoderPasses, Gpu, Passes};
 use harness::choice::Choice;
 use harness::cli::{Invocation, parse};
+use harness::measure::memory_bytes;
+use harness::moving::order_bytes;
 use harness::painter::Painter;
 use harness::results::{PassKind, is_raster_pass, pass_kind};
 use harness::stage::Stage;
@@ -90,6 +92,38 @@ fn memory_is_what_the_device_allocated() {
         checked += 1;
     }
     assert!(checked > 12, "{checked} strategies");
+}
+
+/// What orders lights that move counts for methods that read the hierarchy, and the ordered copies are part of
+/// it, whoever moves the lights.
+#[test]
+fn memory_counts_what_orders_the_lights() {
+    let gpu = Gpu::open(None).expect("an adapter");
+    let order_of = |options: &str| {
+        let line = format!("lightbench --lights 300 --size 16x9 {options}");
+        let Ok(Invocation::Compare(args)) = parse(line.split_whitespace()) else {
+            panic!("{line}")
+        };
+        let mut stage = Stage::new(&gpu, &args.stage).expect("a stage");
+        stage.prepare().expect("prepares");
+        let counted = ["T-E", "T-E/bvh"].map(|id| {
+            let choice = Choice::parse(id).expect("a choice");
+            let method = choice.make(&gpu).expect("a method");
+            let Method::Lists { mut strategy, .. } = method else { panic!("{id} has lists") };
+            strategy.prepare(&gpu, &stage.renderer.frame(&stage.view, &stage.lights)).expect(id);
+            memory_bytes(&stage, strategy.as_ref(), Mode::Deferred) - strategy.memory_bytes()
+        });
+        assert_eq!(counted[0], 0, "{options}: the plain list needs no order");
+        assert_eq!(counted[1], order_bytes(&stage.lights), "{options}");
+        counted[1]
+    };
+    assert_eq!(order_of(""), 0);
+    // Two records of 16 bytes and an index for each light, at least.
+    let [by_gpu, by_cpu] =
+        ["gpu", "cpu"].map(|who| order_of(&format!("--motion drift --moved-by {who}")));
+    assert!((300 * 36..300 * 200).contains(&by_gpu), "{by_gpu}");
+    // The CPU's lights have room for a quarter more.
+    assert!((by_gpu..=by_gpu * 3 / 2).contains(&by_cpu), "{by_cpu} against {by_gpu}");
 }
 
 /// Passes by name and how they were recorded.

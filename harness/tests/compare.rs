@@ -107,8 +107,6 @@ fn all_methods_are_lossless_or_within_their_tolerance() {
     }
 }
 
-/// Samples are stored lap after lap. Every lap has the same poses. Lists that are reused over frames are made
-/// again when a lap begins.
 /// Whoever moves the lights and whenever they are sorted, images are those of no culling, and a second run
 /// repeats every bit.
 #[test]
@@ -133,6 +131,8 @@ fn lights_that_move_lose_nothing_and_frames_repeat() {
     raw(&["--motion", "all", "--speed", "5", "--light-order", "gpu25%"], "cpu");
 }
 
+/// Samples are stored lap after lap. Every lap has the same poses. Lists that are reused over frames are made
+/// again when a lap begins.
 #[test]
 fn laps_repeat_the_path() {
     let folder = tempfile::tempdir().expect("a folder");

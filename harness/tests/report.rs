@@ -5,7 +5,9 @@ mod report_data;
 use harness::report::{
     TABLE_WIDTH, finding, notices, render_html, render_markdown, render_table, write_html,
 };
-use harness::results::{Clock, DeviceType, Mode, PassTimes, Results, TruthLevel};
+use harness::results::{
+    Clock, DeviceType, Mode, MotionSetting, PassKind, PassTimes, Results, TruthLevel,
+};
 use report_data::{empty, pictures, record, spoil, typical};
 
 fn of(records: impl IntoIterator<Item = harness::results::Record>) -> Results {
@@ -40,6 +42,64 @@ fn the_finding_is_computed_from_the_records() {
         lossy.contains("differs from no culling in 5,678 channels, by at most 0.0313"),
         "{lossy}"
     );
+}
+
+/// The same method with lights that the CPU moves, whose order and boxes the GPU makes.
+fn moving(strategy: &str) -> harness::results::Record {
+    let mut moving = record(strategy, Mode::Deferred, 12.0, 50.0);
+    let law = "drift".to_owned();
+    moving.setting.motion = Some(MotionSetting { law, speed_m_s: 1.0, moved_by: "cpu".to_owned() });
+    moving.setting.light_order = Some("gpu8".to_owned());
+    (moving.times.light_build_ms, moving.times.upload_bytes) = (None, Some(3 << 19));
+    for (name, ms) in [("upload", 4.0), ("order", 2.0), ("boxes", 1.0)] {
+        moving.times.passes.insert(name, PassTimes::new(PassKind::Assign, vec![ms; 8]));
+    }
+    moving.set_times();
+    moving
+}
+
+#[test]
+fn the_bill_names_every_pass_and_what_is_off_the_clock() {
+    let still = of([
+        record("None", Mode::Deferred, 0.0, 1_000.0),
+        record("SC-E/48x48x40/bvh", Mode::Deferred, 12.0, 50.0),
+        record("SC-E/48x48x40", Mode::Deferred, 20.0, 50.0),
+    ]);
+    let text = render_table(&still);
+    let bill: Vec<&str> = text.split("\n\n").nth(1).expect("a second table").lines().collect();
+    let columns = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(columns(bill[0]), ["strategy", "off-clock", "bounds", "cull", "shade"]);
+    assert_eq!(columns(bill[2])[..4], ["None", "\u{2013}", "\u{2013}", "\u{2013}"]);
+    assert_eq!(columns(bill[3])[..2], ["SC-E/48x48x40/bvh", "0.400"]);
+    assert_eq!(columns(bill[4])[..2], ["SC-E/48x48x40", "\u{2013}"], "it needs no hierarchy");
+    let page = render_html(&still, &[]);
+    let note = "SC-E/48x48x40/bvh</span> <small>build 0.400 ms, off the clock</small></th>";
+    assert_eq!(page.matches(note).count(), 1, "in the row of the result table");
+    assert_eq!(page.matches("data-metric=\"build_ms\" data-value=\"0.4\"").count(), 1);
+    assert!(finding(&still)[0].contains("(if no light moves)"), "{:?}", finding(&still));
+    assert!(render_markdown(&still).contains("| off the clock: build ms |"));
+
+    let living = of([record("None", Mode::Deferred, 0.0, 1_000.0), moving("SC-E/48x48x40/bvh")]);
+    // A comparison of lights that move and lights that stand still would be none.
+    assert_eq!(finding(&living).len(), 2);
+    let living = of([moving("T-E/28x28"), moving("SC-E/48x48x40/bvh")]);
+    let text = render_table(&living);
+    let bill: Vec<&str> = text.split("\n\n").nth(1).expect("a second table").lines().collect();
+    let heads = ["strategy", "uploaded", "upload", "order", "boxes", "bounds", "cull", "shade"];
+    assert_eq!(columns(bill[0]), heads);
+    assert_eq!(columns(bill[2])[1..5], ["1.50", "4.00", "2.00", "1.00"]);
+    let page = render_html(&living, &[]);
+    assert!(!page.contains("off the clock</small>"));
+    for pass in 0..3 {
+        assert!(page.contains(&format!("tint pass-living-{pass}")), "the bars have pass {pass}");
+    }
+    let motion = "lights move: drift at speed 1, moved by the CPU, sorted every 8 frames";
+    assert!(page.contains(motion), "the setting says how the lights move");
+    let found = &finding(&living)[0];
+    assert!(found.contains("(lights move: drift)") && !found.contains("if no light"), "{found}");
+    let cost = "upload 4.00 ms (1.50 MiB), order 2.00 ms and boxes 1.00 ms.";
+    assert!(found.contains(cost), "{found}");
+    assert!(render_markdown(&living).contains("(upload 4.00, order 2.00, boxes 1.00, bounds "));
 }
 
 #[test]

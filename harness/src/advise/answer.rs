@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::verdict::{Verdict, error_of, verdict};
 use crate::{
-    report::{self, significant as ms},
+    report::{self, bill::assign_passes, format::mebibytes, living, significant as ms},
     results::{DeviceType, Record, Results},
 };
 
@@ -17,12 +17,15 @@ pub fn answer(results: &Results, error_budget: f64) -> String {
         return format!("No strategy stayed within the error budget, relMSE {error_budget}.\n");
     };
     let mut text = first_line(verdict.best) + "\n";
-    if let Some(moving) = verdict.moving {
+    if let Some(motion) = living::motion_words(&verdict.best.setting) {
+        let _ = writeln!(text, "The lights move: {motion}. {}", bill(verdict.best));
+    }
+    if let Some(other) = verdict.without_hierarchy {
         let _ = writeln!(
             text,
-            "For lights that move: {}, {}. It needs no hierarchy.",
-            moving.strategy,
-            time(moving)
+            "Without a hierarchy: {}, {}. Lights that move were not measured: --motion LAW does so.",
+            other.strategy,
+            time(other)
         );
     }
     if !verdict.tied.is_empty() {
@@ -65,7 +68,7 @@ fn first_line(best: &Record) -> String {
         best.strategy,
         about(best),
         time(best),
-        report::lights(best.setting.lights),
+        lights(best),
         ms(best.times.assign_ms),
         ms(best.times.shade_ms),
     );
@@ -95,6 +98,23 @@ fn first_line(best: &Record) -> String {
         text += ", not counted in this time.";
     }
     text
+}
+
+/// `10,000 lights`, or `10,000 lights that move`.
+fn lights(record: &Record) -> String {
+    let moving = if record.setting.motion.is_some() { " that move" } else { "" };
+    report::lights(record.setting.lights) + moving
+}
+
+/// The time of each pass that assigns and shades: `In each frame: order 0.00310 ms, boxes ...`.
+fn bill(record: &Record) -> String {
+    let pass = |name: &str| format!("{name} {} ms", ms(record.time_of(|pass, _| pass == name)));
+    let shade = record.times.passes.get("shade").map(|_| "shade");
+    let passes: Vec<String> = assign_passes([record]).into_iter().chain(shade).map(pass).collect();
+    let size = record.times.upload_bytes.map_or_else(String::new, |bytes| {
+        format!(" The CPU uploads {} MiB.", mebibytes(bytes as f64))
+    });
+    format!("In each frame: {}.{size}", report::listed(&passes))
 }
 
 /// A record's time, and over what it was taken.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::results::{PassKind, PassTimes};
+use crate::results::{MotionSetting, PassKind, PassTimes};
 
 /// A record whose rounds took these times.
 fn record(strategy: &str, times_ms: &[f64], bytes: u64) -> Record {
@@ -188,11 +188,42 @@ fn a_built_hierarchy_wins_for_still_lights_only() {
     assert!(first.starts_with("Use SC-E/48x48x40/bvh"), "{text}");
     assert!(first.contains("Still lights only") && first.contains("in 9.70 ms"), "{first}");
     let second = lines.next().expect("a line");
-    assert!(second.starts_with("For lights that move: SC-E/48x48x40, 2.0"), "{second}");
+    assert!(second.starts_with("Without a hierarchy: SC-E/48x48x40, 2.0"), "{second}");
+    assert!(second.contains("not measured: --motion"), "{second}");
 
     let results = results_of(vec![around("SC-E/48x48x40", 2.0, 0.02, 1 << 20)]);
     let text = answer(&results, 0.0);
-    assert!(!text.contains("till lights") && !text.contains("lights that move"), "{text}");
+    assert!(!text.contains("till lights") && !text.contains("ights that move"), "{text}");
+}
+
+#[test]
+fn lights_that_move_are_measured_and_their_cost_is_on_the_bill() {
+    let mut results = results_of(vec![
+        around("SC-E/48x48x40", 2.0, 0.02, 1 << 20),
+        around("SC-E/48x48x40/bvh", 1.0, 0.02, 1 << 20),
+    ]);
+    for record in &mut results.records {
+        let motion = MotionSetting { law: "drift".into(), speed_m_s: 1.0, moved_by: "cpu".into() };
+        (record.setting.motion, record.setting.light_order) = (Some(motion), Some("gpu8".into()));
+        (record.times.light_build_ms, record.times.upload_bytes) = (None, Some(1 << 19));
+        let living =
+            if record.strategy.is_bvh() { &["upload", "order", "boxes"][..] } else { &["upload"] };
+        for name in living {
+            let times = PassTimes::new(PassKind::Assign, vec![0.25; 10]);
+            record.times.passes.insert(*name, times);
+        }
+        record.set_times();
+    }
+    let text = answer(&results, 0.0);
+    let first = text.lines().next().expect("a line");
+    assert!(first.starts_with("Use SC-E/48x48x40/bvh (sparse clusters"), "{text}");
+    assert!(first.contains("lights that move (0.750 + 1.0"), "{first}");
+    let second = text.lines().nth(1).expect("a line");
+    let bill = "The lights move: drift at speed 1, moved by the CPU, sorted every 8 frames. In each frame: \
+                upload 0.250 ms, order 0.250 ms, boxes 0.250 ms and shade 1.0";
+    assert!(second.starts_with(bill), "{second}");
+    assert!(second.ends_with("The CPU uploads 0.500 MiB."), "{second}");
+    assert!(!text.contains("till lights") && !text.contains("not measured"), "{text}");
 }
 
 #[test]

@@ -27,8 +27,8 @@ pub struct Verdict<'a> {
     pub reasons: Vec<&'static str>,
     /// The fastest of those that the best is surely faster than.
     pub next: Option<&'a Record>,
-    /// Where the best needs a hierarchy that was built beforehand: what to use without one.
-    pub moving: Option<&'a Record>,
+    /// Where the best needs a hierarchy that was built beforehand: the best without one.
+    pub without_hierarchy: Option<&'a Record>,
     /// The fastest lossy setting within the budget.
     pub lossy: Option<&'a Record>,
 }
@@ -70,7 +70,7 @@ pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
         tied,
         reasons,
         next: slower.into_iter().find(|record| beats(best, record)),
-        moving: choose(&without).map(|(record, _)| record),
+        without_hierarchy: choose(&without).map(|(record, _)| record),
         lossy: within.iter().copied().find(|record| record.is_lossy),
     })
 }

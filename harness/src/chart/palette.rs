@@ -35,13 +35,16 @@ const SERIES: [Named; 9] = [
     ("series-8", colour("#6e4a26", "#c79b6b")),
 ];
 
-/// Passes of a frame. The hue tells the kind (grey scene, blue assign, orange shade), the lightness the
-/// pass.
-const PASSES: [Named; 16] = [
+/// Passes of a frame. The hue tells the kind (grey scene, green lights that move, blue assign, orange shade),
+/// the lightness the pass.
+const PASSES: [Named; 19] = [
     ("pass-scene-0", colour("#c3c5c4", "#5a5f63")),
     ("pass-scene-1", colour("#a2a6a7", "#777d81")),
     ("pass-scene-2", colour("#848a8c", "#949a9e")),
     ("pass-scene-3", colour("#6a7073", "#b0b6b9")),
+    ("pass-living-0", colour("#0b6b52", "#63c9a5")),
+    ("pass-living-1", colour("#3fa886", "#1f8263")),
+    ("pass-living-2", colour("#93d3ba", "#135a45")),
     ("pass-assign-0", colour("#1f6fae", "#5aa7e0")),
     ("pass-assign-1", colour("#5a9bd0", "#347fb8")),
     ("pass-assign-2", colour("#124a7a", "#8cc4ee")),

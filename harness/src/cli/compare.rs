@@ -94,7 +94,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_FRAMES), help_heading = TIMING, hide_short_help = true)]
     pub warmup: Option<u32>,
 
-    /// With --path, laps along the path, 1 to 1,000, each of --frames poses [default: 1]
+    /// With --path or --motion, laps of --frames frames each, 1 to 1,000 [default: 1]
     ///
     /// The test for ties needs 6 laps.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, 1_000), help_heading = TIMING, hide_short_help = true)]
@@ -104,8 +104,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "LEVEL", default_value = "full", value_parser = named(TRUTH_LEVELS, TruthLevel::name), help_heading = CHECKS, hide_short_help = true)]
     pub truth: TruthLevel,
 
-    /// With --path, poses at which to compare images with no culling, 1 to 8 [default: 8]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(1, values::MAX_CHECKS), help_heading = CHECKS, hide_short_help = true)]
+    /// With --path or --motion, frames to compare with no culling; 0 to 8 [default: 8]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_CHECKS), help_heading = CHECKS, hide_short_help = true)]
     pub checks: Option<u32>,
 
     /// Also compare each image with that of lights without a range: the error of their ranges

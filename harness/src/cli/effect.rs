@@ -5,7 +5,7 @@
 
 use clap::{ArgMatches, parser::ValueSource};
 
-use super::{CdiArgs, CliError, Invocation, RangeChoice, StageArgs};
+use super::{CdiArgs, CliError, Invocation, RangeChoice, StageArgs, StudyArgs};
 
 /// Options, when they have an effect, and what they need.
 struct Rule<A> {
@@ -18,6 +18,9 @@ struct Rule<A> {
 
 const CASTING: &str = "--vpls N above 0 and a rule of --ranges that casts rays: average, maximum, \
                         random-discard or constant-discard";
+
+const SPEED: &[&str] = &["speed", "moved-by"];
+const MOTION: &str = "--motion LAW";
 
 const STAGE: &[Rule<StageArgs>] = &[
     Rule {
@@ -68,11 +71,7 @@ const STAGE: &[Rule<StageArgs>] = &[
         has_effect: |args| !args.bounce.is_on(),
         needs: "lights that can move: --vpls and --primary replace them",
     },
-    Rule {
-        options: &["speed", "moved-by"],
-        has_effect: |args| args.motion.motion.is_some(),
-        needs: "--motion LAW",
-    },
+    Rule { options: SPEED, has_effect: |args| args.motion.motion.is_some(), needs: MOTION },
     Rule {
         options: &["outlines", "diffuse-share"],
         has_effect: |args| args.areas > 0.0,
@@ -86,6 +85,9 @@ const CDI: &[Rule<CdiArgs>] = &[Rule {
     needs: "--casts or --compared to cast rays",
 }];
 
+const STUDY: &[Rule<StudyArgs>] =
+    &[Rule { options: SPEED, has_effect: |args| args.motion.motion.is_some(), needs: MOTION }];
+
 /// Refuses an option that was given and has no effect.
 pub(super) fn check(asked: &Invocation, matches: &ArgMatches) -> Result<(), CliError> {
     // Options stand after the name of the command, or alone where `compare` is not named.
@@ -94,6 +96,7 @@ pub(super) fn check(asked: &Invocation, matches: &ArgMatches) -> Result<(), CliE
         Invocation::Compare(args) => check_rules(STAGE, &args.stage, matches),
         Invocation::Advise(args) => check_rules(STAGE, &args.stage, matches),
         Invocation::Truth(args) => check_rules(STAGE, &args.stage, matches),
+        Invocation::Study(args) => check_rules(STUDY, args, matches),
         Invocation::Cdi(args) => check_rules(CDI, args, matches),
         _ => Ok(()),
     }

@@ -3,15 +3,20 @@
 use clap::{Args, ValueEnum};
 use scenes::MotionLaw;
 
-use super::{headings::MOTION, named::named, values};
+use super::{
+    headings::MOTION,
+    named::{name_of, named},
+    values,
+};
 
 /// Whether and how lights move.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct MotionArgs {
     /// Move the lights in every frame
     ///
-    /// Frame F shows the time F / 60 s, and is the same on every run. The camera stands still unless --path
-    /// moves it. Lights are ordered and boxed on the GPU in every frame, on the clock (see --light-order).
+    /// Frame F shows the time F / 60 s, and is the same on every run. What moving lights cost in each frame is
+    /// on the clock: the GPU boxes them in every frame and sorts them in every eighth (see --light-order of
+    /// `compare`).
     #[arg(long, value_name = "LAW", value_parser = named(MOTIONS, MotionChoice::name), help_heading = MOTION, hide_short_help = true)]
     pub motion: Option<MotionChoice>,
 
@@ -25,6 +30,14 @@ pub struct MotionArgs {
 }
 
 impl MotionArgs {
+    /// The words that ask for this motion; none if the lights stand still.
+    pub fn words(&self) -> Vec<String> {
+        let Some(motion) = self.motion else { return Vec::new() };
+        let (speed, mover) = (self.speed.to_string(), name_of(&self.moved_by));
+        let words = ["--motion", motion.name(), "--speed", &speed, "--moved-by", &mover];
+        words.map(str::to_owned).to_vec()
+    }
+
     /// Whether the GPU moves the lights.
     pub fn is_on_gpu(&self) -> bool {
         self.motion.is_some() && self.moved_by == MovedBy::Gpu

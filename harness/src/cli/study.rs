@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::{
     headings::JOBS,
+    motion::MotionArgs,
     values::{self, Size},
 };
 
@@ -80,6 +81,10 @@ pub struct StudyArgs {
     #[arg(long, value_name = "K/N", default_value = "1/1", allow_hyphen_values = true, help_heading = JOBS)]
     pub shard: Shard,
 
+    /// Lights that move, in every comparison.
+    #[command(flatten)]
+    pub motion: MotionArgs,
+
     /// GPU to use, by any part of its name
     #[arg(long, value_name = "NAME", value_parser = values::text)]
     pub adapter: Option<String>,
@@ -119,6 +124,7 @@ impl StudyArgs {
             option("--size", format!("{width}x{height}"));
         }
         option("--seed", self.seed.to_string());
+        words.extend(self.motion.words());
         if self.quick {
             words.push("--quick".to_owned());
         }
@@ -129,6 +135,25 @@ impl StudyArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn motion_is_part_of_what_a_study_is() {
+        let identity = |line: &str| {
+            let words =
+                ["lightbench", "study", "culling"].into_iter().chain(line.split_whitespace());
+            match crate::cli::parse(words) {
+                Ok(crate::cli::Invocation::Study(args)) => args.identity().join(" "),
+                other => panic!("{line}: {other:?}"),
+            }
+        };
+        let still = "lightbench study culling --scene atrium --seed 1";
+        assert_eq!(identity(""), still);
+        let moved = identity("--motion drift --speed 0.5 --moved-by gpu --quick");
+        assert_eq!(moved, format!("{still} --motion drift --speed 0.5 --moved-by gpu --quick"));
+        // What is not said has its default.
+        let plain = identity("--motion orbit");
+        assert_eq!(plain, format!("{still} --motion orbit --speed 1 --moved-by cpu"));
+    }
 
     #[test]
     fn shards_hold_every_job_once() {

@@ -102,7 +102,7 @@ fn an_error_names_the_option_the_value_and_the_range() {
         ("--lights", &["-1", "16777217", "1.5", "99999999999999999999"], counts),
         ("--frames", &["0", "100001", "-3", "all"], counts),
         ("--warmup", &["-1", "100001", "x"], counts),
-        ("--checks", &["0", "9", "-1", "x"], "a whole number from 1 to 8"),
+        ("--checks", &["9", "-1", "x"], "a whole number from 0 to 8"),
         ("--laps", &["0", "1001", "-2", "x"], "a whole number from 1 to 1,000"),
         ("--seed", &["-1", "18446744073709551616", "x"], counts),
         (
@@ -221,6 +221,8 @@ fn options_without_effect_are_refused() {
         ("--vpls 64 --ranges infinite --keep-ranges 1,2", "--keep-ranges", "infinite"),
         ("--vpls 64 --constant-range 1", "--constant-range", "constant-discard"),
         ("cdi --casts none --compared 0 --rays 3", "--rays", "--compared"),
+        ("study culling --speed 2", "--speed", "--motion"),
+        ("advise --moved-by gpu", "--moved-by", "--motion"),
     ] {
         let message = error_of(line);
         let expected = format!("{option} has no effect here: it needs ");

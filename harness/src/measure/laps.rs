@@ -59,6 +59,7 @@ impl Contest<'_> {
                 self.draw(stage, method)?;
                 images.push(read(&self.gpu, stage)?);
             }
+            let Some(reference) = reference else { continue };
             self.draw(stage, reference)?;
             seen(&images, &read(&self.gpu, stage)?)?;
         }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::living;
 use crate::results::{PassKind, Results};
 
 /// Colours that the style sheet has for the passes of one kind.
@@ -13,7 +14,8 @@ pub(crate) struct Colours<'a> {
 }
 
 impl<'a> Colours<'a> {
-    /// Gives each pass a hue by its kind and a shade by its place among passes of that kind.
+    /// Gives each pass a hue by its kind and a shade by its place among passes of that kind. The passes of lights
+    /// that move have a hue of their own.
     pub(crate) fn new(results: &'a Results) -> Self {
         Self { passes: passes(results) }
     }
@@ -28,6 +30,10 @@ fn passes(results: &Results) -> BTreeMap<&str, String> {
     let mut classes = BTreeMap::new();
     let mut next: [usize; 4] = [0; 4];
     for (name, times) in results.records.iter().flat_map(|record| record.times.passes.iter()) {
+        if let Some(ix) = living::PASSES.iter().position(|pass| *pass == name) {
+            classes.insert(name, format!("pass-living-{ix}"));
+            continue;
+        }
         let (kind, label) = match times.kind {
             PassKind::Scene => (0, "scene"),
             PassKind::Assign => (1, "assign"),

@@ -43,7 +43,7 @@ pub(crate) struct Column<'a, T> {
     /// Its unit, may be empty. The terminal's table puts it on a line of its own.
     pub(crate) unit: String,
     /// Its heading in the terminal's table, which leaves out a column without one.
-    pub(crate) terminal: Option<&'static str>,
+    pub(crate) terminal: Option<String>,
     /// What it means, one or a few sentences; may be empty.
     pub(crate) about: String,
     /// Which way its figures are better.
@@ -123,8 +123,8 @@ impl<'a, T> Column<'a, T> {
     }
 
     /// Shows the column in the terminal too, under this heading.
-    pub(crate) fn terminal(self, head: &'static str) -> Self {
-        Self { terminal: Some(head), ..self }
+    pub(crate) fn terminal(self, head: impl Into<String>) -> Self {
+        Self { terminal: Some(head.into()), ..self }
     }
 
     /// Says what the column means.

@@ -5,7 +5,8 @@ use super::raster;
 use crate::results::{Machine, Record, Results};
 use crate::strategy::EARLY_EXIT;
 
-/// The records of one scene, camera path, image size, set of lights and mode. Only strategies differ.
+/// The records of one scene, camera path, image size, set of lights with its motion and order, and mode. Only
+/// strategies differ.
 pub(crate) struct Comparison<'a> {
     /// The records with their indices in [`Results::records`], in the order of the run.
     pub(crate) records: Vec<(usize, &'a Record)>,
@@ -39,7 +40,12 @@ fn comparable(a: &Record, b: &Record) -> bool {
     };
     let is_same_scene =
         a.setting.scene == b.setting.scene && a.setting.scene_hash == b.setting.scene_hash;
-    is_same_scene && a.setting.path_hash == b.setting.path_hash && key(a) == key(b)
+    let is_same_motion =
+        a.setting.motion == b.setting.motion && a.setting.light_order == b.setting.light_order;
+    is_same_scene
+        && is_same_motion
+        && a.setting.path_hash == b.setting.path_hash
+        && key(a) == key(b)
 }
 
 impl<'a> Comparison<'a> {

@@ -99,7 +99,7 @@ fn sentence(comparison: &Comparison<'_>) -> (String, Vec<String>) {
         true => String::new(),
         false => image(fastest),
     };
-    let details = [plain_names(&lead), over_exit(comparison, &subject), lead.hierarchy()];
+    let details = [plain_names(&lead), over_exit(comparison, &subject), lead.cost_of_lights()];
     (speed(comparison, &subject) + &image + &lead.doubt(), details.into_iter().flatten().collect())
 }
 
@@ -114,13 +114,13 @@ struct Subject<'a> {
     /// `A (its plain name)`, or `A and B tie for fastest: they`.
     words: String,
     /// Follows a speed: for which lights it holds.
-    still_lights: &'static str,
+    of_lights: String,
 }
 
 impl<'a> Subject<'a> {
     fn one(comparison: &Comparison<'_>, record: &'a Record) -> Self {
         let words = comparison.name(record) + &plain_name(record);
-        Self { records: vec![record], words, still_lights: "" }
+        Self { records: vec![record], words, of_lights: String::new() }
     }
 
     fn lead(comparison: &Comparison<'_>, lead: &Lead<'a>) -> Self {
@@ -128,7 +128,7 @@ impl<'a> Subject<'a> {
             true => format!("{}: they", lead.is_fastest()),
             false => comparison.name(lead.leader()) + &plain_name(lead.leader()),
         };
-        Self { records: lead.records.clone(), words, still_lights: lead.still_lights() }
+        Self { records: lead.records.clone(), words, of_lights: lead.lights() }
     }
 
     /// A verb in the singular or the plural.
@@ -160,13 +160,13 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let leader = subject.records[0];
     let words = &subject.words;
     let lights = lights(leader.setting.lights);
-    let still = subject.still_lights;
+    let of_lights = &subject.of_lights;
     let takes = subject.verb("takes", "take");
     let time = |record: &Record| Some(record.assign_and_shade_ms());
     let took = subject.span(time).unwrap_or_default();
     let alone = || {
         let verb = subject.verb("assigns and shades", "assign and shade");
-        format!("{words} {verb} {lights} in {took} ms{still}")
+        format!("{words} {verb} {lights} in {took} ms{of_lights}")
     };
     let Some(baseline) = comparison.baseline().filter(|record| is_timed(record)) else {
         return alone();
@@ -180,15 +180,17 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let faster = |record: &Record| comparison.speedup(record);
     match (comparison.speedup(leader), subject.span(faster)) {
         (Some(speedup), _) if (speedup - 1.0).abs() <= EQUAL => {
-            format!("{words} {takes} as long as no culling to shade {lights}{still}")
+            format!("{words} {takes} as long as no culling to shade {lights}{of_lights}")
         }
         (Some(speedup), Some(factors)) if speedup > 1.0 => {
             let verb = subject.verb("shades", "shade");
-            format!("{words} {verb} {lights} {factors}\u{d7} as fast as no culling{still}")
+            format!("{words} {verb} {lights} {factors}\u{d7} as fast as no culling{of_lights}")
         }
         (Some(speedup), _) => {
             let factor = factor(1.0 / speedup);
-            format!("{words} {takes} {factor}\u{d7} as long as no culling to shade {lights}{still}")
+            format!(
+                "{words} {takes} {factor}\u{d7} as long as no culling to shade {lights}{of_lights}"
+            )
         }
         (None, _) => alone(),
     }

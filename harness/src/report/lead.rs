@@ -1,7 +1,10 @@
 //! Who leads a comparison, with the limits of that lead: ties, too few rounds, lights that must stand still.
 
+use assign::LightOrder;
+
 use super::comparison::Comparison;
 use super::format::significant;
+use super::living;
 use super::rank::{Ranked, Ratio, SURE, few_listed, first};
 use crate::results::Record;
 
@@ -81,10 +84,10 @@ impl<'a> Lead<'a> {
     /// As [`is_fastest`](Self::is_fastest), with the plain name of a single leader and all limits that are not
     /// figures: for a headline.
     pub(crate) fn headline(&self) -> String {
-        let limits = format!("{}{}", self.still_lights(), self.doubt());
+        let limits = format!("{}{}", self.lights(), self.doubt());
         match (self.is_tie(), self.leader().strategy.row()) {
             (false, Some(row)) => {
-                let source = match needs_built_hierarchy(self.leader()) {
+                let source = match self.leader().strategy.is_bvh() {
                     true => ", hierarchy over the lights",
                     false => "",
                 };
@@ -105,17 +108,27 @@ impl<'a> Lead<'a> {
         }
     }
 
-    /// Which of them need lights that stand still, to follow the names; empty where none does.
-    pub(crate) fn still_lights(&self) -> &'static str {
-        match self.built().count() {
+    /// How the lights move, or which of them need lights that stand still, to follow the names; empty where
+    /// neither is to be said.
+    pub(crate) fn lights(&self) -> String {
+        if let Some(motion) = &self.leader().setting.motion {
+            return format!(" (lights move: {})", motion.law);
+        }
+        let limit = match self.built().count() {
             0 => "",
             count if count == self.records.len() => " (if no light moves)",
             _ => " (ids with /bvh: only if no light moves)",
-        }
+        };
+        limit.to_owned()
     }
 
-    /// A sentence on the hierarchy that some of them read; `None` where none does.
-    pub(crate) fn hierarchy(&self) -> Option<String> {
+    /// A sentence on what moving lights cost the leader, or on the hierarchy that some of them read; `None`
+    /// where there is neither.
+    pub(crate) fn cost_of_lights(&self) -> Option<String> {
+        if let Some(words) = living::motion_words(&self.leader().setting) {
+            let cost = living::cost_words(self.leader());
+            return Some(format!("The lights move: {words}. {cost}"));
+        }
         let time = match self.built().next()?.times.light_build_ms {
             Some(build) => format!(" in {} ms", significant(build)),
             None => String::new(),
@@ -133,9 +146,11 @@ impl<'a> Lead<'a> {
 }
 
 /// Whether a strategy reads a hierarchy over the lights that was built before the first frame. Its time then
-/// holds for still lights only.
+/// holds for still lights only. The hierarchy over lights that move is made anew in every frame, on the clock.
 pub fn needs_built_hierarchy(record: &Record) -> bool {
-    record.strategy.is_bvh()
+    let setting = &record.setting;
+    let is_on_gpu = setting.order().is_some_and(LightOrder::is_on_gpu);
+    record.strategy.is_bvh() && setting.motion.is_none() && !is_on_gpu
 }
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` if the figure is

@@ -1,5 +1,6 @@
 //! The result table for a document.
 
+use super::bill::build_column;
 use super::column::Column;
 use super::comparison::{Comparison, comparisons};
 use super::format::significant;
@@ -38,6 +39,7 @@ fn markdown(comparison: &Comparison<'_>) -> String {
             columns.push(if id == "assign_ms" { add_passes(column) } else { column });
         }
     }
+    columns.push(build_column(|row: &Measured<'_>| row.record));
     columns.extend(errors_of(comparison));
     // The control assigns and shades nothing.
     let records = comparison.all().filter(|record| !record.is_control());

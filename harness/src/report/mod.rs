@@ -3,6 +3,7 @@
 //! Both show the same columns (`metrics`), computed from the same comparisons: the
 //! records that differ in nothing but the strategy.
 
+pub(crate) mod bill;
 pub(crate) mod colours;
 pub(crate) mod column;
 pub(crate) mod comparison;
@@ -12,6 +13,7 @@ pub(crate) mod format;
 pub(crate) mod frames;
 pub(crate) mod html;
 pub(crate) mod lead;
+pub(crate) mod living;
 mod looks;
 mod loss;
 mod markdown;

@@ -2,6 +2,7 @@
 
 use super::comparison::{Comparison, comparisons};
 use super::format::number;
+use super::living;
 use super::loss::errors_of;
 use super::markup::{Html, html, with_names_whole};
 use super::metrics::{Measured, Metric, metrics};
@@ -54,6 +55,9 @@ pub(crate) fn setting(record: &Record) -> String {
     }
     if record.setting.radius_scale != 1.0 {
         parts.push(format!("radius scale {}", rounded(record.setting.radius_scale)));
+    }
+    if let Some(motion) = living::motion_words(&record.setting) {
+        parts.push(format!("lights move: {motion}"));
     }
     parts.push(format!("{} frames", number(f64::from(record.times.frames))));
     parts.join(" \u{b7} ")

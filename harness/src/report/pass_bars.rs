@@ -54,7 +54,7 @@ pub(crate) fn pass_bars(
     records: &[&Record],
     colours: &Colours<'_>,
 ) -> BarChart {
-    let bar = |record: &&Record| bar(record, counted, colours);
+    let bar = |record: &&Record| pass_bar(record, record.strategy.to_string(), counted, colours);
     let axis = Axis { label: counted.label().to_owned(), unit: "ms".to_owned(), scale };
     let note = match scale {
         Scale::Log => {
@@ -66,7 +66,13 @@ pub(crate) fn pass_bars(
     BarChart { title, axis, rows: records.iter().map(bar).collect(), note: note.to_owned() }
 }
 
-fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
+/// A bar of a record under a name, a segment per pass.
+pub(crate) fn pass_bar(
+    record: &Record,
+    name: String,
+    counted: Counted,
+    colours: &Colours<'_>,
+) -> BarRow {
     let total = counted.total_ms(record);
     let is_counted = |(_, times): &(&str, &PassTimes)| counted.counts(times.kind);
     let segments: Vec<Segment> = record
@@ -94,9 +100,9 @@ fn bar(record: &Record, counted: Counted, colours: &Colours<'_>) -> BarRow {
         false => "not measured".to_owned(),
     };
     BarRow {
-        name: record.strategy.to_string(),
         class: record.strategy.class(),
-        tip: format!("{}: {value_text}{lines}", record.strategy),
+        tip: format!("{name}: {value_text}{lines}"),
+        name,
         segments,
         value_text,
     }

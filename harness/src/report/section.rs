@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::bill::{bill_html, build_note};
 use super::colours::Colours;
 use super::comparison::{Comparison, comparisons};
 use super::looks::{list_lengths, pictures};
@@ -28,6 +29,7 @@ pub(crate) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
         let records: Vec<&Record> = comparison.all().collect();
         let body = result_table(&format!("Results: {heading}"), comparison)
             + frame_times(&records, &colours)
+            + bill_html(&format!("What each pass costs: {heading}"), comparison)
             + pictures(comparison, kept)
             + list_lengths(comparison)
             + samples(&records, &colours);
@@ -47,6 +49,7 @@ pub(crate) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
 pub(crate) fn result_table(label: &str, comparison: &Comparison<'_>) -> Html {
     table("strategy", comparison, comparison.all(), columns(comparison))
         .dotted(|row| row.record.strategy.class())
+        .noted(|row| build_note(row.record))
         .html(label, Look::Sortable)
 }
 

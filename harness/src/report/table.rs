@@ -138,10 +138,31 @@ impl<'a, T> Table<'a, T> {
         html!("<th scope=\"col\"{}>{}</th>", title, text)
     }
 
-    /// The table for the terminal: the columns with a heading there, two lines of headings.
+    /// The table for the terminal: the columns with a heading there, two lines of headings. A table that is too
+    /// wide goes on below.
     pub(crate) fn text(&self) -> String {
         let columns: Vec<Vec<String>> =
             self.columns.iter().filter_map(|column| self.cells_for_terminal(column)).collect();
+        self.blocks(&columns).join("\n")
+    }
+
+    /// One block of lines, or several below each other if a line would be too wide.
+    fn blocks(&self, columns: &[Vec<String>]) -> Vec<String> {
+        let mut used = 0;
+        let fits = |cells: &&Vec<String>| {
+            used += widest(cells) + 1;
+            used <= TABLE_WIDTH
+        };
+        let count = columns.iter().take_while(fits).count().max(1).min(columns.len());
+        let (first, rest) = columns.split_at(count);
+        let mut blocks = vec![self.block(first)];
+        if !rest.is_empty() {
+            blocks.extend(self.blocks(rest));
+        }
+        blocks
+    }
+
+    fn block(&self, columns: &[Vec<String>]) -> String {
         let widths: Vec<usize> = columns.iter().map(|cells| widest(cells)).collect();
         let names: Vec<&str> = [self.head, ""]
             .into_iter()
@@ -169,7 +190,7 @@ impl<'a, T> Table<'a, T> {
 
     /// A column's two lines of heading and its cells; `None` where the terminal leaves it out.
     fn cells_for_terminal(&self, column: &Column<'a, T>) -> Option<Vec<String>> {
-        let heads = [column.terminal?.to_owned(), column.unit.clone()];
+        let heads = [column.terminal.clone()?, column.unit.clone()];
         Some(heads.into_iter().chain(self.rows.iter().map(|row| column.text(&row.data))).collect())
     }
 

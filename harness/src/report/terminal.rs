@@ -1,7 +1,8 @@
-//! What the terminal shows of results: a table per comparison, then what a reader has to know.
+//! What the terminal shows of results: tables per comparison, then what a reader has to know.
 
 use std::fmt::Write;
 
+use super::bill::bill_text;
 use super::comparison::{Comparison, comparisons};
 use super::finding::notices;
 use super::format::{number, short_adapter, significant};
@@ -29,6 +30,7 @@ pub fn render_table(results: &Results) -> String {
         );
         text += &table("strategy", &comparison, comparison.all(), metrics()).text();
         text += &loss_table(&comparison);
+        text += &bill_text(&comparison);
         push_passes(&mut text, &comparison);
         text.push('\n');
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use assign::LightOrder;
 use serde::{Deserialize, Serialize};
 
 use super::{Mode, Planes};
@@ -62,8 +63,8 @@ pub struct Setting {
     /// With `--compensate`: its number of lights.
     #[serde(default)]
     pub compensation: Option<f64>,
-    /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, or `gpuN` for a sort on the GPU in
-    /// every Nth frame.
+    /// Order of the lights in their buffer: `given`, `morton`, `bvh`, `gpu`, `gpuN` for a sort on the GPU in every
+    /// Nth frame, or `gpuN%` for one as soon as boxes may have grown by N percent.
     #[serde(default)]
     pub light_order: Option<String>,
     /// How the lights move; absent if they stand still.
@@ -92,6 +93,13 @@ pub struct Setting {
     /// frames / poses. `null` for a still camera, and in older results, which have one lap.
     #[serde(default)]
     pub poses: Option<u32>,
+}
+
+impl Setting {
+    /// The order of the lights; `None` if it is unknown.
+    pub fn order(&self) -> Option<LightOrder> {
+        self.light_order.as_ref()?.parse().ok()
+    }
 }
 
 /// How lights move.

@@ -39,6 +39,8 @@ impl Results {
                 &mut record.note,
             ];
             all.extend(known.into_iter().flatten());
+            let motion = record.setting.motion.iter_mut();
+            all.extend(motion.flat_map(|motion| [&mut motion.law, &mut motion.moved_by]));
             if let Some(vpls) = &mut record.indirect {
                 all.push(&mut vpls.ranges);
                 let deep = vpls.deep.iter_mut();

@@ -1,11 +1,11 @@
 //! The list of all studies: the one place that names them.
 
-use super::{area, cdi, comparison, culling, endless, slice::Study};
+use super::{area, cdi, comparison, culling, endless, living, slice::Study};
 use crate::cli::CliError;
 
 /// All studies, in the order in which the command line lists them.
 pub(crate) const STUDIES: &[Study] =
-    &[comparison::STUDY, culling::STUDY, area::STUDY, endless::STUDY, cdi::STUDY];
+    &[comparison::STUDY, culling::STUDY, living::STUDY, area::STUDY, endless::STUDY, cdi::STUDY];
 
 /// Name of each study, and what it answers.
 pub fn studies() -> impl Iterator<Item = (&'static str, &'static str)> {

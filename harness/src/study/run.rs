@@ -7,7 +7,7 @@ use super::{
     job::Job,
     list,
     manifest::{Done, Manifest},
-    report,
+    motion, report,
     scene::StudyScene,
 };
 use crate::{
@@ -47,7 +47,9 @@ pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessErro
         None => {
             let mut jobs = Vec::new();
             for scene in &scenes {
-                jobs.extend((study.jobs)(&mut bench, args, scene)?);
+                let mut of_scene = (study.jobs)(&mut bench, args, scene)?;
+                motion::set(study, &mut bench, args, scene, &mut of_scene)?;
+                jobs.extend(of_scene);
             }
             Manifest::new(wanted, study.name, jobs)
         }

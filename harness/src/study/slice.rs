@@ -9,6 +9,16 @@ use super::{
 };
 use crate::{bench::Bench, cli::StudyArgs, error::HarnessError, report::markup::Html};
 
+/// Which jobs of a study move their lights where `--motion` asks for it.
+pub(crate) enum TakesMotion {
+    /// All comparisons, but those of these sections.
+    AllBut(&'static [&'static str]),
+    /// The study itself says which; `--motion` chooses the law.
+    BySection,
+    /// None, for this reason.
+    None(&'static str),
+}
+
 /// A study: its jobs, and how its page shows their results. A row of data, as strategies are.
 pub(crate) struct Study {
     /// Its name on the command line and in `study.json`.
@@ -18,6 +28,8 @@ pub(crate) struct Study {
     /// Makes the jobs of one scene, in the order in which they run. An error names what is wrong with the
     /// scene or with an option.
     pub(crate) jobs: fn(&mut Bench, &StudyArgs, &StudyScene) -> Result<Vec<Job>, HarnessError>,
+    /// Which jobs take `--motion`.
+    pub(crate) motion: TakesMotion,
     /// Computes what needs the images of several jobs: after a run, and before each report. An error names
     /// the image that cannot be read.
     pub(crate) after_run: fn(&mut Done) -> Result<(), HarnessError>,

@@ -7,7 +7,10 @@ mod page;
 
 pub use self::jobs::BOUNDS;
 use self::page::{cost, models, pictures};
-use super::{against_truth::compare_with_truth, slice::Study};
+use super::{
+    against_truth::{MODELS, compare_with_truth},
+    slice::{Study, TakesMotion},
+};
 use crate::report::markup::Html;
 
 /// The study of area lights.
@@ -15,6 +18,7 @@ pub(crate) const STUDY: Study = Study {
     name: "area",
     answers: "How far each model of area lights is from the truth, what it costs, and what area lights cost beside spots",
     jobs: jobs::jobs,
+    motion: TakesMotion::AllBut(&[MODELS]),
     after_run: compare_with_truth,
     headline: models::headline,
     findings: |done, scene| [models::findings(done, scene), cost::findings(done, scene)].concat(),

@@ -12,7 +12,10 @@ mod verdicts;
 
 use self::against_builds::compare_builds;
 use self::page::tables;
-use super::{against_truth::compare_with_truth, slice::Study};
+use super::{
+    against_truth::compare_with_truth,
+    slice::{Study, TakesMotion},
+};
 use crate::report::markup::Html;
 
 /// The study of compound deep images.
@@ -20,6 +23,7 @@ pub(crate) const STUDY: Study = Study {
     name: "cdi",
     answers: "What deep images cost, how exact their ranges are, and how near indirect light by them is to a path-traced image",
     jobs: jobs::jobs,
+    motion: TakesMotion::None("its lights are virtual ones, or the one primary light"),
     after_run: |done| compare_with_truth(done).and_then(|()| compare_builds(done)),
     headline: tables::headline,
     findings: tables::findings,

@@ -9,7 +9,7 @@ mod jobs;
 mod page;
 
 use self::page::{accuracy, frames, overview, path, scaling, sizes, views};
-use super::slice::Study;
+use super::slice::{Study, TakesMotion};
 
 /// The greatest relMSE at which a lossy knob is called cheap.
 const CHEAP_REL_MSE: f64 = 1e-2;
@@ -19,6 +19,7 @@ pub(crate) const STUDY: Study = Study {
     name: "comparison",
     answers: "Which strategy is fastest: the comparison paper, more lights, other radii, and speed against accuracy",
     jobs: jobs::jobs,
+    motion: TakesMotion::AllBut(&[]),
     after_run: |_| Ok(()),
     headline: overview::headline,
     findings: |done, scene| {

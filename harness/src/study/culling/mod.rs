@@ -4,7 +4,7 @@ mod claims;
 mod jobs;
 mod page;
 
-use super::slice::Study;
+use super::slice::{Study, TakesMotion};
 use crate::report::markup::Html;
 
 /// The culling survey.
@@ -12,6 +12,7 @@ pub(crate) const STUDY: Study = Study {
     name: "culling",
     answers: "What culling gains in a frame with 0 to 1,500 lights along a path, deferred and forward",
     jobs: jobs::jobs,
+    motion: TakesMotion::AllBut(&[]),
     after_run: |_| Ok(()),
     headline: page::headline,
     findings: page::findings,

@@ -7,7 +7,7 @@ mod claims;
 mod jobs;
 mod page;
 
-use super::slice::Study;
+use super::slice::{Study, TakesMotion};
 use crate::report::markup::Html;
 
 /// The study of many polygon lights.
@@ -15,6 +15,7 @@ pub(crate) const STUDY: Study = Study {
     name: "endless",
     answers: "What normal cones gain under many polygon lights: light operations and times",
     jobs: jobs::jobs,
+    motion: TakesMotion::AllBut(&[]),
     after_run: |_| Ok(()),
     headline: page::headline,
     findings: page::findings,

@@ -16,6 +16,7 @@ use crate::results::{DeviceType, Results, TruthLevel};
 use crate::strategy::{Row, rows};
 use crate::study::claims;
 use crate::study::manifest::Done;
+use crate::study::motion;
 use crate::study::slice::Study;
 
 /// The style rules of study pages; those of a comparison's page apply too.
@@ -234,6 +235,7 @@ fn notices(study: &Study, done: &Done, pictures_left_out: usize) -> Vec<String> 
         }
         notices.extend(results.warnings.iter().map(|warning| format!("{job}: {warning}")));
     }
+    notices.extend(motion::notices(study, done));
     notices.extend((study.notices)(done));
     if pictures_left_out > 0 {
         notices.push(format!(

@@ -10,7 +10,7 @@ use crate::strategy::StrategyId;
 pub(crate) type Time = fn(&Record) -> f64;
 
 /// The straight line through the times of a strategy.
-pub(crate) fn fit(records: &[&Record], time: Time) -> Option<Fit> {
+pub(crate) fn fit(records: &[&Record], time: impl Fn(&Record) -> f64) -> Option<Fit> {
     let points: Vec<(f64, f64)> =
         records.iter().map(|record| (record.setting.lights as f64, time(record))).collect();
     Fit::through(&points)

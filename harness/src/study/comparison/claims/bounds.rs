@@ -9,7 +9,7 @@ use crate::study::claims::Answer;
 use crate::study::claims::order::Order;
 use crate::study::data::{Entry, entries, is_of_the_paper, lines};
 use crate::study::manifest::Done;
-use crate::study::page::lines::fit;
+use crate::study::page::lines::{Time, fit};
 
 /// Explicit against implicit bounds of the same groups from the same source: slope lower, offset
 /// higher. Decided as in the paper, where methods that read depth pay for a depth pre-pass; the bill of
@@ -23,7 +23,7 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
     let fits = |wanted: String, bvh: bool| {
         let (_, records) =
             lines.iter().find(|(id, _)| id.family() == wanted && id.is_bvh() == bvh)?;
-        let fit = |time| fit(records, time).filter(|fit: &Fit| fit.points > 2);
+        let fit = |time: Time| fit(records, time).filter(|fit: &Fit| fit.points > 2);
         Some((fit(Record::with_depth_ms)?, fit(Record::assign_and_shade_ms)?))
     };
     // The pre-pass rasterises, which some chips do on a few of their processors.

@@ -154,8 +154,8 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
         }
         false => timed(leader),
     };
-    let still = lead.still_lights();
-    let mut text = format!("In {scene} at {lights}, {}{still} with {time}", lead.is_fastest());
+    let of_lights = lead.lights();
+    let mut text = format!("In {scene} at {lights}, {}{of_lights} with {time}", lead.is_fastest());
     text += &lead.doubt();
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::between(next.record, leader).map_or_else(String::new, |ratio| {
@@ -176,8 +176,8 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
         );
     }
     text += ".";
-    if let Some(hierarchy) = lead.hierarchy() {
-        text += &format!(" {hierarchy}");
+    if let Some(cost) = lead.cost_of_lights() {
+        text += &format!(" {cost}");
     }
     Some(text)
 }

@@ -5,6 +5,7 @@ use crate::grouping::distinct;
 use crate::report::column::{Better, Column};
 use crate::report::fit::Fit;
 use crate::report::format::{ABSENT, number, percent, significant};
+use crate::report::living;
 use crate::report::markup::{Html, html};
 use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
@@ -169,6 +170,8 @@ struct Fits<'a> {
     both: Fit,
     straight: Option<Straight>,
     assign: Option<Fit>,
+    /// Of the passes of lights that move.
+    living: [Option<Fit>; 3],
     shade: Option<Fit>,
 }
 
@@ -177,13 +180,14 @@ fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
     let row = |(id, records): Line<'a>| {
         let both = fit(&records, Record::assign_and_shade_ms)?;
         let straight = straight(&records, Record::assign_and_shade_ms);
-        let of_pass = |time: Time| {
+        let of_pass = |time: &dyn Fn(&Record) -> f64| {
             let is_there = records.iter().any(|record| time(record) != 0.0);
             fit(&records, time).filter(|_| is_there)
         };
-        let (assign, shade) =
-            (of_pass(|record| record.times.assign_ms), of_pass(|record| record.times.shade_ms));
-        Some(Row::new(marked_name(entries, id), Fits { id, both, straight, assign, shade }))
+        let assign = of_pass(&|record| record.times.assign_ms);
+        let living = living::PASSES.map(|pass| of_pass(&|record| record.time_of(|n, _| n == pass)));
+        let shade = of_pass(&|record| record.times.shade_ms);
+        Some(Row::new(marked_name(entries, id), Fits { id, both, straight, assign, living, shade }))
     };
     let rows: Vec<Row<Fits<'a>>> = lines(entries).into_iter().filter_map(row).collect();
     let off = |fits: &Fits<'_>| Some(fits.straight.as_ref()?.worst);
@@ -200,6 +204,11 @@ fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
         Column::words("straight within 10 %, lights", "", straight_over),
     ];
     columns.extend(line_columns("assign: slope", |fits| fits.assign.as_ref()));
+    columns.extend(living::PASSES.iter().enumerate().map(|(ix, pass)| {
+        let slope = move |fits: &Fits<'a>| fits.living[ix].map(|fit| fit.slope * 1e6);
+        let unit = "\u{b5}s per 1,000 lights";
+        Column::figure(format!("{pass}: slope"), unit, Better::Less, slope, significant).optional()
+    }));
     columns.extend(line_columns("shade: slope", |fits| fits.shade.as_ref()));
     Table::new("strategy", columns, rows)
         .competing(|_| false)
