@@ -78,20 +78,19 @@ impl<'a> Lead<'a> {
         format!("{} {verb}", self.names())
     }
 
-    /// As [`is_fastest`](Self::is_fastest), with the plain name of a single leader and all limits that are not
-    /// figures: for a headline.
-    pub(crate) fn headline(&self) -> String {
-        let limits = format!("{}{}", self.still_lights(), self.doubt());
-        match (self.is_tie(), self.leader().strategy.row()) {
-            (false, Some(row)) => {
-                let source = match needs_built_hierarchy(self.leader()) {
-                    true => ", hierarchy over the lights",
-                    false => "",
-                };
-                format!("{} ({}{source}) is fastest{limits}", self.names(), row.name)
+    /// What the id of a single leader means, for a headline; empty where several tie.
+    pub(crate) fn meaning(&self) -> String {
+        let Some(row) = self.leader().strategy.row().filter(|_| !self.is_tie()) else {
+            return String::new();
+        };
+        let source = match needs_built_hierarchy(self.leader()) {
+            true => {
+                " /bvh means that the strategy reads a hierarchy over the lights, which is built once, before \
+                 the first frame."
             }
-            _ => format!("{}{limits}", self.is_fastest()),
-        }
+            false => "",
+        };
+        format!(" {} means \u{201c}{}\u{201d}.{source}", row.family, row.name)
     }
 
     /// Why the lead is not sure, to follow its sentence; empty where it is sure.
@@ -105,24 +104,38 @@ impl<'a> Lead<'a> {
         }
     }
 
-    /// Which of them need lights that stand still, to follow the names; empty where none does.
-    pub(crate) fn still_lights(&self) -> &'static str {
-        match self.built().count() {
-            0 => "",
-            count if count == self.records.len() => " (if no light moves)",
-            _ => " (ids with /bvh: only if no light moves)",
+    /// Whether all of them need lights that stand still.
+    pub(crate) fn all_need_still_lights(&self) -> bool {
+        self.built().count() == self.records.len()
+    }
+
+    /// Says that some of them, but not all, need lights that stand still; empty otherwise.
+    pub(crate) fn some_need_still_lights(&self) -> &'static str {
+        match self.built().next() {
+            Some(_) if !self.all_need_still_lights() => " (ids with /bvh: only if no light moves)",
+            _ => "",
         }
     }
 
-    /// A sentence on the hierarchy that some of them read; `None` where none does.
+    /// Which of them need lights that stand still, to follow the names; empty where none does.
+    pub(crate) fn still_lights(&self) -> &'static str {
+        match self.all_need_still_lights() {
+            true => " if no light moves",
+            false => self.some_need_still_lights(),
+        }
+    }
+
+    /// Two sentences on the hierarchy that some of them read; `None` where none does.
     pub(crate) fn hierarchy(&self) -> Option<String> {
         let time = match self.built().next()?.times.light_build_ms {
-            Some(build) => format!(" in {} ms", significant(build)),
-            None => String::new(),
+            Some(build) => {
+                format!("Building it takes {} ms, which no time here includes", significant(build))
+            }
+            None => "No time here includes building it".to_owned(),
         };
         Some(format!(
-            "The hierarchy over the lights is built once{time} before the first frame, and no time here \
-             includes this."
+            "The hierarchy over the lights (/bvh) is built once, before the first frame, so it is valid only \
+             while no light moves. {time}."
         ))
     }
 

@@ -59,8 +59,8 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
          with the most. Two neighbouring pixels form such an edge if one is more than 10 % deeper \
          than the other. A tile that holds near and far surfaces also lists the lights between \
          them. A cluster does not. The lists of G and M do not depend on the view. Heat maps show \
-         how many lights each pixel\u{2019}s list holds, from blue for none to red for 150. Longer \
-         lists are green.",
+         how many lights each pixel\u{2019}s list holds. Colours go from blue (none) to red (150). \
+         Lists of more than 150 lights are green.",
         panels("Strategy", &shown),
     )
 }
@@ -110,7 +110,7 @@ fn lengths(record: &Record) -> &[u64] {
 fn counted(entries: &[Entry<'_>]) -> &'static str {
     match entries.iter().all(|entry| entry.record.lists.lengths_all.is_empty()) {
         true => "groups that some pixel reads",
-        false => "all groups with lights",
+        false => "all groups whose list is not empty",
     }
 }
 
@@ -133,9 +133,9 @@ pub(crate) fn is_of_view(entry: &Entry<'_>, is_low: bool) -> bool {
 
 fn view(entry: &Entry<'_>) -> &'static str {
     match entry.job.settings.text("depth_discontinuity") {
-        Some("low") => "low discontinuity",
-        Some("high") => "high discontinuity",
-        _ => "unknown discontinuity",
+        Some("low") => "low depth discontinuity",
+        Some("high") => "high depth discontinuity",
+        _ => "unknown depth discontinuity",
     }
 }
 
