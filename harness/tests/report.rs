@@ -141,7 +141,10 @@ fn a_built_hierarchy_leads_for_still_lights_only() {
     let limit = "On llvmpipe, if no light moves, SC-E/48x48x40/bvh (";
     assert!(headline.contains(limit), "{headline}");
     assert!(
-        headline.contains("is built once, before the first frame, so it is valid only while no light moves. Building it takes 9.70 ms"),
+        headline.contains(
+            "is built once, before the first frame, so it is valid only while no \
+                           light moves. Building it takes 9.70 ms"
+        ),
         "{headline}"
     );
     results.records.push(copy(&results.records[1], "SC-E/48x48x40", 1.0));

@@ -209,7 +209,7 @@ fn both_bills_of_explicit_bounds_are_shown() {
     let of_tiles = of_tiles.split(';').next().expect("T");
     let numbers: Vec<f64> = of_tiles
         .split(|c: char| !c.is_ascii_digit() && c != '.')
-        .filter_map(|number| number.parse().ok())
+        .filter_map(|number| number.trim_end_matches('.').parse().ok())
         .collect();
     let [_, implicit, explicit, implicit_without, explicit_without] = numbers[..] else {
         panic!("{of_tiles}");

@@ -18,7 +18,7 @@ fn the_words_name_the_best_with_its_interval_and_every_chart_is_a_file() {
     assert!(text.contains("DC-E means \u{201c}dense clusters, explicit bounds\u{201d}."), "{text}");
     let finding = "In atrium at 100 lights, DC-I/128x128x64 is fastest. It takes 1.";
     assert!(text.contains(finding), "{text}");
-    assert!(text.contains("Next is G/20x20x20 with"), "{text}");
+    assert!(text.contains("The next fastest is G/20x20x20 with"), "{text}");
     assert!(text.contains("A relMSE of"), "{text}");
     assert!(text.contains("not GPU figures") && page.contains("do not apply to a GPU"));
     for part in [

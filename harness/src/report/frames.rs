@@ -15,8 +15,8 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
         FrameKind::NoPrepass => (
             "forward, no pre-pass",
             "A strategy that reads depth pays for a depth pre-pass and then lights visible surfaces only. The \
-             others draw once. They also light surfaces that are hidden by surfaces drawn later. Draws are not \
-             sorted by depth.",
+             other strategies draw and light surfaces in one pass. So they also light surfaces that are hidden \
+             by surfaces drawn later. Draws are not sorted by depth.",
         ),
         FrameKind::Prepass => (
             "forward, pre-pass",

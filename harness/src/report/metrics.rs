@@ -126,8 +126,8 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
         )
         .best(Measured::leads)
         .about(
-            "How many times as fast as the strategy Sphere, which does not cull but has the same early exit. This \
-             is the gain from the lists only.",
+            "How many times as fast as the strategy Sphere, which does not cull but has the same \
+             early exit. This is the gain from the lists only.",
         ),
         figure("assign_ms", "assign", "ms", Less, |m| finite(m.record.times.assign_ms), significant)
             .terminal("assign")

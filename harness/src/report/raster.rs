@@ -110,8 +110,8 @@ mod tests {
         let all = notice(&machine, [&tiles, &volumes, &models, &forward]).expect("three rows");
         for part in [
             "H200 runs",
-            "Marked passes in deferred frames: the pass \u{201c}shade\u{201d} of the strategy RasterSphere; the pass \
-             \u{201c}model-ids\u{201d} of the strategy M/2.",
+            "Marked passes in deferred frames: the pass \u{201c}shade\u{201d} of the strategy \
+             RasterSphere; the pass \u{201c}model-ids\u{201d} of the strategy M/2.",
             "Marked passes in forward frames: the pass \u{201c}shade\u{201d} of the strategy T-E/28x28.",
         ] {
             assert!(all.contains(part), "{part}: {all}");

@@ -299,7 +299,8 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     let stale = if is_stale { format!(": {STALE}") } else { String::new() };
     Some(format!(
         "With one setting for all {} scenes, the mean error of lights with ranges from rays is {} \
-         of the mean luminance ({} in the worst scene). With random ranges for all lights, it is {} ({}{tie}){}{stale}.",
+         of the mean luminance ({} in the worst scene). With random ranges for all lights, it is \
+         {} ({}{tie}){}{stale}.",
         scenes.len(),
         significant(own),
         significant(own_worst),

@@ -25,14 +25,14 @@ const NOTE: &str = "A light operation is one term, diffuse or specular, of one l
                     sample. Listed: the sample\u{2019}s list contains it. Evaluated: listed, and \
                     shading does not skip it at that sample. Outer: a specular term beyond the \
                     reach of the light\u{2019}s diffuse term. Seen: listed and visible. Lost: \
-                    visible and listed by position, but not listed by this setting. Position \
-                    means clusters without cones. A cut removes specular light below a radiance. \
-                    The 45\u{b0} test is the paper\u{2019}s cone test. Diffuse reach is the \
+                    visible and listed by position, but not listed by this setting. Position means \
+                    clusters without cones. A cut removes specular light below a radiance. The \
+                    45\u{b0} test is the paper\u{2019}s cone test. Diffuse reach is the \
                     paper\u{2019}s dif: specular light ends where diffuse light ends. These three \
-                    lose light. Their errors are differences from the image without culling. For scale, linearly \
-                    transformed cosines themselves have a FLIP of 0.018 and 0.037 against the \
-                    true integral (h200-area). Brackets hold the paper\u{2019}s figure, from a \
-                    GTX 1060 at 1280 x 720 in another scene.";
+                    lose light. Their errors are differences from the image without culling. For \
+                    scale, linearly transformed cosines themselves have a FLIP of 0.018 and 0.037 \
+                    against the true integral (h200-area). Brackets hold the paper\u{2019}s \
+                    figure, from a GTX 1060 at 1280 x 720 in another scene.";
 
 /// A part per place, with a panel per count of lights.
 pub(crate) fn places(

@@ -124,7 +124,8 @@ pub(crate) const MRP_GAIN: Check = Check {
             let gain = 1.0 - mrp.times.frame_ms / ltc.times.frame_ms;
             let shading = 1.0 - mrp.times.shade_ms / ltc.times.shade_ms;
             let mut figure = format!(
-                "{lights} lights: the frame takes {} % less ({} ms with MRP, {} ms with LTC), shading {} % less",
+                "{lights} lights: the frame takes {} % less ({} ms with MRP, {} ms with LTC), \
+                 shading {} % less",
                 percent(gain),
                 significant(mrp.times.frame_ms),
                 significant(ltc.times.frame_ms),

@@ -175,8 +175,8 @@ pub(crate) const REGION_BIAS: Check = Check {
             return Answer::unknown("both ways of sampling");
         };
         let figure = format!(
-            "at {samples} samples, the bias is {} % with uniform samples and {} % with samples of the reflected \
-             region",
+            "at {samples} samples, the bias is {} % with uniform samples and {} % with samples of \
+             the reflected region",
             percent(uniform),
             percent(reflected)
         );

@@ -95,8 +95,8 @@ pub(crate) fn build_linear(done: &Done, scene: &str) -> Answer {
     let (off, at) = fit.worst(&points);
     let ends = [points.first(), points.last()].map(|end| end.map_or(0.0, |end| end.0));
     let figure = format!(
-        "{} to {} directions: the line is {} ms plus {} \u{b5}s per direction. No time is farther off the line than \
-         {} %, at {} directions",
+        "{} to {} directions: the line is {} ms plus {} \u{b5}s per direction. No time is farther \
+         off the line than {} %, at {} directions",
         number(ends[0]),
         number(ends[1]),
         significant(fit.offset),
@@ -179,8 +179,8 @@ pub(crate) fn coverage(done: &Done, scene: &str) -> Answer {
         percent(errors.lost as f64 / errors.rays.max(1) as f64)
     };
     let figure = format!(
-        "the median error of a range is {} footprints, with conservative rasterisation {}; lost rays: {} %, with \
-         conservative rasterisation {} %",
+        "the median error of a range is {} footprints, with conservative rasterisation {}; lost \
+         rays: {} %, with conservative rasterisation {} %",
         significant(centres.median_range_error),
         significant(touched.median_range_error),
         lost(centres),

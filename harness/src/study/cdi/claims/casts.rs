@@ -72,8 +72,8 @@ pub(crate) fn rays_linear(done: &Done, scene: &str) -> Answer {
     };
     let (whole, end) = (exponent(first, last), exponent(before, last));
     let figure = format!(
-        "{} times the rays take {} times as long, an exponent of {whole:.2}; from {2} x {2} to {3} x {3} pixels, \
-         the exponent is {end:.2}",
+        "{} times the rays take {} times as long, an exponent of {whole:.2}; from {2} x {2} to {3} \
+         x {3} pixels, the exponent is {end:.2}",
         significant(rays_of(last) / rays_of(first)),
         significant(median(&last.cast_ms) / median(&first.cast_ms)),
         before.rsm_px,
@@ -193,5 +193,5 @@ pub(crate) fn arrays(done: &Done, scene: &str) -> Answer {
     );
     let parts = [list_ms < array_ms, arrays.1 < linked.1, array_ms + arrays.1 < list_ms + linked.1];
     let good = parts.iter().filter(|part| **part).count();
-    Answer { figure, verdict: Verdict::of_parts(good, parts.len(), "parts") }
+    Answer { figure, verdict: Verdict::of_parts(good, parts.len(), "statements") }
 }

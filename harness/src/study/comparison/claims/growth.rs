@@ -10,7 +10,7 @@ use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::members::Members;
 use crate::study::comparison::claims::pairs::{ALIKE, Pairs};
 use crate::study::comparison::page::scaling::{Straight, straight};
-use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, poses, stand};
+use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, means, poses};
 use crate::study::manifest::Done;
 use crate::study::page::lines::{Time, fit};
 
@@ -34,10 +34,9 @@ fn basis(lines: &[Line<'_>]) -> String {
     let records = || lines.iter().flat_map(|(_, records)| records.iter());
     let low = records().map(|record| record.setting.lights).min().unwrap_or(0);
     let high = records().map(|record| record.setting.lights).max().unwrap_or(0);
-    let stand = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| stand(r));
-    let mean = if stand == "one pose" { "" } else { "means of " };
+    let means = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| means(r));
     let [low, high] = [low, high].map(|count| number(count as f64));
-    format!("lines fitted from {low} to {high} lights, {mean}{stand}")
+    format!("lines fitted to the times from {low} to {high} lights ({means})")
 }
 
 /// Straight where the best line misses no time of the paper's range by more than a tenth. Both fits are

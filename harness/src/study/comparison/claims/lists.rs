@@ -6,9 +6,7 @@ use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::page::views::is_of_view;
-use crate::study::data::{
-    Entry, counts, entries, is_of_the_paper, nearest_count, poses, ranking, stand,
-};
+use crate::study::data::{Entry, counts, entries, is_of_the_paper, means, nearest_count, ranking};
 use crate::study::manifest::Done;
 
 /// Below this growth of T-E's lists the two views are too alike to tell anything.
@@ -164,10 +162,9 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("lengths of lists");
     };
     let ms = [whole, parts].map(Record::assign_and_shade_ms);
-    let mean = if poses(whole) > 1 { "mean of " } else { "" };
     let figure = format!(
         "at {} lights, from M to M/2; the longest list goes from {} to {} lights; the mean number of listed \
-         lights per sample goes from {} to {}; the time goes from {} to {} ms ({mean}{})",
+         lights per sample goes from {} to {}; the time goes from {} to {} ms ({})",
         number(models.lights as f64),
         number(long.lists.longest as f64),
         number(short.lists.longest as f64),
@@ -175,7 +172,7 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
         significant(of_parts),
         significant(ms[0]),
         significant(ms[1]),
-        stand(whole)
+        means(whole)
     );
     let is_faster = Order::of_times(parts, whole) == Order::Less;
     let is_extreme = long.lists.longest as f64 >= EXTREME * long.setting.lights as f64;
@@ -185,7 +182,7 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
         (is_faster, "M/2 is not faster"),
     ];
     let failed: Vec<&str> = parts.iter().filter(|part| !part.0).map(|part| part.1).collect();
-    let verdict = match Verdict::of_parts(parts.len() - failed.len(), parts.len(), "parts") {
+    let verdict = match Verdict::of_parts(parts.len() - failed.len(), parts.len(), "statements") {
         Verdict::Differs(why) => Verdict::Differs(format!("{why}, but {}", listed(&failed))),
         other => other,
     };
@@ -205,7 +202,7 @@ pub(crate) fn subdivision(done: &Done, scene: &str) -> Answer {
     let mut figure = format!(
         "at {} lights, {}: M/2 takes {} ms, {} takes {} ms",
         number(models.lights as f64),
-        stand(parts),
+        means(parts),
         significant(ms[0]),
         grid.strategy.short(),
         significant(ms[1])

@@ -26,9 +26,9 @@ pub(crate) const PAPER: Paper = Paper {
             lights, so a verdict uses no ids with /bvh. Next to each time stands the number of \
             poses that it is a mean of. Many claims put strategies in an order, with the least \
             time or the least other figure first. The verdict then says how many pairs of \
-            strategies come in that order. \u{201c}Measured in the opposite order\u{201d} lists \
-            pairs that contradict the claim, as they were measured. Strategies are measured in \
-            rounds, and along a path in laps. With fewer than six of them, times less \
+            strategies come in that order. \u{201c}Measured in the opposite order: A before B\u{201d} \
+            means that A came first here, and that the claim has B first. Strategies are measured in \
+            rounds, and along a path in laps. With fewer than six rounds or laps, times less \
             than 5 % apart do not decide a verdict. Slopes and offsets of fitted lines tie if they \
             are less than 2 % apart.",
     checks: &CHECKS,
@@ -145,16 +145,17 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.1.1",
         words: "G and DC-I have similar SDs.",
         paper: "a bar chart without numbers",
-        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. The paper times whole frames",
+        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. Times are assign + shade, but \
+                    the paper times whole frames",
         decide: spread::grid_like_dense,
     },
     Check {
         id: "discontinuity",
         place: "section 4.4.1.2, figure 4.10",
-        words: "From a view of low depth discontinuity to a view of high depth discontinuity, SC-E\u{2019}s lists \
-                grow far less than T-E\u{2019}s.",
-        paper: "most groups list 0 to 25 lights. With high discontinuity, many groups of T-E list 25 to 75 and \
-                some list more; few of SC-E list 25 to 50",
+        words: "From a view of low depth discontinuity to a view of high depth discontinuity, \
+                SC-E\u{2019}s lists grow far less than T-E\u{2019}s.",
+        paper: "most groups list 0 to 25 lights. With high discontinuity, many groups of T-E list 25 to 75 \
+                lights, and some list more. Few groups of SC-E list 25 to 50 lights",
         departure: "we compare the mean number of lights listed per sample, not histograms as the \
                     paper does. \u{201c}Far less\u{201d} means at most half the growth. We set \
                     this limit after seeing the figures, so a result within 10 % of it does not \
@@ -278,7 +279,8 @@ const CHECKS: [Check; 28] = [
     Check {
         id: "slopes",
         place: "table 4.6",
-        words: "The order by slope, least first, is: SC-E and SC-I, then T-E, then DC-I and G, then T-I, then M.",
+        words: "The order by slope, least first, is: SC-E and SC-I, then T-E, then DC-I and G, \
+                then T-I, then M.",
         paper: "a bar chart. M has 9.32, 226.13 and 169.73 \u{b5}s per light",
         departure: DEFERRED,
         decide: growth::slopes,
@@ -304,7 +306,8 @@ const CHECKS: [Check; 28] = [
         place: "section 4.4.2.2",
         words: "DC-I and G have similar slopes and offsets.",
         paper: "a bar chart without numbers",
-        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. The paper times whole frames",
+        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. Times are assign + shade, but \
+                    the paper times whole frames",
         decide: growth::grid_like_dense,
     },
 ];

@@ -7,7 +7,7 @@ use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Tally, Verdict};
 use crate::study::comparison::claims::pairs::Pairs;
-use crate::study::data::{Entry, entries, stand, tests as tests_of};
+use crate::study::data::{Entry, entries, means, tests as tests_of};
 use crate::study::manifest::Done;
 
 /// The sizes that the paper selects (table 4.3).
@@ -74,7 +74,7 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
             missing.push(name);
             continue;
         };
-        basis = format!("{}{}", stand(chosen), source(&records));
+        basis = format!("{}{}", means(chosen), source(&records));
         decided += 1;
         notes.extend(chosen.strategy.stand_in().map(|what| format!("with {what}")));
         let name = chosen.strategy.short();
@@ -100,7 +100,7 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
     let verdict = Verdict::of_parts(good, decided, "families");
     // Other verdicts name them.
     if verdict == Verdict::Fails && !missing.is_empty() {
-        figures.push(format!("not measured: {}", listed(&missing)));
+        figures.push(format!("not measured in this scene: {}", listed(&missing)));
     }
     let verdict = verdict.qualified(&notes);
     let figure = format!("{basis}; {}", figures.join("; "));
@@ -124,7 +124,7 @@ pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
     pairs.add(names[0], names[1], Order::of_times(shaped, equal));
     let figure = format!(
         "{}{}; {} takes {} ms. The best grid with the same count along each side is {} with {} ms",
-        stand(shaped),
+        means(shaped),
         source(&records),
         names[0],
         significant(time(shaped)),
@@ -149,7 +149,7 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
         let Some(meant) = meant.filter(|_| !best.is_empty()) else { continue };
-        basis = stand(meant);
+        basis = means(meant);
         decided += 1;
         good += usize::from(best.iter().any(|record| record.strategy == meant.strategy));
         let shown = |record: &Record, verb: &str| {
@@ -185,7 +185,8 @@ pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
         let order = Order::of_figures(best.times.assign_ms, full.times.assign_ms);
         tally.count(order == Order::Less);
         tally.figures.push(format!(
-            "{name}: shade takes {} ms with {} and {} ms with {}. Assign takes {} ms and {} ms",
+            "{name}: shade takes {} ms with {} and {} ms with {}. Assign takes {} ms with the \
+             first and {} ms with the second",
             significant(best.times.shade_ms),
             BEST.to_uppercase(),
             significant(full.times.shade_ms),

@@ -50,9 +50,9 @@ pub(crate) fn accuracy(
         "accuracy",
         "Speed against accuracy: culling error",
         "An error is the difference from the image without culling (None), drawn by the same \
-         shader. Points at the lower left are best. The staircase joins the settings that no other setting beats in both \
-         time and error. The others are faded. Exact images lie in the strip at error 0. Click a \
-         point to see its pictures, if they were kept.",
+         shader. Points at the lower left are best. The staircase joins the settings that no other \
+         setting beats in both time and error. The others are faded. Exact images lie in the strip \
+         at error 0. Click a point to see its pictures, if they were kept.",
         html,
     );
     let ranges = Plot {
@@ -78,8 +78,8 @@ pub(crate) fn accuracy(
         "Speed against accuracy: the lights\u{2019} range",
         "This error is separate from the one above. Lights end at the distance where their \
          intensity falls to a threshold. The error is the difference from the image under lights \
-         that have no range. It does not depend on the strategy, because lists are exact. Only the time does. Each point \
-         is labelled with its threshold.",
+         that have no range. It does not depend on the strategy, because lists are exact. Only the \
+         time does. Each point is labelled with its threshold.",
         ranges.html(scene, charts, shots),
     );
     [culling, ranges]

@@ -141,7 +141,8 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
 }
 
 /// `In atrium at 500 lights, A is fastest. It takes 6.9 ms (mean of 240 poses, confidence interval 6.8 to
-/// 7.0 ms). Next is B ...`, or `A and B tie for fastest. They take 6.9 to 7.0 ms (means of 240 poses)`.
+/// 7.0 ms). The next fastest is B ...`, or `A and B tie for fastest. They take 6.9 to 7.0 ms (means of 240
+/// poses)`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = comparison.ranks();
     let lead = Lead::of_comparison(comparison)?;
@@ -167,7 +168,7 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
             format!(", {range} times as long")
         });
         text += &format!(
-            ". Next is {} with {}{slower}",
+            ". The next fastest is {} with {}{slower}",
             comparison.name(next.record),
             timed(next.record)
         );

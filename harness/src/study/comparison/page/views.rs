@@ -55,12 +55,13 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     Part::new(
         "views",
         "Views of low and high depth discontinuity",
-        "These are two views from the path: the one with the fewest edges in depth, and the one \
-         with the most. Two neighbouring pixels form such an edge if one is more than 10 % deeper \
-         than the other. A tile that holds near and far surfaces also lists the lights between \
-         them. A cluster does not. The lists of G and M do not depend on the view. Heat maps show \
-         how many lights each pixel\u{2019}s list holds. Colours go from blue (none) to red (150). \
-         Lists of more than 150 lights are green.",
+        "These are two views from the path. The view of low depth discontinuity has the fewest \
+         edges in depth, and the view of high depth discontinuity has the most. Two neighbouring \
+         pixels form such an edge if one is more than 10 % deeper than the other. A tile that \
+         holds near and far surfaces also lists the lights between them. A cluster does not. The \
+         lists of G and M do not depend on the view. Heat maps show how many lights each \
+         pixel\u{2019}s list holds. Colours go from blue (none) to red (150). Lists of more than \
+         150 lights are green.",
         panels("Strategy", &shown),
     )
 }
@@ -133,9 +134,9 @@ pub(crate) fn is_of_view(entry: &Entry<'_>, is_low: bool) -> bool {
 
 fn view(entry: &Entry<'_>) -> &'static str {
     match entry.job.settings.text("depth_discontinuity") {
-        Some("low") => "low depth discontinuity",
-        Some("high") => "high depth discontinuity",
-        _ => "unknown depth discontinuity",
+        Some("low") => "low discontinuity",
+        Some("high") => "high discontinuity",
+        _ => "unknown discontinuity",
     }
 }
 

@@ -18,9 +18,9 @@ pub(crate) const PAPER: Paper = Paper {
     name: "the culling survey",
     about: "Watrous 2024 timed four methods on an RTX 3080, in a scene and with light intensities \
             of its own. Its times are means over 1,000 frames. Here a verdict compares the mean \
-            times of a frame along the path, within each renderer. A data-centre GPU runs fragment shaders on only a few of its \
-            processors, so forward rendering, Clay and RasterSphere are slower there than on the \
-            survey\u{2019}s GPU.",
+            times of a frame along the path, within each renderer. A data-centre GPU runs fragment \
+            shaders on only a few of its processors, so forward rendering, Clay and RasterSphere \
+            are slower there than on the survey\u{2019}s GPU.",
     checks: &CHECKS,
 };
 

@@ -59,8 +59,8 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
         }
         if count > 0 {
             tally.figures.push(format!(
-                "{}: the times of {straight} of {count} methods lie on a line, at {} counts from 0 to {} lights. {} is \
-                 farthest off its line, by {} % of its growth",
+                "{}: the times of {straight} of {count} methods lie on a line, at {} counts from 0 \
+                 to {} lights. {} is farthest off its line, by {} % of its growth",
                 mode.name,
                 mode.counts.len(),
                 number(mode.most() as f64),
