@@ -52,9 +52,8 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
         id: "rel_mse",
         head: "relMSE",
         unit: "",
-        about: "Mean over channels of (a - b)^2 / (b^2 + (0.1 \u{d7} mean)^2). Here a is the \
-                channel, b what it should be, and mean the mean luminance that the image should \
-                have.",
+        about: "Mean over channels of (a - b)^2 / (b^2 + (0.1 \u{d7} L)^2). Here a is the channel, \
+                b is what it should be, and L is the mean luminance that the image should have.",
         value: |sums, pair| rel_mse(sums, pair),
     },
     ErrorMetric {
@@ -93,9 +92,9 @@ pub static ERROR_METRICS: &[ErrorMetric] = &[
         id: "log_error",
         head: "log error",
         unit: "",
-        about: "Mean over channels of |log2((a + e) / (b + e))|. Here a is the channel, b what it \
-                should be, and e 1 % of the mean luminance. 1 means off by a factor of two, up or \
-                down.",
+        about: "Mean over channels of |log2((a + e) / (b + e))|. Here a is the channel, b is what \
+                it should be, and e is 1 % of the mean luminance. 1 means off by a factor of two, \
+                up or down.",
         value: |sums, pair| log_error(sums, pair.image.pixels.iter().zip(&pair.reference.pixels)),
     },
     ErrorMetric {

@@ -144,8 +144,8 @@ fn lossy_rows_state_their_error_and_never_lead() {
     }
     let (text, _) = page(&done);
     assert!(
-        text.contains(&format!("without a loss: deferred {WHOLE} is fastest ("))
-            && text.contains(&format!("; forward {WHOLE} is fastest (")),
+        text.contains(&format!("without a loss: {WHOLE} is fastest with deferred lighting ("))
+            && text.contains(&format!("; {WHOLE} is fastest with forward lighting (")),
         "{text}"
     );
     assert!(text.contains(&format!("{CAPPED} 0.500 ms (lossy, relMSE 0.250)")), "{text}");

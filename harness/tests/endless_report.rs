@@ -186,9 +186,9 @@ fn the_papers_figures_stand_beside_ours_by_place_and_lights() {
         "{text}"
     );
     // The fastest with a loss states it: 2.7 of 22.7 million terms.
-    let lossy = "with a FLIP of 0.0100; of 22,700,000 visible terms, 2,700,000 are lost";
+    let lossy = "with a FLIP of 0.0100. Of 22,700,000 visible terms, 2,700,000 are lost";
     assert!(text.contains("54 cones, cut 0.01 take") && text.contains(lossy), "{text}");
-    assert!(text.contains("54 cones, cut 0.001 98.3 % (FLIP 0.00100)"), "{text}");
+    assert!(text.contains("54 cones (cut 0.001) 98.3 % (FLIP 0.00100)"), "{text}");
 }
 
 /// Files that count both terms of every listed light say no more than they know.
@@ -202,6 +202,6 @@ fn what_a_cut_loses_is_a_lower_bound_where_lists_flags_were_not_counted() {
         }
     }
     let Written { text, page, .. } = write(&done);
-    assert!(text.contains("of 22,700,000 visible terms, \u{2265} 2,700,000 are lost"), "{text}");
+    assert!(text.contains("Of 22,700,000 visible terms, \u{2265} 2,700,000 are lost"), "{text}");
     assert_eq!(verdict(&page, "seen-lost"), "unknown");
 }

@@ -37,6 +37,6 @@ fn the_stored_study_is_judged_by_the_papers_settings() {
     assert!(text.contains("beat clusters by position in 0 of 5 cases in sponza"), "{text}");
     assert!(text.contains("1 cone, which the paper does not have"), "{text}");
     // What wins with a loss states its error, and what it loses.
-    assert!(text.contains("diffuse reach takes 1.46 ms with a FLIP of 0.0634"), "{text}");
-    assert!(text.contains("of 26,473,761 visible terms, 8,200,622 are lost"), "{text}");
+    assert!(text.contains("Diffuse reach takes 1.46 ms with a FLIP of 0.0634"), "{text}");
+    assert!(text.contains("Of 26,473,761 visible terms, 8,200,622 are lost"), "{text}");
 }

@@ -113,14 +113,16 @@ struct Subject<'a> {
     records: Vec<&'a Record>,
     /// `A (its plain name)`, or `A and B tie for fastest: they`.
     words: String,
-    /// Follows a speed: for which lights it holds.
+    /// Comes before the words: for which lights all of them are fastest.
+    condition: &'static str,
+    /// Follows a speed: how the lights move, or for which lights some of them are fastest.
     of_lights: String,
 }
 
 impl<'a> Subject<'a> {
     fn one(comparison: &Comparison<'_>, record: &'a Record) -> Self {
         let words = comparison.name(record) + &plain_name(record);
-        Self { records: vec![record], words, of_lights: String::new() }
+        Self { records: vec![record], words, condition: "", of_lights: String::new() }
     }
 
     fn lead(comparison: &Comparison<'_>, lead: &Lead<'a>) -> Self {
@@ -128,7 +130,9 @@ impl<'a> Subject<'a> {
             true => format!("{}: they", lead.is_fastest()),
             false => comparison.name(lead.leader()) + &plain_name(lead.leader()),
         };
-        Self { records: lead.records.clone(), words, of_lights: lead.lights() }
+        let condition = if lead.all_need_still_lights() { "if no light moves, " } else { "" };
+        let of_lights = lead.lights_of_some();
+        Self { records: lead.records.clone(), words, condition, of_lights }
     }
 
     /// A verb in the singular or the plural.
@@ -158,7 +162,7 @@ fn plain_names(lead: &Lead<'_>) -> Option<String> {
 /// How fast the best is, compared with no culling where that was measured.
 fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     let leader = subject.records[0];
-    let words = &subject.words;
+    let words = format!("{}{}", subject.condition, subject.words);
     let lights = lights(leader.setting.lights);
     let of_lights = &subject.of_lights;
     let takes = subject.verb("takes", "take");
@@ -174,7 +178,8 @@ fn speed(comparison: &Comparison<'_>, subject: &Subject<'_>) -> String {
     if leader.setting.lights == 0 {
         let none = significant(baseline.assign_and_shade_ms());
         return format!(
-            "there is no light to assign: {words} {takes} {took} ms, no culling {none} ms"
+            "there is no light to assign: {} {takes} {took} ms, no culling {none} ms",
+            subject.words
         );
     }
     let faster = |record: &Record| comparison.speedup(record);
@@ -202,7 +207,7 @@ fn over_exit(comparison: &Comparison<'_>, subject: &Subject<'_>) -> Option<Strin
     let leader = comparison.speedup(subject.records[0])?;
     let factors = subject.span(|record| comparison.speedup_over_exit(record))?;
     (leader > 1.0 + EQUAL).then(|| {
-        format!("Sphere, which exits early but does not cull, takes {factors} times as long.")
+        format!("The strategy Sphere, which exits early but does not cull, takes {factors} times as long.")
     })
 }
 

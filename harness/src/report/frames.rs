@@ -15,7 +15,8 @@ fn words(kind: FrameKind) -> (&'static str, &'static str) {
         FrameKind::NoPrepass => (
             "forward, no pre-pass",
             "A strategy that reads depth pays for a depth pre-pass and then lights visible surfaces only. The \
-             others draw once and also light surfaces that later draws hide. Draws are not sorted by depth.",
+             other strategies draw and light surfaces in one pass. So they also light surfaces that are hidden \
+             by surfaces drawn later. Draws are not sorted by depth.",
         ),
         FrameKind::Prepass => (
             "forward, pre-pass",
@@ -103,9 +104,11 @@ pub(crate) const READING: &str = "The large figure is assign + shade. The small 
                                   the time from the start of the first pass that assigns to the \
                                   end of the last pass that shades, gaps included. It is missing \
                                   where it was not measured. \u{201c}Derived\u{201d} marks a cell \
-                                  that was not measured. It is computed from another kind of \
-                                  frame: by adding the depth pre-pass of a strategy that reads \
-                                  depth, or by leaving out the pass that draws model ids.";
+                                  that was not measured. It is computed from the times in \
+                                  another kind of frame. For \u{201c}forward, no \
+                                  pre-pass\u{201d}, the time of the depth pre-pass is added. For \
+                                  \u{201c}deferred, ids\u{201d}, the time of the pass that draws \
+                                  model ids is left out.";
 
 /// A section per set of lights that was measured in several modes; empty where there is none.
 pub(crate) fn sections(results: &Results) -> Html {

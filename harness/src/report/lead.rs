@@ -81,20 +81,19 @@ impl<'a> Lead<'a> {
         format!("{} {verb}", self.names())
     }
 
-    /// As [`is_fastest`](Self::is_fastest), with the plain name of a single leader and all limits that are not
-    /// figures: for a headline.
-    pub(crate) fn headline(&self) -> String {
-        let limits = format!("{}{}", self.lights(), self.doubt());
-        match (self.is_tie(), self.leader().strategy.row()) {
-            (false, Some(row)) => {
-                let source = match self.leader().strategy.is_bvh() {
-                    true => ", hierarchy over the lights",
-                    false => "",
-                };
-                format!("{} ({}{source}) is fastest{limits}", self.names(), row.name)
+    /// What the id of a single leader means, for a headline; empty where several tie.
+    pub(crate) fn meaning(&self) -> String {
+        let Some(row) = self.leader().strategy.row().filter(|_| !self.is_tie()) else {
+            return String::new();
+        };
+        let source = match needs_built_hierarchy(self.leader()) {
+            true => {
+                " /bvh means that the strategy reads a hierarchy over the lights, which is built once, before \
+                 the first frame."
             }
-            _ => format!("{}{limits}", self.is_fastest()),
-        }
+            false => "",
+        };
+        format!(" {} means \u{201c}{}\u{201d}.{source}", row.family, row.name)
     }
 
     /// Why the lead is not sure, to follow its sentence; empty where it is sure.
@@ -108,21 +107,34 @@ impl<'a> Lead<'a> {
         }
     }
 
-    /// How the lights move, or which of them need lights that stand still, to follow the names; empty where
-    /// neither is to be said.
-    pub(crate) fn lights(&self) -> String {
+    /// Whether all of them need lights that stand still.
+    pub(crate) fn all_need_still_lights(&self) -> bool {
+        self.built().count() == self.records.len()
+    }
+
+    /// How the lights move, or that some of them, but not all, need lights that stand still; empty otherwise.
+    pub(crate) fn lights_of_some(&self) -> String {
         if let Some(motion) = &self.leader().setting.motion {
             return format!(" (lights move: {})", motion.law);
         }
-        let limit = match self.built().count() {
-            0 => "",
-            count if count == self.records.len() => " (if no light moves)",
-            _ => " (ids with /bvh: only if no light moves)",
-        };
-        limit.to_owned()
+        match self.built().next() {
+            Some(_) if !self.all_need_still_lights() => {
+                " (ids with /bvh: only if no light moves)".to_owned()
+            }
+            _ => String::new(),
+        }
     }
 
-    /// A sentence on what moving lights cost the leader, or on the hierarchy that some of them read; `None`
+    /// How the lights move, or which of them need lights that stand still, to follow the names; empty where
+    /// neither is to be said.
+    pub(crate) fn lights(&self) -> String {
+        match self.all_need_still_lights() {
+            true => " if no light moves".to_owned(),
+            false => self.lights_of_some(),
+        }
+    }
+
+    /// Sentences on what moving lights cost the leader, or on the hierarchy that some of them read; `None`
     /// where there is neither.
     pub(crate) fn cost_of_lights(&self) -> Option<String> {
         if let Some(words) = living::motion_words(&self.leader().setting) {
@@ -130,12 +142,14 @@ impl<'a> Lead<'a> {
             return Some(format!("The lights move: {words}. {cost}"));
         }
         let time = match self.built().next()?.times.light_build_ms {
-            Some(build) => format!(" in {} ms", significant(build)),
-            None => String::new(),
+            Some(build) => {
+                format!("Building it takes {} ms, which no time here includes", significant(build))
+            }
+            None => "No time here includes building it".to_owned(),
         };
         Some(format!(
-            "The hierarchy over the lights is built once{time} before the first frame, and no time here \
-             includes this."
+            "The hierarchy over the lights (/bvh) is built once, before the first frame, so it is valid only \
+             while no light moves. {time}."
         ))
     }
 

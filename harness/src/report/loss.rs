@@ -26,9 +26,9 @@ pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
         figure("rel_mse", "relMSE", "", Better::Zero, |m| error(m.record, "rel_mse"), difference)
             .terminal("relMSE")
             .about(
-                "Mean over channels of (a - b)^2 / (b^2 + (0.1 \u{d7} mean)^2). Here a is the \
-                 channel with this strategy, b the same channel without culling, and mean the mean \
-                 luminance without culling.",
+                "Mean over channels of (a - b)^2 / (b^2 + (0.1 \u{d7} L)^2). Here a is the channel \
+                 with this strategy, b is the same channel without culling, and L is the mean \
+                 luminance of the image without culling.",
             ),
         figure("flip", "FLIP", "", Better::Zero, |m| error(m.record, "flip"), difference)
             .terminal("FLIP")

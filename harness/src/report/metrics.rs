@@ -65,9 +65,9 @@ fn times<'a>() -> Vec<Metric<'a>> {
         figure("rank", "rank", "", Neither, |m| m.comparison.rank(m.record), number)
             .terminal("rank")
             .about(
-                "Place by assign + shade among the strategies of the table that cull without a \
+                "Rank by assign + shade, among the strategies of the table that cull without a \
                  loss. For each round, we take the ratio of two strategies\u{2019} times. The \
-                 strategies tie and share a place if the confidence interval of the median ratio \
+                 strategies tie and share a rank if the confidence interval of the median ratio \
                  contains 1, or if the median ratio is within 0.5 % of 1.",
             ),
         figure(
@@ -112,8 +112,8 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
             .terminal("faster")
             .best(Measured::leads)
             .about(
-                "How many times as fast as None, which evaluates every light at every sample. All \
-                 other strategies skip a light that adds nothing to the sample (early exit), \
+                "How many times as fast as the strategy None, which evaluates every light at every \
+                 sample. All other strategies skip a light that adds nothing to the sample (early exit), \
                  unless their id has no-exit.",
             ),
         figure(
@@ -126,8 +126,8 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
         )
         .best(Measured::leads)
         .about(
-            "How many times as fast as Sphere, which is no culling with the same early exit. This is the gain \
-             from the lists only.",
+            "How many times as fast as the strategy Sphere, which does not cull but has the same \
+             early exit. This is the gain from the lists only.",
         ),
         figure("assign_ms", "assign", "ms", Less, |m| finite(m.record.times.assign_ms), significant)
             .terminal("assign")
@@ -160,9 +160,9 @@ fn ratios_and_parts<'a>() -> Vec<Metric<'a>> {
         figure("efficiency", "efficiency", "%", More, |m| m.comparison.efficiency(m.record), percent)
             .best(Measured::leads)
             .about(
-                "Efficiency = ideal time / measured time. The ideal time is the shade time of None \
-                 \u{d7} contributing / all lights. None would take about this long if it evaluated \
-                 only the lights that reach each sample.",
+                "Efficiency = ideal time / measured time. Ideal time = (shade time of None) \u{d7} \
+                 (number of contributing lights) / (number of all lights). None would take about \
+                 this long if it evaluated only the lights that reach each sample.",
             ),
     ]
 }

@@ -103,15 +103,7 @@ pub(crate) fn provenance(results: &Results) -> Html {
         ("Clock", distinct(results, |r| clock(r.times.clock).to_owned())),
         ("Scene", distinct(results, |r| format!("{} ({})", r.setting.scene, r.setting.scene_hash))),
         ("Seed", distinct(results, |r| r.setting.seed.to_string())),
-        (
-            "Frames",
-            distinct(results, |r| {
-                format!(
-                    "{} timed, after at least {} frames of warm-up",
-                    r.times.frames, r.times.warmup_frames
-                )
-            }),
-        ),
+        ("Frames", frames(results)),
         ("Check of lists", truth(results)),
         ("Schema", format!("results.json version {}", results.schema_version)),
     ];
@@ -129,6 +121,23 @@ pub(crate) fn provenance(results: &Results) -> Html {
 /// The distinct values over all records, in order of appearance.
 fn distinct(results: &Results, value: fn(&Record) -> String) -> String {
     grouping::distinct(results.records.iter().map(value)).join("; ")
+}
+
+/// How many frames were timed: `8, 16 or 24 timed frames, after at least 4 frames of warm-up`.
+fn frames(results: &Results) -> String {
+    let times = results.records.iter().map(|record| &record.times);
+    let groups = grouping::grouped_by(times.map(|times| (times.warmup_frames, times.frames)));
+    let words = groups.into_iter().map(|(warmup, mut counts)| {
+        counts.sort_unstable();
+        counts.dedup();
+        let counts: Vec<String> = counts.iter().map(u32::to_string).collect();
+        let counts = match counts.as_slice() {
+            [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+            one => one.concat(),
+        };
+        format!("{counts} timed frames per strategy, after at least {warmup} frames of warm-up")
+    });
+    words.collect::<Vec<_>>().join("; ")
 }
 
 fn device(kind: DeviceType) -> &'static str {
@@ -151,9 +160,9 @@ fn clock(clock: Clock) -> &'static str {
 fn truth(results: &Results) -> String {
     match results.truth.level {
         TruthLevel::Full => format!(
-            "for every pair of a light and a sample, on the CPU in double precision. Left out are \
-             pairs whose sample is closer to the edge of what the light reaches than {:e} of its \
-             range",
+            "every pair of a light and a sample is checked, on the CPU in double precision. A pair is \
+             left out if the distance from the sample to the edge of the light\u{2019}s support is \
+             less than {:e} of the light\u{2019}s range",
             results.truth.edge_tolerance
         ),
         TruthLevel::None => "the lists were not checked, only images".to_owned(),

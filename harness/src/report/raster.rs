@@ -37,14 +37,15 @@ pub(crate) fn notice<'a>(
     // Strategies by mode and passes, in the order of the records.
     let marked = records.into_iter().filter_map(|record| {
         let passes = record.raster_passes();
-        let key = (record.setting.mode.name(), listed(&passes));
+        let key = (record.setting.mode.name(), quoted(&passes));
         (!passes.is_empty()).then_some((key, record.strategy.as_str()))
     });
     let of_passes = |((mode, passes), names): ((&'static str, String), Vec<&str>)| {
         let names = distinct(names);
         let names = match names.len() {
+            1 => format!("the strategy {}", listed(&names)),
             count if count > NAMED => format!("{count} strategies"),
-            _ => listed(&names),
+            _ => format!("the strategies {}", listed(&names)),
         };
         (mode, format!("{passes} of {names}"))
     };
@@ -58,6 +59,13 @@ pub(crate) fn notice<'a>(
              are slow there. Do not compare marked figures across chips.{marked}"
         )
     })
+}
+
+/// `the pass “shade”`, or `the passes “depth” and “shade”`.
+fn quoted(passes: &[&str]) -> String {
+    let names: Vec<String> = passes.iter().map(|name| format!("\u{201c}{name}\u{201d}")).collect();
+    let noun = if names.len() == 1 { "pass" } else { "passes" };
+    format!("the {noun} {}", listed(&names))
 }
 
 /// A record's note without the words that the mark replaces.
@@ -102,8 +110,9 @@ mod tests {
         let all = notice(&machine, [&tiles, &volumes, &models, &forward]).expect("three rows");
         for part in [
             "H200 runs",
-            "Marked passes in deferred frames: shade of RasterSphere; model-ids of M/2.",
-            "Marked passes in forward frames: shade of T-E/28x28.",
+            "Marked passes in deferred frames: the pass \u{201c}shade\u{201d} of the strategy \
+             RasterSphere; the pass \u{201c}model-ids\u{201d} of the strategy M/2.",
+            "Marked passes in forward frames: the pass \u{201c}shade\u{201d} of the strategy T-E/28x28.",
         ] {
             assert!(all.contains(part), "{part}: {all}");
         }

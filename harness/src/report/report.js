@@ -81,7 +81,7 @@ function makeOpenable(plot) {
 
 function themeSwitch() {
   const button = document.getElementById("theme");
-  const modes = [["", "as the system"], ["light", "light"], ["dark", "dark"]];
+  const modes = [["", "system setting"], ["light", "light"], ["dark", "dark"]];
   let ix = 0;
   try {
     ix = Math.max(0, modes.findIndex(([mode]) => mode === (localStorage.getItem("lightbench-theme") || "")));
@@ -90,7 +90,7 @@ function themeSwitch() {
   if (location.hash === "#light") ix = 1;
   const apply = () => {
     document.documentElement.style.colorScheme = modes[ix][0] || "light dark";
-    button.textContent = `Theme: ${modes[ix][1]}`;
+    button.textContent = `Colours: ${modes[ix][1]}`;
   };
   button.addEventListener("click", () => {
     ix = (ix + 1) % modes.length;

@@ -75,6 +75,12 @@ pub(crate) fn stand(record: &Record) -> String {
     }
 }
 
+/// What a time stands for: `means of 240 poses`, or `one pose`.
+pub(crate) fn means(record: &Record) -> String {
+    let mean = if poses(record) > 1 { "means of " } else { "" };
+    mean.to_owned() + &stand(record)
+}
+
 /// The records of one strategy, with its id, in the order of their lights.
 pub(crate) type Line<'a> = (&'a StrategyId, Vec<&'a Record>);
 

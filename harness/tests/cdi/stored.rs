@@ -79,7 +79,7 @@ fn lights_without_fresnel_decide_nothing() {
         assert!(has_verdict(&page, claim, "unknown"), "{claim}: {words}");
     }
     // Sentences refuse what the claims refuse.
-    assert!(words.contains("In atrium the mean error of ranges from rays"), "{words}");
+    assert!(words.contains("In atrium, the mean error with ranges from rays"), "{words}");
     assert!(words.contains("these lights are 4 to 7 % too bright: measure again"), "{words}");
     assert!(!words.contains("rays are nearer") && !words.contains("a tie"), "{words}");
 }

@@ -7,9 +7,10 @@ use super::super::{Axis, Colour, Method, Role, Row, Sizes, StandIn};
 pub(super) const ROWS: &[Row] = &[Row {
     family: "G",
     name: "a grid of cells in world space",
-    about: "every cell has a list; the cells divide the box around the lights' positions, with \
-            /supports the box around all that lights reach, and with /surfaces only the part of \
-            that box around the surfaces",
+    about: "every cell has a list of the lights that reach it. By default, the cells divide the \
+            box around the lights' positions. With /supports, they divide the box around all that \
+            the lights reach. With /surfaces, they divide the overlap of the /supports box and \
+            the box around the surfaces",
     role: Role::ComparisonPaper,
     source: "Enhuber 2019, section 3.3, table 4.3",
     krate: "assign-grid",

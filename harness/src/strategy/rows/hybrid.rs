@@ -1,4 +1,4 @@
-//! The grid of hybrid lighting (`assign-clustered`).
+//! The grid of hybrid lighting, Archer 2019 (`assign-clustered`).
 
 use assign_clustered::HybridGrid;
 
@@ -7,8 +7,8 @@ use super::clusters::FEW;
 
 pub(super) const ROWS: &[Row] = &[Row {
     family: "HG",
-    name: "the grid of hybrid lighting",
-    about: "each light adds itself to the sparse clusters that it reaches",
+    name: "hybrid grid of Archer 2019",
+    about: "each light adds itself to the lists of the sparse clusters that it reaches",
     role: Role::OtherPaper,
     source: "Archer 2019, section 3.2",
     krate: "assign-clustered",

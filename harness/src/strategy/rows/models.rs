@@ -8,7 +8,8 @@ use super::super::{Axis, Colour, Method, Role, Row, Sizes, row::NEEDS_NOTHING};
 pub(super) const ROWS: &[Row] = &[Row {
     family: "M",
     name: "models",
-    about: "every model has a list; M/2 cuts models into parts of at most 2 m, with a list each",
+    about: "every model has a list of the lights that reach it. M/2 cuts models into parts of at most 2 m, \
+            and every part has a list",
     role: Role::ComparisonPaper,
     source: "Enhuber 2019, section 3.4",
     krate: "assign-model",

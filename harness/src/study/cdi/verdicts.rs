@@ -147,8 +147,8 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
             Nearer::Tie => "a tie",
         };
         format!(
-            "In {scene} the mean error of ranges from rays ({}) is {} of the mean{}; that of \
-             {what} ({}) is {}{}: {verdict}.{}",
+            "In {scene}, the mean error with ranges from rays ({}) is {} of the mean luminance{}. \
+             With {what} ({}), it is {}{}: {verdict}.{}",
             setting(cast.record),
             difference(own),
             in_time(cast.record),
@@ -185,14 +185,14 @@ pub(crate) fn quietest(done: &Done, scene: &str) -> Vec<String> {
     }
     if is_at_end(&all, cast.record) == Some(true) {
         found.push(format!(
-            "In {scene} the best factor on ranges from rays is the first or last one that was \
+            "In {scene}, the best factor on ranges from rays is the first or last one that was \
              tried."
         ));
     }
     if let Some(other) = best(&all, named("infinite"), |_| true) {
         let other_error = error(other.record).unwrap_or(f64::NAN);
         found.push(format!(
-            "In {scene} the mean error of lights with infinite range is {} of the mean{}.",
+            "In {scene}, the mean error of lights with infinite range is {} of the mean luminance{}.",
             difference(other_error),
             in_time(other.record)
         ));
@@ -228,8 +228,8 @@ pub(crate) fn rays_against_random(done: &Done) -> Option<String> {
             _ => String::new(),
         };
         Some(format!(
-            "In {scene} the mean error of lights is {} of the mean{} with ranges from rays, and \
-             {}{} with the best random ranges{verdict}.",
+            "In {scene}, the mean error of lights is {} of the mean luminance{} with ranges from \
+             rays, and {}{} with the best random ranges{verdict}.",
             significant(own),
             in_time(cast.record),
             significant(theirs),
@@ -292,14 +292,15 @@ pub(crate) fn in_common(done: &Done) -> Option<String> {
     .filter_map(|(what, found)| {
         let (mean, worst) = found?;
         let (tie, mean, worst) = (tie(mean), significant(mean), significant(worst));
-        Some(format!(", with {what} it is {mean} ({worst}{tie})"))
+        Some(format!(". With {what}, it is {mean} ({worst}{tie})"))
     })
     .collect();
     let tie = tie(theirs);
     let stale = if is_stale { format!(": {STALE}") } else { String::new() };
     Some(format!(
         "With one setting for all {} scenes, the mean error of lights with ranges from rays is {} \
-         of the mean ({} in the worst scene). With random ranges for all lights it is {} ({}{tie}){}{stale}.",
+         of the mean luminance ({} in the worst scene). With random ranges for all lights, it is \
+         {} ({}{tie}){}{stale}.",
         scenes.len(),
         significant(own),
         significant(own_worst),

@@ -118,7 +118,8 @@ impl Claim<'_> {
     }
 }
 
-fn capitalised(text: &str) -> String {
+/// A text that starts with a capital letter.
+pub(crate) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().collect::<String>()).unwrap_or_default();
     first + letters.as_str()

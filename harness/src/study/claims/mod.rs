@@ -12,7 +12,7 @@ mod table;
 mod tally;
 mod verdict;
 
-pub(crate) use claim::{Check, Claim, Paper, judge, on_another_gpu};
+pub(crate) use claim::{Check, Claim, Paper, capitalised, judge, on_another_gpu};
 pub(crate) use markdown::markdown;
 pub(crate) use table::claims_html;
 pub(crate) use tally::{Outcome, Tally};

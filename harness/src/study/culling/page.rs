@@ -58,8 +58,8 @@ pub(crate) fn modes(done: &Done, scene: &str, charts: &mut Charts) -> Vec<Part> 
             };
             let text = format!(
                 "Times are of whole frames, mean over the frames of the path. Slope and offset \
-                 belong to the straight line through these times. The relMSE compares with no \
-                 culling at the most lights. The survey\u{2019}s own clusters are those of 40 x \
+                 belong to the straight line through these times. The relMSE is the error against \
+                 no culling, at the most lights. The survey\u{2019}s own clusters are those of 40 x \
                  40 pixels and 24 slices, capped at 128 lights.{caution}"
             );
             Some(Part::new(mode, format!("Times, {mode}"), text, body))
@@ -173,7 +173,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
             let time = significant(first.times.frame_ms);
             Some((
                 first.setting.lights,
-                format!("{mode} {} {verb} ({time} ms a frame)", listed(&names)),
+                format!("{} {verb} with {mode} lighting ({time} ms a frame)", listed(&names)),
             ))
         };
         let all: Vec<(u64, String)> = MODES.iter().filter_map(fastest).collect();
@@ -181,7 +181,7 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         // Modes may have been measured at other counts of lights.
         let part = |(count, words): &(u64, String)| match *count == most {
             true => words.clone(),
-            false => format!("at {} {words}", lights(*count)),
+            false => format!("at {}, {words}", lights(*count)),
         };
         let parts: Vec<String> = all.iter().map(part).collect();
         Some(format!("In {scene} at {}, without a loss: {}.", lights(most), parts.join("; ")))

@@ -8,6 +8,7 @@ use crate::report::markup::{Html, html};
 use crate::report::rank::{Ratio, competes, first, listed, ranks};
 use crate::report::table::{Look, Row, Table};
 use crate::results::{Errors, Operations, Record};
+use crate::study::claims::capitalised;
 use crate::study::data::Entry;
 use crate::study::endless::cases::{
     Case, Cut, HALF_SLICES, PAPER_SLICES, PLACES, Published, RULED, Setting, USUAL, cases,
@@ -24,14 +25,14 @@ const NOTE: &str = "A light operation is one term, diffuse or specular, of one l
                     sample. Listed: the sample\u{2019}s list contains it. Evaluated: listed, and \
                     shading does not skip it at that sample. Outer: a specular term beyond the \
                     reach of the light\u{2019}s diffuse term. Seen: listed and visible. Lost: \
-                    visible and listed by position, but not listed by this setting. Position \
-                    means clusters without cones. A cut removes specular light below a radiance. \
-                    The 45\u{b0} test is the paper\u{2019}s cone test. Diffuse reach is the \
+                    visible and listed by position, but not listed by this setting. Position means \
+                    clusters without cones. A cut removes specular light below a radiance. The \
+                    45\u{b0} test is the paper\u{2019}s cone test. Diffuse reach is the \
                     paper\u{2019}s dif: specular light ends where diffuse light ends. These three \
-                    lose light; their errors compare with no culling. For scale, linearly \
-                    transformed cosines themselves have a FLIP of 0.018 and 0.037 against the \
-                    true integral (h200-area). Brackets hold the paper\u{2019}s figure, from a \
-                    GTX 1060 at 1280 x 720 in another scene.";
+                    lose light. Their errors are differences from the image without culling. For \
+                    scale, linearly transformed cosines themselves have a FLIP of 0.018 and 0.037 \
+                    against the true integral (h200-area). Brackets hold the paper\u{2019}s \
+                    figure, from a GTX 1060 at 1280 x 720 in another scene.";
 
 /// A part per place, with a panel per count of lights.
 pub(crate) fn places(
@@ -225,10 +226,10 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         _ => format!("{} tie: {} ms", listed(&names), listed(&times)),
     };
     if !leaders.iter().any(|record| std::ptr::eq(*record, position)) {
-        text += &format!(", position alone {} ms", time(position));
+        text += &format!(". Position alone takes {} ms", time(position));
         if let (Some(own), Some(all)) = (&leader.lists.operations, &position.lists.operations) {
             let fewer = 1.0 - own.listed() as f64 / all.listed().max(1) as f64;
-            text += &format!(", with {} % fewer listed terms", percent(fewer));
+            text += &format!(", and the fastest lists {} % fewer terms", percent(fewer));
         }
     }
     let other = fastest(usual(case).filter(|record| competes(record) && !is_of_the_paper(record)));
@@ -239,9 +240,9 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
             Some(_) => "more",
             None => "beside them",
         };
-        let name = setting(&other.strategy);
+        let name = capitalised(&setting(&other.strategy));
         text += &format!(
-            "; {name}, which the paper does not have, takes {against}, {} ms",
+            ". {name}, which the paper does not have, takes {against}: {} ms",
             time(other)
         );
     }
@@ -249,11 +250,11 @@ fn sentence(scene: &str, case: &Case<'_>) -> Option<String> {
         let flip = lossy.image.errors.get("flip").copied().flatten();
         let flip =
             flip.map_or_else(String::new, |flip| format!(" with a FLIP of {}", significant(flip)));
-        let (name, takes) = (setting(&lossy.strategy), takes(lossy));
-        text += &format!("; {name} {takes} {} ms{flip}", time(lossy));
+        let (name, takes) = (capitalised(&setting(&lossy.strategy)), takes(lossy));
+        text += &format!(". {name} {takes} {} ms{flip}", time(lossy));
         if let (Some(lost), Some(all)) = (loss(case, lossy), &position.lists.operations) {
             let all = number(seen(all) as f64);
-            text += &format!("; of {all} visible terms, {lost} are lost");
+            text += &format!(". Of {all} visible terms, {lost} are lost");
         }
     }
     Some(text + ".")

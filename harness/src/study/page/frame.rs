@@ -116,10 +116,11 @@ const READING: &str = "<p>Frames are drawn in rounds. Each round draws a few fra
                        <b>tie</b> if the confidence interval of the median ratio contains 1, or if \
                        the median ratio is within 0.5 % of 1. With two to five rounds, all methods \
                        share a rank, because so few rounds cannot show a difference. A \
-                       <b>lossy</b> setting is shown with its error. Culling error compares with \
-                       no culling under the same shader. Range error compares with lights that \
-                       have no range. Model error compares a model of area lights with a truth \
-                       image. Every chart is also a file in <code>charts/</code>.</p>";
+                       <b>lossy</b> setting is shown with its error. A culling error is the \
+                       difference from the image without culling, drawn by the same shader. A \
+                       range error is the difference from the image under lights that have no \
+                       range. A model error is the difference from the truth image, caused by a \
+                       model of area lights. Every chart is also a file in <code>charts/</code>.</p>";
 
 /// How to read an id, for the legend.
 const IDS: &str = "A strategy puts samples into groups and gives each group a list of lights. A sample is \
@@ -262,8 +263,8 @@ fn provenance(done: &Done) -> Html {
     let remark = if count < done.results.len() {
         html!(
             "<p class=\"note\">In {} of {} jobs, the lists were checked for every pair of a light \
-                              and a sample. The other jobs only compared images with the image \
-                              without culling, where they have one.</p>\n",
+                              and a sample. In the other jobs, each image was only compared with \
+                              the image without culling, if the job has one.</p>\n",
             count,
             done.results.len()
         )

@@ -24,7 +24,7 @@ pub(crate) fn at<'a>(
 /// A frame and its shading, ms.
 pub(crate) fn time(record: &Record) -> String {
     format!(
-        "{} ms (shading {})",
+        "{} ms (shading {} ms)",
         significant(record.times.frame_ms),
         significant(record.times.shade_ms)
     )
@@ -83,9 +83,9 @@ pub(crate) fn by_lights(
 pub(crate) const ONE_LIGHT: Check = Check {
     id: "one-light",
     place: "section 5.5.3, figure 5.22",
-    words: "With one light MRP is fastest and LTC second.",
+    words: "With one light, MRP is fastest and LTC is second.",
     paper: "MRP is 0.21 ms faster",
-    departure: "one stochastic sample takes the third place. MRP is mrp-published, our reading of \
+    departure: "one stochastic sample is third. MRP is mrp-published, our reading of \
                 equation 5.5",
     decide: |done, scene| {
         let record = |name: &str| at(done, scene, name, 1);
@@ -95,7 +95,7 @@ pub(crate) const ONE_LIGHT: Check = Check {
         let mut figure = format!("MRP {}, LTC {}", time(mrp), time(ltc));
         let mut parts = vec![faster(mrp, ltc)];
         if let Some(other) = record(&stochastic(1)) {
-            figure += &format!(", one sample {}", time(other));
+            figure += &format!(", one stochastic sample {}", time(other));
             parts.push(faster(ltc, other));
         }
         if let Some(own) = record("mrp") {
@@ -124,15 +124,18 @@ pub(crate) const MRP_GAIN: Check = Check {
             let gain = 1.0 - mrp.times.frame_ms / ltc.times.frame_ms;
             let shading = 1.0 - mrp.times.shade_ms / ltc.times.shade_ms;
             let mut figure = format!(
-                "{lights} lights: frame {} % less ({} and {} ms), shading {} % less",
+                "{lights} lights: the frame takes {} % less ({} ms with MRP, {} ms with LTC), \
+                 shading {} % less",
                 percent(gain),
                 significant(mrp.times.frame_ms),
                 significant(ltc.times.frame_ms),
                 percent(shading)
             );
             if let Some(own) = record("mrp") {
-                figure +=
-                    &format!(", mrp {} %", percent(1.0 - own.times.shade_ms / ltc.times.shade_ms));
+                figure += &format!(
+                    ", and with mrp {} % less",
+                    percent(1.0 - own.times.shade_ms / ltc.times.shade_ms)
+                );
             }
             figures.push(figure);
             parts.push((faster(mrp, ltc), gain >= least));
@@ -161,7 +164,7 @@ pub(crate) const ONE_SAMPLE: Check = Check {
     departure: "MRP is mrp-published, our reading of equation 5.5",
     decide: |done, scene| {
         by_lights(done, scene, ["mrp-published", &stochastic(1)], |mrp, other| {
-            let figure = format!("MRP {}, one sample {}", time(mrp), time(other));
+            let figure = format!("MRP {}, one stochastic sample {}", time(mrp), time(other));
             (figure, faster(mrp, other) == Faster::First)
         })
     },
@@ -172,7 +175,7 @@ pub(crate) const LIGHTS_OR_SAMPLES: Check = Check {
     place: "section 5.5.3",
     words: "Four times the lights cost the stochastic algorithm more than four times the samples.",
     paper: "a figure without numbers",
-    departure: "compared with 16 lights and one sample",
+    departure: "the base is 16 lights with one sample each",
     decide: |done, scene| {
         let record = |samples, lights| at(done, scene, &stochastic(samples), lights);
         let (Some(base), Some(samples), Some(lights)) =
@@ -181,7 +184,7 @@ pub(crate) const LIGHTS_OR_SAMPLES: Check = Check {
             return Answer::unknown("1 and 4 samples at 16 lights, 1 at 64");
         };
         let figure = format!(
-            "{}; four times the samples {}; four times the lights {}",
+            "the base: {}; four times the samples: {}; four times the lights: {}",
             time(base),
             time(samples),
             time(lights)
@@ -209,7 +212,7 @@ pub(crate) const SPOTS_RATIO: Check = Check {
         by_lights(done, scene, ["ltc", SPOTS], |ltc, spots| {
             let ratio = ltc.times.frame_ms / spots.times.frame_ms;
             let figure = format!(
-                "frames \u{d7} {}, shading \u{d7} {}",
+                "area lights take {} times as long in whole frames, and {} times in shading",
                 significant(ratio),
                 significant(ltc.times.shade_ms / spots.times.shade_ms)
             );
@@ -221,7 +224,7 @@ pub(crate) const SPOTS_RATIO: Check = Check {
 pub(crate) const FASTER: Check = Check {
     id: "ratings",
     place: "table 7.1",
-    words: "MRP is very fast, LTC fast and the stochastic algorithm slow.",
+    words: "MRP is very fast, LTC is fast, and the stochastic algorithm is slow.",
     paper: "ratings without numbers",
     departure: "the stochastic algorithm has 4 samples. MRP is mrp-published, our reading of \
                 equation 5.5",

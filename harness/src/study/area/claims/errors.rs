@@ -80,10 +80,13 @@ pub(crate) const BALLS: Check = Check {
             let Some(outline) = outline.filter(|record| record.lists.entries > 0) else { continue };
             let time = Ratio::between(ball, outline).map_or_else(String::new, |ratio| {
                 let tie = if ratio.is_tie() { " (a tie)" } else { "" };
-                format!(", \u{d7} {} in assign + shade{tie}", significant(ratio.median))
+                format!(
+                    " and {} times the time to assign and shade{tie}",
+                    significant(ratio.median)
+                )
             });
             let figure = format!(
-                "{} by spheres: \u{d7} {} list entries{time}",
+                "{}: with spheres instead of outlines, {} times the list entries{time}",
                 outline.strategy.short(),
                 significant(ball.lists.entries as f64 / outline.lists.entries as f64)
             );
@@ -118,7 +121,10 @@ pub(crate) const REGION_NOISE: Check = Check {
         }
         let good = pairs.iter().filter(|(_, all, region)| region < all).count();
         let told = pairs.iter().map(|(samples, all, region)| {
-            format!("{samples} samples: relMSE {} to {}", difference(*all), difference(*region))
+            let [all, region] = [*all, *region].map(difference);
+            format!(
+                "{samples} samples: relMSE {all} from the whole light, {region} from the region"
+            )
         });
         let figure = told.collect::<Vec<_>>().join("; ");
         Answer { figure, verdict: Verdict::of_parts(good, pairs.len(), "numbers of samples") }
@@ -144,13 +150,13 @@ pub(crate) const MORE_SAMPLES: Check = Check {
             return Answer::unknown("two numbers of samples");
         }
         let told = |errors: &[(u32, f64)]| {
-            let each = errors.iter().map(|(samples, e)| format!("{} at {samples}", difference(*e)));
+            let each = errors.iter().map(|(n, e)| format!("{} with {n} samples", difference(*e)));
             each.collect::<Vec<_>>().join(", ")
         };
-        let mut figure = format!("FLIP {}", told(&errors));
+        let mut figure = format!("FLIP of samples of the reflected region: {}", told(&errors));
         let uniform = by_samples(done, scene, UNIFORM, "flip");
         if !uniform.is_empty() {
-            figure += &format!("; uniform {}", told(&uniform));
+            figure += &format!("; FLIP of uniform samples: {}", told(&uniform));
         }
         let changes = (last.1 / first.1 - 1.0).abs() > NO_RESPONSE;
         Answer { figure, verdict: if changes { Verdict::Fails } else { Verdict::Holds } }
@@ -169,7 +175,8 @@ pub(crate) const REGION_BIAS: Check = Check {
             return Answer::unknown("both ways of sampling");
         };
         let figure = format!(
-            "at {samples} samples: bias {} % uniform, {} % reflected",
+            "at {samples} samples, the bias is {} % with uniform samples and {} % with samples of \
+             the reflected region",
             percent(uniform),
             percent(reflected)
         );

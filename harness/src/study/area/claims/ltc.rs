@@ -2,6 +2,7 @@
 
 use shading::ltc::{POLYNOMIAL_COMPONENTS, Polynomial, Table};
 
+use crate::report::finding::lights as words_of;
 use crate::report::format::{difference, significant};
 use crate::study::area::claims::cost::{Faster, at, by_lights, faster, time};
 use crate::study::area::claims::errors::{REFLECTED, UNIFORM, by_flip, error_of};
@@ -88,13 +89,14 @@ pub(crate) const TABLE_OR_POLYNOMIAL: Check = Check {
         let told = [(1, Some(one)), (16, pair(16)), (64, Some(many))];
         let told = told.into_iter().filter_map(|(lights, pair)| {
             let (table, polynomial) = pair?;
+            let lights = words_of(lights);
             Some(format!("{lights}: table {}, polynomials {}", time(table), time(polynomial)))
         });
         let mut figure = told.collect::<Vec<_>>().join("; ");
         let once = [at(done, scene, "ltc", 64), at(done, scene, "ltc-polynomial", 64)];
         if let [Some(table), Some(polynomial)] = once {
             figure += &format!(
-                "; 64, found once per sample: table {}, polynomials {}",
+                "; 64 lights, with the lobe found once per sample: table {}, polynomials {}",
                 time(table),
                 time(polynomial)
             );
@@ -146,7 +148,8 @@ pub(crate) const SPLITTING_COST: Check = Check {
     decide: |done, scene| {
         by_lights(done, scene, ["ltc", "ltc-unsplit"], |split, unsplit| {
             let ratio = split.times.shade_ms / unsplit.times.shade_ms;
-            let figure = format!("split over unsplit \u{d7} {} in shading", significant(ratio));
+            let figure =
+                format!("with split edges, shading takes {} times as long", significant(ratio));
             (figure, ratio <= LITTLE)
         })
     },
@@ -180,7 +183,7 @@ fn least(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("another algorithm");
     };
     let figure = format!(
-        "FLIP: ltc {}; least of the others {} {}",
+        "FLIP of ltc: {}; least FLIP of the others: {} with {}",
         difference(ltc),
         nearest.0,
         difference(nearest.1)

@@ -101,8 +101,8 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
         let ((count, spots), (same, ltc)) = (at_most(SPOTS)?, at_most("ltc")?);
         (count == same).then(|| {
             format!(
-                "In {scene} at {}, LTC takes {} times as long as spots (area : spot): {} and {} \
-                 ms.",
+                "In {scene} at {}, LTC takes {} times as long as spots (area : spot): LTC takes {} \
+                 ms and spots take {} ms.",
                 lights(count),
                 significant(ltc / spots),
                 significant(ltc),

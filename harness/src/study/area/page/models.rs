@@ -264,7 +264,7 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
         })
         .map(|(record, error)| {
             format!(
-                "{} ({} ms, {})",
+                "{} ({} ms, FLIP {})",
                 model(record),
                 significant(record.times.shade_ms),
                 difference(*error)

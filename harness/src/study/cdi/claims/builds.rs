@@ -20,12 +20,13 @@ pub(crate) fn one_pass(done: &Done, scene: &str) -> Answer {
     let factor = |ms: Option<f64>| ms.map(|ms| ms / most.single_ms);
     let time = |ms: Option<f64>, what: &str| match ms {
         Some(ms) => {
-            format!("{what} {} ms, {} times", significant(ms), significant(ms / most.single_ms))
+            let times = significant(ms / most.single_ms);
+            format!("{what} takes {} ms, {times} times as long", significant(ms))
         }
-        None => format!("{what} not measured"),
+        None => format!("{what} was not measured"),
     };
     let figure = format!(
-        "{} directions: one pass {} ms; {}; {}",
+        "{} directions: one pass takes {} ms; {}; {}",
         most.directions,
         significant(most.single_ms),
         time(most.each_ms, "a dispatch per direction"),
@@ -72,7 +73,7 @@ pub(crate) fn overhead(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("8 and 128 directions");
     };
     let figure = format!(
-        "8 to 128 directions: {} to {} ms, {} times",
+        "8 to 128 directions: from {} to {} ms, {} times as long",
         significant(few),
         significant(many),
         significant(many / few)
@@ -94,7 +95,8 @@ pub(crate) fn build_linear(done: &Done, scene: &str) -> Answer {
     let (off, at) = fit.worst(&points);
     let ends = [points.first(), points.last()].map(|end| end.map_or(0.0, |end| end.0));
     let figure = format!(
-        "{} to {} directions: {} ms and {} \u{b5}s per direction, off the line by {} % at most, at {}",
+        "{} to {} directions: the line is {} ms plus {} \u{b5}s per direction. No time is farther \
+         off the line than {} %, at {} directions",
         number(ends[0]),
         number(ends[1]),
         significant(fit.offset),
@@ -129,7 +131,7 @@ pub(crate) fn size(done: &Done, scene: &str) -> Answer {
         }
     };
     let Some(known) = bytes(simple) else { return Answer::unknown("builds") };
-    let figure = format!("{} MiB, in {simple} {}", mebibytes(own), mebibytes(known));
+    let figure = format!("{} MiB, in {simple} {} MiB", mebibytes(own), mebibytes(known));
     let verdict = match too_alike(done, scene, simple) {
         Some(verdict) => verdict,
         None if (1.0 / ABOUT..=ABOUT).contains(&(own / known)) => Verdict::Holds,
@@ -146,7 +148,7 @@ pub(crate) fn redundant(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("both builds");
     };
     let figure = format!(
-        "{} million fragments against {} million: {} times",
+        "one pass stores {} million fragments, a pass for each direction {} million: {} times as many",
         significant(one / 1e6),
         significant(each / 1e6),
         significant(one / each)
@@ -177,7 +179,8 @@ pub(crate) fn coverage(done: &Done, scene: &str) -> Answer {
         percent(errors.lost as f64 / errors.rays.max(1) as f64)
     };
     let figure = format!(
-        "median error of a range {} footprints, conservative {}; rays lost {} %, conservative {} %",
+        "the median error of a range is {} footprints, with conservative rasterisation {}; lost \
+         rays: {} %, with conservative rasterisation {} %",
         significant(centres.median_range_error),
         significant(touched.median_range_error),
         lost(centres),

@@ -29,7 +29,7 @@ pub(crate) fn cast_share(done: &Done, scene: &str) -> Answer {
     let scene_ms = record.times.passes.median_ms(Some(PassKind::Scene));
     let total_ms = vpls.total_ms() + scene_ms + record.assign_and_shade_ms();
     let figure = format!(
-        "choosing lights and casting {} of {} ms, {} %; only casting {} ms",
+        "choosing lights and casting rays takes {} of {} ms, {} %; only casting takes {} ms",
         significant(lights_ms),
         significant(total_ms),
         percent(lights_ms / total_ms),
@@ -72,8 +72,8 @@ pub(crate) fn rays_linear(done: &Done, scene: &str) -> Answer {
     };
     let (whole, end) = (exponent(first, last), exponent(before, last));
     let figure = format!(
-        "{} times the rays take {} times as long, an exponent of {whole:.2}; from {2} x {2} to {3} x {3} pixels \
-         of {end:.2}",
+        "{} times the rays take {} times as long, an exponent of {whole:.2}; from {2} x {2} to {3} \
+         x {3} pixels, the exponent is {end:.2}",
         significant(rays_of(last) / rays_of(first)),
         significant(median(&last.cast_ms) / median(&first.cast_ms)),
         before.rsm_px,
@@ -98,7 +98,9 @@ pub(crate) fn against_random(done: &Done, scene: &str) -> Answer {
     let sizes: Vec<String> = all
         .iter()
         .zip(&ratios)
-        .map(|(cast, ratio)| format!("{0} x {0}: {1}", cast.rsm_px, significant(*ratio)))
+        .map(|(cast, ratio)| {
+            format!("{0} x {0} pixels: {1} times", cast.rsm_px, significant(*ratio))
+        })
         .collect();
     let good = ratios.iter().filter(|ratio| ABOUT.contains(ratio)).count();
     Answer {
@@ -116,7 +118,7 @@ pub(crate) fn rate(done: &Done, scene: &str) -> Answer {
     let Some(last) = all.last() else { return Answer::unknown("rays at a steady clock") };
     let ms = median(&last.cast_ms);
     let figure = format!(
-        "{} million in {} ms, {} thousand million a second; the paper {}",
+        "{} million rays in {} ms, {} thousand million a second; the paper has {} thousand million",
         significant(rays_of(last) / 1e6),
         significant(ms),
         significant(rays_of(last) / ms / 1e6),
@@ -191,5 +193,5 @@ pub(crate) fn arrays(done: &Done, scene: &str) -> Answer {
     );
     let parts = [list_ms < array_ms, arrays.1 < linked.1, array_ms + arrays.1 < list_ms + linked.1];
     let good = parts.iter().filter(|part| **part).count();
-    Answer { figure, verdict: Verdict::of_parts(good, parts.len(), "parts") }
+    Answer { figure, verdict: Verdict::of_parts(good, parts.len(), "statements") }
 }

@@ -23,7 +23,7 @@ pub(crate) fn same_image(done: &Done, scene: &str) -> Answer {
         return Answer::unknown("images through both builds");
     };
     let figure = format!(
-        "mean error {} of the mean; {} of pixels are off by more than a twentieth",
+        "the mean error is {} of the mean luminance; {} of pixels are off by more than a twentieth",
         difference(mean_error),
         share(off)
     );
@@ -69,14 +69,14 @@ impl<'a> Against<'a> {
         Some(nearer(error(self.cast)?, error(other)?, self.noise))
     }
 
-    /// `random 0.52 (0 to 11 m, 9,701 of 39,421 lights)`, and whether its sweep ended there.
+    /// `random: mean error 0.52 (0 to 11 m, 9,701 of 39,421 lights)`, and whether its sweep ended there.
     fn described(&self, what: &str, record: &Record) -> String {
         let end = match is_at_end(&self.all, record) {
             Some(true) => ", the end of its sweep",
             _ => "",
         };
         let error = error(record).unwrap_or(f64::NAN);
-        format!("{what} {} ({}{end})", significant(error), setting(record))
+        format!("{what}: mean error {} ({}{end})", significant(error), setting(record))
     }
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
     let mut figure = against.described("rays", against.cast);
     figure += &match fewest {
         Some(record) => format!(
-            "; the fewest random lights that are as near: {} at {}",
+            "; the fewest lights with random ranges that are as near: {} with a mean error of {}",
             number(kept(record) as f64),
             significant(error(record).unwrap_or(f64::NAN))
         ),
@@ -110,7 +110,7 @@ pub(crate) fn fewer_lights(done: &Done, scene: &str) -> Answer {
     };
     let same_lights = against.best("random-discard");
     if let Some(record) = same_lights {
-        figure += &format!("; {}", against.described("random, the same lights", record));
+        figure += &format!("; {}", against.described("random ranges, the same lights", record));
     }
     if let Some(verdict) = stale(&[against.cast]) {
         return Answer { figure, verdict };
@@ -136,7 +136,7 @@ pub(crate) fn visual_quality(done: &Done, scene: &str) -> Answer {
     };
     let Some(random) = against.best("random") else { return Answer::unknown("random ranges") };
     let others: Vec<String> = [
-        ("random-discard", "random, the same lights"),
+        ("random-discard", "random ranges, the same lights"),
         ("constant-discard", "one range, the same lights"),
     ]
     .into_iter()
@@ -145,7 +145,7 @@ pub(crate) fn visual_quality(done: &Done, scene: &str) -> Answer {
     let figure = format!(
         "{}; {}{}",
         against.described("rays", against.cast),
-        against.described("random", random),
+        against.described("random ranges", random),
         others.concat()
     );
     if let Some(verdict) = stale(&[against.cast, random]) {
@@ -171,7 +171,7 @@ pub(crate) fn similar(done: &Done, scene: &str) -> Answer {
     let find =
         |id: &str| against.cast.image.truth_errors.get(id).copied().flatten().unwrap_or(f64::NAN);
     let figure = format!(
-        "mean error {} of the mean, missing energy {} %, bias {} %, FLIP {}",
+        "mean error {} of the mean luminance, missing energy {} %, bias {} %, FLIP {}",
         significant(find(METRIC)),
         percent(find("missing_energy")),
         percent(find("bias")),

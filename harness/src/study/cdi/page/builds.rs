@@ -228,7 +228,7 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Option<String> {
     let times = |ms: Option<f64>, what: &str| {
         ms.map(|ms| {
             format!(
-                "{} times as fast as {what}, {} ms",
+                "{} times as fast as {what} ({} ms)",
                 significant(ms / most.single_ms),
                 significant(ms)
             )
@@ -241,11 +241,11 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Option<String> {
         return None;
     }
     Some(format!(
-        "In {scene} one pass over the triangles builds {} directions in {} ms: {}. The paper \
-         reports {} times in its atrium and {} in its town.",
+        "In {scene}, one pass over the triangles builds {} directions in {} ms. That is {}. The \
+         paper reports {} times in its atrium and {} in its town.",
         most.directions,
         significant(most.single_ms),
-        both.join("; "),
+        both.join(" and "),
         PAPER_FACTORS[0],
         PAPER_FACTORS[1]
     ))

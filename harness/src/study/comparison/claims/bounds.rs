@@ -53,8 +53,9 @@ pub(crate) fn explicit_against_implicit(done: &Done, scene: &str) -> Answer {
                 pairs.add(&less, &more, order);
             }
             figures.push(format!(
-                "from {group}-I{source} to {group}-E{source}: slope \u{d7} {}, offset from {} to {} ms{mark} with the \
-                 depth pre-pass, from {} to {} ms without it",
+                "from {group}-I{source} to {group}-E{source}: the slope is multiplied by {}. With \
+                 the depth pre-pass, the offset goes from {} to {} ms{mark}. Without it, the \
+                 offset goes from {} to {} ms",
                 significant(explicit.slope / implicit.slope),
                 significant(implicit.offset),
                 significant(explicit.offset),

@@ -6,7 +6,7 @@ use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::members::Members;
 use crate::study::comparison::claims::pairs::Pairs;
-use crate::study::data::{Entry, counts, is_near, is_of_the_paper, nearest_count, ranking, stand};
+use crate::study::data::{Entry, counts, is_near, is_of_the_paper, means, nearest_count, ranking};
 use crate::study::manifest::Done;
 
 /// Exact records of the paper's strategies under the same lights.
@@ -29,9 +29,8 @@ impl<'a> Field<'a> {
         let mut records: Members<'a, &'a Record> = Members::new(String::new(), records);
         // Poses of single strategies stand beside them.
         let most = records.all.iter().max_by_key(|(_, record)| record.times.frames);
-        let stand = most.map_or_else(String::new, |(_, record)| stand(record));
-        let mean = if stand == "one pose" { "" } else { "means of " };
-        records.basis = format!("at {} lights, {mean}{stand}", number(lights as f64));
+        let means = most.map_or_else(String::new, |(_, record)| means(record));
+        records.basis = format!("at {} lights, {means}", number(lights as f64));
         Ok(Self { lights, records })
     }
 

@@ -10,7 +10,7 @@ use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::claims::members::Members;
 use crate::study::comparison::claims::pairs::{ALIKE, Pairs};
 use crate::study::comparison::page::scaling::{Straight, straight};
-use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, poses, stand};
+use crate::study::data::{Entry, Line, entries, is_of_the_paper, lines, means, poses};
 use crate::study::manifest::Done;
 use crate::study::page::lines::{Time, fit};
 
@@ -34,8 +34,9 @@ fn basis(lines: &[Line<'_>]) -> String {
     let records = || lines.iter().flat_map(|(_, records)| records.iter());
     let low = records().map(|record| record.setting.lights).min().unwrap_or(0);
     let high = records().map(|record| record.setting.lights).max().unwrap_or(0);
-    let stand = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| stand(r));
-    format!("{} to {} lights, {stand}", number(low as f64), number(high as f64))
+    let means = records().max_by_key(|record| poses(record)).map_or_else(String::new, |r| means(r));
+    let [low, high] = [low, high].map(|count| number(count as f64));
+    format!("lines fitted to the times from {low} to {high} lights ({means})")
 }
 
 /// Straight where the best line misses no time of the paper's range by more than a tenth. Both fits are
@@ -59,8 +60,9 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
     Answer { figure, verdict: Verdict::of_parts(good, all, "strategies") }
 }
 
-/// `T-I: at most 9.0 % off its line, at 1,000 (plain least squares: 9.8 % at 100), linear from 100 to
-/// 30,000 lights`. Both distances are of `records`, those of the paper's range.
+/// `T-I: at most 9.0 % off the fitted line, at 1,000 lights (off the plain least-squares line: 9.8 %, at 100
+/// lights). The times are linear from 100 to 30,000 lights`. Both distances are of `records`, those of the
+/// paper's range.
 fn straightness(
     id: &StrategyId,
     within: &Straight,
@@ -68,7 +70,7 @@ fn straightness(
     records: &[&Record],
 ) -> String {
     let mut text = format!(
-        "{}: at most {} % off its line, at {}",
+        "{}: at most {} % off the fitted line, at {} lights",
         id.short(),
         percent(within.worst),
         number(within.at as f64)
@@ -77,14 +79,15 @@ fn straightness(
         let points: Vec<(f64, f64)> =
             records.iter().map(|r| (r.setting.lights as f64, r.assign_and_shade_ms())).collect();
         let (off, at) = plain.worst(&points);
-        text += &format!(" (plain least squares: {} % at {})", percent(off), number(at));
+        let off = percent(off);
+        text += &format!(" (off the plain least-squares line: {off} %, at {} lights)", number(at));
     }
     match whole.or(Some(*within)).and_then(|whole| whole.range) {
         Some([low, high]) => {
-            text +=
-                &format!(", linear from {} to {} lights", number(low as f64), number(high as f64));
+            let [low, high] = [low, high].map(|count| number(count as f64));
+            text += &format!(". The times are linear from {low} to {high} lights");
         }
-        None => text += ", not linear over any four counts",
+        None => text += ". The times are not linear over any four counts of lights",
     }
     text
 }
@@ -117,7 +120,7 @@ fn ordered(slopes: &Slopes<'_>, chain: &[&[&str]], figure: fn(&Fit) -> f64) -> P
 fn by_order(
     done: &Done,
     scene: &str,
-    unit: &str,
+    what: &str,
     chain: &[&[&str]],
     figure: fn(&Fit) -> f64,
 ) -> Answer {
@@ -127,7 +130,7 @@ fn by_order(
     };
     let pairs = ordered(&slopes, chain, figure);
     let known = slopes.ascending(&chain.concat(), figure, significant);
-    let figure = format!("{}, {unit}: {known}{}", slopes.basis, pairs.exceptions());
+    let figure = format!("{}; {what}: {known}{}", slopes.basis, pairs.exceptions());
     Answer { figure, verdict: pairs.verdict() }
 }
 
@@ -142,13 +145,13 @@ fn offset(fit: &Fit) -> f64 {
 /// The groups of table 4.6 by the slope of all stages.
 pub(crate) fn slopes(done: &Done, scene: &str) -> Answer {
     let chain: [&[&str]; 5] = [&["SC-E", "SC-I"], &["T-E"], &["DC-I", "G"], &["T-I"], &["M"]];
-    by_order(done, scene, "\u{b5}s per 1,000 lights", &chain, slope)
+    by_order(done, scene, "slopes in \u{b5}s per 1,000 lights", &chain, slope)
 }
 
 /// The groups of table 4.6 by the offset of all stages.
 pub(crate) fn offsets(done: &Done, scene: &str) -> Answer {
     let chain: [&[&str]; 3] = [&["M", "T-I", "G", "DC-I"], &["T-E"], &["SC-I", "SC-E"]];
-    by_order(done, scene, "ms", &chain, offset)
+    by_order(done, scene, "offsets in ms", &chain, offset)
 }
 
 /// Shading grows faster than assignment, in each strategy.
@@ -170,7 +173,7 @@ pub(crate) fn shading_dominates(done: &Done, scene: &str) -> Answer {
         figures.push(format!("{name} {} and {}", both[0], both[1]));
     }
     let figure = format!(
-        "{}, \u{b5}s per 1,000 lights, assign and shade: {}{}",
+        "{}; slopes of assign and of shade in \u{b5}s per 1,000 lights: {}{}",
         assign.basis,
         figures.join(", "),
         match faster.is_empty() {
@@ -205,7 +208,7 @@ pub(crate) fn model_slopes(done: &Done, scene: &str) -> Answer {
     };
     let names = [&["M"][..], &others].concat();
     let figure = format!(
-        "{}, \u{b5}s per 1,000 lights: assign {}; shade {}",
+        "{}; slopes of assign in \u{b5}s per 1,000 lights: {}; slopes of shade: {}",
         assign.basis,
         assign.ascending(&names, slope, significant),
         shade.ascending(&names, slope, significant)
@@ -233,7 +236,7 @@ pub(crate) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
         None => Verdict::of_parts(good.count(), 2, "measures"),
     };
     let figure = format!(
-        "{}: slope {} \u{b5}s per 1,000 lights, offset {} ms",
+        "{}; slopes: {} \u{b5}s per 1,000 lights; offsets: {} ms",
         slopes.basis,
         slopes.ascending(&names, slope, significant),
         slopes.ascending(&names, offset, significant)

@@ -6,7 +6,7 @@ use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Verdict};
 use crate::study::comparison::page::views::is_of_view;
-use crate::study::data::{Entry, counts, entries, is_of_the_paper, nearest_count, ranking, stand};
+use crate::study::data::{Entry, counts, entries, is_of_the_paper, means, nearest_count, ranking};
 use crate::study::manifest::Done;
 
 /// Below this growth of T-E's lists the two views are too alike to tell anything.
@@ -51,10 +51,10 @@ pub(crate) fn discontinuity(done: &Done, scene: &str) -> Answer {
     let growth = |[low, high]: [f64; 2]| high / low - 1.0;
     let growth_of = |name: &str, both: [f64; 2]| {
         let [low, high] = both.map(significant);
-        format!("{name} {low} to {high} ({} %)", percent(growth(both)))
+        format!("{name}: from {low} to {high} lights, a change of {} %", percent(growth(both)))
     };
     let mut figure = format!(
-        "lights listed per sample, from low to high discontinuity: {}; {}",
+        "lights listed per sample, from the view of low to the view of high depth discontinuity; {}; {}",
         growth_of("T-E", tiles),
         growth_of("SC-E", clusters)
     );
@@ -99,13 +99,15 @@ pub(crate) fn view_free(done: &Done, scene: &str) -> Answer {
             good += usize::from(change <= SAME);
         }
         let entries = [low, high].map(|record| number(record.lists.entries as f64));
-        figures.push(format!("{} {} and {}", low.strategy.short(), entries[0], entries[1]));
+        figures.push(format!("{}: {} and {}", low.strategy.short(), entries[0], entries[1]));
     }
     if all == 0 {
         return Answer::unknown("lists of G and M in two views");
     }
-    let figure =
-        format!("entries of all lists, at low and at high discontinuity: {}", figures.join("; "));
+    let figure = format!(
+        "entries of all lists, in the view of low and in the view of high depth discontinuity; {}",
+        figures.join("; ")
+    );
     let verdict = Verdict::of_parts(good, all, "strategies").qualified(&missing);
     Answer { figure, verdict }
 }
@@ -161,8 +163,8 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
     };
     let ms = [whole, parts].map(Record::assign_and_shade_ms);
     let figure = format!(
-        "at {} lights, from M to M/2: the longest list from {} to {} lights; listed per sample from {} to {}; \
-         time from {} to {} ms ({})",
+        "at {} lights, from M to M/2; the longest list goes from {} to {} lights; the mean number of listed \
+         lights per sample goes from {} to {}; the time goes from {} to {} ms ({})",
         number(models.lights as f64),
         number(long.lists.longest as f64),
         number(short.lists.longest as f64),
@@ -170,7 +172,7 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
         significant(of_parts),
         significant(ms[0]),
         significant(ms[1]),
-        stand(whole)
+        means(whole)
     );
     let is_faster = Order::of_times(parts, whole) == Order::Less;
     let is_extreme = long.lists.longest as f64 >= EXTREME * long.setting.lights as f64;
@@ -180,7 +182,7 @@ pub(crate) fn models(done: &Done, scene: &str) -> Answer {
         (is_faster, "M/2 is not faster"),
     ];
     let failed: Vec<&str> = parts.iter().filter(|part| !part.0).map(|part| part.1).collect();
-    let verdict = match Verdict::of_parts(parts.len() - failed.len(), parts.len(), "parts") {
+    let verdict = match Verdict::of_parts(parts.len() - failed.len(), parts.len(), "statements") {
         Verdict::Differs(why) => Verdict::Differs(format!("{why}, but {}", listed(&failed))),
         other => other,
     };
@@ -198,9 +200,9 @@ pub(crate) fn subdivision(done: &Done, scene: &str) -> Answer {
     let ids = parts.times.passes.get("model-ids").map_or(0.0, |pass| pass.median_ms);
     let ms = [parts, grid].map(Record::assign_and_shade_ms);
     let mut figure = format!(
-        "at {} lights, {}: M/2 {} ms, {} {} ms",
+        "at {} lights, {}: M/2 takes {} ms, {} takes {} ms",
         number(models.lights as f64),
-        stand(parts),
+        means(parts),
         significant(ms[0]),
         grid.strategy.short(),
         significant(ms[1])

@@ -22,11 +22,13 @@ pub(crate) const PAPER: Paper = Paper {
             depth pre-pass for every method. Its time is left out, except in the row \
             \u{201c}Explicit bounds lower the slope and raise the offset\u{201d}. Times are the \
             time to make the lists (assign) plus the time to light the samples with them (shade). \
-            Only strategies that the paper has count for a verdict. They test the list of all \
-            lights, so ids with /bvh do not count. Each figure states how many poses it averages. \
-            Many claims order the strategies, and a verdict then counts the pairs that come in the \
-            claimed order. \u{201c}Reversed\u{201d} names pairs in the opposite order. Methods are \
-            measured in rounds, and along a path in laps. With fewer than six of them, times less \
+            A verdict uses only the strategies that are in the paper. Those test the list of all \
+            lights, so a verdict uses no ids with /bvh. Next to each time stands the number of \
+            poses that it is a mean of. Many claims put strategies in an order, with the least \
+            time or the least other figure first. The verdict then says how many pairs of \
+            strategies come in that order. \u{201c}Measured in the opposite order: A before B\u{201d} \
+            means that A came first here, and that the claim has B first. Strategies are measured in \
+            rounds, and along a path in laps. With fewer than six rounds or laps, times less \
             than 5 % apart do not decide a verdict. Slopes and offsets of fitted lines tie if they \
             are less than 2 % apart.",
     checks: &CHECKS,
@@ -48,8 +50,9 @@ const CHECKS: [Check; 28] = [
         place: "table 4.3, figures 4.2 to 4.5",
         words: "The best sizes are 28x28 pixels for tiles, 128x128x64 for DC-I, 64x64x40 for DC-E, 48x48x40 \
                 for SC-I and SC-E, and 20x20x20 cells for G.",
-        paper: "the size of T-I is the best in all scenes. For G, the best are 18, 22 and 20 cells \
-                a side. Each other size is the best in two scenes and near the best in the third",
+        paper: "the size of T-I is the best in all scenes. For G, the best sizes are 18, 22 and 20 \
+                cells along each side. The sizes of the other families are the best in two scenes \
+                and near the best in the third",
         departure: "we searched sizes around the paper\u{2019}s. A size that ties with the best \
                     counts as best",
         decide: search::sizes,
@@ -123,9 +126,9 @@ const CHECKS: [Check; 28] = [
     Check {
         id: "spread",
         place: "table 4.4",
-        words: "By SD, SC-E and SC-I come before T-E, DC-I and G, and these before T-I and M.",
+        words: "The order by SD, least first, is: SC-E and SC-I, then T-E, DC-I and G, then T-I and M.",
         paper: "M has an SD of 84.43 ms in Sponza and 403.30 ms in Viking Village. The others are \
-                bars without numbers",
+                in a bar chart without numbers",
         departure: WHOLE_FRAMES,
         decide: spread::groups,
     },
@@ -133,7 +136,7 @@ const CHECKS: [Check; 28] = [
         id: "steady-explicit",
         place: "section 4.4.1.1",
         words: "Explicit bounds depend less on the view than implicit ones, by SD and by SD / mean.",
-        paper: "bars without numbers",
+        paper: "a bar chart without numbers",
         departure: WHOLE_FRAMES,
         decide: spread::explicit_is_steadier,
     },
@@ -141,17 +144,18 @@ const CHECKS: [Check; 28] = [
         id: "steady-alike",
         place: "section 4.4.1.1",
         words: "G and DC-I have similar SDs.",
-        paper: "bars without numbers",
-        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. The paper times whole frames",
+        paper: "a bar chart without numbers",
+        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. Times are assign + shade, but \
+                    the paper times whole frames",
         decide: spread::grid_like_dense,
     },
     Check {
         id: "discontinuity",
         place: "section 4.4.1.2, figure 4.10",
-        words: "If depth discontinuity rises from low to high, SC-E\u{2019}s lists grow far less than \
-                T-E\u{2019}s.",
-        paper: "most groups list 0 to 25 lights. With high discontinuity, many groups of T-E list 25 to 75 and \
-                some list more; few of SC-E list 25 to 50",
+        words: "From a view of low depth discontinuity to a view of high depth discontinuity, \
+                SC-E\u{2019}s lists grow far less than T-E\u{2019}s.",
+        paper: "most groups list 0 to 25 lights. With high discontinuity, many groups of T-E list 25 to 75 \
+                lights, and some list more. Few groups of SC-E list 25 to 50 lights",
         departure: "we compare the mean number of lights listed per sample, not histograms as the \
                     paper does. \u{201c}Far less\u{201d} means at most half the growth. We set \
                     this limit after seeing the figures, so a result within 10 % of it does not \
@@ -193,22 +197,24 @@ const CHECKS: [Check; 28] = [
         words: "Grids whose cell counts follow the proportions of the box around the lights are \
                 faster than grids with the same count along each side.",
         paper: "an expectation without figures",
-        departure: "one such grid, 40x12x20, competes with the best grid of equal counts",
+        departure: "one such grid, 40x12x20, competes with the best grid that has the same count \
+                    along each side",
         decide: search::grids,
     },
     Check {
         id: "few",
         place: "table 4.5",
         words: "DC-I is best at 100 lights.",
-        paper: "it calls DC-I, G and T-I fast, in this order, and shows bars without numbers",
+        paper: "it calls DC-I, G and T-I fast, in this order, and shows a bar chart without numbers",
         departure: NO_PRE_PASS,
         decide: speed::best_at_few,
     },
     Check {
         id: "few-order",
         place: "table 4.5",
-        words: "At 100 lights DC-I, G and T-I are fast, T-E is medium, SC-I and SC-E are slow, M is slowest.",
-        paper: "bars without numbers, but M takes 23.01 ms in Sponza and 17.49 ms in Viking \
+        words: "At 100 lights, DC-I, G and T-I are fast, T-E is medium, SC-I and SC-E are slow, and M is \
+                slowest.",
+        paper: "a bar chart without numbers, but M takes 23.01 ms in Sponza and 17.49 ms in Viking \
                 Village",
         departure: NO_PRE_PASS,
         decide: speed::order_at_few,
@@ -217,16 +223,16 @@ const CHECKS: [Check; 28] = [
         id: "medium",
         place: "table 4.5",
         words: "T-E is best at 1,000 lights.",
-        paper: "it calls T-E, SC-I, SC-E, DC-I and G fast, in this order, and shows bars without \
-                numbers",
+        paper: "it calls T-E, SC-I, SC-E, DC-I and G fast, in this order, and shows a bar chart \
+                without numbers",
         departure: NO_PRE_PASS,
         decide: speed::best_at_medium,
     },
     Check {
         id: "medium-order",
         place: "table 4.5",
-        words: "At 1,000 lights T-I is slower than T-E, SC-I, SC-E, DC-I and G, and M is slowest.",
-        paper: "bars without numbers, but M takes 222.48 ms in Sponza and 170.46 ms in Viking \
+        words: "At 1,000 lights, T-I is slower than T-E, SC-I, SC-E, DC-I and G, and M is slowest.",
+        paper: "a bar chart without numbers, but M takes 222.48 ms in Sponza and 170.46 ms in Viking \
                 Village",
         departure: NO_PRE_PASS,
         decide: speed::order_at_medium,
@@ -234,7 +240,7 @@ const CHECKS: [Check; 28] = [
     Check {
         id: "many-order",
         place: "table 4.5",
-        words: "At 10,000 lights the order is SC-E, SC-I, then T-E, then DC-I and G, then T-I and M.",
+        words: "At 10,000 lights, the order is SC-E, then SC-I, then T-E, then DC-I and G, then T-I and M.",
         paper: "SC-E 9.75, SC-I 12.27, T-E 18.82, DC-I 31.64, G 43.18, T-I 73.44 ms in Sponza",
         departure: "the paper leaves DC-E out of this table",
         decide: speed::order_at_many,
@@ -246,8 +252,8 @@ const CHECKS: [Check; 28] = [
         paper: "lines by least squares from 100 to 10,000 lights, without residuals",
         departure: "growth counts as linear if no time is more than 10 % off the fitted line. This \
                     limit is ours. The fit minimises relative errors, so that the time at 100 \
-                    lights weighs as much as the time at 10,000. We also show the distance from \
-                    the plain least-squares line",
+                    lights weighs as much as the time at 10,000. The distance from the plain \
+                    least-squares line stands in brackets",
         decide: growth::linear,
     },
     Check {
@@ -258,31 +264,32 @@ const CHECKS: [Check; 28] = [
                 offset is low for T-I, G and DC-I, medium for T-E, and high for SC-I and SC-E, \
                 because of the depth pre-pass and the bounds",
         departure: "in this row, methods that read depth pay for the depth pre-pass. SC-I reads \
-                    depth too, so SC-I and SC-E both pay. The paper draws a pre-pass and lights \
-                    hidden surfaces all the same. Here lighting is deferred, so they are not lit",
+                    depth too, so SC-I and SC-E both pay. In the paper, hidden surfaces are lit \
+                    even after a depth pre-pass. Here lighting is deferred, so they are not lit",
         decide: bounds::explicit_against_implicit,
     },
     Check {
         id: "dominates",
         place: "section 4.4.2.2, figure 4.13",
         words: "Shading grows faster with the lights than assignment.",
-        paper: "bars; for M in Sponza, shading takes 226.07 of 226.13 \u{b5}s per light",
+        paper: "a bar chart. For M in Sponza, shading takes 226.07 of 226.13 \u{b5}s per light",
         departure: DEFERRED,
         decide: growth::shading_dominates,
     },
     Check {
         id: "slopes",
         place: "table 4.6",
-        words: "By slope, SC-E and SC-I come before T-E, then DC-I and G, then T-I, then M.",
-        paper: "bars; M has 9.32, 226.13 and 169.73 \u{b5}s per light",
+        words: "The order by slope, least first, is: SC-E and SC-I, then T-E, then DC-I and G, \
+                then T-I, then M.",
+        paper: "a bar chart. M has 9.32, 226.13 and 169.73 \u{b5}s per light",
         departure: DEFERRED,
         decide: growth::slopes,
     },
     Check {
         id: "offsets",
         place: "table 4.6",
-        words: "By offset, M, T-I, G and DC-I come before T-E, and T-E before SC-I and SC-E.",
-        paper: "bars; M has 0.56, -1.74 and 0.37 ms",
+        words: "The order by offset, least first, is: M, T-I, G and DC-I, then T-E, then SC-I and SC-E.",
+        paper: "a bar chart. M has 0.56, -1.74 and 0.37 ms",
         departure: NO_PRE_PASS,
         decide: growth::offsets,
     },
@@ -298,8 +305,9 @@ const CHECKS: [Check; 28] = [
         id: "alike",
         place: "section 4.4.2.2",
         words: "DC-I and G have similar slopes and offsets.",
-        paper: "bars without numbers",
-        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. The paper times whole frames",
+        paper: "a bar chart without numbers",
+        departure: "\u{201c}similar\u{201d} means within a factor of 1.5. Times are assign + shade, but \
+                    the paper times whole frames",
         decide: growth::grid_like_dense,
     },
 ];

@@ -176,7 +176,7 @@ impl Pairs {
             1..=MOST_NAMED => format!("; {what}: {}", listed(pairs)),
             many => format!("; {what}: {many} pairs"),
         };
-        told("reversed", &self.reversed)
+        told("measured in the opposite order", &self.reversed)
             + &told("ties", &self.ties)
             + &told("too few laps to order", &self.unsure)
     }

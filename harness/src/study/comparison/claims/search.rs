@@ -2,12 +2,12 @@
 
 use crate::grouping::grouped_by;
 use crate::report::format::{percent, significant};
-use crate::report::rank::{first, ranks};
+use crate::report::rank::{first, listed, ranks};
 use crate::results::Record;
 use crate::study::claims::order::Order;
 use crate::study::claims::{Answer, Tally, Verdict};
 use crate::study::comparison::claims::pairs::Pairs;
-use crate::study::data::{Entry, entries, stand, tests as tests_of};
+use crate::study::data::{Entry, entries, means, tests as tests_of};
 use crate::study::manifest::Done;
 
 /// The sizes that the paper selects (table 4.3).
@@ -62,7 +62,7 @@ fn is_cubic(record: &Record) -> bool {
 pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
     let all = entries(done, scene, "sizes");
     let (mut good, mut decided, mut figures) = (0, 0, Vec::new());
-    let (mut basis, mut notes) = (String::new(), Vec::new());
+    let (mut basis, mut notes, mut missing) = (String::new(), Vec::new(), Vec::new());
     for (name, selected) in SELECTED {
         let mut records = searched(&all, name);
         // The paper tried grids of equal counts only.
@@ -71,19 +71,20 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
         let best = first(&ranked);
         let chosen = records.iter().find(|record| record.strategy.size() == selected);
         let (Some(chosen), Some(leader)) = (chosen, best.first()) else {
-            notes.push(format!("{name} not measured"));
+            missing.push(name);
             continue;
         };
-        basis = format!("{}{}", stand(chosen), source(&records));
+        basis = format!("{}{}", means(chosen), source(&records));
         decided += 1;
         notes.extend(chosen.strategy.stand_in().map(|what| format!("with {what}")));
         let name = chosen.strategy.short();
         if best.iter().any(|record| record.strategy == chosen.strategy) {
             good += 1;
-            figures.push(format!("{name} {selected} {} ms", significant(time(chosen))));
+            let ms = significant(time(chosen));
+            figures.push(format!("{name}: {selected} takes {ms} ms, and no size is faster"));
         } else {
             figures.push(format!(
-                "{name} {selected} {} ms, {} % longer than {}",
+                "{name}: {selected} takes {} ms, {} % longer than {}",
                 significant(time(chosen)),
                 percent(time(chosen) / time(leader) - 1.0),
                 leader.strategy.size()
@@ -93,8 +94,16 @@ pub(crate) fn sizes(done: &Done, scene: &str) -> Answer {
     if decided == 0 {
         return Answer::unknown("the paper's sizes among others");
     }
+    if !missing.is_empty() {
+        notes.push(format!("{} not measured", listed(&missing)));
+    }
+    let verdict = Verdict::of_parts(good, decided, "families");
+    // Other verdicts name them.
+    if verdict == Verdict::Fails && !missing.is_empty() {
+        figures.push(format!("not measured in this scene: {}", listed(&missing)));
+    }
+    let verdict = verdict.qualified(&notes);
     let figure = format!("{basis}; {}", figures.join("; "));
-    let verdict = Verdict::of_parts(good, decided, "families").qualified(&notes);
     Answer { figure, verdict }
 }
 
@@ -107,15 +116,15 @@ pub(crate) fn grids(done: &Done, scene: &str) -> Answer {
     };
     let (Some(equal), Some(shaped)) = (least(true), least(false)) else {
         return Answer::unknown(
-            "a grid with the proportions of its box, and grids with equal counts",
+            "a grid with the proportions of its box, and grids with the same count along each side",
         );
     };
     let mut pairs = Pairs::default();
     let names = [shaped, equal].map(|record| record.strategy.size());
     pairs.add(names[0], names[1], Order::of_times(shaped, equal));
     let figure = format!(
-        "{}{}: {} {} ms, the best grid of equal counts, {}, {} ms",
-        stand(shaped),
+        "{}{}; {} takes {} ms. The best grid with the same count along each side is {} with {} ms",
+        means(shaped),
         source(&records),
         names[0],
         significant(time(shaped)),
@@ -140,20 +149,22 @@ pub(crate) fn tests(done: &Done, scene: &str) -> Answer {
         let ranked = ranks(records.iter().copied());
         let best = first(&ranked);
         let Some(meant) = meant.filter(|_| !best.is_empty()) else { continue };
-        basis = stand(meant);
+        basis = means(meant);
         decided += 1;
         good += usize::from(best.iter().any(|record| record.strategy == meant.strategy));
-        let shown = |record: &Record| {
+        let shown = |record: &Record, verb: &str| {
             let union = tests_of(record).unwrap_or_default().to_uppercase();
-            format!("{union} {} ms", significant(time(record)))
+            format!("{union} {verb} {} ms", significant(time(record)))
         };
         let fastest = ranked
             .iter()
             .map(|ranked| ranked.record)
             .filter(|record| tests_of(record).as_deref() != Some(BEST))
             .min_by(|a, b| time(a).total_cmp(&time(b)))
-            .map_or_else(String::new, |other| format!(", fastest of the others {}", shown(other)));
-        figures.push(format!("{name}: {}{fastest}", shown(meant)));
+            .map_or_else(String::new, |other| {
+                format!(". The fastest other combination is {}", shown(other, "with"))
+            });
+        figures.push(format!("{name}: {}{fastest}", shown(meant, "takes")));
     }
     if decided == 0 {
         return Answer::unknown("intersection tests");
@@ -174,9 +185,12 @@ pub(crate) fn full_union(done: &Done, scene: &str) -> Answer {
         let order = Order::of_figures(best.times.assign_ms, full.times.assign_ms);
         tally.count(order == Order::Less);
         tally.figures.push(format!(
-            "{name}: shade {} and {} ms, assign {} and {} ms",
+            "{name}: shade takes {} ms with {} and {} ms with {}. Assign takes {} ms with the \
+             first and {} ms with the second",
             significant(best.times.shade_ms),
+            BEST.to_uppercase(),
             significant(full.times.shade_ms),
+            FULL.to_uppercase(),
             significant(best.times.assign_ms),
             significant(full.times.assign_ms)
         ));

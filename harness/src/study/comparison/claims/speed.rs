@@ -61,12 +61,14 @@ pub(crate) fn sparse_memory(done: &Done, scene: &str) -> Answer {
         (dense.lists.assignment_bytes, sparse.lists.assignment_bytes)
     else {
         // The lists are only a part of the memory: they decide nothing.
-        let figure =
-            told("groups and lists only", [dense.lists.list_bytes, sparse.lists.list_bytes]);
+        let figure = told(
+            "GPU memory of groups and lists only",
+            [dense.lists.list_bytes, sparse.lists.list_bytes],
+        );
         return Answer { figure, verdict: Verdict::unmeasured("all memory that assignment needs") };
     };
     let (dense, sparse) = (all_dense, all_sparse);
-    let figure = told("all that assignment needs", [dense, sparse]);
+    let figure = told("GPU memory of all that assignment needs", [dense, sparse]);
     let verdict = match (2 * sparse <= dense, sparse < dense) {
         (true, _) => Verdict::Holds,
         (false, true) => Verdict::Differs("less, but more than half".to_owned()),

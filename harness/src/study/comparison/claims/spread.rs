@@ -34,7 +34,7 @@ fn spreads<'a>(done: &'a Done, scene: &'a str) -> Result<Spreads<'a>, Answer> {
 /// The paper's statistic first, the others beside it.
 fn figure(spreads: &Spreads<'_>, names: &[&str]) -> String {
     format!(
-        "{}: SD {} ms; SD / mean {} %; worst / median {}",
+        "{}; SD: {} ms; SD / mean: {} %; slowest pose / median pose: {}",
         spreads.basis,
         spreads.ascending(names, |spread| spread.deviation, significant),
         spreads.ascending(names, |spread| spread.relative, percent),
@@ -100,7 +100,10 @@ pub(crate) fn grid_like_dense(done: &Done, scene: &str) -> Answer {
         None if ratio <= ALIKE => Verdict::Holds,
         None => Verdict::Fails,
     };
-    let figure =
-        format!("{}; a factor of {} apart", figure(&spreads, &["G", "DC-I"]), significant(ratio));
+    let figure = format!(
+        "{}; the SDs are a factor of {} apart",
+        figure(&spreads, &["G", "DC-I"]),
+        significant(ratio)
+    );
     Answer { figure, verdict }
 }

@@ -49,10 +49,10 @@ pub(crate) fn accuracy(
     let culling = Part::new(
         "accuracy",
         "Speed against accuracy: culling error",
-        "Errors compare with None, the image without culling, under the same shader. Points at the \
-         lower left are best. The staircase joins the settings that no other setting beats in both \
-         time and error. The others are faded. Exact images lie in the strip at error 0. Click a \
-         point to see its pictures, if they were kept.",
+        "An error is the difference from the image without culling (None), drawn by the same \
+         shader. Points at the lower left are best. The staircase joins the settings that no other \
+         setting beats in both time and error. The others are faded. Exact images lie in the strip \
+         at error 0. Click a point to see its pictures, if they were kept.",
         html,
     );
     let ranges = Plot {
@@ -77,9 +77,9 @@ pub(crate) fn accuracy(
         "ranges",
         "Speed against accuracy: the lights\u{2019} range",
         "This error is separate from the one above. Lights end at the distance where their \
-         intensity falls to a threshold. The error compares with lights that have no range. It \
-         does not depend on the strategy, because lists are exact. Only the time does. Each point \
-         is labelled with its threshold.",
+         intensity falls to a threshold. The error is the difference from the image under lights \
+         that have no range. It does not depend on the strategy, because lists are exact. Only the \
+         time does. Each point is labelled with its threshold.",
         ranges.html(scene, charts, shots),
     );
     [culling, ranges]

@@ -1,7 +1,7 @@
 //! The main comparison: the best strategy at each count of lights, with its passes.
 
 use crate::chart::{BarChart, Scale};
-use crate::grouping::grouped_by;
+use crate::grouping::{distinct, grouped_by};
 use crate::report::colours::Colours;
 use crate::report::comparison::{Comparison, comparisons};
 use crate::report::format::{number, short_adapter, significant};
@@ -80,9 +80,9 @@ pub(crate) fn overview(done: &Done, scene: &str, charts: &mut Charts) -> Part {
         "All strategies",
         "All strategies run at the comparison paper\u{2019}s parameters. They test the list of all \
          lights, or the hierarchy over the lights (/bvh). Times along the path are means over its \
-         poses. Findings and claims use them wherever they were measured. A table of one pose is \
-         an example with pictures and lists, and its ranks hold for that pose only. Click a \
-         heading to sort by its column.",
+         poses. Findings and claims use the times along the path wherever these were measured. A \
+         table of one pose is an example with pictures and lists, and its ranks hold for that \
+         pose only. Click a heading to sort by its column.",
         panels("Lights", &shown),
     )
 }
@@ -103,12 +103,12 @@ fn panel(
     let mut fewer: Vec<String> = Vec::new();
     for (_, record) in &comparison.records {
         if poses(record) != poses(most) {
-            fewer.push(format!("{} {}", record.strategy, stand(record)));
+            fewer.push(format!("{} for {}", stand(record), record.strategy));
         }
     }
     let fewer = match fewer.is_empty() {
         true => String::new(),
-        false => format!(" \u{b7} slow methods have fewer: {}", listed(&fewer)),
+        false => format!(" \u{b7} slow strategies have fewer: {}", listed(&fewer)),
     };
     let meta = format!("{} \u{b7} {}{fewer}", page::setting(most), stand(most));
     let mut body = html!("<p class=\"meta\">{}</p>\n", meta);
@@ -140,8 +140,9 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     all.iter().rev().filter_map(|results| sentence(scene, &comparison(results)?)).collect()
 }
 
-/// `In atrium at 500 lights, A is fastest with 6.9 ms (6.8 to 7.0; 240 poses). Next is B ...`, or
-/// `A and B tie for fastest with 6.9 to 7.0 ms (240 poses)`.
+/// `In atrium at 500 lights, A is fastest. It takes 6.9 ms (mean of 240 poses, confidence interval 6.8 to
+/// 7.0 ms). The next fastest is B ...`, or `A and B tie for fastest. They take 6.9 to 7.0 ms (means of 240
+/// poses)`.
 fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let ranked = comparison.ranks();
     let lead = Lead::of_comparison(comparison)?;
@@ -150,13 +151,17 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
     let time = match lead.is_tie() {
         true => {
             let times = span(&lead.records, |record| Some(record.assign_and_shade_ms()));
-            format!("{} ms ({})", times.unwrap_or_default(), stand(leader))
+            let means = if poses(leader) > 1 { "means of " } else { "" };
+            format!("They take {} ms ({means}{})", times.unwrap_or_default(), stand(leader))
         }
-        false => timed(leader),
+        false => format!("It takes {}", timed(leader)),
     };
-    let of_lights = lead.lights();
-    let mut text = format!("In {scene} at {lights}, {}{of_lights} with {time}", lead.is_fastest());
-    text += &lead.doubt();
+    let (of_lights, doubt) = (lead.lights(), lead.doubt());
+    let mut text =
+        format!("In {scene} at {lights}, {}{of_lights}{doubt}. {time}", lead.is_fastest());
+    if let Some(cost) = lead.cost_of_lights() {
+        text += &format!(". {}", cost.trim_end_matches('.'));
+    }
     if let Some(next) = ranked.iter().find(|ranked| ranked.rank == 2) {
         let slower = Ratio::between(next.record, leader).map_or_else(String::new, |ratio| {
             let ends = [ratio.low, ratio.high].map(significant);
@@ -164,34 +169,32 @@ fn sentence(scene: &str, comparison: &Comparison<'_>) -> Option<String> {
             format!(", {range} times as long")
         });
         text += &format!(
-            ". Next is {} with {}{slower}",
+            ". The next fastest is {} with {}{slower}",
             comparison.name(next.record),
             timed(next.record)
         );
     }
     if let Some(faster) = comparison.speedup(leader) {
         text += &format!(
-            ". None, which does not cull, takes {} times as long as the fastest",
+            ". The strategy None, which does not cull, takes {} times as long as the fastest",
             significant(faster)
         );
     }
-    text += ".";
-    if let Some(cost) = lead.cost_of_lights() {
-        text += &format!(" {cost}");
-    }
-    Some(text)
+    Some(text + ".")
 }
 
 fn ms(record: &Record) -> String {
     significant(record.assign_and_shade_ms())
 }
 
-/// `6.9 ms (6.8 to 7.0; 240 poses)`.
+/// `6.9 ms (mean of 240 poses, confidence interval 6.8 to 7.0 ms)`.
 fn timed(record: &Record) -> String {
+    let mean = if poses(record) > 1 { "mean of " } else { "" };
     let interval = record.interval_ms().map_or_else(String::new, |interval| {
-        format!("{} to {}; ", significant(interval.low), significant(interval.high))
+        let ends = [interval.low, interval.high].map(significant);
+        format!(", confidence interval {} to {} ms", ends[0], ends[1])
     });
-    format!("{} ms ({interval}{})", ms(record), stand(record))
+    format!("{} ms ({mean}{}{interval})", ms(record), stand(record))
 }
 
 /// The headline: the fastest at the most lights, in each scene.
@@ -200,15 +203,19 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
     let leads = grouped_by(done.scenes().into_iter().filter_map(|scene| {
         let results = rankings(done, scene).pop()?;
         let comparison = comparison(&results)?;
-        let lead = Lead::of_comparison(&comparison)?.headline();
+        let lead = Lead::of_comparison(&comparison)?;
         most = most.max(Some(comparison.first().setting.lights));
-        Some((lead, scene))
+        let limits = lead.lights() + &lead.doubt();
+        Some(([lead.is_fastest(), limits, lead.meaning()], scene))
     }));
     let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
-    let parts: Vec<String> =
-        leads.iter().map(|(lead, scenes)| format!("{lead} in {}", listed(scenes))).collect();
+    let part = |([fastest, limits, _], scenes): &([String; 3], Vec<&str>)| {
+        format!("{fastest} in {}{limits}", listed(scenes))
+    };
+    let parts: Vec<String> = leads.iter().map(part).collect();
+    let meanings = distinct(leads.iter().map(|([_, _, meaning], _)| meaning.as_str())).concat();
     let lights = number(most? as f64);
-    Some(format!("On {adapter} at {lights} lights, {}.", parts.join("; ")))
+    Some(format!("On {adapter} at {lights} lights, {}.{meanings}", parts.join("; ")))
 }
 
 /// Who shares the first rank, per count of lights.

@@ -69,8 +69,9 @@ pub(crate) fn path(done: &Done, scene: &str, charts: &mut Charts) -> Part {
         "Along the path",
         "The chart shows the time to assign and shade at each pose of the camera, as a mean over \
          laps. SD is the standard deviation over poses, by which the comparison paper ranks. The \
-         table also shows SD / mean, and the time of the worst pose divided by that of the median \
-         pose. Slow methods have fewer poses.",
+         table also shows SD / mean. The column \u{201c}worst / median\u{201d} is the time of \
+         the slowest pose divided by the time of the median pose. Slow strategies have fewer \
+         poses.",
         panels("Lights", &shown),
     )
 }

@@ -83,9 +83,9 @@ pub(crate) fn scaling(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 3
         format!(
             "{} Whiskers are confidence intervals over rounds or laps. Dashes show the \
              least-squares line through each strategy\u{2019}s times, which is curved on these \
-             logarithmic axes. The column \u{201c}off a straight line by at most\u{201d} uses a \
-             second line. Its fit minimises relative errors, so that a time at few lights weighs \
-             as much as a time at many.",
+             logarithmic axes. For the column \u{201c}largest distance from a line\u{201d}, we \
+             fit another line to the same times. This fit minimises relative errors, so that a \
+             time at few lights weighs as much as a time at many.",
             stands(&scaling)
         ),
         html,
@@ -200,7 +200,7 @@ fn fits_table<'a>(entries: &[Entry<'a>]) -> Html {
         slope,
         offset,
         r2,
-        Column::figure("off a straight line by at most", "%", Better::Less, off, percent),
+        Column::figure("largest distance from a line", "%", Better::Less, off, percent),
         Column::words("straight within 10 %, lights", "", straight_over),
     ];
     columns.extend(line_columns("assign: slope", |fits| fits.assign.as_ref()));

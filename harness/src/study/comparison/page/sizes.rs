@@ -80,8 +80,9 @@ pub(crate) fn sizes(done: &Done, scene: &str, charts: &mut Charts) -> [Part; 2] 
         "Group sizes",
         "Sizes of tiles and clusters are in pixels and depth slices. Sizes of grids are numbers of \
          cells along the sides of the grid\u{2019}s box. Sizes of model parts are in metres. Small \
-         groups take longer to assign, and large groups take longer to shade. We search a family \
-         once with the list of all lights, and some families again with the hierarchy (/bvh).",
+         groups take longer to assign, and large groups take longer to shade. For each family, we \
+         look for the best size with the list of all lights. For some families, we look again \
+         with the hierarchy (/bvh).",
         body,
     );
     let tests = Part::new(

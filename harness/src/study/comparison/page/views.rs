@@ -55,12 +55,13 @@ pub(crate) fn views(done: &Done, scene: &str, charts: &mut Charts, shots: &mut S
     Part::new(
         "views",
         "Views of low and high depth discontinuity",
-        "These are two views from the path: the one with the fewest edges in depth, and the one \
-         with the most. Two neighbouring pixels form such an edge if one is more than 10 % deeper \
-         than the other. A tile that holds near and far surfaces also lists the lights between \
-         them. A cluster does not. The lists of G and M do not depend on the view. Heat maps show \
-         how many lights each pixel\u{2019}s list holds, from blue for none to red for 150. Longer \
-         lists are green.",
+        "These are two views from the path. The view of low depth discontinuity has the fewest \
+         edges in depth, and the view of high depth discontinuity has the most. Two neighbouring \
+         pixels form such an edge if one is more than 10 % deeper than the other. A tile that \
+         holds near and far surfaces also lists the lights between them. A cluster does not. The \
+         lists of G and M do not depend on the view. Heat maps show how many lights each \
+         pixel\u{2019}s list holds. Colours go from blue (none) to red (150). Lists of more than \
+         150 lights are green.",
         panels("Strategy", &shown),
     )
 }
@@ -110,7 +111,7 @@ fn lengths(record: &Record) -> &[u64] {
 fn counted(entries: &[Entry<'_>]) -> &'static str {
     match entries.iter().all(|entry| entry.record.lists.lengths_all.is_empty()) {
         true => "groups that some pixel reads",
-        false => "all groups with lights",
+        false => "all groups whose list is not empty",
     }
 }
 

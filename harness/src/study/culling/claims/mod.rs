@@ -17,10 +17,10 @@ use crate::study::claims::{Check, Paper};
 pub(crate) const PAPER: Paper = Paper {
     name: "the culling survey",
     about: "Watrous 2024 timed four methods on an RTX 3080, in a scene and with light intensities \
-            of its own, mean over 1,000 frames. Within each renderer the mean time of a frame \
-            along the path decides. A data-centre GPU runs fragment shaders on only a few of its \
-            processors, so forward rendering, Clay and RasterSphere are slower there than on the \
-            survey\u{2019}s GPU.",
+            of its own. Its times are means over 1,000 frames. Here a verdict compares the mean \
+            times of a frame along the path, within each renderer. A data-centre GPU runs fragment \
+            shaders on only a few of its processors, so forward rendering, Clay and RasterSphere \
+            are slower there than on the survey\u{2019}s GPU.",
     checks: &CHECKS,
 };
 
@@ -37,7 +37,7 @@ const CHECKS: [Check; 12] = [
     Check {
         id: "survey-clay",
         place: "evaluation",
-        words: "All methods are bounded below by the clay renderer.",
+        words: "No method is faster than the clay renderer.",
         paper: "",
         departure: "",
         decide: clay,

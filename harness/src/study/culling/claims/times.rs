@@ -59,8 +59,8 @@ pub(crate) fn linear(done: &Done, scene: &str) -> Answer {
         }
         if count > 0 {
             tally.figures.push(format!(
-                "{}: straight in {straight} of {count} methods over {} counts, 0 to {} lights; {} is \
-                 farthest off, by {} % of its growth",
+                "{}: the times of {straight} of {count} methods lie on a line, at {} counts from 0 \
+                 to {} lights. {} is farthest off its line, by {} % of its growth",
                 mode.name,
                 mode.counts.len(),
                 number(mode.most() as f64),
@@ -152,7 +152,7 @@ pub(crate) fn sphere(done: &Done, scene: &str) -> Answer {
         let Some((own, all)) = growths.filter(|(_, all)| *all > 0.0) else { continue };
         let share = own / all;
         let figure = format!(
-            "{}: {} of {} ms, {} %",
+            "{}: lights cost {} ms with the bounding sphere and {} ms without culling: {} % is left",
             mode.name,
             significant(own),
             significant(all),

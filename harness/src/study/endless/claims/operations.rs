@@ -4,8 +4,8 @@ use crate::report::format::{percent, significant};
 use crate::report::rank::listed;
 use crate::results::{Operations, Record};
 use crate::study::claims::{Answer, Outcome, Tally, Verdict};
-use crate::study::endless::cases::{Case, Cut, Setting, cases, lost, seen, setting};
-use crate::study::endless::claims::rows::{by_case, error};
+use crate::study::endless::cases::{Case, Cut, Setting, cases, lost, seen};
+use crate::study::endless::claims::rows::{bracketed, by_case, error};
 use crate::study::endless::claims::times::shares;
 use crate::study::manifest::Done;
 
@@ -25,7 +25,7 @@ fn outer(done: &Done, scene: &str, count: u32, papers: f64) -> Answer {
         let meant = rows.cones(count)?;
         let share = left_out(meant, rows.position)?;
         let figure_of = |record: &Record, share: f64| {
-            format!("{} {} %{}", setting(&record.strategy), percent(share), error(record))
+            format!("{} {} %{}", bracketed(record), percent(share), error(record))
         };
         let mut figures = vec![figure_of(meant, share)];
         let position = case.position();
@@ -143,7 +143,7 @@ pub(crate) fn inner(done: &Done, scene: &str) -> Answer {
             .iter()
             .filter_map(|(_, record)| {
                 let ratio = significant(waste(record)?);
-                Some(format!("{} {ratio}{}", setting(&record.strategy), error(record)))
+                Some(format!("{} {ratio}{}", bracketed(record), error(record)))
             })
             .collect();
         tally.add(ratio <= PAPERS + NEAR, format!("{}: {}", case.name(), shown.join(", ")));

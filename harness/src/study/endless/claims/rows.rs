@@ -80,11 +80,20 @@ pub(crate) fn by_case(done: &Done, scene: &str, needs_test: bool, judge: Judge<'
     answer
 }
 
-/// A setting with its time, and its error where it loses something: `54 cones, cut 0.01 2.99 ms (FLIP
+/// A setting with its time, and its error where it loses something: `54 cones (cut 0.01) 2.99 ms (FLIP
 /// 0.106)`.
 pub(crate) fn with_time(record: &Record) -> String {
     let time = significant(record.assign_and_shade_ms());
-    format!("{} {time} ms{}", setting(&record.strategy), error(record))
+    format!("{} {time} ms{}", bracketed(record), error(record))
+}
+
+/// A setting whose details stand in brackets: `54 cones (cut 0.01)`.
+pub(crate) fn bracketed(record: &Record) -> String {
+    let name = setting(&record.strategy);
+    match name.split_once(", ") {
+        Some((what, details)) => format!("{what} ({details})"),
+        None => name,
+    }
 }
 
 /// ` (FLIP 0.106)` of a setting that loses something.

@@ -71,7 +71,7 @@ pub(crate) fn shading(done: &Done, scene: &str) -> Answer {
         let share = cones.times.shade_ms / rows.position.times.shade_ms;
         let times = [cones, rows.position].map(|record| significant(record.times.shade_ms));
         let figure = format!(
-            "\u{d7} {}, {} of {} ms{}",
+            "shading \u{d7} {}, {} ms with cones and {} ms by position{}",
             significant(share),
             times[0],
             times[1],
@@ -89,7 +89,8 @@ pub(crate) fn assignment(done: &Done, scene: &str) -> Answer {
         let (few, many) = (rows.cones(6)?, rows.cones(24)?);
         let ratio = many.times.assign_ms / few.times.assign_ms;
         let times = [few, many].map(|record| significant(record.times.assign_ms));
-        let figure = format!("\u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
+        let figure =
+            format!("assign \u{d7} {}, from {} to {} ms", significant(ratio), times[0], times[1]);
         Some((figure, Outcome::from(FOUR_TIMES.contains(&ratio))))
     })
 }
@@ -118,8 +119,9 @@ pub(crate) fn sixteenfold(done: &Done, scene: &str) -> Answer {
         let ratio = all.times.shade_ms / one.times.shade_ms;
         let times = [one, all].map(|record| significant(record.times.shade_ms));
         let name = place.to_uppercase();
+        let ratio_text = significant(ratio);
         let figure =
-            format!("{name}: \u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
+            format!("{name}: shading \u{d7} {ratio_text}, from {} to {} ms", times[0], times[1]);
         tally.add(SIXTEENFOLD.contains(&ratio), figure);
         less += usize::from(ratio < *SIXTEENFOLD.start());
     }
@@ -149,7 +151,7 @@ pub(crate) fn without(done: &Done, scene: &str) -> Answer {
     let Some((case, none, culled)) = found else { return Answer::unknown("no culling") };
     let ratio = none.times.frame_ms / culled.times.frame_ms;
     let figure = format!(
-        "{}: \u{d7} {}, {} ms; by {} ms",
+        "{}: a frame \u{d7} {}, {} ms without culling; with {} ms",
         case.name(),
         significant(ratio),
         significant(none.times.frame_ms),
@@ -168,8 +170,9 @@ pub(crate) fn far(done: &Done, scene: &str) -> Answer {
     };
     let ratio = far.times.shade_ms / near.times.shade_ms;
     let times = [near, far].map(|record| significant(record.times.shade_ms));
+    let ratio_text = significant(ratio);
     let figure =
-        format!("C over A: \u{d7} {}, {} to {} ms", significant(ratio), times[0], times[1]);
+        format!("from A to C: shading \u{d7} {ratio_text}, from {} to {} ms", times[0], times[1]);
     Answer { figure, verdict: Verdict::of_parts(usize::from(ratio >= 2.0), 1, "cases") }
 }
 
@@ -215,7 +218,7 @@ pub(crate) fn early_exit(done: &Done, scene: &str) -> Answer {
             .collect();
         let Some(shares) = shares else { continue };
         let figure = format!(
-            "{}: shading by 54 cones \u{d7} {} with the early exit, \u{d7} {} without",
+            "{}: 54 cones multiply shading by {} with the early exit and by {} without",
             case.name(),
             significant(shares[0]),
             significant(shares[1])

@@ -158,12 +158,21 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         most = most.max(Some(count));
         let still = fastest(&moved(&here, Movement::Still))
             .map_or_else(String::new, |still| format!("; still lights take {} ms", ms(still)));
-        Some((format!("{} with {} ms{still}", lead.headline(), ms(lead.leader())), scene))
+        let limits = lead.lights() + &lead.doubt();
+        let words = format!("{}{limits} with {} ms{still}", lead.is_fastest(), ms(lead.leader()));
+        Some(([words, lead.meaning()], scene))
     }));
     let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
-    let parts: Vec<String> =
-        found.iter().map(|(words, scenes)| format!("in {}, {words}", listed(scenes))).collect();
-    Some(format!("On {adapter} at {} lights, {}.", number(most? as f64), parts.join("; ")))
+    let parts: Vec<String> = found
+        .iter()
+        .map(|([words, _], scenes)| format!("in {}, {words}", listed(scenes)))
+        .collect();
+    let meanings = distinct(found.iter().map(|([_, meaning], _)| meaning.as_str())).concat();
+    Some(format!(
+        "On {adapter} at {} lights, {}.{meanings}",
+        number(most? as f64),
+        parts.join("; ")
+    ))
 }
 
 /// The name of a strategy with the way in which its lights move.
