@@ -3,6 +3,7 @@
 
 mod decode;
 mod given;
+mod gpu_lights;
 mod living;
 
 use std::time::{Duration, Instant};
@@ -17,7 +18,8 @@ use crate::{
 use given::Given;
 pub(crate) use given::Records;
 pub use given::{MAX_LIGHTS, RejectedLight};
-pub use living::{GpuLights, SlotCounts};
+pub use gpu_lights::GpuLights;
+pub use living::SlotCounts;
 use living::{Living, Source};
 
 /// A frame's lights on the GPU: spheres and the hierarchy for culling, emissions and shapes for

@@ -3,6 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod faults;
+mod records;
+
 use assign::{
     EncoderPasses, Gpu, GpuLights, Light, LightBuffer, LightEmission, LightKinds, LightNode,
     LightOrder, LightSphere, SlotCounts,
