@@ -61,6 +61,7 @@ impl Contest<'_> {
             }
             self.draw(stage, reference)?;
             seen(&images, &read(&self.gpu, stage)?)?;
+            stage.count_left_out()?;
         }
         Ok(())
     }
@@ -86,7 +87,7 @@ impl Contest<'_> {
                 }
             }
         }
-        Ok(())
+        stage.count_left_out()
     }
 
     /// Has lists and orders of lights that are used for several frames made anew, so that they are of the
