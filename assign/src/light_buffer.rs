@@ -129,9 +129,10 @@ impl LightBuffer {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] if the buffers are too small for the capacity, lack the usage
-    /// `STORAGE` (the count: `COPY_SRC`), or if the box or the largest range is out of its range; and
-    /// if this buffer was not made with [`LightOrder::Gpu`].
+    /// [`AssignError::Parameter`] if a buffer is too small for the capacity, larger than the device
+    /// can bind, no multiple of 4 bytes, or lacks the usage `STORAGE` (the count: `COPY_SRC`), or if
+    /// the box or the largest radius is out of its range; and if this buffer was not made with
+    /// [`LightOrder::Gpu`].
     pub fn update_from_gpu(
         &mut self,
         gpu: &Gpu,
@@ -200,10 +201,15 @@ impl LightBuffer {
     /// The lights by slot, as the GPU holds them. For the orders of the CPU this is
     /// [`lights`](Self::lights). With [`LightOrder::Gpu`] it blocks, and must follow the submission
     /// of [`record`](Self::record); empty slots have a light of intensity 0.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for spots or area lights from the GPU if the renderer's buffer of
+    /// [`shapes`](GpuLights::shapes) lacks the usage `COPY_SRC`.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<Light>, AssignError> {
         match &self.living {
             None => Ok(self.given.lights.clone()),
-            Some(living) => living.read(gpu, &self.given.lights),
+            Some(living) => living.read(gpu, &self.given),
         }
     }
 

@@ -8,10 +8,10 @@ use glam::Vec3;
 use super::{
     decode,
     given::{Given, MAX_LIGHTS, Records},
-    gpu_lights::GpuLights,
+    gpu_lights::{GpuLights, check_usage},
 };
 use crate::{
-    AssignError, Gpu, Light, LightEmission, LightSphere, Passes,
+    AssignError, Gpu, Light, LightEmission, LightKinds, LightSphere, Passes,
     light_sorter::{GivenBuffers, LightSorter, OrderUniform, SlotState},
 };
 
@@ -136,7 +136,7 @@ impl Living {
         gpu: &Gpu,
         lights: &GpuLights<'_>,
     ) -> Result<(), AssignError> {
-        lights.check()?;
+        lights.check(gpu)?;
         let buffers = GivenBuffers {
             spheres: lights.spheres.clone(),
             emissions: lights.emissions.clone(),
@@ -239,23 +239,28 @@ impl Living {
         Ok(SlotCounts { given, slots, faulty, dark })
     }
 
-    /// The lights by slot. `given` are those that the CPU knows.
-    pub(super) fn read(&self, gpu: &Gpu, given: &[Light]) -> Result<Vec<Light>, AssignError> {
+    /// The lights by slot. `given` has those that the CPU knows.
+    pub(super) fn read(&self, gpu: &Gpu, given: &Given) -> Result<Vec<Light>, AssignError> {
         let Some((sorter, buffers)) = &self.sorter else { return Ok(Vec::new()) };
         let slots = self.read_counts(gpu)?.slots;
         if matches!(self.source, Some(Source::Cpu { .. })) {
             let order: Vec<u32> =
                 pod_collect_to_vec(&gpu.read(sorter.order(), u64::from(slots) * 4)?);
-            let light = |&ix: &u32| given.get(ix as usize).copied().unwrap_or(decode::EMPTY);
+            let light = |&ix: &u32| given.lights.get(ix as usize).copied().unwrap_or(decode::EMPTY);
             return Ok(order.iter().map(light).collect());
         }
+        let shapes: Vec<Vec3x4> = if given.kinds == LightKinds::default() {
+            Vec::new()
+        } else {
+            let read_back = wgpu::BufferUsages::COPY_SRC;
+            check_usage("shapes", &buffers.shapes, read_back, ", to read the lights back")?;
+            pod_collect_to_vec(&gpu.read(&buffers.shapes, buffers.shapes.size())?)
+        };
         let [spheres, emissions, _] = sorter.ordered();
         let spheres: Vec<LightSphere> =
             pod_collect_to_vec(&gpu.read(spheres, u64::from(slots) * 16)?);
         let emissions: Vec<LightEmission> =
             pod_collect_to_vec(&gpu.read(emissions, u64::from(slots) * 16)?);
-        let shapes: Vec<Vec3x4> =
-            pod_collect_to_vec(&gpu.read(&buffers.shapes, buffers.shapes.size())?);
         let records = spheres.iter().zip(&emissions);
         Ok(records
             .map(|(sphere, emission)| Light::from_record(sphere, emission, &shapes))

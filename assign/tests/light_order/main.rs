@@ -4,12 +4,12 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod faults;
+mod own;
 mod records;
 
 use assign::{
-    EncoderPasses, Gpu, GpuLights, Light, LightBuffer, LightEmission, LightKinds, LightNode,
-    LightOrder, LightSphere, SlotCounts,
-    conformance::{download, upload},
+    EncoderPasses, Gpu, Light, LightBuffer, LightNode, LightOrder, LightSphere,
+    conformance::download,
 };
 use glam::Vec3;
 
@@ -157,112 +157,4 @@ fn only_changed_lights_are_uploaded() {
     assert_eq!(buffer.uploaded_bytes(), 1024);
     record(&gpu, &buffer);
     assert!(buffer.read(&gpu).unwrap().contains(&given[5000]));
-}
-
-/// Lights in buffers of the test's own, as a renderer's kernel would write them.
-struct Own {
-    spheres: wgpu::Buffer,
-    emissions: wgpu::Buffer,
-    shapes: wgpu::Buffer,
-    count: wgpu::Buffer,
-}
-
-impl Own {
-    fn new(gpu: &Gpu, lights: &[Light]) -> Self {
-        let spheres: Vec<LightSphere> = lights.iter().map(Light::sphere).collect();
-        let emissions: Vec<LightEmission> = lights
-            .iter()
-            .map(|light| LightEmission { intensity: light.intensity.to_array(), kind_and_shape: 0 })
-            .collect();
-        Self {
-            spheres: upload(gpu, "own spheres", &spheres).unwrap(),
-            emissions: upload(gpu, "own emissions", &emissions).unwrap(),
-            shapes: upload(gpu, "own shapes", &[[0.0_f32; 4]]).unwrap(),
-            count: upload(gpu, "own count", &[0_u32, lights.len() as u32, 0, 0]).unwrap(),
-        }
-    }
-
-    fn lights(&self, capacity: u32) -> GpuLights<'_> {
-        GpuLights {
-            spheres: &self.spheres,
-            emissions: &self.emissions,
-            shapes: &self.shapes,
-            count: &self.count,
-            count_offset: 4,
-            capacity,
-            kinds: LightKinds::default(),
-            bounds: (Vec3::ZERO, Vec3::splat(103.0)),
-            radius_max_m: 4.0,
-        }
-    }
-}
-
-#[test]
-fn faulty_lights_from_the_gpu_light_nothing_and_are_counted() {
-    let gpu = gpu();
-    let mut given = lights(3000, 1);
-    given[3].position.x = f32::NAN;
-    given[500].position.y = f32::INFINITY;
-    given[501].position.z = 1e4;
-    given[502].range_m = -1.0;
-    given[503].range_m = f32::NAN;
-    given[504].range_m = 5.0;
-    given[505].intensity.x = f32::NAN;
-    given[506].intensity.y = -1.0;
-    given[507].intensity.z = 2e18;
-    given[2999].range_m = 0.0;
-    given[1000].intensity = Vec3::ZERO;
-    let own = Own::new(&gpu, &given);
-    let mut buffer = LightBuffer::from_gpu(&gpu, &own.lights(3000), 1).unwrap();
-    record(&gpu, &buffer);
-    let counts = SlotCounts { given: 3000, slots: 3000, faulty: 10, dark: 1 };
-    assert_eq!(buffer.read_counts(&gpu).unwrap(), Some(counts));
-    let names = |buffer: &LightBuffer| {
-        let lights = buffer.read(&gpu).unwrap();
-        let mut names: Vec<u32> = lights.iter().map(|light| light.intensity.x as u32).collect();
-        names.retain(|&name| name != 0);
-        names.sort_unstable();
-        names
-    };
-    let bad = [3, 500, 501, 502, 503, 504, 505, 506, 507, 1000, 2999].map(|ix| ix + 1);
-    let sound: Vec<u32> = (1..=3000).filter(|name| !bad.contains(name)).collect();
-    assert_eq!(names(&buffer), sound);
-    check_boxes(&gpu, &buffer);
-    // A kind that was not named is faulty, too.
-    gpu.queue.write_buffer(&own.emissions, 12, bytemuck::bytes_of(&(1_u32 << 28)));
-    // The GPU's own count changes, up to the capacity.
-    for (count, faulty, found) in [(100_u32, 2, 98), (0, 0, 0), (5000, 11, 2988)] {
-        gpu.queue.write_buffer(&own.count, 4, bytemuck::bytes_of(&count));
-        buffer.update_from_gpu(&gpu, &own.lights(3000)).unwrap();
-        record(&gpu, &buffer);
-        let counts = buffer.read_counts(&gpu).unwrap().unwrap();
-        assert_eq!((counts.given, counts.slots), (count, count.min(3000)));
-        assert_eq!((counts.faulty, names(&buffer).len()), (faulty, found), "{count} lights");
-    }
-}
-
-#[test]
-fn faulty_descriptions_are_refused() {
-    let gpu = gpu();
-    let own = Own::new(&gpu, &lights(100, 1));
-    let sound = own.lights(100);
-    let plain = gpu.buffer("plain", 1 << 12, wgpu::BufferUsages::COPY_DST).unwrap();
-    let nan = Vec3::splat(f32::NAN);
-    for (field, faulty) in [
-        ("spheres", GpuLights { capacity: 101, ..sound }),
-        ("emissions", GpuLights { emissions: &plain, ..sound }),
-        ("count", GpuLights { count: &plain, ..sound }),
-        ("count", GpuLights { count_offset: 1 << 40, ..sound }),
-        ("count_offset", GpuLights { count_offset: 2, ..sound }),
-        ("bounds", GpuLights { bounds: (nan, Vec3::ONE), ..sound }),
-        ("bounds", GpuLights { bounds: (Vec3::ONE, Vec3::ZERO), ..sound }),
-        ("radius_max_m", GpuLights { radius_max_m: 0.0, ..sound }),
-        ("radius_max_m", GpuLights { radius_max_m: f32::NAN, ..sound }),
-    ] {
-        let error = LightBuffer::from_gpu(&gpu, &faulty, 1).unwrap_err().to_string();
-        assert!(error.contains(&format!("lights from the GPU: {field}")), "{error}");
-    }
-    assert!(LightBuffer::from_gpu(&gpu, &sound, 0).is_err());
-    let mut still = LightBuffer::new(&gpu, &[]).unwrap();
-    assert!(still.update_from_gpu(&gpu, &sound).is_err());
 }
