@@ -30,8 +30,8 @@ use living::{Living, Source};
 ///
 /// - For lights that stand still, [`ordered`](Self::ordered) sorts them on the CPU, once.
 /// - For lights that move, [`LightOrder::Gpu`] sorts and boxes them on the GPU. Call
-///   [`update`](Self::update) with each frame's lights, and [`record`](Self::record) before the
-///   strategy's passes.
+///   [`update`](Self::update) with each frame's lights, and [`record`](Self::record) before all
+///   passes that read the lights.
 /// - For lights that the renderer's own kernel writes, [`from_gpu`](Self::from_gpu) takes its
 ///   buffers. Call [`update_from_gpu`](Self::update_from_gpu) and `record` in each frame. No light
 ///   crosses to the CPU.
@@ -168,9 +168,23 @@ impl LightBuffer {
         }
     }
 
-    /// Records the passes `order` and `boxes` of [`LightOrder::Gpu`]; nothing for other orders. Call
-    /// it in each frame after [`update`](Self::update) and before the strategy's passes. A frame may
-    /// record it more than once.
+    /// Records the passes `order`, if the frame sorts the lights, and `boxes` of
+    /// [`LightOrder::Gpu`]; nothing for other orders.
+    ///
+    /// Call it in each frame with new lights, whatever the strategy [needs](crate::Needs): `boxes`
+    /// also copies the lights to the buffers that every strategy and shading read. Without it, these
+    /// buffers keep the lights of an earlier frame.
+    ///
+    /// - Record it outside of any other pass, because it also copies and clears buffers.
+    /// - Record it after [`update`](Self::update) or [`update_from_gpu`](Self::update_from_gpu), into
+    ///   an encoder that is submitted before the next update. Updates write through the queue, so
+    ///   each takes effect at the start of the next submission, and of two updates before one
+    ///   submission only the second does.
+    /// - Record it before the passes that read the lights, and after those of the renderer's kernel
+    ///   that write them and their number: in the same encoder, or in encoders that are submitted in
+    ///   this order.
+    ///
+    /// A frame may record it more than once: the result is the same.
     pub fn record(&self, passes: &mut dyn Passes) {
         if let Some(living) = &self.living {
             living.record(passes);
