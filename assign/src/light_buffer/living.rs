@@ -58,6 +58,9 @@ pub(super) struct Living {
     source: Option<Source>,
 }
 
+/// The capacity for few lights, unless the device has no room for it.
+const LEAST_CAPACITY: u32 = 64;
+
 /// Bytes whose change uploads all of them: one write per run of changed blocks.
 const UPLOAD_BLOCK: usize = 1024;
 
@@ -100,16 +103,13 @@ impl Living {
                 known = uploaded;
             }
         } else {
-            // Room for a quarter more, so that a growing number does not replace buffers each frame.
-            let room = |bytes: usize| bytes as u64 + bytes as u64 / 4;
-            let capacity = (room(count as usize) as u32).max(64).min(MAX_LIGHTS as u32);
-            let buffers = GivenBuffers {
-                spheres: gpu.storage("given light spheres", u64::from(capacity) * 16)?,
-                emissions: gpu.storage("given light emissions", u64::from(capacity) * 16)?,
-                shapes: gpu.storage("given light shapes", room(shapes.len()))?,
-            };
-            let sorter = LightSorter::new(gpu, capacity, given.kinds, buffers.clone())?;
-            self.sorter = Some((sorter, buffers));
+            let make = |capacity, bytes| make_sorter(gpu, capacity, bytes, given.kinds);
+            // Room for a quarter more, so that a growing number does not replace buffers each frame; if
+            // the device has no such room, only for what is needed.
+            let roomy = (count + count / 4).max(LEAST_CAPACITY).min(MAX_LIGHTS as u32);
+            let bytes = shapes.len() as u64;
+            let made = make(roomy, bytes + bytes / 4).or_else(|_| make(count, bytes))?;
+            self.sorter = Some(made);
             self.age = None;
         }
         let sorts = self.next_sorts();
@@ -266,6 +266,21 @@ impl Living {
             .map(|(sphere, emission)| Light::from_record(sphere, emission, &shapes))
             .collect())
     }
+}
+
+/// A sorter with buffers for lights from the CPU.
+fn make_sorter(
+    gpu: &Gpu,
+    capacity: u32,
+    shape_bytes: u64,
+    kinds: LightKinds,
+) -> Result<(LightSorter, GivenBuffers), AssignError> {
+    let buffers = GivenBuffers {
+        spheres: gpu.storage("given light spheres", u64::from(capacity) * 16)?,
+        emissions: gpu.storage("given light emissions", u64::from(capacity) * 16)?,
+        shapes: gpu.storage("given light shapes", shape_bytes)?,
+    };
+    Ok((LightSorter::new(gpu, capacity, kinds, buffers.clone())?, buffers))
 }
 
 /// A shape vector.
