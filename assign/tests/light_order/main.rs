@@ -3,15 +3,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod boxes;
 mod faults;
 mod own;
 mod records;
 
 use assign::{
-    EncoderPasses, Gpu, Light, LightBuffer, LightNode, LightOrder, LightSphere,
+    AssignError, Emitter, EncoderPasses, Gpu, Light, LightBuffer, LightOrder, LightShape,
     conformance::download,
 };
-use glam::Vec3;
+use glam::{EulerRot, Mat3, Vec3};
 
 fn gpu() -> Gpu {
     Gpu::open(None).unwrap()
@@ -27,6 +28,38 @@ fn lights(count: u32, seed: u32) -> Vec<Light> {
         Light::point(Vec3::from(at), 0.5 + (ix % 7) as f32 * 0.3, Vec3::splat(1.0 + ix as f32))
     };
     (0..count).map(light).collect()
+}
+
+/// As [`lights`], of every kind.
+fn mixed(count: u32, seed: u32) -> Vec<Light> {
+    let of_kind = |(ix, light): (usize, Light)| {
+        let angles = Vec3::new(1.0, 2.0, 3.0) * ix as f32;
+        let rotation = Mat3::from_euler(EulerRot::XYZ, angles.x, angles.y, angles.z);
+        let direction = rotation * Vec3::Z;
+        let size = 0.1 + 0.1 * (ix % 9) as f32;
+        let outer_angle = 0.05 + 0.1 * (ix % 31) as f32;
+        let area = |emitter: Emitter| {
+            LightShape::Area(if ix % 3 == 0 { emitter.two_sided() } else { emitter })
+        };
+        let shape = match ix % 5 {
+            0 => LightShape::Point,
+            1 => LightShape::Spot { direction, inner_angle: 0.5 * outer_angle, outer_angle },
+            2 => LightShape::Vpl { normal: direction, min_distance_m: 0.1 },
+            3 => area(Emitter::rectangle(rotation * Vec3::X * size, rotation * Vec3::Y * 0.3)),
+            _ => {
+                let count = 3 + ix % 8;
+                let vertex = |vertex: usize| {
+                    let (sin, cos) =
+                        (std::f32::consts::TAU * vertex as f32 / count as f32).sin_cos();
+                    rotation * Vec3::new(size * cos, 0.4 * sin, 0.0)
+                };
+                let vertices: Vec<Vec3> = (0..count).map(vertex).collect();
+                area(Emitter::polygon(&vertices).unwrap().0)
+            }
+        };
+        Light { shape, ..light }
+    };
+    lights(count, seed).into_iter().enumerate().map(of_kind).collect()
 }
 
 fn record(gpu: &Gpu, buffer: &LightBuffer) {
@@ -50,6 +83,24 @@ fn deciding(count: usize) -> u32 {
         1639..=52_428 => 0x00ff_ff00,
         _ => 0x00ff_ffff,
     }
+}
+
+/// A device that checks every call and runs none, and binds few bytes.
+fn small_device(binding_bytes: u64) -> Gpu {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::NOOP;
+    descriptor.backend_options.noop.enable = true;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default())).unwrap();
+    let limits =
+        wgpu::Limits { max_storage_buffer_binding_size: binding_bytes, ..wgpu::Limits::default() };
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            required_limits: limits,
+            ..Default::default()
+        }))
+        .unwrap();
+    Gpu::new(device, queue, adapter.get_info())
 }
 
 #[test]
@@ -80,56 +131,6 @@ fn lights_are_sorted_by_morton_code_and_equal_codes_stay_in_order() {
     }
 }
 
-/// Checks that each box of level 1 holds its lights, and each box of the levels above its children.
-fn check_boxes(gpu: &Gpu, buffer: &LightBuffer) {
-    let slots = buffer.read(gpu).unwrap();
-    let spheres = download::<LightSphere>(gpu, buffer.spheres(), slots.len()).unwrap();
-    let all = (buffer.nodes().size() / 32) as usize;
-    let nodes = download::<LightNode>(gpu, buffer.nodes(), all).unwrap();
-    let holds = |node: &LightNode, low: [f32; 3], high: [f32; 3]| {
-        (0..3).all(|axis| node.min_world[axis] <= low[axis] && node.max_world[axis] >= high[axis])
-    };
-    for (slot, sphere) in spheres.iter().enumerate() {
-        if slots[slot].intensity == Vec3::ZERO {
-            continue;
-        }
-        let at = Vec3::from(sphere.position_world);
-        let (low, high) = (at - sphere.radius_m, at + sphere.radius_m);
-        let node = &nodes[slot / 64];
-        assert!(holds(node, low.to_array(), high.to_array()), "slot {slot}: {node:?}");
-        // Positions are up to 102 m and radii up to 2.3 m.
-        let wide = Vec3::from(node.max_world) - Vec3::from(node.min_world);
-        assert!(wide.max_element() < 110.0, "slot {slot}: {node:?}");
-    }
-}
-
-#[test]
-fn boxes_hold_the_lights_in_every_frame_of_a_stale_order() {
-    let gpu = gpu();
-    let order = LightOrder::Gpu { every: 3 };
-    // Numbers of lights that grow and shrink, with and without a sort.
-    for counts in [[700, 650, 800, 720, 640], [30_000, 29_000, 31_000, 30_500, 28_000]] {
-        let mut buffer = LightBuffer::ordered(&gpu, &lights(counts[0], 0), order).unwrap();
-        record(&gpu, &buffer);
-        for (seed, &count) in (1..).zip(&counts) {
-            let given = lights(count, seed);
-            buffer.update(&gpu, &given).unwrap();
-            record(&gpu, &buffer);
-            check_boxes(&gpu, &buffer);
-            // Every light has one slot.
-            let mut names: Vec<u32> = buffer
-                .read(&gpu)
-                .unwrap()
-                .iter()
-                .filter(|light| light.intensity != Vec3::ZERO)
-                .map(|light| light.intensity.x as u32)
-                .collect();
-            names.sort_unstable();
-            assert_eq!(names, (1..=count).collect::<Vec<_>>(), "{count} lights, frame {seed}");
-        }
-    }
-}
-
 #[test]
 fn a_sort_that_was_not_recorded_is_made_up_for() {
     let gpu = gpu();
@@ -157,4 +158,20 @@ fn only_changed_lights_are_uploaded() {
     assert_eq!(buffer.uploaded_bytes(), 1024);
     record(&gpu, &buffer);
     assert!(buffer.read(&gpu).unwrap().contains(&given[5000]));
+}
+
+#[test]
+fn lights_that_leave_no_room_to_spare_fit() {
+    let order = LightOrder::Gpu { every: 1 };
+    let gpu = small_device(1200 * 16);
+    let mut buffer = LightBuffer::ordered(&gpu, &lights(800, 1), order).unwrap();
+    // Room for a quarter more fits, then only what is needed.
+    assert_eq!(buffer.spheres().size(), 1000 * 16);
+    for count in [1001, 1200] {
+        buffer.update(&gpu, &lights(count, 1)).unwrap();
+        assert_eq!(buffer.spheres().size(), u64::from(count) * 16);
+    }
+    let error = buffer.update(&gpu, &lights(1201, 1)).unwrap_err();
+    assert!(matches!(error, AssignError::TooLarge { .. }), "{error}");
+    assert_eq!(buffer.lights().len(), 1200);
 }

@@ -6,32 +6,33 @@ use assign::{
 };
 use glam::Vec3;
 
-use crate::{check_boxes, gpu, lights, record};
+use crate::{boxes::check_boxes, gpu, lights, record, small_device};
 
 /// Lights in buffers of the test's own, as a renderer's kernel would write them.
-struct Own {
+pub(crate) struct Own {
     spheres: wgpu::Buffer,
     emissions: wgpu::Buffer,
     shapes: wgpu::Buffer,
     count: wgpu::Buffer,
+    kinds: LightKinds,
 }
 
 impl Own {
-    fn new(gpu: &Gpu, lights: &[Light]) -> Self {
+    pub(crate) fn new(gpu: &Gpu, lights: &[Light]) -> Self {
         let spheres: Vec<LightSphere> = lights.iter().map(Light::sphere).collect();
-        let emissions: Vec<LightEmission> = lights
-            .iter()
-            .map(|light| LightEmission { intensity: light.intensity.to_array(), kind_and_shape: 0 })
-            .collect();
+        let mut shapes = vec![[0.0_f32; 4]];
+        let emissions: Vec<LightEmission> =
+            lights.iter().map(|light| light.emission(&mut shapes)).collect();
         Self {
             spheres: upload(gpu, "own spheres", &spheres).unwrap(),
             emissions: upload(gpu, "own emissions", &emissions).unwrap(),
-            shapes: upload(gpu, "own shapes", &[[0.0_f32; 4]]).unwrap(),
+            shapes: upload(gpu, "own shapes", &shapes).unwrap(),
             count: upload(gpu, "own count", &[0_u32, lights.len() as u32, 0, 0]).unwrap(),
+            kinds: LightKinds::among(lights),
         }
     }
 
-    fn lights(&self, capacity: u32) -> GpuLights<'_> {
+    pub(crate) fn lights(&self, capacity: u32) -> GpuLights<'_> {
         GpuLights {
             spheres: &self.spheres,
             emissions: &self.emissions,
@@ -39,7 +40,7 @@ impl Own {
             count: &self.count,
             count_offset: 4,
             capacity,
-            kinds: LightKinds::default(),
+            kinds: self.kinds,
             bounds: (Vec3::ZERO, Vec3::splat(103.0)),
             radius_max_m: 4.0,
         }
@@ -98,24 +99,6 @@ fn odd_storage(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::STORAGE,
         mapped_at_creation: false,
     })
-}
-
-/// A device that checks every call and runs none, and binds few bytes.
-fn small_device(binding_bytes: u64) -> Gpu {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::NOOP;
-    descriptor.backend_options.noop.enable = true;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default())).unwrap();
-    let limits =
-        wgpu::Limits { max_storage_buffer_binding_size: binding_bytes, ..wgpu::Limits::default() };
-    let (device, queue) =
-        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            required_limits: limits,
-            ..Default::default()
-        }))
-        .unwrap();
-    Gpu::new(device, queue, adapter.get_info())
 }
 
 #[test]
