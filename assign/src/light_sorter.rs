@@ -25,6 +25,8 @@
 //! Where it fails: many lights in a small part of the box share few codes, since a code has 256 steps
 //! along the longest side of the box. Their boxes are then larger than they could be.
 
+#[cfg(all(test, feature = "conformance"))]
+mod digit_sums;
 mod few;
 mod kernels;
 mod radix;
