@@ -50,6 +50,15 @@ fn both_conform_through_the_hierarchy() {
     conforms(Bounds::Explicit, "28x28", settings);
 }
 
+/// All strategies walk through the hierarchy in the same way.
+#[test]
+fn a_hierarchy_of_three_levels_conforms_and_a_lost_box_is_rejected() {
+    let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
+    let make = tiled(Bounds::Implicit, "16x16", settings);
+    conformance::run_case("three-levels-of-nodes", &make).expect("conforms");
+    conformance::rejects_fault(Fault::LostGrandparent, &make).expect("rejects");
+}
+
 #[test]
 fn only_explicit_tiles_refuse_look_ups_at_any_depth() {
     let gpu = Gpu::open(None).unwrap();

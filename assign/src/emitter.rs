@@ -6,6 +6,8 @@
 //! Along any axis it extends as far as the outline plus a ball, or plus a cone of half angle π/2
 //! around the normal. Culling therefore reuses its code for spots.
 
+mod check;
+
 use glam::{DVec3, Mat3, Vec3};
 
 use crate::light_fault::LightFault;
@@ -16,9 +18,6 @@ pub const MAX_VERTICES: usize = 10;
 /// How far vertices may lie off their plane, and how far corners may turn the wrong way, as a share
 /// of the emitter's size.
 const FLATNESS: f32 = 1e-4;
-
-/// The smallest ratio of an emitter's area to the square of its size: a strip of 1 : 10,000.
-const MIN_AREA_SHARE: f32 = 1e-4;
 
 /// The shape of an emitter's outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -224,60 +223,7 @@ impl Emitter {
     fn area_vector(&self) -> DVec3 {
         0.5 * self.edges().map(|(a, b)| a.cross(b)).sum::<DVec3>()
     }
-
-    /// Checks every field.
-    pub(crate) fn check(&self) -> Result<(), LightFault> {
-        let out = |field, value, accepted| Err(LightFault::OutOfRange { field, value, accepted });
-        let numbers = self.vertices().iter().flat_map(Vec3::to_array);
-        if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
-            return Err(LightFault::NotFinite { field: "emitter vertex", value });
-        }
-        let size = self.vertices().iter().map(|v| v.length()).fold(0.0, f32::max);
-        if !(MIN_SIZE_M..=MAX_SIZE_M).contains(&size) {
-            return out("emitter size", size, "between 1e-4 and 1e5 metres from its middle");
-        }
-        let share = self.area() / (size * size);
-        if share < MIN_AREA_SHARE {
-            return out("emitter area over squared size", share, "at least 1e-4");
-        }
-        let normal = self.area_vector().normalize_or_zero();
-        let off_plane = |v: &Vec3| (normal.dot(v.as_dvec3()).abs() / f64::from(size)) as f32;
-        if let Some(value) = self.vertices().iter().map(off_plane).find(|off| *off > FLATNESS) {
-            return out("emitter vertex off its plane over size", value, "at most 1e-4");
-        }
-        // Every vertex lies on the inner side of every edge.
-        let inner = |(a, b): (DVec3, DVec3)| {
-            let edge = (b - a).normalize_or_zero();
-            let depth = |v: &Vec3| normal.dot(edge.cross(v.as_dvec3() - a));
-            let deepest = self.vertices().iter().map(depth).fold(f64::INFINITY, f64::min);
-            (deepest / f64::from(size)) as f32
-        };
-        if let Some(value) = self.edges().map(inner).find(|depth| *depth < -FLATNESS) {
-            return out("emitter vertex outside an edge over size", value, "0: convex");
-        }
-        let edges: Vec<DVec3> = self.edges().map(|(a, b)| b - a).collect();
-        let next = edges.iter().cycle().skip(1);
-        let turn = |(a, b): (&DVec3, &DVec3)| normal.dot(a.cross(*b)).atan2(a.dot(*b));
-        let turns = (edges.iter().zip(next).map(turn).sum::<f64>() / std::f64::consts::TAU) as f32;
-        if turns > 1.5 {
-            return out("turns of the emitter's outline", turns, "1");
-        }
-        if let Outline::Rectangle = self.outline {
-            let [x, y] = [self.half_x.normalize_or_zero(), self.half_y.normalize_or_zero()];
-            if x.dot(y).abs() > 1e-3 {
-                return out("cosine between half axes", x.dot(y), "0: a right angle");
-            }
-        }
-        if !(self.diffuse_share > 0.0 && self.diffuse_share <= 1.0) {
-            return out("diffuse share", self.diffuse_share, "above 0 and at most 1");
-        }
-        Ok(())
-    }
 }
-
-/// The accepted distances of an emitter's farthest vertex from its centre, metres.
-const MIN_SIZE_M: f32 = 1e-4;
-const MAX_SIZE_M: f32 = 1e5;
 
 /// The rectangle of least area around a convex polygon, in its plane. One of its sides lies along
 /// an edge. Returns centre and half axes; their cross product points along the polygon's normal.
@@ -362,39 +308,5 @@ mod tests {
         assert_eq!(closest(0.5, 1.5, 3.0), [0.5, 1.5, 0.0]);
         assert_eq!(closest(4.0, 1.5, 3.0), [1.0, 1.5, 0.0]);
         assert_eq!(closest(-4.0, 9.0, -3.0), [-1.0, 2.0, 0.0]);
-    }
-
-    #[test]
-    fn faults_name_field_and_value() {
-        let fault = |emitter: Emitter| emitter.check().unwrap_err().to_string();
-        let fault_of = |vertices: &[Vec3]| fault(Emitter::polygon(vertices).unwrap().0);
-        assert_eq!(
-            Emitter::polygon(&[Vec3::ZERO, Vec3::X]).unwrap_err().to_string(),
-            "polygon vertex count is 2: it must be 3 to 10"
-        );
-        let bent = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.1), Vec3::Y];
-        let fault_of_bent = Emitter::polygon(&bent).unwrap_err().to_string();
-        assert!(fault_of_bent.contains("off its plane"), "{fault_of_bent}");
-        let arrow = [Vec3::ZERO, Vec3::new(2.0, -1.0, 0.0), Vec3::X, Vec3::new(2.0, 1.0, 0.0)];
-        assert!(fault_of(&arrow).contains("convex"), "{}", fault_of(&arrow));
-        // A star goes round twice, but every corner turns the right way.
-        let star: Vec<Vec3> = (0..5)
-            .map(|ix| {
-                let angle = 2.0 * std::f32::consts::TAU * ix as f32 / 5.0;
-                Vec3::new(angle.cos(), angle.sin(), 0.0)
-            })
-            .collect();
-        assert!(fault_of(&star).contains("convex"), "{}", fault_of(&star));
-        let twice = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ZERO, Vec3::X, Vec3::Y];
-        assert!(fault_of(&twice).contains("outline is 2"), "{}", fault_of(&twice));
-        let skewed = Emitter::rectangle(Vec3::X, Vec3::new(0.1, 1.0, 0.0));
-        assert!(fault(skewed).contains("right angle"), "{}", fault(skewed));
-        let square = Emitter::rectangle(Vec3::X, Vec3::Y);
-        assert!(fault(square.with_diffuse_share(0.0)).contains("diffuse share is 0"));
-        assert!(fault(square.scaled(1e9)).contains("emitter size"));
-        let hair = Emitter::rectangle(Vec3::X, 1e-6 * Vec3::Y);
-        assert!(fault(hair).contains("area"), "{}", fault(hair));
-        let bad = Emitter::rectangle(Vec3::X, Vec3::new(0.0, f32::NAN, 0.0));
-        assert!(fault(bad).contains("vertex is NaN"), "{}", fault(bad));
     }
 }

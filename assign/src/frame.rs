@@ -32,8 +32,11 @@ pub struct Needs {
     pub models: bool,
     /// The scene's triangles.
     pub triangles: bool,
-    /// The hierarchy over the lights. If the lights move, call
-    /// [`LightBuffer::record`](crate::LightBuffer::record) in each frame before the strategy's passes.
+    /// The boxes over the lights ([`LightBuffer::nodes`](crate::LightBuffer::nodes)). A comparison
+    /// counts the time for ordering and boxing the lights as that of the strategies that need them.
+    /// A renderer need not look at it: it calls [`LightBuffer::record`](crate::LightBuffer::record) in
+    /// each frame with new lights whatever the strategy needs, because `record` also copies the lights
+    /// to where every strategy and shading read them.
     pub hierarchy: bool,
 }
 

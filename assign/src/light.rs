@@ -104,7 +104,9 @@ impl Light {
         }
     }
 
-    /// Checks every field. [`LightBuffer`](crate::LightBuffer) omits faulty lights.
+    /// Checks every field. [`LightBuffer`](crate::LightBuffer) omits faulty lights. For lights that
+    /// a renderer's own kernel writes, the GPU checks their records in the same way
+    /// ([`GpuLights`](crate::GpuLights)).
     pub fn check(&self) -> Result<(), LightFault> {
         let finite = |field, v: Vec3| {
             v.to_array()
@@ -144,6 +146,9 @@ impl Light {
         }
         if let LightShape::Area(emitter) = &self.shape {
             emitter.check()?;
+            if self.diffuse_range_m() < MIN_RANGE_M {
+                return out("diffuse range", self.diffuse_range_m(), "at least 1e-6 metres");
+            }
         }
         if let LightShape::Vpl { normal, min_distance_m } = self.shape {
             finite("VPL normal", normal)?;

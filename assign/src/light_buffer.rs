@@ -34,8 +34,8 @@ use wide::WideLights;
 ///
 /// - For lights that stand still, [`ordered`](Self::ordered) sorts them on the CPU, once.
 /// - For lights that move, [`LightOrder::Gpu`] sorts and boxes them on the GPU. Call
-///   [`update`](Self::update) with each frame's lights, and [`record`](Self::record) before the
-///   strategy's passes.
+///   [`update`](Self::update) with each frame's lights, and [`record`](Self::record) before all
+///   passes that read the lights.
 /// - For lights that the renderer's own kernel writes, [`from_gpu`](Self::from_gpu) takes its
 ///   buffers. Call [`update_from_gpu`](Self::update_from_gpu) and `record` in each frame. No light
 ///   crosses to the CPU.
@@ -143,9 +143,10 @@ impl LightBuffer {
     ///
     /// # Errors
     ///
-    /// [`AssignError::Parameter`] if the buffers are too small for the capacity, lack the usage
-    /// `STORAGE` (the count: `COPY_SRC`), or if the box or the largest range is out of its range; and
-    /// if this buffer was not made with [`LightOrder::Gpu`].
+    /// [`AssignError::Parameter`] if a buffer is too small for the capacity, larger than the device
+    /// can bind, no multiple of 4 bytes, or lacks the usage `STORAGE` (the count: `COPY_SRC`), or if
+    /// the box or the largest radius is out of its range; and if this buffer was not made with
+    /// [`LightOrder::Gpu`].
     pub fn update_from_gpu(
         &mut self,
         gpu: &Gpu,
@@ -182,9 +183,23 @@ impl LightBuffer {
         }
     }
 
-    /// Records the passes `order` and `boxes` of [`LightOrder::Gpu`]; nothing for other orders. Call
-    /// it in each frame after [`update`](Self::update) and before the strategy's passes. A frame may
-    /// record it more than once.
+    /// Records the passes `order`, if the frame sorts the lights, and `boxes` of
+    /// [`LightOrder::Gpu`]; nothing for other orders.
+    ///
+    /// Call it in each frame with new lights, whatever the strategy [needs](crate::Needs): `boxes`
+    /// also copies the lights to the buffers that every strategy and shading read. Without it, these
+    /// buffers keep the lights of an earlier frame.
+    ///
+    /// - Record it outside of any other pass, because it also copies and clears buffers.
+    /// - Record it after [`update`](Self::update) or [`update_from_gpu`](Self::update_from_gpu), into
+    ///   an encoder that is submitted before the next update. Updates write through the queue, so
+    ///   each takes effect at the start of the next submission, and of two updates before one
+    ///   submission only the second does.
+    /// - Record it before the passes that read the lights, and after those of the renderer's kernel
+    ///   that write them and their number: in the same encoder, or in encoders that are submitted in
+    ///   this order.
+    ///
+    /// A frame may record it more than once: the result is the same.
     pub fn record(&self, passes: &mut dyn Passes) {
         if let Some(living) = &self.living {
             living.record(passes);
@@ -220,10 +235,15 @@ impl LightBuffer {
     /// The lights by slot, as the GPU holds them. For the orders of the CPU this is
     /// [`lights`](Self::lights). With [`LightOrder::Gpu`] it blocks, and must follow the submission
     /// of [`record`](Self::record); empty slots have a light of intensity 0.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for spots or area lights from the GPU if the renderer's buffer of
+    /// [`shapes`](GpuLights::shapes) lacks the usage `COPY_SRC`.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<Light>, AssignError> {
         match &self.living {
             None => Ok(self.given.lights.clone()),
-            Some(living) => living.read(gpu, &self.given.lights),
+            Some(living) => living.read(gpu, &self.given),
         }
     }
 

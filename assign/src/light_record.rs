@@ -126,7 +126,7 @@ impl Light {
     /// - An area light has `(normal, range)`, `(half x, diffuse range)`, `(half y, vertex count)`,
     ///   `(area, 0, 0, 0)` and one `(vertex, 0)` per vertex. The count is negative if the emitter is
     ///   two-sided; vertices are relative to the light's position.
-    pub(crate) fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
+    pub fn emission(&self, shapes: &mut Vec<[f32; 4]>) -> LightEmission {
         let first_shape = shapes.len() as u32;
         if let LightShape::Spot { direction, inner_angle, outer_angle } = self.shape {
             let direction = direction.normalize();

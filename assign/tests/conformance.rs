@@ -3,7 +3,7 @@
 use assign::{
     AssignError, Assignment, Everything, Frame, Gpu, LightLists, Lookup, Needs, Passes,
     SampleDomain,
-    conformance::{self, CASES, ConformanceError, Outcome},
+    conformance::{self, CASES, ConformanceError, Outcome, SHARED_CASES, faulty::Fault},
 };
 
 fn everything(gpu: &Gpu) -> Result<Box<dyn Assignment>, AssignError> {
@@ -30,12 +30,19 @@ fn faults_in_no_culling_are_rejected() {
     assert_eq!(planted.len(), 10, "planted faults: {planted:?}");
 }
 
+/// The check of slots does not depend on the strategy.
+#[test]
+fn a_copied_slot_is_rejected() {
+    conformance::rejects_fault(Fault::CopiedSlot, &everything).expect("rejects");
+}
+
 #[test]
 fn names_are_unique_and_unknown_ones_errors() {
-    let mut names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+    let all = || CASES.iter().chain(SHARED_CASES);
+    let mut names: Vec<&str> = all().map(|case| case.name).collect();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), CASES.len());
+    assert_eq!(names.len(), all().count());
     let error = conformance::run_case("no-such-case", &everything).unwrap_err();
     assert!(matches!(error, ConformanceError::NoCase(_)));
     let error = conformance::run_allowing(&everything, &["no-such-case"]).unwrap_err();

@@ -19,7 +19,7 @@ use crate::{
     machine::machine,
     measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
     messages::say,
-    moving::lights_by_slot,
+    moving::{Moving, lights_by_slot},
     out_folder::OutFolder,
     pictures::{Pictures, Reference, see},
     record::{Seen, record},
@@ -245,6 +245,15 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Warns once of lights that became faulty as they moved.
+    fn note_left_out(&mut self) {
+        let note = self.stage.moving.as_ref().and_then(Moving::left_out_note);
+        if let Some(note) = note.filter(|note| !self.results.warnings.contains(note)) {
+            say(format!("warning  {note}"));
+            self.results.warnings.push(note);
+        }
+    }
+
     /// All methods in one mode: their images and lists first, no culling before the others, then
     /// their times in turns.
     fn measure_mode(
@@ -325,6 +334,7 @@ impl Run<'_> {
             record.lists.untested = self.untested;
             self.results.records.push(record);
         }
+        self.note_left_out();
         if self.plan.laps > 0 {
             self.reset()?;
         }

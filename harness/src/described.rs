@@ -15,7 +15,7 @@ pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
     results.warnings.extend(stage.scene.warnings.iter().cloned());
     results.warnings.extend(stage.notes.iter().cloned());
     results.warnings.extend(stage.open_lights.map(|open| open.note()));
-    let rejected = stage.lights.rejected().iter();
+    let rejected = stage.rejected().iter();
     results.rejected_lights = rejected
         .map(|rejected| RejectedLight {
             scene: stage.scene.name.clone(),
@@ -51,7 +51,7 @@ pub(crate) fn describe(stage: &Stage) {
     for warning in stage.scene.warnings.iter().chain(&stage.notes) {
         say(format!("warning  {warning}"));
     }
-    let rejected = stage.lights.rejected();
+    let rejected = stage.rejected();
     for rejected in rejected.iter().take(MOST_REJECTED_SHOWN) {
         say(format!("warning  light {} is left out: {}", rejected.index, rejected.fault));
     }

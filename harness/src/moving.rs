@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, time::Instant};
 
-use assign::{AssignError, EncoderPasses, Gpu, Light, LightBuffer};
+use assign::{AssignError, EncoderPasses, Gpu, Light, LightBuffer, RejectedLight};
 use glam::Vec3;
 use scenes::{Aabb, LightAnimation, Motion, Scene};
 use shading::MovingLights;
@@ -35,6 +35,10 @@ pub struct Moving {
     shown: Option<u32>,
     /// Lights of each kind at rest.
     kinds: [u64; 5],
+    /// Faulty lights at rest.
+    rejected: Vec<RejectedLight>,
+    /// The most lights that were left out in a frame.
+    most_left_out: usize,
     mover: Mover,
 }
 
@@ -79,6 +83,7 @@ impl Moving {
     ) -> Result<Option<Self>, HarnessError> {
         let Some(choice) = args.motion.motion else { return Ok(None) };
         let kinds = kinds_of(&lights);
+        let rejected = rejected_of(&lights);
         let speed = args.motion.speed as f32;
         let law = match choice {
             MotionChoice::Law(law) => {
@@ -108,7 +113,8 @@ impl Moving {
                 return Err(CliError::out_of_range("--moved-by", "gpu", accepted).into());
             }
         };
-        Ok(Some(Self { law, frame: None, shown: None, kinds, mover }))
+        let most_left_out = rejected.len();
+        Ok(Some(Self { law, frame: None, shown: None, kinds, rejected, most_left_out, mover }))
     }
 
     /// Brings the lights of a frame to the GPU. A kernel's work is submitted, off the clock.
@@ -160,6 +166,34 @@ impl Moving {
     /// The number of lights of each kind at rest, by the kind's number.
     pub fn kinds(&self) -> [u64; 5] {
         self.kinds
+    }
+
+    /// The faulty lights at rest.
+    pub fn rejected(&self) -> &[RejectedLight] {
+        &self.rejected
+    }
+
+    /// Counts the lights that are faulty in the frame that was drawn last. It waits for the GPU.
+    pub fn count_left_out(&mut self, gpu: &Gpu, lights: &LightBuffer) -> Result<(), AssignError> {
+        let left_out = match self.mover {
+            Mover::Cpu { .. } => lights.rejected().len(),
+            Mover::Gpu(_) => {
+                let counts = lights.read_counts(gpu)?.unwrap_or_default();
+                self.rejected.len() + counts.faulty as usize
+            }
+        };
+        self.most_left_out = self.most_left_out.max(left_out);
+        Ok(())
+    }
+
+    /// Says how many lights became faulty as they moved; `None` if no counted frame had one.
+    pub fn left_out_note(&self) -> Option<String> {
+        let words = match self.most_left_out - self.rejected.len() {
+            0 => return None,
+            1 => "1 light".to_owned(),
+            count => format!("{count} lights"),
+        };
+        Some(format!("{words} became faulty in some frame of the motion, and lit nothing there"))
     }
 
     /// The motion as results name it.
@@ -236,6 +270,14 @@ fn places_of(lights: &[Light]) -> Aabb {
     if bounds.is_empty() { bounds.extended(Vec3::ZERO) } else { bounds }
 }
 
+/// The faulty lights, with their places.
+fn rejected_of(lights: &[Light]) -> Vec<RejectedLight> {
+    let rejected = |(index, light): (usize, &Light)| {
+        light.check().err().map(|fault| RejectedLight { index, fault })
+    };
+    lights.iter().enumerate().filter_map(rejected).collect()
+}
+
 /// The number of sound lights of each kind, by the kind's number.
 pub(crate) fn kinds_of(lights: &[Light]) -> [u64; 5] {
     let mut kinds = [0; 5];
@@ -243,4 +285,45 @@ pub(crate) fn kinds_of(lights: &[Light]) -> [u64; 5] {
         kinds[light.kind() as usize] += 1;
     }
     kinds
+}
+
+#[cfg(test)]
+mod tests {
+    use assign::GpuLights;
+    use scenes::{LightSpec, MotionLaw, scatter_lights};
+
+    use super::*;
+
+    #[test]
+    fn lights_that_become_faulty_on_the_gpu_are_noted() {
+        let gpu = Gpu::open(None).expect("an adapter: scripts/test installs the software one");
+        let bounds = Aabb::new(Vec3::splat(-5.0), Vec3::splat(5.0));
+        let mut lights = scatter_lights(&LightSpec::new(20, bounds)).expect("valid");
+        lights[3].range_m = f32::NAN;
+        let motion = Motion::new(MotionLaw::Drift, 1.0, 1, bounds).expect("valid");
+        let mover = MovingLights::new(&gpu, &motion, &lights).expect("fits");
+        // A box that holds no light.
+        let away = (Vec3::splat(100.0), Vec3::splat(101.0));
+        let buffers = [mover.lights(), GpuLights { bounds: away, ..mover.lights() }]
+            .map(|given| LightBuffer::from_gpu(&gpu, &given, 1).expect("fits"));
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        mover.record(&mut EncoderPasses { encoder: &mut encoder });
+        gpu.queue.submit([encoder.finish()]);
+        let mut moving = Moving {
+            law: Law::Motion(motion),
+            frame: None,
+            kinds: kinds_of(&lights),
+            rejected: rejected_of(&lights),
+            most_left_out: 1,
+            mover: Mover::Gpu(Box::new(mover)),
+        };
+        assert_eq!(moving.rejected()[0].index, 3);
+        let expected = "19 lights became faulty in some frame of the motion, and lit nothing there";
+        // The count of a later frame does not hide that of an earlier one.
+        for (buffer, note) in [(0, None), (1, Some(expected)), (0, Some(expected))] {
+            order_off_clock(&gpu, &buffers[buffer]);
+            moving.count_left_out(&gpu, &buffers[buffer]).expect("readable");
+            assert_eq!(moving.left_out_note().as_deref(), note);
+        }
+    }
 }

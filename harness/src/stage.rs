@@ -1,6 +1,6 @@
 //! The scene, lights and camera of a comparison, ready to draw.
 
-use assign::{Gpu, LightBuffer, LightKind, Suns, View};
+use assign::{Gpu, LightBuffer, LightKind, RejectedLight, Suns, View};
 use glam::DVec3;
 use scenes::{Aabb, Dielectric, Scene, primary_light};
 use shading::{AreaModel, Renderer};
@@ -253,6 +253,23 @@ impl Stage {
     /// The eye in the coordinates of the scene's file, metres.
     pub fn eye(&self) -> DVec3 {
         self.scene.origin + self.view.eye().as_dvec3()
+    }
+
+    /// The lights that are left out because they are faulty; of lights that move, at rest.
+    pub fn rejected(&self) -> &[RejectedLight] {
+        match &self.moving {
+            Some(moving) => moving.rejected(),
+            None => self.lights.rejected(),
+        }
+    }
+
+    /// Counts the lights that are faulty in the frame that was drawn last, if lights move. It waits for the
+    /// GPU.
+    pub fn count_left_out(&mut self) -> Result<(), HarnessError> {
+        match &mut self.moving {
+            Some(moving) => Ok(moving.count_left_out(&self.gpu, &self.lights)?),
+            None => Ok(()),
+        }
     }
 
     /// Time in which the CPU ordered the lights and built the hierarchy over them, ms; `None` if that is part

@@ -151,6 +151,19 @@ fn laps_repeat_the_path() {
     assert_eq!(made, [true, false, false, true, false, false]);
 }
 
+/// Diffuse light ends too close to every area light.
+#[test]
+fn faulty_lights_are_named_if_the_gpu_moves_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lights = ["--lights", "30", "--areas", "0.5", "--diffuse-share", "1e-9"];
+    let moved = ["--scene", SMALL, "--motion", "drift", "--moved-by", "gpu", "--checks", "1"];
+    let results =
+        compare(folder.path(), &[&lights[..], &moved, &["--strategies", "None"]].concat());
+    let rejected = &results.rejected_lights;
+    assert!((5..25).contains(&rejected.len()), "{} rejected lights", rejected.len());
+    assert!(rejected.iter().all(|light| light.reason.starts_with("diffuse range is ")));
+}
+
 #[test]
 fn clay_and_zero_lights_run() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -35,7 +35,19 @@ impl LightTotals {
         if lights.live_count().is_none() {
             return Self::new(lights.lights());
         }
-        let (kinds, count) = (lights.kinds(), u64::from(lights.count()));
+        Self::unknown(lights.kinds(), u64::from(lights.count()))
+    }
+
+    /// The totals of each light of a buffer by itself. A light that only the GPU knows counts as the kind that
+    /// takes the most rounds.
+    pub(crate) fn of_each(lights: &LightBuffer) -> impl Iterator<Item = Self> + '_ {
+        // The CPU knows no light of a buffer whose lights the GPU writes.
+        let unknown = lights.live_count().map(|_| Self::unknown(lights.kinds(), 1));
+        lights.lights().chunks(1).map(Self::new).chain(unknown)
+    }
+
+    /// As many lights of the kind that takes the most rounds.
+    fn unknown(kinds: LightKinds, count: u64) -> Self {
         let areas = if kinds.areas { count } else { 0 };
         Self { kinds, count, areas, vertices: areas * MAX_VERTICES as u64 }
     }
@@ -112,6 +124,32 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
+
+    #[test]
+    fn lights_that_only_the_gpu_knows_take_the_most_rounds() {
+        let gpu = Gpu::noop().expect("the noop device");
+        let storage = |bytes| gpu.storage("own lights", bytes).expect("fits");
+        let (records, shapes, count) = (storage(7 * 16), storage(16), storage(4));
+        for (areas, rounds) in [(false, 1), (true, 1 + 22 + 2 * 4096 * 12)] {
+            let given = assign::GpuLights {
+                spheres: &records,
+                emissions: &records,
+                shapes: &shapes,
+                count: &count,
+                count_offset: 0,
+                capacity: 7,
+                kinds: LightKinds { spots: true, areas },
+                bounds: (Vec3::ZERO, Vec3::ONE),
+                radius_max_m: 1.0,
+            };
+            let buffer = LightBuffer::from_gpu(&gpu, &given, 1).expect("valid");
+            let model = AreaModel::MonteCarlo { samples: 4096 };
+            let each: Vec<u64> =
+                LightTotals::of_each(&buffer).map(|one| one.rounds(model)).collect();
+            assert_eq!(each, [rounds]);
+            assert_eq!(LightTotals::of_buffer(&buffer).rounds(model), 7 * rounds);
+        }
+    }
 
     #[test]
     fn area_lights_take_more_rounds_than_points() {

@@ -18,7 +18,8 @@
 //! later.
 
 use assign::{
-    Gpu, GpuLights, Light, LightBuffer, LightKinds, LightShape, MIN_RANGE_M, Passes, Shader,
+    Gpu, GpuLights, Light, LightBuffer, LightKinds, LightShape, MIN_RANGE_M, Passes, RejectedLight,
+    Shader,
     kernel::{Slot, bind_buffers, layout, pipeline, workgroups},
 };
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
@@ -90,6 +91,7 @@ fn moving_lights_shader() -> Shader<'static> {
 #[derive(Debug)]
 pub struct MovingLights {
     rules: MotionUniform,
+    rejected: Vec<RejectedLight>,
     kinds: LightKinds,
     bounds: (Vec3, Vec3),
     radius_max_m: f32,
@@ -107,7 +109,7 @@ pub struct MovingLights {
 
 impl MovingLights {
     /// Uploads the lights at rest, and compiles the kernel. Omits the lights that [`Light::check`]
-    /// rejects. A light moves as [`Motion::light_at`] moves it, by its index in `lights`. Until the
+    /// rejects ([`rejected`](Self::rejected)). A light moves as [`Motion::light_at`] moves it, by its index in `lights`. Until the
     /// first [`prepare`](Self::prepare) the time is 0.
     ///
     /// # Errors
@@ -144,6 +146,7 @@ impl MovingLights {
         let bound: Vec<_> = [&uniform].into_iter().chain(&rest).chain(&moved).collect();
         let moving = Self {
             rules: MotionUniform::new(motion, count),
+            rejected: resting.rejected().to_vec(),
             kinds: resting.kinds(),
             bounds: bounds_of(motion, &resting),
             radius_max_m: radius_max_m(resting.lights()),
@@ -197,6 +200,12 @@ impl MovingLights {
     /// ([`Motion::farthest_ball_m`]).
     pub fn lights_within(&self, step_max_m: Option<f32>) -> GpuLights<'_> {
         GpuLights { step_max_m, ..self.lights() }
+    }
+
+    /// The faulty lights that were omitted, by their indices in the renderer's list. Lights that
+    /// become faulty as they move are counted by [`LightBuffer::read_counts`].
+    pub fn rejected(&self) -> &[RejectedLight] {
+        &self.rejected
     }
 
     /// Bytes of all its buffers.

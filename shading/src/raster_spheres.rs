@@ -102,8 +102,8 @@ impl RasterSpheres {
             return Err(ShadingError::Kinds { made, lights: lights.kinds() });
         }
         // Each fragment adds only one light, so each is checked separately.
-        for light in lights.lights() {
-            LightTotals::new(std::slice::from_ref(light)).check(&renderer.gpu, self.options)?;
+        for light in LightTotals::of_each(lights) {
+            light.check(&renderer.gpu, self.options)?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);

@@ -202,6 +202,16 @@ fn the_gpu_moves_lights_as_the_cpu_does() {
 }
 
 #[test]
+fn faulty_lights_are_named() {
+    let gpu = Gpu::open(None).unwrap();
+    let lights = lights();
+    let moving = MovingLights::new(&gpu, &motion(MotionLaw::Drift, 1.0, SEED), &lights).unwrap();
+    let named: Vec<_> = moving.rejected().iter().map(|r| (r.index, r.fault.to_string())).collect();
+    let faults = FAULTY.map(|ix| (ix, lights[ix].check().unwrap_err().to_string()));
+    assert_eq!(named, faults);
+}
+
+#[test]
 fn a_time_gives_the_same_bits_in_any_order() {
     let gpu = Gpu::open(None).unwrap();
     let backwards: Vec<f32> = TIMES.into_iter().rev().collect();

@@ -136,6 +136,14 @@ pub const CASES: &[Case] = &[
     case("quarantine", "faulty lights among sound ones", quarantine),
 ];
 
+/// Cases of what all strategies share. They take long, so [`run`](super::run) leaves them out, and one
+/// strategy runs each of them by [`run_case`](super::run_case).
+pub const SHARED_CASES: &[Case] = &[case(
+    "three-levels-of-nodes",
+    "a hierarchy of three levels, for a strategy that reads it",
+    living::sparse,
+)];
+
 /// Makes lights for a stage.
 type Lights = fn(&mut Rng, &Stage, usize) -> Vec<Light>;
 

@@ -49,10 +49,17 @@ pub enum Fault {
     LostGroup,
     /// Shading gets the bind group of the first frame in every frame.
     StaleBinding,
+    /// The first slot of lights that the GPU orders has a copy of the light of the second.
+    CopiedSlot,
+    /// The first box of the third level of the hierarchy holds no light. It shows with strategies that
+    /// read the hierarchy.
+    LostGrandparent,
 }
 
 impl Fault {
-    /// All faults that show with groups of any size: all but [`TightEmitter`](Self::TightEmitter).
+    /// All faults of a strategy that show with groups of any size: all but
+    /// [`TightEmitter`](Self::TightEmitter), and without those in the order of the lights,
+    /// [`CopiedSlot`](Self::CopiedSlot) and [`LostGrandparent`](Self::LostGrandparent).
     pub const ALL: [Self; 21] = [
         Self::DroppedLight,
         Self::ShuffledList,
@@ -103,6 +110,8 @@ impl Fault {
             Self::Unrecorded => ("33-lights", Breach::Unwritten),
             Self::LostGroup => ("33-lights", Breach::NoSuchGroup),
             Self::StaleBinding => ("light-count-changes", Breach::Lookup),
+            Self::CopiedSlot => ("lights-from-gpu", Breach::Slots),
+            Self::LostGrandparent => ("three-levels-of-nodes", Breach::MissedPair),
         }
     }
 

@@ -4,8 +4,8 @@ use bytemuck::bytes_of;
 
 pub use super::fault::Fault;
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup, Needs,
-    Passes, Shader, StrategyModule,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightNode, LightShape,
+    Lookup, Needs, Passes, Shader, StrategyModule,
     kernel::{self, Slot},
 };
 
@@ -17,6 +17,9 @@ fn group_of(sample: ViewSample) -> u32 {
   return 0x7ffffff0u;
 }
 ";
+
+/// Bytes of a light's sphere, and of its emission.
+const RECORD_BYTES: u64 = 16;
 
 /// A strategy with a fault.
 pub struct Faulty {
@@ -32,6 +35,8 @@ pub struct Faulty {
     record_count: u32,
     /// The lights of the first frame.
     first_lights: Option<Vec<Light>>,
+    /// Holds a record while it is copied from slot to slot.
+    record: wgpu::Buffer,
     /// The look-up's bind group of the first frame.
     first_binding: Option<wgpu::BindGroup>,
 }
@@ -51,6 +56,7 @@ impl Faulty {
             bind_group: None,
             record_count: 0,
             first_lights: None,
+            record: gpu.storage("record", RECORD_BYTES)?,
             first_binding: None,
         })
     }
@@ -87,6 +93,25 @@ impl Faulty {
     /// The frame with the altered lights.
     fn altered<'a>(altered: &'a LightBuffer, frame: &Frame<'a>) -> Frame<'a> {
         Frame { lights: altered, ..*frame }
+    }
+
+    /// Spoils the ordered lights, or the boxes over them.
+    fn spoil(&self, lights: &LightBuffer, encoder: &mut wgpu::CommandEncoder) {
+        match self.fault {
+            Fault::CopiedSlot => {
+                for records in [lights.spheres(), lights.emissions()] {
+                    let second = RECORD_BYTES;
+                    encoder.copy_buffer_to_buffer(records, second, &self.record, 0, RECORD_BYTES);
+                    encoder.copy_buffer_to_buffer(&self.record, 0, records, 0, RECORD_BYTES);
+                }
+            }
+            Fault::LostGrandparent if lights.levels().levels == 3 => {
+                let bytes = size_of::<LightNode>() as u64;
+                let first = u64::from(lights.levels().first_grandparent) * bytes;
+                encoder.clear_buffer(lights.nodes(), first, Some(bytes));
+            }
+            _ => {}
+        }
     }
 
     /// Binds the finished lists to `fault.wesl`.
@@ -141,6 +166,7 @@ impl Assignment for Faulty {
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         self.frame += 1;
+        self.spoil(frame.lights, passes.encoder());
         let lights = frame.lights.lights();
         let first_lights = self.first_lights.get_or_insert_with(|| lights.to_vec());
         match self.fault {

@@ -1,5 +1,7 @@
 //! Cases of lights that change in every frame, which the GPU sorts.
 
+use glam::Vec3;
+
 use super::{
     lights::{Kinds, bad_lights, mix},
     plan::{Lit, Living, Plan, default_view, in_room},
@@ -32,6 +34,25 @@ pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {
     let bad = if from_gpu { bad.len() } else { 0 };
     Plan::Living(Living { frames: frames.into(), bad, every, from_gpu })
 }
+
+/// Few lights that the GPU writes into a buffer with room for so many that their hierarchy has three
+/// levels. The other records are faulty. They lie in the middle, so that the lights' slots lie before
+/// and behind theirs.
+pub(super) fn sparse(rng: &mut Rng) -> Plan {
+    let stage = in_room(rng, &views::sized([32, 24])).thinned(60);
+    let lights = mix(rng, &stage, 1_500, (0.1, 2.0), Kinds::Points);
+    let middle = lights.iter().map(|light| light.position).sum::<Vec3>() / lights.len() as f32;
+    let mut all = vec![Light::point(middle, 0.0, Vec3::ONE); THREE_LEVELS];
+    let bad = all.len() - lights.len();
+    for (place, light) in all.iter_mut().step_by(100).zip(lights) {
+        *place = light;
+    }
+    let frames = vec![Lit { lights: all, stage, opaque_only: false }];
+    Plan::Living(Living { frames, bad, every: 1, from_gpu: true })
+}
+
+/// Lights whose hierarchy has three levels.
+const THREE_LEVELS: usize = 262_145;
 
 /// Whether a light's record shows its fault. The record has the square of a distance, which hides
 /// its sign.

@@ -43,7 +43,9 @@
 //!
 //! # Negative controls
 //!
-//! [`rejects_faults`] plants each [`Fault`] in the strategy and requires the suite to name it.
+//! [`rejects_faults`] plants each [`Fault`] in the strategy and requires the suite to name it. Faults in
+//! the order of the lights and in the boxes over them do not depend on the strategy. They are planted
+//! once, by [`rejects_fault`].
 
 mod cases;
 mod check;
@@ -65,7 +67,7 @@ mod violation;
 
 use std::sync::OnceLock;
 
-pub use cases::{CASES, Case};
+pub use cases::{CASES, Case, SHARED_CASES};
 use faulty::{Fault, Faulty};
 pub use flat_depth::flat_depth;
 pub use linked::{LinkedModule, StructLayout};
@@ -106,7 +108,7 @@ pub fn run_allowing(make: &Make<'_>, unserved: &[&str]) -> Result<Report, Confor
     if report.cases.iter().all(may) { Ok(report) } else { Err(ConformanceError::Rejected(report)) }
 }
 
-/// Runs one case of [`CASES`]. Violations are an error; a refusal is an outcome.
+/// Runs one case of [`CASES`] or [`SHARED_CASES`]. Violations are an error; a refusal is an outcome.
 pub fn run_case(name: &str, make: &Make<'_>) -> Result<CaseReport, ConformanceError> {
     let case = find(name)?;
     let rig = rig()?;
@@ -172,7 +174,7 @@ fn rig() -> Result<&'static Rig, ConformanceError> {
 }
 
 fn find(name: &str) -> Result<&'static Case, ConformanceError> {
-    let found = CASES.iter().find(|case| case.name == name);
+    let found = CASES.iter().chain(SHARED_CASES).find(|case| case.name == name);
     found.ok_or_else(|| ConformanceError::NoCase(name.to_owned()))
 }
 

@@ -1,6 +1,7 @@
 //! Draws the frames of a case with one instance of a strategy, and checks each frame.
 
 use bytemuck::cast_slice;
+use glam::Vec3;
 
 use super::{
     Make,
@@ -13,7 +14,7 @@ use super::{
     violation::{Breach, Figures, Findings, Outcome, Place},
 };
 use crate::{
-    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, LightBuffer, LightOrder,
+    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, Light, LightBuffer, LightOrder,
     SampleDomain,
 };
 
@@ -149,8 +150,32 @@ impl Run<'_> {
                 let detail = format!("{} lights are faulty, but the GPU found {found}", living.bad);
                 self.findings.add(Breach::Quarantine, Place::default(), detail);
             }
+            self.slots(&session.lights.read(&self.rig.gpu)?, &lit.lights);
         }
         Ok(())
+    }
+
+    /// Checks that each sound light has one slot. Records from the GPU do not hold all of a light, so
+    /// position, range and kind name it.
+    fn slots(&mut self, slots: &[Light], given: &[Light]) {
+        let name = |light: &Light| {
+            let [x, y, z] = light.position.to_array().map(f32::to_bits);
+            [x, y, z, light.range_m.to_bits(), light.kind() as u32]
+        };
+        let is_lit = |light: &&Light| light.intensity != Vec3::ZERO;
+        let mut found: Vec<_> = slots.iter().filter(is_lit).map(name).collect();
+        let mut sound: Vec<_> = given.iter().filter(|l| l.check().is_ok()).map(name).collect();
+        found.sort_unstable();
+        sound.sort_unstable();
+        if found != sound {
+            let lost = sound.iter().filter(|light| found.binary_search(light).is_err()).count();
+            let detail = format!(
+                "{} slots have a light, {} lights are sound, and {lost} of these have no slot",
+                found.len(),
+                sound.len()
+            );
+            self.findings.add(Breach::Slots, Place::default(), detail);
+        }
     }
 
     /// With a pool that is far too small, no pair is missed and the overflow is counted. Without

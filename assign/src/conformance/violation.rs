@@ -38,6 +38,8 @@ pub enum Breach {
     NoOverflow,
     /// Faulty lights were accepted, not counted, or changed the lists of other lights.
     Quarantine,
+    /// The slots of lights that the GPU orders do not hold each sound light once.
+    Slots,
     /// A case that should have (light, sample) pairs had none, so it checked nothing.
     Vacuous,
 }
@@ -60,6 +62,7 @@ impl Breach {
             Self::OverflowStays => "overflow does not end",
             Self::NoOverflow => "no overflow counted",
             Self::Quarantine => "quarantine broken",
+            Self::Slots => "light without a slot of its own",
             Self::Vacuous => "nothing was checked",
         }
     }

@@ -8,11 +8,11 @@ use glam::Vec3;
 use super::{
     decode,
     given::{Given, MAX_LIGHTS, Records},
-    gpu_lights::GpuLights,
+    gpu_lights::{GpuLights, check_usage},
     travel::Travel,
 };
 use crate::{
-    AssignError, Gpu, Light, LightEmission, LightOrder, LightSphere, Passes,
+    AssignError, Gpu, Light, LightEmission, LightKinds, LightOrder, LightSphere, Passes,
     light_nodes::NODE_LIGHTS,
     light_sorter::{GivenBuffers, LightSorter, SlotState},
 };
@@ -65,6 +65,9 @@ pub(super) struct Living {
     sorter: Option<(LightSorter, GivenBuffers)>,
     source: Option<Source>,
 }
+
+/// The capacity for few lights, unless the device has no room for it.
+const LEAST_CAPACITY: u32 = 64;
 
 /// Bytes whose change uploads all of them: one write per run of changed blocks.
 const UPLOAD_BLOCK: usize = 1024;
@@ -122,16 +125,13 @@ impl Living {
                 known = uploaded;
             }
         } else {
-            // Room for a quarter more, so that a growing number does not replace buffers each frame.
-            let room = |bytes: usize| bytes as u64 + bytes as u64 / 4;
-            let capacity = (room(count as usize) as u32).max(64).min(MAX_LIGHTS as u32);
-            let buffers = GivenBuffers {
-                spheres: gpu.storage("given light spheres", u64::from(capacity) * 16)?,
-                emissions: gpu.storage("given light emissions", u64::from(capacity) * 16)?,
-                shapes: gpu.storage("given light shapes", room(shapes.len()))?,
-            };
-            let sorter = LightSorter::new(gpu, capacity, given.kinds, buffers.clone())?;
-            self.sorter = Some((sorter, buffers));
+            let make = |capacity, bytes| make_sorter(gpu, capacity, bytes, given.kinds);
+            // Room for a quarter more, so that a growing number does not replace buffers each frame; if
+            // the device has no such room, only for what is needed.
+            let roomy = (count + count / 4).max(LEAST_CAPACITY).min(MAX_LIGHTS as u32);
+            let bytes = shapes.len() as u64;
+            let made = make(roomy, bytes + bytes / 4).or_else(|_| make(count, bytes))?;
+            self.sorter = Some(made);
             self.age = None;
         }
         let bounds = given.position_bounds.unwrap_or_default();
@@ -159,7 +159,7 @@ impl Living {
         lights: &GpuLights<'_>,
         travel: Travel,
     ) -> Result<(), AssignError> {
-        lights.check()?;
+        lights.check(gpu)?;
         let buffers = GivenBuffers {
             spheres: lights.spheres.clone(),
             emissions: lights.emissions.clone(),
@@ -292,23 +292,28 @@ impl Living {
         Ok(SlotCounts { given, slots, faulty, dark })
     }
 
-    /// The lights by slot. `given` are those that the CPU knows.
-    pub(super) fn read(&self, gpu: &Gpu, given: &[Light]) -> Result<Vec<Light>, AssignError> {
+    /// The lights by slot. `given` has those that the CPU knows.
+    pub(super) fn read(&self, gpu: &Gpu, given: &Given) -> Result<Vec<Light>, AssignError> {
         let Some((sorter, buffers)) = &self.sorter else { return Ok(Vec::new()) };
         let slots = self.read_counts(gpu)?.slots;
         if matches!(self.source, Some(Source::Cpu { .. })) {
             let order: Vec<u32> =
                 pod_collect_to_vec(&gpu.read(sorter.order(), u64::from(slots) * 4)?);
-            let light = |&ix: &u32| given.get(ix as usize).copied().unwrap_or(decode::EMPTY);
+            let light = |&ix: &u32| given.lights.get(ix as usize).copied().unwrap_or(decode::EMPTY);
             return Ok(order.iter().map(light).collect());
         }
+        let shapes: Vec<Vec3x4> = if given.kinds == LightKinds::default() {
+            Vec::new()
+        } else {
+            let read_back = wgpu::BufferUsages::COPY_SRC;
+            check_usage("shapes", &buffers.shapes, read_back, ", to read the lights back")?;
+            pod_collect_to_vec(&gpu.read(&buffers.shapes, buffers.shapes.size())?)
+        };
         let [spheres, emissions, _] = sorter.ordered();
         let spheres: Vec<LightSphere> =
             pod_collect_to_vec(&gpu.read(spheres, u64::from(slots) * 16)?);
         let emissions: Vec<LightEmission> =
             pod_collect_to_vec(&gpu.read(emissions, u64::from(slots) * 16)?);
-        let shapes: Vec<Vec3x4> =
-            pod_collect_to_vec(&gpu.read(&buffers.shapes, buffers.shapes.size())?);
         let records = spheres.iter().zip(&emissions);
         Ok(records
             .map(|(sphere, emission)| Light::from_record(sphere, emission, &shapes))
@@ -320,6 +325,21 @@ impl Living {
 fn box_side_m((low, high): (Vec3, Vec3), lights: u32) -> f64 {
     let volume: f64 = (high - low).as_dvec3().element_product();
     (volume * NODE_LIGHTS as f64 / f64::from(lights.max(1))).cbrt()
+}
+
+/// A sorter with buffers for lights from the CPU.
+fn make_sorter(
+    gpu: &Gpu,
+    capacity: u32,
+    shape_bytes: u64,
+    kinds: LightKinds,
+) -> Result<(LightSorter, GivenBuffers), AssignError> {
+    let buffers = GivenBuffers {
+        spheres: gpu.storage("given light spheres", u64::from(capacity) * 16)?,
+        emissions: gpu.storage("given light emissions", u64::from(capacity) * 16)?,
+        shapes: gpu.storage("given light shapes", shape_bytes)?,
+    };
+    Ok((LightSorter::new(gpu, capacity, kinds, buffers.clone())?, buffers))
 }
 
 /// A shape vector.

@@ -62,6 +62,7 @@ impl Contest<'_> {
             let Some(reference) = reference else { continue };
             self.draw(stage, reference)?;
             seen(&images, &read(&self.gpu, stage)?)?;
+            stage.count_left_out()?;
         }
         Ok(())
     }
@@ -87,7 +88,7 @@ impl Contest<'_> {
                 }
             }
         }
-        Ok(())
+        stage.count_left_out()
     }
 
     /// Has lists and orders of lights that are used for several frames made anew, so that they are of the
