@@ -92,8 +92,8 @@ impl<'a> Painter<'a> {
         Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
     }
 
-    /// Records one frame: the lights, geometry, the strategy's passes, lighting. Only lights that the CPU makes
-    /// may be ordered by a submission of their own.
+    /// Records one frame: the lights, geometry, the strategy's passes, lighting. It submits nothing, except to
+    /// order lights off the clock that no frame makes.
     pub fn record(
         &mut self,
         gpu: &Gpu,
