@@ -311,6 +311,7 @@ mod tests {
         gpu.queue.submit([encoder.finish()]);
         let mut moving = Moving {
             law: Law::Motion(motion),
+            shown: None,
             frame: None,
             kinds: kinds_of(&lights),
             rejected: rejected_of(&lights),
