@@ -141,6 +141,7 @@ mod tests {
                 kinds: LightKinds { spots: true, areas },
                 bounds: (Vec3::ZERO, Vec3::ONE),
                 radius_max_m: 1.0,
+                step_max_m: None,
             };
             let buffer = LightBuffer::from_gpu(&gpu, &given, 1).expect("valid");
             let model = AreaModel::MonteCarlo { samples: 4096 };
