@@ -107,32 +107,6 @@ fn all_methods_are_lossless_or_within_their_tolerance() {
     }
 }
 
-/// Whoever moves the lights and whenever they are sorted, images are those of no culling, and a second run
-/// repeats every bit.
-#[test]
-fn lights_that_move_lose_nothing_and_frames_repeat() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let raw = |options: &[&str], run: &str| {
-        let out = folder.path().join(run);
-        let methods = "None,T-E/28x28,SC-E/48x48x40/bvh/keep3,G/8x8x8/bvh/keep3,HG/48x48x40";
-        let lights = ["--lights", "200", "--spots", "0.3", "--areas", "0.1", "--frames", "4"];
-        let fixed = ["--scene", SMALL, "--truth", "none", "--strategies", methods];
-        let results = compare(&out, &[&fixed[..], &lights, options].concat());
-        assert_lossless(&results, 5);
-        let methods = results.records.iter();
-        let images = methods.filter_map(|record| record.image.files.raw.clone());
-        let read = |name: String| std::fs::read(out.join(name)).expect("a raw image");
-        let images: Vec<_> = images.map(read).collect();
-        assert_eq!(images.len(), 5);
-        images
-    };
-    let on_gpu = ["--motion", "drift", "--moved-by", "gpu", "--light-order", "gpu2"];
-    assert_eq!(raw(&on_gpu, "gpu"), raw(&on_gpu, "again"));
-    raw(&["--motion", "all", "--speed", "5", "--light-order", "gpu25%"], "cpu");
-}
-
-/// Samples are stored lap after lap. Every lap has the same poses. Lists that are reused over frames are made
-/// again when a lap begins.
 #[test]
 fn laps_repeat_the_path() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -69,16 +69,16 @@ impl Emitter {
     /// Checks that the half axes are at right angles, lie in the emitter's plane, and hold the
     /// outline. Culling bounds the outline by them.
     fn check_half_axes(&self, normal: DVec3, size: f32) -> Result<(), LightFault> {
-        let [x, y] = self.half_axes().map(|axis| axis.as_dvec3());
+        let [x, y] = self.half_axes().map(Vec3::as_dvec3);
         let size = f64::from(size);
         let cosine = x.normalize_or_zero().dot(y.normalize_or_zero()) as f32;
-        // Negated, so that NaN is a fault.
-        if !(cosine.abs() <= MAX_COSINE) {
+        // A ratio that is not a number is a fault.
+        if cosine.is_nan() || cosine.abs() > MAX_COSINE {
             return out("cosine between half axes", cosine, "0: a right angle");
         }
         for axis in [x, y] {
             let off = (normal.dot(axis) / size) as f32;
-            if !(off.abs() <= FLATNESS) {
+            if off.is_nan() || off.abs() > FLATNESS {
                 return out("half axis off the emitter's plane over size", off, "at most 1e-4");
             }
         }
@@ -91,7 +91,7 @@ impl Emitter {
                 [vx * yy - vy * xy, vy * xx - vx * xy].map(|t| t.abs() / area_2);
             for (along, axis) in [(along_x, x), (along_y, y)] {
                 let beyond = ((along - 1.0) * axis.length() / size) as f32;
-                if !(beyond <= OUTLINE_ROUNDING) {
+                if beyond.is_nan() || beyond > OUTLINE_ROUNDING {
                     return out("emitter vertex beyond the half axes over size", beyond, "0");
                 }
             }
