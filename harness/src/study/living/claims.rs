@@ -101,7 +101,7 @@ fn sort(done: &Done, scene: &str) -> Answer {
         let Some(record) = hierarchy.filter(|_| count >= MANY) else { continue };
         let (part, whole) = (hierarchy_ms(record), record.assign_and_shade_ms());
         let figure = format!(
-            "{}: {} of {} ms, {} %",
+            "{}: {} ms of {}, {} %",
             lights(count),
             significant(part),
             timed(record),
