@@ -97,7 +97,7 @@ fn lit(intensity: Vec3) -> Light {
 
 pub(crate) fn sound() -> Vec<Light> {
     let mut lights = [MIN_RANGE_M, 1.0, MAX_RANGE_M].map(ranged).concat();
-    for outer in [MIN_SPOT_ANGLE, 1e-4, 1e-3, 0.01, 0.1, 0.8, FRAC_PI_2, 2.0, 3.0, 3.14, PI] {
+    for outer in [MIN_SPOT_ANGLE, 1e-4, 1e-3, 0.01, 0.1, 0.8, FRAC_PI_2, 2.0, 3.0, 3.1, PI] {
         lights.extend([0.0, 0.5, 0.999, 1.0].map(|inner| spot(Vec3::Z, inner * outer, outer)));
     }
     lights.extend([(6e-5, 8e-5), (6e4, 8e4)].map(|(x, y)| rectangle(x * Vec3::X, y * Vec3::Y)));
