@@ -218,7 +218,7 @@ fn a_damaged_study_is_refused_by_name() {
     std::fs::write(folder.path().join("study.json"), text).expect("writes");
     let output = start(&["report", out]).wait_with_output().expect("ends");
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(error.contains("study.json") && error.contains("culling, area"), "{error}");
+    assert!(error.contains("study.json") && error.contains("culling, living, area"), "{error}");
     // Jobs of version 2 have settings, even if there are none: without them a view has no name.
     for (settings, is_whole) in [("", false), (r#","settings":{}"#, true)] {
         let job = format!(r#"{{"name":"a","scene":"a","section":"b","command":[]{settings}}}"#);
