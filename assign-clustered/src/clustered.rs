@@ -151,9 +151,13 @@ impl Assignment for Clustered {
         }
     }
 
+    fn updates_groups(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.lights.bounds())?;
+        let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.light_bounds())?;
         let count = group_count(self.size, &froxels, self.normals, frame.view.viewport)?;
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
@@ -197,7 +201,9 @@ impl Assignment for Clustered {
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        if let Some(gather) = &self.gather {
+        if let Some(gather) = &self.gather
+            && frame.changes.is_none()
+        {
             gather.record(frame.view, passes);
         }
         self.culler.record(passes);

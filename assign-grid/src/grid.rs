@@ -108,9 +108,9 @@ impl Grid {
     /// The box to cut, world space; a unit box without lights.
     fn cut(&self, frame: &Frame<'_>) -> Result<(Vec3, Vec3), AssignError> {
         let none = (Vec3::ZERO, Vec3::ONE);
-        let lights = frame.lights.bounds().unwrap_or(none);
+        let lights = frame.light_bounds().unwrap_or(none);
         match self.grid_box {
-            GridBox::Positions => return Ok(frame.lights.position_bounds().unwrap_or(none)),
+            GridBox::Positions => return Ok(frame.light_position_bounds().unwrap_or(none)),
             GridBox::Supports => return Ok(lights),
             GridBox::Surfaces => {}
         }
@@ -145,9 +145,13 @@ impl Assignment for Grid {
         false
     }
 
+    fn updates_groups(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let cells = CellsUniform::new(self.counts, self.cut(frame)?, frame.lights.bounds());
+        let cells = CellsUniform::new(self.counts, self.cut(frame)?, frame.light_bounds());
         gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));
         self.culler.prepare(
             gpu,

@@ -28,6 +28,7 @@ fn kept_lists_conform() {
         "lights-move",
         "gpu-order",
         "gpu-order-stale",
+        "gpu-order-drift",
         "lights-from-gpu",
     ] {
         conformance::run_case(case, &kept(3)).expect(case);

@@ -105,6 +105,10 @@ impl Assignment for PerModel {
         false
     }
 
+    fn updates_groups(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         if frame.samples == SampleDomain::AnyDepth {

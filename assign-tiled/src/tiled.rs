@@ -76,6 +76,10 @@ impl Assignment for Tiled {
         Needs { depth: self.tile_bounds.is_some(), hierarchy, ..Needs::default() }
     }
 
+    fn updates_groups(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut tiles = TilesUniform::new(self.size, frame.view);
@@ -99,8 +103,10 @@ impl Assignment for Tiled {
         self.culler.prepare(gpu, frame, Groups::All(tiles.group_count()), &resources)
     }
 
-    fn record(&mut self, _frame: &Frame<'_>, passes: &mut dyn Passes) {
-        if let Some(tile_bounds) = &self.tile_bounds {
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some(tile_bounds) = &self.tile_bounds
+            && frame.changes.is_none()
+        {
             tile_bounds.record(passes);
         }
         self.culler.record(passes);

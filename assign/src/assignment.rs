@@ -19,6 +19,12 @@ pub trait Assignment {
         true
     }
 
+    /// Whether it serves [`Frame::changes`]: it keeps its groups, and makes only the lists anew that a
+    /// changed light touches.
+    fn updates_groups(&self) -> bool {
+        false
+    }
+
     /// Sizes buffers and uploads parameters. No clock counts it. After an error, do not draw the
     /// frame with this strategy.
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError>;

@@ -6,10 +6,10 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader, StrategyModule,
-    StrategyWesl,
+    LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
+    StrategyModule, StrategyWesl,
     entries::{entry, storage_entry},
-    kernel::MAX_WORKGROUPS,
+    touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
 
 /// Bind group of the lists inside the driver's own kernels.
@@ -47,10 +47,12 @@ pub struct Culler {
     frame: FrameBindings,
     cull: ListsBindings,
     look_up: ListsBindings,
-    source_layout: wgpu::BindGroupLayout,
-    source: Option<wgpu::BindGroup>,
+    source: Option<Source>,
     lists: LightLists,
-    dispatch: Dispatch,
+    /// Finds the groups to cull in frames with [`Frame::changes`].
+    touched: Option<TouchedGroups>,
+    /// Whether the prepared frame culls only these.
+    is_update: bool,
     /// The number of lights, if only the GPU knows it.
     live_count: Option<wgpu::Buffer>,
     /// Bytes of the light hierarchy, if the driver uses it.
@@ -70,12 +72,14 @@ struct Variant {
 struct Kernel {
     pipeline: wgpu::ComputePipeline,
     traits: LightTraits,
+    sparse: bool,
 }
 
+/// The kernel's input, and its workgroups.
 #[derive(Debug)]
-enum Dispatch {
-    Workgroups(u32),
-    Indirect(wgpu::Buffer),
+struct Source {
+    bind_group: wgpu::BindGroup,
+    dispatch: Dispatch,
 }
 
 impl Variant {
@@ -105,10 +109,10 @@ impl Culler {
             frame: FrameBindings::new(gpu),
             cull: ListsBindings::of_kernel(gpu, label, bindings),
             look_up: ListsBindings::of_look_up(gpu, label, bindings),
-            source_layout: source_layout(gpu, variant),
             source: None,
             lists: LightLists::new(gpu)?,
-            dispatch: Dispatch::Workgroups(0),
+            touched: None,
+            is_update: false,
             live_count: None,
             hierarchy_bytes: 0,
         })
@@ -123,36 +127,64 @@ impl Culler {
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
-        self.lists.prepare(gpu, frame.lights, groups.count())?;
+        self.is_update = frame.changes.is_some();
+        match frame.changes {
+            None => self.lists.prepare(gpu, frame.lights, groups.count())?,
+            Some(_) => self.lists.prepare_update(gpu, frame.lights)?,
+        };
         self.cull.bind(gpu, &self.lists, resources);
         self.look_up.bind(gpu, &self.lists, resources);
-        self.bind_source(gpu, frame, groups);
+        let source = match frame.changes {
+            None => self.bind_source(gpu, frame, groups),
+            Some(changes) => {
+                let mut touched = match self.touched.take() {
+                    Some(touched) => touched,
+                    None => self.compile_touched(gpu)?,
+                };
+                touched.prepare(gpu, changes, groups)?;
+                let live = touched.groups();
+                let source =
+                    self.bind_source(gpu, frame, Groups::Live { count: groups.count(), live });
+                self.touched = Some(touched);
+                source
+            }
+        };
+        self.source = Some(source);
+        let sparse = self.variant.sparse || self.is_update;
+        if self.reads_hierarchy() {
+            self.hierarchy_bytes = frame.lights.nodes().size();
+        }
         let traits = frame.lights.traits();
-        if self.kernel.as_ref().is_none_or(|kernel| kernel.traits != traits) {
-            self.kernel = Some(self.compile(gpu, traits)?);
+        let fits = |kernel: &Kernel| kernel.traits == traits && kernel.sparse == sparse;
+        if !self.kernel.as_ref().is_some_and(fits) {
+            self.kernel = Some(self.compile(gpu, traits, sparse)?);
         }
         self.live_count = frame.lights.live_count().cloned();
         Ok(())
     }
 
-    fn bind_source(&mut self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) {
+    fn bind_source(&self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) -> Source {
         let mut entries = Vec::new();
-        self.dispatch = match groups {
-            Groups::All(count) => Dispatch::Workgroups(count.min(MAX_WORKGROUPS)),
-            Groups::Live { live, .. } => {
-                entries.push(entry(0, live.buffer()));
-                Dispatch::Indirect(live.buffer().clone())
-            }
-        };
+        if let Groups::Live { live, .. } = groups {
+            entries.push(entry(0, live.buffer()));
+        }
         if self.reads_hierarchy() {
             entries.push(entry(1, frame.lights.nodes()));
-            self.hierarchy_bytes = frame.lights.nodes().size();
         }
-        self.source = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let layout = source_layout(gpu, self.variant, matches!(groups, Groups::Live { .. }));
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("cull source"),
-            layout: &self.source_layout,
+            layout: &layout,
             entries: &entries,
-        }));
+        });
+        Source { bind_group, dispatch: Dispatch::over(groups) }
+    }
+
+    fn compile_touched(&self, gpu: &Gpu) -> Result<TouchedGroups, AssignError> {
+        // Changed lights are balls.
+        let shader = kernel_shader(self.variant, self.module.wesl(), LightKinds::default().into());
+        let layouts = [self.frame.layout(), self.cull.layout()];
+        TouchedGroups::new(gpu, shader, layouts, self.variant.sparse)
     }
 
     /// The kernel's linked WGSL for a scene with such lights.
@@ -167,6 +199,18 @@ impl Culler {
         kernel_shader(variant, wesl.into(), lights.into()).link("package::cull")
     }
 
+    /// The linked WGSL of the kernels that find the groups touched by changed lights.
+    pub fn touched_source<'a>(
+        shape: GroupShape,
+        settings: CullSettings,
+        sparse: bool,
+        wesl: impl Into<StrategyWesl<'a>>,
+    ) -> Result<String, AssignError> {
+        let variant = Variant { shape, settings, sparse, facing: Facing::Unknown };
+        touched_shader(kernel_shader(variant, wesl.into(), LightKinds::default().into()))
+            .link("package::touched")
+    }
+
     /// The kernel's linked WGSL for live groups that are boxes and know how their surfaces face.
     pub fn facing_kernel_source<'a>(
         settings: CullSettings,
@@ -178,8 +222,9 @@ impl Culler {
         kernel_shader(variant, wesl.into(), lights.into()).link("package::cull")
     }
 
-    fn compile(&self, gpu: &Gpu, traits: LightTraits) -> Result<Kernel, AssignError> {
-        let shader = kernel_shader(self.variant, self.module.wesl(), traits);
+    fn compile(&self, gpu: &Gpu, traits: LightTraits, sparse: bool) -> Result<Kernel, AssignError> {
+        let variant = Variant { sparse, ..self.variant };
+        let shader = kernel_shader(variant, self.module.wesl(), traits);
         // SAFETY: every loop of the driver ends. A loop counts up without wrapping to a fixed
         // number, at most a buffer's length; or tests the next of finitely many nodes; or clears
         // one bit of a word per round; or tries to take entries from a pool that only fills up.
@@ -187,28 +232,33 @@ impl Culler {
         // The strategy's author guarantees the same for its module.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::cull") }?;
-        let layouts =
-            [Some(self.frame.layout()), Some(self.cull.layout()), Some(&self.source_layout)];
+        let source = source_layout(gpu, variant, sparse);
+        let layouts = [Some(self.frame.layout()), Some(self.cull.layout()), Some(&source)];
         // The kernel writes workgroup memory before it reads it.
         let pipeline = gpu.compute_pipeline(&module, "cull_groups", &layouts, false);
-        Ok(Kernel { pipeline, traits })
+        Ok(Kernel { pipeline, traits, sparse })
     }
 
-    /// Records the pass `cull`, which a clock times. Call it after [`prepare`](Self::prepare).
+    /// Records the pass `cull`, which a clock times, and in frames with [`Frame::changes`] the pass `touch`
+    /// before it. Call it after [`prepare`](Self::prepare).
     pub fn record(&mut self, passes: &mut dyn Passes) {
-        let Some(kernel) = &self.kernel else {
+        let (Some(kernel), Some(source)) = (&self.kernel, &self.source) else {
             return;
         };
-        self.lists.record_reset(passes.encoder(), self.live_count.as_ref());
-        passes.compute("cull", &mut |pass| {
-            pass.set_bind_group(0, self.frame.bind_group(), &[]);
-            pass.set_bind_group(LISTS_GROUP, self.cull.bind_group(), &[]);
-            pass.set_bind_group(SOURCE_GROUP, self.source.as_ref(), &[]);
-            pass.set_pipeline(&kernel.pipeline);
-            match &self.dispatch {
-                Dispatch::Workgroups(count) => pass.dispatch_workgroups(*count, 1, 1),
-                Dispatch::Indirect(live) => pass.dispatch_workgroups_indirect(live, 0),
+        let groups = [self.frame.bind_group(), self.cull.bind_group()];
+        match &self.touched {
+            Some(touched) if self.is_update => {
+                self.lists.record_light_count(passes.encoder(), self.live_count.as_ref());
+                touched.record(groups, passes);
             }
+            _ => self.lists.record_reset(passes.encoder(), self.live_count.as_ref()),
+        }
+        passes.compute("cull", &mut |pass| {
+            pass.set_bind_group(0, groups[0], &[]);
+            pass.set_bind_group(LISTS_GROUP, groups[1], &[]);
+            pass.set_bind_group(SOURCE_GROUP, &source.bind_group, &[]);
+            pass.set_pipeline(&kernel.pipeline);
+            source.dispatch.record(pass);
         });
         self.lists.record_readback(passes.encoder());
     }
@@ -242,7 +292,8 @@ impl Culler {
     /// strategy's own resources are not included. See
     /// [`Assignment::memory_bytes`](crate::Assignment::memory_bytes).
     pub fn memory_bytes(&self) -> u64 {
-        self.frame.bytes() + self.lists.memory_bytes() + self.hierarchy_bytes
+        let touched = self.touched.as_ref().map_or(0, |touched| touched.groups().bytes());
+        self.frame.bytes() + self.lists.memory_bytes() + self.hierarchy_bytes + touched
     }
 }
 
@@ -281,11 +332,11 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .light_kinds(lights.kinds)
 }
 
-/// Layout of the kernel's input: live groups if sparse, light nodes if there is a hierarchy.
-fn source_layout(gpu: &Gpu, variant: Variant) -> wgpu::BindGroupLayout {
+/// Layout of the kernel's input: the groups if not all are culled, light nodes if there is a hierarchy.
+fn source_layout(gpu: &Gpu, variant: Variant, sparse: bool) -> wgpu::BindGroupLayout {
     let stages = wgpu::ShaderStages::COMPUTE;
     let mut entries = Vec::new();
-    if variant.sparse {
+    if sparse {
         entries.push(storage_entry(0, stages, true));
     }
     if variant.settings.source == LightSource::Hierarchy {

@@ -5,7 +5,7 @@ use bytemuck::bytes_of;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, LightBuffer, ModelBox, View, ViewUniform,
+    AssignError, Gpu, LightBuffer, LightChanges, ModelBox, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
 };
 
@@ -63,6 +63,10 @@ pub struct Frame<'a> {
     pub models: Option<&'a [ModelBox]>,
     /// A box that holds all surfaces: lowest and highest corner, world space, metres.
     pub surface_bounds: Option<(Vec3, Vec3)>,
+    /// The lights that changed since the frame recorded before, if all else is as in that frame: the view,
+    /// the surfaces and the models. Only a strategy that [updates groups](crate::Assignment::updates_groups)
+    /// gets it, from [`Touched`](crate::Touched).
+    pub changes: Option<&'a LightChanges>,
 }
 
 impl<'a> Frame<'a> {
@@ -77,7 +81,19 @@ impl<'a> Frame<'a> {
             base_color: None,
             models: None,
             surface_bounds: None,
+            changes: None,
         }
+    }
+
+    /// The box around all lights' supports that groups are laid out for: lowest and highest corner, world
+    /// space, metres; `None` without lights. If groups stay as they are, it is the one they were laid out for.
+    pub fn light_bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.changes.map_or_else(|| self.lights.bounds(), LightChanges::bounds)
+    }
+
+    /// As [`light_bounds`](Self::light_bounds), around the lights' positions.
+    pub fn light_position_bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.changes.map_or_else(|| self.lights.position_bounds(), LightChanges::position_bounds)
     }
 
     /// Adds the depth buffer.

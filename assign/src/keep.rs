@@ -126,12 +126,10 @@ impl Assignment for Keep {
             travel,
         };
         let last = self.last.replace(travel);
-        // New lists find a larger pool.
-        let overflows =
-            self.inner.lists().stats().is_some_and(|counters| counters.overflowed_groups > 0);
+        let wants_growth = self.inner.lists_mut().wants_growth(gpu);
         if let Some((made, age)) = &self.made
             && age + 1 < self.frames
-            && !overflows
+            && !wants_growth
             && made.holds(&now, self.reach_m)
             && self.models == frame.models.unwrap_or_default()
         {

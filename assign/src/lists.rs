@@ -10,7 +10,7 @@
 
 use bytemuck::{Pod, Zeroable, cast_slice, pod_collect_to_vec};
 
-use crate::{AssignError, Gpu, LightBuffer, readback::Readback};
+use crate::{AssignError, Gpu, LightBuffer, light_nodes::NodeLevels, readback::Readback};
 
 /// Entry flag: the light's diffuse term may reach the group.
 pub const ENTRY_DIFFUSE: u32 = 1 << 30;
@@ -98,6 +98,8 @@ pub struct LightLists {
     pool_capacity: u32,
     /// The user's upper limit. The device's limit applies as well.
     pool_limit: u32,
+    /// The pool has room for so many times the entries of one frame.
+    room: u32,
     list_cap: u32,
     generation: u32,
     counts: (u32, u32),
@@ -140,6 +142,7 @@ impl LightLists {
             light_capacity: 0,
             pool_capacity: 0,
             pool_limit: u32::MAX,
+            room: 1,
             list_cap: u32::MAX,
             generation: 0,
             counts: (0, 0),
@@ -164,6 +167,29 @@ impl LightLists {
         self.expire();
     }
 
+    /// Keeps room for lists that are made anew while others stay: for so many times the entries of one frame.
+    pub(crate) fn leave_room(&mut self, room: u32) {
+        self.room = room;
+    }
+
+    /// Entries for which the pool needs room, as far as the counters that have arrived tell.
+    fn asked(&self) -> u64 {
+        self.readback.latest().map_or(0, |c| c.requested()) * u64::from(self.room)
+    }
+
+    /// Whether a frame that makes all lists would grow the pool, as far as the counters that have arrived
+    /// tell. Until then, lists that did not fit stay all lights.
+    pub(crate) fn wants_growth(&mut self, gpu: &Gpu) -> bool {
+        self.readback.poll(gpu);
+        let most = u64::from(self.pool_limit).min(MAX_POOL);
+        self.asked().min(most) > u64::from(self.pool_capacity)
+    }
+
+    /// Whether lists lose lights beyond a number.
+    pub(crate) fn is_capped(&self) -> bool {
+        self.list_cap != u32::MAX
+    }
+
     /// Marks the lists as outdated. A strategy that keeps lists over frames
     /// ([`Reuse`](crate::Reuse)) then makes them again.
     pub fn expire(&mut self) {
@@ -185,7 +211,7 @@ impl LightLists {
     ) -> Result<bool, AssignError> {
         let (light_count, levels) = (lights.count(), lights.levels());
         self.readback.poll(gpu);
-        let asked = self.readback.latest().map_or(0, |c| c.requested());
+        let asked = self.asked();
         let records = u64::from(group_count) + 1;
         let larger = if self.lists.size() < records * 8 {
             Some(gpu.storage("light lists", records * 8)?)
@@ -197,10 +223,30 @@ impl LightLists {
             self.lists = lists;
             changed = true;
         }
+        self.counts = (light_count, group_count);
+        self.upload(gpu, levels);
+        Ok(changed)
+    }
+
+    /// Prepares a frame that makes only some lists anew, for as many lights and groups as the frame before.
+    /// It replaces no buffer, because the others stay.
+    pub(crate) fn prepare_update(
+        &mut self,
+        gpu: &Gpu,
+        lights: &LightBuffer,
+    ) -> Result<bool, AssignError> {
+        self.readback.poll(gpu);
+        self.upload(gpu, lights.levels());
+        Ok(false)
+    }
+
+    /// Uploads the numbers of the prepared frame.
+    fn upload(&self, gpu: &Gpu, levels: NodeLevels) {
+        let (light_count, group_count) = self.counts;
+        let records = u64::from(group_count) + 1;
         // In every frame, because a number that the GPU wrote may have replaced it.
         let all = LightList { first: 0, count: light_count };
         gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
-        self.counts = (light_count, group_count);
         let cull = CullUniform {
             light_count,
             group_count,
@@ -212,7 +258,6 @@ impl LightLists {
             first_grandparent: levels.first_grandparent,
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
-        Ok(changed)
     }
 
     /// Replaces the entry buffer if all lights or the pool no longer fit.
@@ -270,6 +315,15 @@ impl LightLists {
         live_count: Option<&wgpu::Buffer>,
     ) {
         encoder.clear_buffer(&self.counters, 0, None);
+        self.record_light_count(encoder, live_count);
+    }
+
+    /// Copies the number of lights to where kernels and shading read it, if only the GPU knows it.
+    pub(crate) fn record_light_count(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        live_count: Option<&wgpu::Buffer>,
+    ) {
         if let Some(count) = live_count {
             // `CullUniform::light_count`, and the count of record 0.
             encoder.copy_buffer_to_buffer(count, 0, &self.uniform, 0, 4);

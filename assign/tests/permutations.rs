@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use assign::{
-    AreaBounds, CullSettings, Culler, GroupShape, LightKinds, LightSource,
+    AreaBounds, CullSettings, Culler, GroupShape, LightChanges, LightKinds, LightSource,
     conformance::LinkedModule,
 };
 
@@ -86,6 +86,29 @@ fn every_permutation_of_the_kernel_validates() {
             let reads_live = source.contains("live.count") || source.contains("live_live.count");
             assert_eq!(reads_live, sparse, "{what}");
         }
+    }
+}
+
+/// The kernels that find touched groups link for every shape, test and occupancy.
+#[test]
+fn every_kernel_of_touched_groups_validates() {
+    for (shape, bounds, settings, sparse) in permutations() {
+        let what = format!("{shape:?}, {settings:?}, sparse {sparse}");
+        let source = Culler::touched_source(shape, settings, sparse, strategy(bounds).as_str())
+            .unwrap_or_else(|e| panic!("{what}: {e}"));
+        let linked = LinkedModule::new(&what, &source);
+        let mut entry_points: Vec<_> =
+            linked.module().entry_points.iter().map(|e| &e.name).collect();
+        entry_points.sort();
+        assert_eq!(entry_points, ["start_update", "touch_groups"], "{what}");
+        assert_eq!(source.contains("groups.count"), sparse, "{what}");
+    }
+    for kinds in LightKinds::ALL {
+        let source = LightChanges::kernel_source(kinds).unwrap();
+        let module = LinkedModule::new("the kernel of light changes", &source);
+        let plain = kinds == LightKinds::default();
+        let bytes = module.layout_of("Known").bytes;
+        assert_eq!(bytes, if plain { 16 } else { 80 }, "{kinds:?}");
     }
 }
 

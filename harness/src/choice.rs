@@ -1,6 +1,6 @@
 //! A strategy that a command line asks for, ready to be made.
 
-use assign::{AssignError, FrustumTests, Gpu, Keep, LightSource, Reuse};
+use assign::{AssignError, FrustumTests, Gpu, Keep, LightSource, Reuse, Touched};
 use assign_clustered::SpecularCut;
 use shading::Mode;
 
@@ -57,6 +57,9 @@ impl Choice {
             }
         }
         let Method::Lists { mut strategy, early_exit } = method else { return Ok(method) };
+        if options.is_touched {
+            strategy = Box::new(Touched::new(gpu, strategy)?);
+        }
         if let Some(frames) = options.keep {
             strategy = Box::new(Keep::new(gpu, strategy, frames)?);
         }
@@ -94,7 +97,8 @@ impl Choice {
     /// Whether lists are used for several frames.
     pub fn is_reused(&self) -> bool {
         let options = self.id.options();
-        [options.reuse, options.keep].into_iter().flatten().any(|frames| frames > 1)
+        options.is_touched
+            || [options.reuse, options.keep].into_iter().flatten().any(|frames| frames > 1)
     }
 
     /// Whether it cuts the samples into groups, and so has something to assign.

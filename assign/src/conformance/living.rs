@@ -35,6 +35,21 @@ pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {
     Plan::Living(Living { frames: frames.into(), bad, every, from_gpu })
 }
 
+/// Frames in which the same lights move on, each in a direction of its own, and stay in their slots.
+pub(super) fn drift(rng: &mut Rng) -> Plan {
+    let stage = in_room(rng, &default_view()).thinned(600);
+    let lights = mix(rng, &stage, 600, (0.2, 5.0), Kinds::Mixed);
+    let steps: Vec<Vec3> = lights.iter().map(|_| rng.direction().as_vec3() * 0.1).collect();
+    let frames = (0..6).map(|frame| {
+        let mut lights = lights.clone();
+        for (light, step) in lights.iter_mut().zip(&steps) {
+            light.position += *step * frame as f32;
+        }
+        Lit { lights, stage: stage.clone(), opaque_only: false }
+    });
+    Plan::Living(Living { frames: frames.collect(), bad: 0, every: 100, from_gpu: false })
+}
+
 /// Few lights that the GPU writes into a buffer with room for so many that their hierarchy has three
 /// levels. The other records are faulty. They lie in the middle, so that the lights' slots lie before
 /// and behind theirs.

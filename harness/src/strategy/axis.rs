@@ -15,6 +15,8 @@ const CAP: &str = "cap";
 const REUSE: &str = "reuse";
 /// The prefix of a segment that sets for how many frames lists of larger lights are kept.
 const KEEP: &str = "keep";
+/// The segment that makes only the lists anew that a changed light touches.
+const TOUCHED: &str = "touched";
 /// The segment that turns the early exit off.
 const NO_EXIT: &str = "no-exit";
 
@@ -37,6 +39,8 @@ pub enum Axis {
     Reuse,
     /// For how many frames lists are kept that hold all lights wherever they may move: `keep4`.
     Keep,
+    /// Whether only the lists are made anew that a changed light touches: `touched`.
+    Touched,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
     /// Whether shading evaluates every listed light, also where it adds nothing: `no-exit`.
@@ -45,7 +49,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Box,
         Self::Normals,
         Self::Specular,
@@ -54,6 +58,7 @@ impl Axis {
         Self::AreaBounds,
         Self::Reuse,
         Self::Keep,
+        Self::Touched,
         Self::Cap,
         Self::Exit,
     ];
@@ -78,6 +83,9 @@ impl Axis {
             Self::Keep => {
                 "keep and the most frames for which lists of larger lights are kept, such as keep4"
             }
+            Self::Touched => {
+                "touched, which makes only the lists anew that a changed light touches"
+            }
             Self::Exit => "no-exit, which evaluates every listed light",
         }
     }
@@ -91,6 +99,7 @@ impl Axis {
             _ if segment.starts_with(CAP) => Some(Self::Cap),
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
             NO_EXIT => Some(Self::Exit),
+            TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
             _ if segment.starts_with(KEEP) => Some(Self::Keep),
@@ -124,6 +133,7 @@ impl Axis {
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
+            Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
         }
         Some(())
@@ -151,6 +161,7 @@ impl Axis {
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
+            Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
         }
     }
@@ -183,6 +194,8 @@ impl Axis {
             Self::Cap => ("list_cap", options.cap?.into()),
             Self::Reuse => ("reuse_frames", options.reuse?.into()),
             Self::Keep => ("keep_frames", options.keep?.into()),
+            Self::Touched if options.is_touched => ("touched", true.into()),
+            Self::Touched => return None,
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
             Self::Exit => return None,
         })

@@ -79,6 +79,15 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             "`dif` cannot be combined with normal cones",
         ));
     }
+    for other in [Axis::Normals, Axis::Cap, Axis::Reuse, Axis::Keep] {
+        if options.is_touched
+            && let Some(segment) = other.segment(options)
+        {
+            let reason =
+                "only whole lists without normals, made for the lights of one frame, can stay";
+            return Err(contradiction(id, "touched", &segment, reason));
+        }
+    }
     let settings = options.settings();
     let is_ball = settings.area_bounds == AreaBounds::Ball;
     if is_ball && settings.source == LightSource::Hierarchy && row.has_axis(Axis::Source) {

@@ -62,6 +62,7 @@ pub(super) const ROWS: &[Row] = &[
             Axis::Cap,
             Axis::Reuse,
             Axis::Keep,
+            Axis::Touched,
             Axis::Exit,
         ],
         needs: NEEDS_DEPTH,
@@ -82,10 +83,25 @@ const CLUSTERS: Row = Row {
     ..Row::PLAIN
 };
 
-const FRUSTA: &[Axis] =
-    &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit];
-const BOXES: &[Axis] =
-    &[Axis::Source, Axis::AreaBounds, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit];
+const FRUSTA: &[Axis] = &[
+    Axis::Tests,
+    Axis::Source,
+    Axis::AreaBounds,
+    Axis::Cap,
+    Axis::Reuse,
+    Axis::Keep,
+    Axis::Touched,
+    Axis::Exit,
+];
+const BOXES: &[Axis] = &[
+    Axis::Source,
+    Axis::AreaBounds,
+    Axis::Cap,
+    Axis::Reuse,
+    Axis::Keep,
+    Axis::Touched,
+    Axis::Exit,
+];
 
 /// Sizes that `advise` tries for all clusters.
 pub(super) const FEW: &[&str] =

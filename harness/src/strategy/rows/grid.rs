@@ -23,6 +23,7 @@ pub(super) const ROWS: &[Row] = &[Row {
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,
+        Axis::Touched,
         Axis::Exit,
     ],
     sizes: Sizes {

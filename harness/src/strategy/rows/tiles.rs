@@ -51,6 +51,7 @@ const TILES: Row = Row {
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,
+        Axis::Touched,
         Axis::Exit,
     ],
     sizes: Sizes {

@@ -1,0 +1,161 @@
+//! The lights that changed since the frame before, which the GPU finds.
+//!
+//! A light counts as changed if culling would test another volume in its slot: its ball, its kind, its
+//! cone or its outline. Intensity does not count. For each change the GPU keeps two balls: the light's
+//! ball before, and its ball now. A list can only differ from the one of the frame before if one of these
+//! balls reaches its group. It does not matter why a slot changed: lights that moved, jumped, were born,
+//! died or were sorted into other slots all leave such balls.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use crate::{
+    AssignError, Frame, FrameBindings, Gpu, LightBuffer, LightKinds, Passes, Shader,
+    kernel::{Slot, bind_buffers, layout, pipeline, workgroups},
+};
+
+/// Two balls per changed light; beyond them all groups count as touched: `MOST_BALLS` of `changes.wesl`.
+const MOST_BALLS: u64 = 2048;
+
+/// Lanes of a workgroup: `find_changes`.
+const LANES: u32 = 256;
+
+/// What the CPU writes at the start of `struct Changes`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+struct ChangesHeader {
+    ball_count: u32,
+    slot_count: u32,
+    all_groups: u32,
+    padding: u32,
+}
+
+/// The changes of a frame's lights since the frame recorded before, and the boxes around all lights for
+/// which the groups were laid out.
+#[derive(Debug)]
+pub struct LightChanges {
+    frame: FrameBindings,
+    layout: wgpu::BindGroupLayout,
+    changes: wgpu::Buffer,
+    /// What culling reads of each slot: `array<Known>`.
+    known: wgpu::Buffer,
+    bind_group: Option<wgpu::BindGroup>,
+    kernel: Option<Kernel>,
+    workgroups: u32,
+    /// Box around all supports.
+    bounds: Option<(Vec3, Vec3)>,
+    /// Box around all positions.
+    position_bounds: Option<(Vec3, Vec3)>,
+}
+
+#[derive(Debug)]
+struct Kernel {
+    kinds: LightKinds,
+    clear: wgpu::ComputePipeline,
+    find: wgpu::ComputePipeline,
+}
+
+impl LightChanges {
+    /// Makes it without lights.
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let bytes = size_of::<ChangesHeader>() as u64 + MOST_BALLS * 16;
+        Ok(Self {
+            frame: FrameBindings::new(gpu),
+            layout: layout(gpu, "light changes", stages, &[Slot::Write; 2]),
+            changes: gpu.storage("light changes", bytes)?,
+            known: gpu.storage("known lights", 0)?,
+            bind_group: None,
+            kernel: None,
+            workgroups: 0,
+            bounds: None,
+            position_bounds: None,
+        })
+    }
+
+    /// Takes the lights of a frame for which groups are laid out anew.
+    pub(crate) fn restart(&mut self, lights: &LightBuffer) {
+        self.bounds = lights.bounds();
+        self.position_bounds = lights.position_bounds();
+    }
+
+    /// Whether groups that were laid out for earlier lights serve these lights as well.
+    pub(crate) fn serves(&self, lights: &LightBuffer) -> bool {
+        match (self.bounds, lights.bounds()) {
+            (Some((low, high)), Some(now)) => now.0.cmpge(low).all() && now.1.cmple(high).all(),
+            (_, now) => now.is_none(),
+        }
+    }
+
+    /// Sizes and binds its buffers. No clock counts it.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        let (slots, kinds) = (frame.lights.count(), frame.lights.kinds());
+        self.frame.update(gpu, frame)?;
+        let bytes = u64::from(slots) * if kinds == LightKinds::default() { 16 } else { 80 };
+        if self.known.size() < bytes {
+            self.known = gpu.storage("known lights", bytes)?;
+        }
+        if self.kernel.as_ref().is_none_or(|kernel| kernel.kinds != kinds) {
+            self.kernel = Some(self.compile(gpu, kinds)?);
+        }
+        let header = ChangesHeader { slot_count: slots, ..ChangesHeader::default() };
+        gpu.queue.write_buffer(&self.changes, 0, bytemuck::bytes_of(&header));
+        self.bind_group = Some(bind_buffers(gpu, &self.layout, &[&self.changes, &self.known]));
+        self.workgroups = workgroups(slots.into(), LANES);
+        Ok(())
+    }
+
+    fn compile(&self, gpu: &Gpu, kinds: LightKinds) -> Result<Kernel, AssignError> {
+        // SAFETY: its loop counts up to the number of slots by a step of at least one workgroup.
+        #[allow(unsafe_code, reason = "its loop ends")]
+        let module = unsafe { shader(kinds).create_uncounted(gpu, "package::light_changes") }?;
+        let layouts = [self.frame.layout(), &self.layout];
+        let entry = |entry_point| pipeline(gpu, &module, entry_point, &layouts);
+        Ok(Kernel { kinds, clear: entry("clear_changes"), find: entry("find_changes") })
+    }
+
+    /// The kernels' linked WGSL for lights of these kinds.
+    pub fn kernel_source(kinds: LightKinds) -> Result<String, AssignError> {
+        shader(kinds).link("package::light_changes")
+    }
+
+    /// Records the pass `changes`. Call it after the light buffer's passes of the frame.
+    pub(crate) fn record(&self, passes: &mut dyn Passes) {
+        let Some(kernel) = &self.kernel else { return };
+        passes.compute("changes", &mut |pass| {
+            pass.set_bind_group(0, self.frame.bind_group(), &[]);
+            pass.set_bind_group(1, self.bind_group.as_ref(), &[]);
+            pass.set_pipeline(&kernel.clear);
+            pass.dispatch_workgroups(1, 1, 1);
+            pass.set_pipeline(&kernel.find);
+            pass.dispatch_workgroups(self.workgroups, 1, 1);
+        });
+    }
+
+    /// The box around all supports for which the groups were laid out. It holds those of the frame's lights.
+    pub(crate) fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.bounds
+    }
+
+    /// The box around the positions of the lights for which the groups were laid out.
+    pub(crate) fn position_bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.position_bounds
+    }
+
+    /// The balls: `struct Changes`.
+    pub(crate) fn buffer(&self) -> &wgpu::Buffer {
+        &self.changes
+    }
+
+    /// Bytes of its buffers.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.frame.bytes() + self.changes.size() + self.known.size()
+    }
+}
+
+fn shader(kinds: LightKinds) -> Shader<'static> {
+    Shader::new(1)
+        .module("package::changes", include_str!("shaders/changes.wesl"))
+        .module("package::light_changes", include_str!("shaders/light_changes.wesl"))
+        .light_kinds(kinds)
+}

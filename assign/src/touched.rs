@@ -1,0 +1,146 @@
+//! Lists of which only those are made anew that a changed light touches: the `update` axis without loss.
+//!
+//! As long as view, surfaces and models stay, groups stay, and a list can only change if a light does. So
+//! in each frame [`Touched`]
+//!
+//! 1. finds the lights that changed since the frame before ([`LightChanges`], pass `changes`),
+//! 2. finds the groups that one of them reached or reaches (pass `touch`), and
+//! 3. makes lists for these groups alone (pass `cull`). They go behind the others in the pool, which is
+//!    therefore kept twice as large.
+//!
+//! It spares the passes that bound groups, and the culling of groups that no change touches. This is future
+//! work of the comparison paper (Enhuber 2019, section 8). All lists are made anew if the view changed
+//! (unless the groups are fixed in the world), if a light leaves the box for which groups were laid out, or
+//! on the GPU if more than 1,024 lights changed or the pool is nearly full.
+//!
+//! Where it fails: if all lights move, it finds out in vain; and a strategy whose groups move with the
+//! camera gains nothing from it while the camera moves. If surfaces move, call [`LightLists::expire`] in
+//! that frame.
+
+use glam::Vec3;
+
+use crate::{
+    AssignError, Assignment, Frame, Gpu, LightChanges, LightKinds, LightLists, Lookup, ModelBox,
+    Needs, Passes, SampleDomain, View,
+};
+
+/// The pool has room for so many times the entries of one frame.
+const ROOM: u32 = 2;
+
+/// A strategy that makes only the lists anew that a changed light touches, and loses no light.
+pub struct Touched {
+    inner: Box<dyn Assignment>,
+    changes: LightChanges,
+    /// What the recorded lists were made for.
+    made: Option<Made>,
+    models: Vec<ModelBox>,
+    /// What the prepared frame makes lists for, and whether it makes only some.
+    next: Option<(Made, bool)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Made {
+    /// `None` if the groups are fixed in the world.
+    view: Option<View>,
+    samples: SampleDomain,
+    light_count: u32,
+    kinds: LightKinds,
+    surface_bounds: Option<(Vec3, Vec3)>,
+    /// Of the lists.
+    generation: u32,
+}
+
+impl Touched {
+    /// Wraps a strategy.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] if the strategy does not [update groups](Assignment::updates_groups), or
+    /// reads normals or triangles, by which a list may change though no volume does.
+    pub fn new(gpu: &Gpu, mut inner: Box<dyn Assignment>) -> Result<Self, AssignError> {
+        let needs = inner.needs();
+        if !inner.updates_groups() || needs.normals || needs.triangles {
+            return Err(AssignError::Unsupported {
+                strategy: inner.id(),
+                asked: "touched".into(),
+                reason: "only tiles, clusters without normals, grids and models can make some lists anew \
+                         and keep the others"
+                    .into(),
+            });
+        }
+        inner.lists_mut().leave_room(ROOM);
+        let changes = LightChanges::new(gpu)?;
+        Ok(Self { inner, changes, made: None, models: Vec::new(), next: None })
+    }
+}
+
+impl Assignment for Touched {
+    fn id(&self) -> String {
+        format!("{}/touched", self.inner.id())
+    }
+
+    fn needs(&self) -> Needs {
+        self.inner.needs()
+    }
+
+    fn is_view_bound(&self) -> bool {
+        self.inner.is_view_bound()
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        let now = Made {
+            view: self.inner.is_view_bound().then_some(*frame.view),
+            samples: frame.samples,
+            light_count: frame.lights.count(),
+            kinds: frame.lights.kinds(),
+            surface_bounds: frame.surface_bounds,
+            generation: self.inner.lists().generation(),
+        };
+        let lists = self.inner.lists_mut();
+        // The records of capped lists do not tell how long the lists were.
+        let stays = !lists.wants_growth(gpu)
+            && !lists.is_capped()
+            && self.made.as_ref() == Some(&now)
+            && self.changes.serves(frame.lights)
+            && self.models == frame.models.unwrap_or_default();
+        // After an error there are no lists.
+        self.made = None;
+        if !stays {
+            self.changes.restart(frame.lights);
+            self.models = frame.models.unwrap_or_default().to_vec();
+        }
+        self.changes.prepare(gpu, frame)?;
+        let changes = stays.then_some(&self.changes);
+        self.inner.prepare(gpu, &Frame { changes, ..*frame })?;
+        self.next = Some((Made { generation: self.inner.lists().generation(), ..now }, stays));
+        Ok(())
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        let Some((made, stays)) = self.next else { return };
+        self.changes.record(passes);
+        let changes = stays.then_some(&self.changes);
+        self.inner.record(&Frame { changes, ..*frame }, passes);
+        self.made = Some(made);
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        self.inner.lookup()
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.inner.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.inner.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.inner.lists_mut()
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes() + self.changes.bytes()
+    }
+}
