@@ -89,6 +89,7 @@ fn only_the_comparison_papers_strategies_are_counted_as_its_own() {
         "SC-E/ball",
         "SC-E/cap8",
         "T-E/reuse2",
+        "T-E/touched",
     ] {
         assert!(!id(other).is_of_the_paper(), "{other}");
     }
@@ -103,6 +104,7 @@ fn parameters_have_names() {
     assert_eq!((&parameters["tests"], &parameters["source"]), (&"hs".into(), &"linear".into()));
     assert_eq!(id("SC-E/n24").parameters()["normal_bins"], 24);
     assert_eq!(id("SC-E/ball").parameters()["area_bounds"], "ball");
+    assert_eq!(id("G/touched").parameters()["touched"], true);
     assert_eq!(id("M/0.5").parameters()["part_size_m"], 0.5);
 }
 
@@ -111,7 +113,7 @@ fn knobs_make_an_id_lossy() {
     for lossy in ["SC-E/n24/s0.001", "SC-E/n24/cone45", "SC-E/dif", "T-E/reuse2", "T-E/cap8"] {
         assert!(id(lossy).is_lossy(9), "{lossy}");
     }
-    for lossless in ["SC-E/no-exit", "SC-E/n24", "T-E/reuse1", "T-E/cap9"] {
+    for lossless in ["SC-E/no-exit", "SC-E/n24", "T-E/reuse1", "T-E/cap9", "T-E/touched"] {
         assert!(!id(lossless).is_lossy(9), "{lossless}");
     }
 }
@@ -234,6 +236,8 @@ fn contradictions_name_both_segments() {
         ("SC-E/dif/n6", "dif", "n6"),
         ("SC-E/n6/dif", "dif", "n6"),
         ("SC-E/ball/bvh", "ball", "bvh"),
+        ("T-E/touched/cap8", "touched", "cap8"),
+        ("SC-E/keep4/touched", "touched", "keep4"),
     ] {
         let error = StrategyId::parse(id).expect_err(id).to_string();
         let quoted = [first, second].map(|segment| format!("{segment:?}"));
