@@ -10,8 +10,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::{
-    AssignError, Frame, FrameBindings, Gpu, LightBuffer, LightKinds, Passes, Shader,
-    kernel::{Slot, bind_buffers, layout, pipeline, workgroups},
+    AssignError, Gpu, LightBuffer, LightKinds, Passes, Shader,
+    entries::{entry, storage_entry},
+    kernel::{Slot, bind_buffers, bind_entries, layout, pipeline, workgroups},
 };
 
 /// Two balls per changed light; beyond them all groups count as touched: `MOST_BALLS` of `changes.wesl`.
@@ -34,7 +35,9 @@ struct ChangesHeader {
 /// which the groups were laid out.
 #[derive(Debug)]
 pub struct LightChanges {
-    frame: FrameBindings,
+    /// Layout of bind group 0: the lights, where [`FrameBindings`](crate::FrameBindings) has them.
+    light_layout: wgpu::BindGroupLayout,
+    lights: Option<wgpu::BindGroup>,
     layout: wgpu::BindGroupLayout,
     changes: wgpu::Buffer,
     /// What culling reads of each slot: `array<Known>`.
@@ -59,9 +62,11 @@ impl LightChanges {
     /// Makes it without lights.
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
+        let lights = [1, 2, 3].map(|binding| storage_entry(binding, stages, true));
         let bytes = size_of::<ChangesHeader>() as u64 + MOST_BALLS * 16;
         Ok(Self {
-            frame: FrameBindings::new(gpu),
+            light_layout: gpu.bind_group_layout("lights", &lights),
+            lights: None,
             layout: layout(gpu, "light changes", stages, &[Slot::Write; 2]),
             changes: gpu.storage("light changes", bytes)?,
             known: gpu.storage("known lights", 0)?,
@@ -88,9 +93,11 @@ impl LightChanges {
     }
 
     /// Sizes and binds its buffers. No clock counts it.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        let (slots, kinds) = (frame.lights.count(), frame.lights.kinds());
-        self.frame.update(gpu, frame)?;
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, lights: &LightBuffer) -> Result<(), AssignError> {
+        let (slots, kinds) = (lights.count(), lights.kinds());
+        let entries =
+            [entry(1, lights.spheres()), entry(2, lights.emissions()), entry(3, lights.shapes())];
+        self.lights = Some(bind_entries(gpu, &self.light_layout, &entries));
         let bytes = u64::from(slots) * if kinds == LightKinds::default() { 16 } else { 80 };
         if self.known.size() < bytes {
             self.known = gpu.storage("known lights", bytes)?;
@@ -109,7 +116,7 @@ impl LightChanges {
         // SAFETY: its loop counts up to the number of slots by a step of at least one workgroup.
         #[allow(unsafe_code, reason = "its loop ends")]
         let module = unsafe { shader(kinds).create_uncounted(gpu, "package::light_changes") }?;
-        let layouts = [self.frame.layout(), &self.layout];
+        let layouts = [&self.light_layout, &self.layout];
         let entry = |entry_point| pipeline(gpu, &module, entry_point, &layouts);
         Ok(Kernel { kinds, clear: entry("clear_changes"), find: entry("find_changes") })
     }
@@ -123,7 +130,7 @@ impl LightChanges {
     pub(crate) fn record(&self, passes: &mut dyn Passes) {
         let Some(kernel) = &self.kernel else { return };
         passes.compute("changes", &mut |pass| {
-            pass.set_bind_group(0, self.frame.bind_group(), &[]);
+            pass.set_bind_group(0, self.lights.as_ref(), &[]);
             pass.set_bind_group(1, self.bind_group.as_ref(), &[]);
             pass.set_pipeline(&kernel.clear);
             pass.dispatch_workgroups(1, 1, 1);
@@ -149,7 +156,7 @@ impl LightChanges {
 
     /// Bytes of its buffers.
     pub(crate) fn bytes(&self) -> u64 {
-        self.frame.bytes() + self.changes.size() + self.known.size()
+        self.changes.size() + self.known.size()
     }
 }
 

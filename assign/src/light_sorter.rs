@@ -5,8 +5,7 @@
 //!
 //! 1. `order` sorts the lights by the [code](code) of their positions. Its result is the light of every
 //!    *slot*. The radix sort takes 8 bits per pass, and it is stable and gives the same order on every
-//!    run. Up to 16,384 lights take one pass in one dispatch, up to 4,194,304 two passes, and more
-//!    take three.
+//!    run. Up to 16,384 lights take one pass, up to 4,194,304 two passes, and more take three.
 //! 2. `boxes` copies the lights to their slots and boxes every 64 slots, every 64 of these boxes, and
 //!    every 64 of those ([`NodeLevels`](crate::light_nodes::NodeLevels)).
 //!

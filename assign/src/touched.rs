@@ -109,7 +109,7 @@ impl Assignment for Touched {
             self.changes.restart(frame.lights);
             self.models = frame.models.unwrap_or_default().to_vec();
         }
-        self.changes.prepare(gpu, frame)?;
+        self.changes.prepare(gpu, frame.lights)?;
         let changes = stays.then_some(&self.changes);
         self.inner.prepare(gpu, &Frame { changes, ..*frame })?;
         self.next = Some((Made { generation: self.inner.lists().generation(), ..now }, stays));

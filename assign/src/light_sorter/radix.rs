@@ -24,8 +24,6 @@ pub(super) struct Blocks {
 /// How a block finds the places of its digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Counting {
-    /// It counts the digits of all lights itself. One dispatch does.
-    Alone,
     /// It adds up the counts of all blocks.
     Together,
     /// A pass of its own has added up the counts.
@@ -36,7 +34,7 @@ impl Blocks {
     /// The blocks for at most `lights` lights.
     pub(super) fn over(lights: u32) -> Self {
         match lights {
-            0..=0x4000 => Self { rounds: 1, counting: Counting::Alone },
+            0..=0x4000 => Self { rounds: 1, counting: Counting::Together },
             0x4001..=0x2_0000 => Self { rounds: 4, counting: Counting::Together },
             _ => Self { rounds: 8, counting: Counting::Summed },
         }
@@ -83,7 +81,6 @@ impl Digit {
             .flag("first", first)
             .flag("last", last)
             .flag("only", first && last)
-            .flag("alone", blocks.counting == Counting::Alone)
             .flag("summed", blocks.counting == Counting::Summed)
     }
 }
@@ -134,7 +131,6 @@ impl RadixSort {
             };
             let count = || kernel("count_digits", blocks);
             let kernels = match cut.counting {
-                Counting::Alone => vec![kernel("sort_block", blocks)],
                 Counting::Together => vec![count(), kernel("move_items", blocks)],
                 Counting::Summed => {
                     vec![count(), kernel("sum_digits", DIGITS), kernel("move_items", blocks)]
