@@ -1,6 +1,6 @@
 //! The WESL of clusters: one main module, the modules that it imports, and the flags of each variant.
 
-use assign::{Bounds, StrategyWesl};
+use assign::{Bounds, Storage, StrategyWesl};
 
 use crate::Normals;
 
@@ -32,7 +32,12 @@ pub const GLOSSY_BINS_WESL: StrategyWesl<'static> =
     clusters(&[("explicit_bounds", true), ("split_by_normals", true), ("glossy", true)]);
 
 const fn clusters(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'static> {
-    StrategyWesl { main: include_str!("shaders/clusters.wesl"), imports: IMPORTS, flags }
+    StrategyWesl {
+        main: include_str!("shaders/clusters.wesl"),
+        imports: IMPORTS,
+        flags,
+        storage: Storage::Lists,
+    }
 }
 
 /// The WESL of a variant. Only clusters with explicit bounds have normals or gloss.

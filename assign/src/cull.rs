@@ -7,7 +7,7 @@
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
     LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
-    StrategyModule, StrategyWesl,
+    Storage, StrategyModule, StrategyWesl,
     entries::{entry, storage_entry},
     touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
@@ -104,13 +104,13 @@ impl Culler {
         variant.check(label)?;
         Ok(Self {
             variant,
-            module,
+            module: module.stored_as(settings.storage),
             kernel: None,
             frame: FrameBindings::new(gpu),
             cull: ListsBindings::of_kernel(gpu, label, bindings),
             look_up: ListsBindings::of_look_up(gpu, label, bindings),
             source: None,
-            lists: LightLists::new(gpu)?,
+            lists: LightLists::stored_as(gpu, settings.storage)?,
             touched: None,
             is_update: false,
             live_count: None,
@@ -329,6 +329,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .flag("grandparents", levels > 2)
         .flag("area_balls", variant.settings.area_bounds == AreaBounds::Ball)
         .flag("sparse", variant.sparse)
+        .flag("masks", variant.settings.storage == Storage::Masks)
         .light_kinds(lights.kinds)
 }
 

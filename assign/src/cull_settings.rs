@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use crate::{AssignError, GroupShape};
+use crate::{AssignError, GroupShape, Storage};
 
 /// Tests of a light against a frustum. A light is a hit unless a test separates it from the
 /// frustum.
@@ -129,10 +129,12 @@ pub struct CullSettings {
     pub source: LightSource,
     /// The volume that stands for an area light.
     pub area_bounds: AreaBounds,
+    /// Where the lights that reach a group are kept.
+    pub storage: Storage,
 }
 
 impl CullSettings {
-    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`. Defaults add
+    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, `/mask`. Defaults add
     /// nothing, and tests appear only if groups are frusta.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
@@ -144,6 +146,9 @@ impl CullSettings {
         }
         if self.area_bounds == AreaBounds::Ball {
             suffix += "/ball";
+        }
+        if self.storage == Storage::Masks {
+            suffix += "/mask";
         }
         suffix
     }

@@ -47,9 +47,11 @@ mod light_nodes;
 mod light_order;
 mod light_record;
 mod light_sorter;
+mod list_records;
 mod lists;
 mod lists_bindings;
 mod live_groups;
+mod masks;
 mod models;
 mod passes;
 mod readback;
@@ -81,12 +83,14 @@ pub use light_fault::LightFault;
 pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
 pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere, LightTraits};
-pub use lists::{
+pub use list_records::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,
-    LightLists, ListsSnapshot,
+    ListsSnapshot,
 };
+pub use lists::LightLists;
 pub use lists_bindings::{FIRST_STRATEGY_BINDING, ListsBindings};
 pub use live_groups::LiveGroups;
+pub use masks::Storage;
 pub use models::ModelBox;
 pub use passes::{EncoderPasses, Passes};
 pub use readback::Readback;

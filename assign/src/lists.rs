@@ -8,18 +8,12 @@
 //! Worked example: 5 lights, capacity for 8, lists of 2, 0 and 3 entries:
 //! `lists = [(0, 5), (8, 2), (0, 0), (10, 3)]`, `entries = [0 1 2 3 4 - - - | a b c d e]`.
 
-use bytemuck::{Pod, Zeroable, cast_slice, pod_collect_to_vec};
+use bytemuck::{cast_slice, pod_collect_to_vec};
 
-use crate::{AssignError, Gpu, LightBuffer, light_nodes::NodeLevels, readback::Readback};
-
-/// Entry flag: the light's diffuse term may reach the group.
-pub const ENTRY_DIFFUSE: u32 = 1 << 30;
-/// Entry flag: the light's specular term may reach the group.
-pub const ENTRY_SPECULAR: u32 = 1 << 31;
-/// Mask of an entry's low bits, which hold the light's index.
-pub const ENTRY_LIGHT: u32 = ENTRY_DIFFUSE - 1;
-/// The value that `group_of` returns for a sample outside all groups. Its list holds all lights.
-pub const ALL_LIGHTS: u32 = u32::MAX;
+use crate::{
+    AssignError, Counters, CullUniform, Gpu, LightBuffer, LightList, ListsSnapshot, Storage,
+    light_nodes::NodeLevels, list_records::ALL_TERMS, masks::MaskLayout, readback::Readback,
+};
 
 /// The most entries of the pool, 4 GiB. `CAREFUL` in `reserve.wesl` relies on it.
 const MAX_POOL: u64 = 1 << 30;
@@ -27,69 +21,15 @@ const MAX_POOL: u64 = 1 << 30;
 /// The most entries with which the pool starts, 64 MiB.
 const MAX_GUESS: u64 = 16 << 20;
 
-/// A light list: `count` entries from `first`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub struct LightList {
-    /// Index of its first entry.
-    pub first: u32,
-    /// Number of its entries.
-    pub count: u32,
-}
-
-/// The counters that the GPU writes: `struct Counters` of `reserve.wesl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub struct Counters {
-    /// Entries taken from the pool, plus the entries of lists that no longer fitted.
-    pub cursor: u32,
-    /// Requested entries, low 32 bits.
-    pub requested_low: u32,
-    /// Requested entries, high 32 bits.
-    pub requested_high: u32,
-    /// Groups that fell back to all lights.
-    pub overflowed_groups: u32,
-    /// Groups with at least one light.
-    pub occupied_groups: u32,
-    /// Entries of the longest requested list.
-    pub longest: u32,
-}
-
-impl Counters {
-    /// Entries that all groups requested together.
-    pub fn requested(&self) -> u64 {
-        u64::from(self.requested_high) << 32 | u64::from(self.requested_low)
-    }
-}
-
-/// The culling kernel's parameters: `struct Cull` of `reserve.wesl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-pub struct CullUniform {
-    /// Number of lights.
-    pub light_count: u32,
-    /// Number of groups.
-    pub group_count: u32,
-    /// First entry of the pool.
-    pub pool_first: u32,
-    /// Entries in the pool.
-    pub pool_capacity: u32,
-    /// 1 if the reserved entries could exceed 32 bits.
-    pub guard_cursor: u32,
-    /// The most lights of a list. Later lights are dropped.
-    pub list_cap: u32,
-    /// Place of the first light node of level 2.
-    pub first_parent: u32,
-    /// Place of the first light node of level 3.
-    pub first_grandparent: u32,
-}
-
 /// Bytes of one set of counters.
 const COUNTERS_BYTES: u64 = size_of::<Counters>() as u64;
 
 /// The lists of one strategy. Buffers grow between frames, which no clock times.
 #[derive(Debug)]
 pub struct LightLists {
+    storage: Storage,
+    /// The sizes of bit masks.
+    masks: MaskLayout,
     lists: wgpu::Buffer,
     entries: wgpu::Buffer,
     counters: wgpu::Buffer,
@@ -106,35 +46,17 @@ pub struct LightLists {
     readback: Readback<Counters>,
 }
 
-/// Lists copied to the CPU.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ListsSnapshot {
-    /// Record 0 (all lights), then one record per group.
-    pub lists: Vec<LightList>,
-    /// All entries.
-    pub entries: Vec<u32>,
-    /// The counters of the last frame.
-    pub counters: Counters,
-}
-
-impl ListsSnapshot {
-    /// The record of a group, [`ALL_LIGHTS`] included; `None` if there is no such group.
-    pub fn list(&self, group: u32) -> Option<LightList> {
-        self.lists.get(group.wrapping_add(1) as usize).copied()
-    }
-
-    /// The entries of a group; `None` if the group or its entries lie outside the buffers.
-    pub fn entries_of(&self, group: u32) -> Option<&[u32]> {
-        let list = self.list(group)?;
-        let first = list.first as usize;
-        self.entries.get(first..first.checked_add(list.count as usize)?)
-    }
-}
-
 impl LightLists {
     /// Empty lists.
     pub fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+        Self::stored_as(gpu, Storage::Lists)
+    }
+
+    /// Empty lists in a storage.
+    pub fn stored_as(gpu: &Gpu, storage: Storage) -> Result<Self, AssignError> {
         Ok(Self {
+            storage,
+            masks: MaskLayout::default(),
             lists: gpu.storage("light lists", 8)?,
             entries: gpu.storage("light entries", 4)?,
             counters: gpu.storage("list counters", COUNTERS_BYTES)?,
@@ -181,6 +103,9 @@ impl LightLists {
     /// tell. Until then, lists that did not fit stay all lights.
     pub(crate) fn wants_growth(&mut self, gpu: &Gpu) -> bool {
         self.readback.poll(gpu);
+        if self.storage == Storage::Masks {
+            return false;
+        }
         let most = u64::from(self.pool_limit).min(MAX_POOL);
         self.asked().min(most) > u64::from(self.pool_capacity)
     }
@@ -218,7 +143,10 @@ impl LightLists {
         } else {
             None
         };
-        let mut changed = self.size_entries(gpu, light_count, group_count, asked)?;
+        let mut changed = match self.storage {
+            Storage::Lists => self.size_entries(gpu, light_count, group_count, asked)?,
+            Storage::Masks => self.size_masks(gpu, light_count, records)?,
+        };
         if let Some(lists) = larger {
             self.lists = lists;
             changed = true;
@@ -245,7 +173,7 @@ impl LightLists {
         let (light_count, group_count) = self.counts;
         let records = u64::from(group_count) + 1;
         // In every frame, because a number that the GPU wrote may have replaced it.
-        let all = LightList { first: 0, count: light_count };
+        let all = LightList { first: self.masks.summary, count: light_count };
         gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
         let cull = CullUniform {
             light_count,
@@ -256,6 +184,8 @@ impl LightLists {
             list_cap: self.list_cap,
             first_parent: levels.first_parent,
             first_grandparent: levels.first_grandparent,
+            mask_stride: self.masks.stride,
+            mask_summary: self.masks.summary,
         };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&cull));
     }
@@ -288,8 +218,7 @@ impl LightLists {
         if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
             return Ok(false);
         }
-        let all: Vec<u32> =
-            (0..light_capacity).map(|light| light | ENTRY_DIFFUSE | ENTRY_SPECULAR).collect();
+        let all: Vec<u32> = (0..light_capacity).map(|light| light | ALL_TERMS).collect();
         let bytes = (u64::from(light_capacity) + u64::from(wanted)) * 4;
         self.entries = match gpu.storage("light entries", bytes) {
             // Keeps the pool as it is. Lists that do not fit stay all lights.
@@ -303,6 +232,22 @@ impl LightLists {
         self.light_capacity = light_capacity;
         self.pool_capacity = wanted;
         Ok(true)
+    }
+
+    /// Replaces the buffer of bit masks if they no longer fit, and sets all bits of the first.
+    fn size_masks(&mut self, gpu: &Gpu, lights: u32, regions: u64) -> Result<bool, AssignError> {
+        let masks = MaskLayout::over(lights)?;
+        let bytes = u64::from(masks.stride) * regions * 4;
+        let changed = self.entries.size() < bytes;
+        if changed {
+            self.entries = gpu.storage("light masks", bytes)?;
+        }
+        if changed || masks != self.masks {
+            let all = vec![u32::MAX; masks.stride as usize];
+            gpu.queue.write_buffer(&self.entries, 0, cast_slice(&all));
+        }
+        self.masks = masks;
+        Ok(changed)
     }
 
     /// Resets the counters. Call it in the encoder of the pass that fills them, before that pass.
@@ -346,13 +291,22 @@ impl LightLists {
         let lists = gpu.read(&self.lists, (u64::from(self.counts.1) + 1) * 8)?;
         let counters = gpu.read(&self.counters, COUNTERS_BYTES)?;
         let counters: Counters = bytemuck::pod_read_unaligned(&counters);
-        let used = self.light_capacity + counters.cursor.min(self.pool_capacity);
-        let entries = gpu.read(&self.entries, u64::from(used) * 4)?;
-        Ok(ListsSnapshot {
-            lists: pod_collect_to_vec(&lists),
-            entries: pod_collect_to_vec(&entries),
-            counters,
-        })
+        let lists: Vec<LightList> = pod_collect_to_vec(&lists);
+        let used = match self.storage {
+            Storage::Lists => self.light_capacity + counters.cursor.min(self.pool_capacity),
+            Storage::Masks => (self.counts.1 + 1) * self.masks.stride,
+        };
+        let entries: Vec<u32> = pod_collect_to_vec(&gpu.read(&self.entries, u64::from(used) * 4)?);
+        let (lists, entries) = match self.storage {
+            Storage::Lists => (lists, entries),
+            Storage::Masks => self.masks.decode(&lists, &entries),
+        };
+        Ok(ListsSnapshot { lists, entries, counters })
+    }
+
+    /// Where the lights of a group are kept.
+    pub fn storage(&self) -> Storage {
+        self.storage
     }
 
     /// Number of groups of the last prepared frame.

@@ -56,11 +56,14 @@ impl<'a> Shader<'a> {
         self
     }
 
-    /// Mounts a strategy: its modules, the main one as `package::strategy`, and its flags. Linking fails
+    /// Mounts a strategy: its modules, the main one as `package::strategy`; `package::look_up`, which reads
+    /// a sample's lights; and its flags. Linking fails
     /// if [`flag`](Self::flag) sets one of these flags too, before or after.
     pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
-        let StrategyWesl { main, imports, flags } = wesl.into();
-        let shader = Self { strategy_flags: flags, ..self.module("package::strategy", main) };
+        let StrategyWesl { main, imports, flags, storage } = wesl.into();
+        let shader =
+            self.module("package::strategy", main).module("package::look_up", storage.look_up());
+        let shader = Self { strategy_flags: flags, ..shader };
         imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source))
     }
 
@@ -221,7 +224,7 @@ mod tests {
         const ROOT: &str = "import package::strategy::GLOSSY;
             @compute @workgroup_size(GLOSSY) fn run() {}";
         let main = "@if(glossy) const GLOSSY: u32 = 2u; @if(!glossy) const GLOSSY: u32 = 1u;";
-        let strategy = |flags| StrategyWesl { main, imports: &[], flags };
+        let strategy = |flags| StrategyWesl { flags, ..main.into() };
         let shader = Shader::new(1).module("package::root", ROOT);
         let link = |shader: Shader<'_>| shader.link("package::root").map_err(|e| e.to_string());
         let [on, off] = [ON, OFF].map(|flags| link(shader.clone().strategy(strategy(flags))));

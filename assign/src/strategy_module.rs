@@ -1,5 +1,7 @@
 //! Holds a strategy's shader text, which kernels and renderers mount to look lists up.
 
+use crate::Storage;
+
 /// WESL of a strategy: its main module, the modules that this one imports, and the flags that both read.
 ///
 /// [`Shader::strategy`](crate::Shader::strategy) mounts all of it. These modules import modules of the
@@ -15,12 +17,14 @@ pub struct StrategyWesl<'a> {
     /// Name and value of each flag that these modules read with `@if`, without the contract's own (`spots`,
     /// `areas`, `hard_cut`, `lanes_reserve`). The renderer must have no flag of the same name.
     pub flags: &'a [(&'a str, bool)],
+    /// Where a group's lights are kept.
+    pub storage: Storage,
 }
 
 impl<'a> From<&'a str> for StrategyWesl<'a> {
-    /// A main module that imports nothing of its own and reads no flag.
+    /// A main module that imports nothing of its own and reads no flag; its groups have lists.
     fn from(main: &'a str) -> Self {
-        Self { main, imports: &[], flags: &[] }
+        Self { main, imports: &[], flags: &[], storage: Storage::Lists }
     }
 }
 
@@ -36,6 +40,12 @@ impl StrategyModule {
     #[allow(unsafe_code, reason = "the author promises it")]
     pub unsafe fn new(wesl: impl Into<StrategyWesl<'static>>) -> Self {
         Self(wesl.into())
+    }
+
+    /// The same with another storage.
+    #[must_use]
+    pub const fn stored_as(self, storage: Storage) -> Self {
+        Self(StrategyWesl { storage, ..self.0 })
     }
 
     /// The WESL.

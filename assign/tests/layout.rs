@@ -72,6 +72,6 @@ fn counters() {
 #[test]
 fn cull_uniform() {
     let rust = struct_layout!(CullUniform: light_count, group_count, pool_first, pool_capacity,
-        guard_cursor, list_cap, first_parent, first_grandparent);
+        guard_cursor, list_cap, first_parent, first_grandparent, mask_stride, mask_summary);
     assert_eq!(kernel().layout_of("Cull"), rust, "WESL, then Rust");
 }

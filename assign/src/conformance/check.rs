@@ -107,24 +107,34 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
             let detail = "the sample's group has no list".into();
             findings.add(Breach::Unwritten, place, detail);
         }
-        Some(list) if (list.first, list.count) != (probe.first, probe.count) => {
+        Some(list) if list.count != probe.count => {
             let detail = format!(
-                "list_of returned ({}, {}), but the record is ({}, {})",
-                probe.first, probe.count, list.first, list.count
+                "the look-up's list has {} entries, but the record says {}",
+                probe.count, list.count
             );
             findings.add(Breach::Lookup, place, detail);
         }
         Some(_) => {
-            let held = seen.entries(probe.group).last();
-            if held.is_some_and(|&last| last != probe.last) {
+            let entries = seen.entries(probe.group);
+            let held = &entries[..entries.len().min(MOST_READ)];
+            if (probe.read as usize, probe.hash) != (held.len(), hash_of(held)) {
                 let detail = format!(
-                    "the look-up's last entry is {:#010x}, but the list ends with {held:#010x?}",
-                    probe.last
+                    "the look-up returned {} entries, and these are not the first {} of the list",
+                    probe.read,
+                    held.len()
                 );
                 findings.add(Breach::Lookup, place, detail);
             }
         }
     }
+}
+
+/// The most entries that the probe reads: `MOST_READ` of `probe.wesl`.
+const MOST_READ: usize = 4096;
+
+/// A number that tells which entries there are, and in which order.
+fn hash_of(entries: &[u32]) -> u32 {
+    entries.iter().fold(0, |hash: u32, entry| hash.wrapping_mul(31).wrapping_add(*entry))
 }
 
 /// Checks one list's entries.

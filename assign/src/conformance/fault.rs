@@ -147,6 +147,20 @@ impl Fault {
         Self::ALL.into_iter().filter(|fault| normals || !fault.needs_normals()).collect()
     }
 
+    /// Whether the fault needs lists with entries and a pool.
+    pub fn needs_entries(self) -> bool {
+        matches!(
+            self,
+            Self::ShuffledList
+                | Self::Repeated
+                | Self::ForeignLight
+                | Self::LostTerms
+                | Self::LostDiffuse
+                | Self::SilentOverflow
+                | Self::StarvedPool
+        )
+    }
+
     /// Whether the fault needs a strategy that reads normals.
     pub fn needs_normals(self) -> bool {
         self == Self::HighHorizon

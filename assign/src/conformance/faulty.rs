@@ -192,7 +192,8 @@ impl Assignment for Faulty {
                 // SAFETY: it has no loop.
                 #[allow(unsafe_code, reason = "it has no loop")]
                 let module = unsafe { StrategyModule::new(LOST_GROUP_WESL) };
-                Lookup { module, ..inner }
+                let storage = self.inner.lists().storage();
+                Lookup { module: module.stored_as(storage), ..inner }
             }
             _ => inner,
         }

@@ -77,7 +77,7 @@ pub use violation::{
     Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
 };
 
-use crate::{AssignError, Assignment, Gpu};
+use crate::{AssignError, Assignment, Gpu, Storage};
 
 /// Makes a new instance of the strategy under test.
 pub type Make<'a> = dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> + 'a;
@@ -128,10 +128,14 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
     let rig = rig()?;
     let plain = find("33-lights")?;
     let has_groups = session::has_groups(rig, plain, make).map_err(|e| failed(plain, e))?;
-    let normals = make(&rig.gpu).map_err(setup)?.needs().normals;
+    let strategy = make(&rig.gpu).map_err(setup)?;
+    let normals = strategy.needs().normals;
+    let entries = strategy.lists().storage() == Storage::Lists;
     let mut planted = Vec::new();
     for fault in Fault::ALL {
-        let applies = (has_groups || !fault.needs_groups()) && (normals || !fault.needs_normals());
+        let applies = (has_groups || !fault.needs_groups())
+            && (normals || !fault.needs_normals())
+            && (entries || !fault.needs_entries());
         if !applies {
             continue;
         }

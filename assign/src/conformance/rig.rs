@@ -24,12 +24,12 @@ pub(super) struct Probe {
     pub(super) position_world: [f32; 3],
     pub(super) depth_view: f32,
     pub(super) group: u32,
-    pub(super) first: u32,
     pub(super) count: u32,
+    pub(super) read: u32,
     depth_used: f32,
     /// The normal that was drawn; after the look-up, the normal that the look-up used.
     pub(super) normal_world: [f32; 3],
-    pub(super) last: u32,
+    pub(super) hash: u32,
 }
 
 /// A stage's surfaces and samples on the GPU.

@@ -1,6 +1,6 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
-use assign::{AreaBounds, FrustumTests, LightSource};
+use assign::{AreaBounds, FrustumTests, LightSource, Storage};
 use assign_clustered::{Normals, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
@@ -11,6 +11,8 @@ use super::{Options, specular};
 const NORMALS: &str = "n";
 /// The prefix of a segment that sets the most lights of a list.
 const CAP: &str = "cap";
+/// The segment that keeps a bit per light in place of a list.
+const MASK: &str = "mask";
 /// The prefix of a segment that sets for how many frames lists are used.
 const REUSE: &str = "reuse";
 /// The prefix of a segment that sets for how many frames lists of larger lights are kept.
@@ -35,6 +37,8 @@ pub enum Axis {
     Source,
     /// What bounds the reach of an area light: `ball` instead of its outline.
     AreaBounds,
+    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list.
+    Storage,
     /// For how many frames lists are used: `reuse4`. Lossy where groups or lights move.
     Reuse,
     /// For how many frames lists are kept that hold all lights wherever they may move: `keep4`.
@@ -49,13 +53,14 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Box,
         Self::Normals,
         Self::Specular,
         Self::Tests,
         Self::Source,
         Self::AreaBounds,
+        Self::Storage,
         Self::Reuse,
         Self::Keep,
         Self::Touched,
@@ -69,6 +74,7 @@ impl Axis {
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
             Self::AreaBounds => "ball or outline",
+            Self::Storage => "mask, which keeps a bit per light in place of a list",
             Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
             Self::Specular => {
@@ -99,6 +105,7 @@ impl Axis {
             _ if segment.starts_with(CAP) => Some(Self::Cap),
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
             NO_EXIT => Some(Self::Exit),
+            MASK => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
@@ -133,6 +140,7 @@ impl Axis {
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
+            Self::Storage => options.storage = Storage::Masks,
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
         }
@@ -161,6 +169,7 @@ impl Axis {
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
+            Self::Storage => (options.storage == Storage::Masks).then(|| MASK.to_owned()),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
         }
@@ -194,6 +203,8 @@ impl Axis {
             Self::Cap => ("list_cap", options.cap?.into()),
             Self::Reuse => ("reuse_frames", options.reuse?.into()),
             Self::Keep => ("keep_frames", options.keep?.into()),
+            Self::Storage if options.storage == Storage::Masks => ("storage", MASK.into()),
+            Self::Storage => return None,
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),

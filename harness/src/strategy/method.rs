@@ -1,6 +1,6 @@
 //! How a strategy lights its pixels, and the point on its axes at which it does.
 
-use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, LightSource};
+use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, LightSource, Storage};
 use assign_clustered::{Normals, SpecularCut};
 use assign_grid::GridBox;
 
@@ -37,6 +37,8 @@ pub struct Options {
     pub source: Option<LightSource>,
     /// What bounds the reach of an area light.
     pub area_bounds: AreaBounds,
+    /// Where a group's lights are kept.
+    pub storage: Storage,
     /// The box that a grid cuts into cells.
     pub grid_box: GridBox,
     /// Bins of normals.
@@ -62,6 +64,7 @@ impl Options {
             tests: self.tests.unwrap_or_default(),
             source: self.source.unwrap_or_default(),
             area_bounds: self.area_bounds,
+            storage: self.storage,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Reads ids, and rejects segments that contradict each other.
 
-use assign::{AreaBounds, LightSource};
+use assign::{AreaBounds, LightSource, Storage};
 use assign_clustered::SpecularCut;
 use thiserror::Error;
 
@@ -87,6 +87,12 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
                 "only whole lists without normals, made for the lights of one frame, can stay";
             return Err(contradiction(id, "touched", &segment, reason));
         }
+    }
+    if options.storage == Storage::Masks
+        && let Some(segment) = Axis::Specular.segment(options)
+    {
+        let reason = "a bit per light has no room for the terms to leave out";
+        return Err(contradiction(id, "mask", &segment, reason));
     }
     let settings = options.settings();
     let is_ball = settings.area_bounds == AreaBounds::Ball;

@@ -105,6 +105,7 @@ fn parameters_have_names() {
     assert_eq!(id("SC-E/n24").parameters()["normal_bins"], 24);
     assert_eq!(id("SC-E/ball").parameters()["area_bounds"], "ball");
     assert_eq!(id("G/touched").parameters()["touched"], true);
+    assert_eq!(id("T-E/mask").parameters()["storage"], "mask");
     assert_eq!(id("M/0.5").parameters()["part_size_m"], 0.5);
 }
 
@@ -113,7 +114,9 @@ fn knobs_make_an_id_lossy() {
     for lossy in ["SC-E/n24/s0.001", "SC-E/n24/cone45", "SC-E/dif", "T-E/reuse2", "T-E/cap8"] {
         assert!(id(lossy).is_lossy(9), "{lossy}");
     }
-    for lossless in ["SC-E/no-exit", "SC-E/n24", "T-E/reuse1", "T-E/cap9", "T-E/touched"] {
+    for lossless in
+        ["SC-E/no-exit", "SC-E/n24", "T-E/reuse1", "T-E/cap9", "T-E/touched", "T-E/mask"]
+    {
         assert!(!id(lossless).is_lossy(9), "{lossless}");
     }
 }
@@ -237,6 +240,7 @@ fn contradictions_name_both_segments() {
         ("SC-E/n6/dif", "dif", "n6"),
         ("SC-E/ball/bvh", "ball", "bvh"),
         ("T-E/touched/cap8", "touched", "cap8"),
+        ("SC-E/dif/mask", "mask", "dif"),
         ("SC-E/keep4/touched", "touched", "keep4"),
     ] {
         let error = StrategyId::parse(id).expect_err(id).to_string();

@@ -59,6 +59,7 @@ pub(super) const ROWS: &[Row] = &[
             Axis::Specular,
             Axis::Source,
             Axis::AreaBounds,
+            Axis::Storage,
             Axis::Cap,
             Axis::Reuse,
             Axis::Keep,
@@ -87,6 +88,7 @@ const FRUSTA: &[Axis] = &[
     Axis::Tests,
     Axis::Source,
     Axis::AreaBounds,
+    Axis::Storage,
     Axis::Cap,
     Axis::Reuse,
     Axis::Keep,
@@ -96,6 +98,7 @@ const FRUSTA: &[Axis] = &[
 const BOXES: &[Axis] = &[
     Axis::Source,
     Axis::AreaBounds,
+    Axis::Storage,
     Axis::Cap,
     Axis::Reuse,
     Axis::Keep,

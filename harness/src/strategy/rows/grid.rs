@@ -20,6 +20,7 @@ pub(super) const ROWS: &[Row] = &[Row {
         Axis::Box,
         Axis::Source,
         Axis::AreaBounds,
+        Axis::Storage,
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,

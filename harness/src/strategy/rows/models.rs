@@ -18,6 +18,7 @@ pub(super) const ROWS: &[Row] = &[Row {
     axes: &[
         Axis::Source,
         Axis::AreaBounds,
+        Axis::Storage,
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,

@@ -48,6 +48,7 @@ const TILES: Row = Row {
         Axis::Tests,
         Axis::Source,
         Axis::AreaBounds,
+        Axis::Storage,
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,
