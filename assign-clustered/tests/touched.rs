@@ -4,12 +4,15 @@ use std::collections::BTreeSet;
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, EncoderPasses, Frame, Gpu, Light, LightBuffer,
-    LightOrder, LightSource, ListsSnapshot, Passes, Touched, View, conformance,
+    LightOrder, LightShape, LightSource, ListsSnapshot, Passes, Touched, View, conformance,
 };
 use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [64, 48];
+
+/// The light that is a spot.
+const SPOT: usize = 33;
 
 fn clusters(gpu: &Gpu, bounds: Bounds, occupancy: Occupancy) -> Result<Clustered, AssignError> {
     let settings = CullSettings { source: LightSource::Hierarchy, ..CullSettings::default() };
@@ -33,7 +36,7 @@ fn lists_that_stay_conform() {
         "lights-move",
         "gpu-order",
         "gpu-order-stale",
-        "gpu-order-drift",
+        "gpu-order-some-move",
         "lights-from-gpu",
     ];
     for case in cases {
@@ -122,7 +125,12 @@ fn lights() -> Vec<Light> {
     (0..100)
         .map(|ix| {
             let place = Vec3::new((ix % 10) as f32, (ix / 10) as f32, (ix % 3) as f32);
-            Light::point(place, 2.0, Vec3::ONE)
+            let mut light = Light::point(place, 2.0, Vec3::ONE);
+            if ix == SPOT {
+                let (inner_angle, outer_angle) = (0.2, 0.4);
+                light.shape = LightShape::Spot { direction: Vec3::NEG_Z, inner_angle, outer_angle };
+            }
+            light
         })
         .collect()
 }
@@ -174,10 +182,22 @@ fn only_touched_groups_get_new_lists() {
         let (written, _) = next(&moving, 0.0);
         assert!((1..=most as u32).contains(&written), "{written} of {requested}");
         // A full pool starts again.
-        for _ in 0..12 {
-            moving[50].position.x += 0.1;
-            assert!(next(&moving, 0.0).1.is_update());
+        let mut starts = 0;
+        for frame in 0..24 {
+            let way = if frame % 2 == 0 { 0.1 } else { -0.1 };
+            // Those at the border would leave the box.
+            (41..49).chain(51..59).for_each(|ix: usize| moving[ix].position.x += way);
+            let (written, drawn) = next(&moving, 0.0);
+            assert!(drawn.is_update());
+            starts += u32::from(written > 1 << 31);
         }
+        assert!(starts > 0, "the pool never filled");
+        // A spot that turns reaches other groups, though its ball stays.
+        if let LightShape::Spot { direction, .. } = &mut moving[SPOT].shape {
+            *direction = Vec3::X;
+        }
+        let (written, drawn) = next(&moving, 0.0);
+        assert!(drawn.is_update() && written > 0);
         for light in &mut moving {
             light.position.z *= 0.99;
         }
@@ -216,6 +236,21 @@ fn more_changes_than_there_is_room_for_touch_all_groups() {
     let mut fresh = clusters(&gpu, Bounds::Implicit, Occupancy::Dense).expect("clusters");
     wall.draw(&mut fresh, &buffer, 0.0);
     assert_eq!(drawn.groups(), wall.draw(&mut fresh, &buffer, 0.0).groups());
+}
+
+#[test]
+fn no_light_at_all_is_served() {
+    let gpu = Gpu::open(None).expect("a GPU");
+    let depth = conformance::flat_depth(&gpu, SIZE, 0.1 / 12.0);
+    let wall = Wall { gpu: gpu.clone(), depth };
+    for order in [LightOrder::Given, LightOrder::Gpu { every: 2 }] {
+        let mut strategy = touched(Bounds::Explicit, Occupancy::Sparse)(&gpu).expect("a strategy");
+        let mut buffer = LightBuffer::ordered(&gpu, &lights(), order).expect("lights");
+        for count in [100, 0, 0, 100, 100] {
+            buffer.update(&gpu, &lights()[..count]).expect("lights");
+            wall.draw(&mut *strategy, &buffer, 0.0);
+        }
+    }
 }
 
 #[test]

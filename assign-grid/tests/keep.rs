@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use assign::{
     AssignError, Assignment, CullSettings, EncoderPasses, Frame, Gpu, Keep, Light, LightBuffer,
-    LightOrder, Passes, View, conformance,
+    LightOrder, Passes, Touched, View, conformance,
 };
 use assign_grid::{Grid, GridBox};
 use glam::Vec3;
@@ -28,10 +28,21 @@ fn kept_lists_conform() {
         "lights-move",
         "gpu-order",
         "gpu-order-stale",
-        "gpu-order-drift",
+        "gpu-order-some-move",
         "lights-from-gpu",
     ] {
         conformance::run_case(case, &kept(3)).expect(case);
+    }
+}
+
+#[test]
+fn lists_that_stay_conform() {
+    let touched = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        let grid = Grid::new(gpu, "8x8x8".parse()?, GridBox::Positions, CullSettings::default())?;
+        Ok(Box::new(Touched::new(gpu, Box::new(grid))?))
+    };
+    for case in ["33-lights", "overflow", "lights-move", "gpu-order-some-move", "lights-from-gpu"] {
+        conformance::run_case(case, &touched).expect(case);
     }
 }
 

@@ -4,7 +4,7 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Frame, Gpu, LightBuffer, LightSource, SampleDomain,
-    View,
+    Touched, View,
     conformance::{self, faulty::Fault},
 };
 use assign_model::PerModel;
@@ -20,6 +20,17 @@ fn per_model(
 fn conforms(limit_m: Option<f32>, settings: CullSettings) {
     let report = conformance::run(&per_model(limit_m, settings)).expect("conforms");
     println!("{report}");
+}
+
+#[test]
+fn lists_that_stay_conform() {
+    let touched = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        let inner = per_model(None, CullSettings::default())(gpu)?;
+        Ok(Box::new(Touched::new(gpu, inner)?))
+    };
+    for case in ["33-lights", "lights-move", "gpu-order-some-move"] {
+        conformance::run_case(case, &touched).expect(case);
+    }
 }
 
 #[test]

@@ -19,8 +19,8 @@ pub trait Assignment {
         true
     }
 
-    /// Whether it serves [`Frame::changes`]: it keeps its groups, and makes only the lists anew that a
-    /// changed light touches.
+    /// Whether it serves [`Frame::changes`]: it keeps its groups, and makes only those lists again
+    /// that a changed light touches.
     fn updates_groups(&self) -> bool {
         false
     }

@@ -14,7 +14,7 @@
 //!
 //! Where it fails: with a camera that moves, only [`Assignment::is_view_bound`]'s exceptions keep their lists;
 //! fast lights need such large balls that their lists are made in every frame; lights that jump have no bound.
-//! If surfaces move, call [`LightLists::expire`] in that frame.
+//! If surfaces move, call [`LightLists::expire`] before that frame's `prepare`.
 
 use glam::Vec3;
 

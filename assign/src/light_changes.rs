@@ -15,9 +15,6 @@ use crate::{
     kernel::{Slot, bind_buffers, bind_entries, layout, pipeline, workgroups},
 };
 
-/// Two balls per changed light; beyond them all groups count as touched: `MOST_BALLS` of `changes.wesl`.
-const MOST_BALLS: u64 = 2048;
-
 /// Lanes of a workgroup: `find_changes`.
 const LANES: u32 = 256;
 
@@ -27,8 +24,13 @@ const LANES: u32 = 256;
 struct ChangesHeader {
     ball_count: u32,
     slot_count: u32,
+    light_count: u32,
     all_groups: u32,
-    padding: u32,
+}
+
+impl ChangesHeader {
+    /// Offset of the number of lights, bytes.
+    const LIGHT_COUNT_AT: u64 = 8;
 }
 
 /// The changes of a frame's lights since the frame recorded before, and the boxes around all lights for
@@ -45,6 +47,8 @@ pub struct LightChanges {
     bind_group: Option<wgpu::BindGroup>,
     kernel: Option<Kernel>,
     workgroups: u32,
+    /// The number of lights, if only the GPU knows it.
+    live_count: Option<wgpu::Buffer>,
     /// Box around all supports.
     bounds: Option<(Vec3, Vec3)>,
     /// Box around all positions.
@@ -59,11 +63,14 @@ struct Kernel {
 }
 
 impl LightChanges {
+    /// Two balls per changed light; beyond them all groups count as touched: `MOST_BALLS` of `changes.wesl`.
+    pub const MOST_BALLS: u32 = 2048;
+
     /// Makes it without lights.
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let lights = [1, 2, 3].map(|binding| storage_entry(binding, stages, true));
-        let bytes = size_of::<ChangesHeader>() as u64 + MOST_BALLS * 16;
+        let bytes = size_of::<ChangesHeader>() as u64 + u64::from(Self::MOST_BALLS) * 16;
         Ok(Self {
             light_layout: gpu.bind_group_layout("lights", &lights),
             lights: None,
@@ -73,6 +80,7 @@ impl LightChanges {
             bind_group: None,
             kernel: None,
             workgroups: 0,
+            live_count: None,
             bounds: None,
             position_bounds: None,
         })
@@ -98,14 +106,18 @@ impl LightChanges {
         let entries =
             [entry(1, lights.spheres()), entry(2, lights.emissions()), entry(3, lights.shapes())];
         self.lights = Some(bind_entries(gpu, &self.light_layout, &entries));
-        let bytes = u64::from(slots) * if kinds == LightKinds::default() { 16 } else { 80 };
+        // `struct Known`; a shader that binds the buffer needs room for one.
+        let of_slot = if kinds == LightKinds::default() { 16 } else { 80 };
+        let bytes = u64::from(slots.max(1)) * of_slot;
         if self.known.size() < bytes {
             self.known = gpu.storage("known lights", bytes)?;
         }
         if self.kernel.as_ref().is_none_or(|kernel| kernel.kinds != kinds) {
             self.kernel = Some(self.compile(gpu, kinds)?);
         }
-        let header = ChangesHeader { slot_count: slots, ..ChangesHeader::default() };
+        self.live_count = lights.live_count().cloned();
+        let header =
+            ChangesHeader { slot_count: slots, light_count: slots, ..ChangesHeader::default() };
         gpu.queue.write_buffer(&self.changes, 0, bytemuck::bytes_of(&header));
         self.bind_group = Some(bind_buffers(gpu, &self.layout, &[&self.changes, &self.known]));
         self.workgroups = workgroups(slots.into(), LANES);
@@ -129,6 +141,10 @@ impl LightChanges {
     /// Records the pass `changes`. Call it after the light buffer's passes of the frame.
     pub(crate) fn record(&self, passes: &mut dyn Passes) {
         let Some(kernel) = &self.kernel else { return };
+        if let Some(count) = &self.live_count {
+            let at = ChangesHeader::LIGHT_COUNT_AT;
+            passes.encoder().copy_buffer_to_buffer(count, 0, &self.changes, at, 4);
+        }
         passes.compute("changes", &mut |pass| {
             pass.set_bind_group(0, self.lights.as_ref(), &[]);
             pass.set_bind_group(1, self.bind_group.as_ref(), &[]);

@@ -89,7 +89,7 @@ impl LightLists {
         self.expire();
     }
 
-    /// Keeps room for lists that are made anew while others stay: for so many times the entries of one frame.
+    /// Makes the pool so many times larger than one frame's entries, for new lists while others stay.
     pub(crate) fn leave_room(&mut self, room: u32) {
         self.room = room;
     }
@@ -99,6 +99,12 @@ impl LightLists {
         self.readback.latest().map_or(0, |c| c.requested()) * u64::from(self.room)
     }
 
+    /// The most entries that the pool may have, behind those of all lights.
+    fn most_entries(&self, gpu: &Gpu, light_capacity: u32) -> u64 {
+        let room = (gpu.max_storage_bytes() / 4).saturating_sub(u64::from(light_capacity));
+        room.min(MAX_POOL).min(u64::from(self.pool_limit))
+    }
+
     /// Whether a frame that makes all lists would grow the pool, as far as the counters that have arrived
     /// tell. Until then, lists that did not fit stay all lights.
     pub(crate) fn wants_growth(&mut self, gpu: &Gpu) -> bool {
@@ -106,8 +112,8 @@ impl LightLists {
         if self.storage == Storage::Masks {
             return false;
         }
-        let most = u64::from(self.pool_limit).min(MAX_POOL);
-        self.asked().min(most) > u64::from(self.pool_capacity)
+        self.asked().min(self.most_entries(gpu, self.light_capacity))
+            > u64::from(self.pool_capacity)
     }
 
     /// Whether lists lose lights beyond a number.
@@ -156,7 +162,7 @@ impl LightLists {
         Ok(changed)
     }
 
-    /// Prepares a frame that makes only some lists anew, for as many lights and groups as the frame before.
+    /// Prepares a frame that makes only some lists, for as many lights and groups as the frame before.
     /// It replaces no buffer, because the others stay.
     pub(crate) fn prepare_update(
         &mut self,
@@ -180,7 +186,11 @@ impl LightLists {
             group_count,
             pool_first: self.light_capacity,
             pool_capacity: self.pool_capacity,
-            guard_cursor: u32::from(u32::try_from(u64::from(light_count) * records).is_err()),
+            // Frames that make only some lists begin anywhere in the pool.
+            guard_cursor: u32::from(
+                u32::try_from(u64::from(light_count) * records + u64::from(self.pool_capacity))
+                    .is_err(),
+            ),
             list_cap: self.list_cap,
             first_parent: levels.first_parent,
             first_grandparent: levels.first_grandparent,
@@ -213,8 +223,8 @@ impl LightLists {
         let has = u64::from(self.pool_capacity);
         // A quarter more than requested, so that a moving camera does not grow the pool each frame.
         let grown = if asked > has { asked + asked / 4 } else { has };
-        let most = (room - u64::from(light_capacity)).min(MAX_POOL);
-        let wanted = grown.max(guess).min(most).min(u64::from(self.pool_limit)) as u32;
+        let most = self.most_entries(gpu, light_capacity);
+        let wanted = grown.max(guess).min(most) as u32;
         if light_capacity == self.light_capacity && wanted <= self.pool_capacity {
             return Ok(false);
         }

@@ -1,21 +1,22 @@
-//! Lists of which only those are made anew that a changed light touches: the `update` axis without loss.
+//! Only the lists that a changed light touches are made again: the `update` axis without loss.
 //!
 //! As long as view, surfaces and models stay, groups stay, and a list can only change if a light does. So
 //! in each frame [`Touched`]
 //!
 //! 1. finds the lights that changed since the frame before ([`LightChanges`], pass `changes`),
 //! 2. finds the groups that one of them reached or reaches (pass `touch`), and
-//! 3. makes lists for these groups alone (pass `cull`). They go behind the others in the pool, which is
-//!    therefore kept twice as large.
+//! 3. makes lists for these groups only (pass `cull`). They follow the others in the pool, which is
+//!    therefore kept three times as large.
 //!
-//! It spares the passes that bound groups, and the culling of groups that no change touches. This is future
-//! work of the comparison paper (Enhuber 2019, section 8). All lists are made anew if the view changed
-//! (unless the groups are fixed in the world), if a light leaves the box for which groups were laid out, or
-//! on the GPU if more than 1,024 lights changed or the pool is nearly full.
+//! It skips the passes that bound groups, and the culling of groups that no change touches. This is future
+//! work of the comparison paper (Enhuber 2019, section 8). The CPU has all lists made again if the view
+//! changed (unless the groups are fixed in the world), or if a light leaves the box for which groups were
+//! laid out. The GPU culls all groups if more than 1,024 lights changed, if the pool has no room left for
+//! all lists once more, or if a list did not fit.
 //!
-//! Where it fails: if all lights move, it finds out in vain; and a strategy whose groups move with the
-//! camera gains nothing from it while the camera moves. If surfaces move, call [`LightLists::expire`] in
-//! that frame.
+//! Where it fails: if all lights move, only the bounds are saved; and a strategy whose groups move with the
+//! camera gains nothing while the camera moves. If surfaces move, call [`LightLists::expire`] before that
+//! frame's `prepare`.
 
 use glam::Vec3;
 
@@ -25,9 +26,12 @@ use crate::{
 };
 
 /// The pool has room for so many times the entries of one frame.
-const ROOM: u32 = 2;
+const ROOM: u32 = 3;
 
-/// A strategy that makes only the lists anew that a changed light touches, and loses no light.
+/// Storage buffers that the pass `touch` takes with the strategies of this workspace.
+const STORAGE_BUFFERS: u32 = 10;
+
+/// A strategy that makes only those lists again that a changed light touches, and loses no light.
 pub struct Touched {
     inner: Box<dyn Assignment>,
     changes: LightChanges,
@@ -56,16 +60,27 @@ impl Touched {
     /// # Errors
     ///
     /// [`AssignError::Unsupported`] if the strategy does not [update groups](Assignment::updates_groups), or
-    /// reads normals or triangles, by which a list may change though no volume does.
+    /// reads normals or triangles, by which a list may change though no volume does; or if the device has too few
+    /// storage buffers.
     pub fn new(gpu: &Gpu, mut inner: Box<dyn Assignment>) -> Result<Self, AssignError> {
         let needs = inner.needs();
         if !inner.updates_groups() || needs.normals || needs.triangles {
             return Err(AssignError::Unsupported {
                 strategy: inner.id(),
                 asked: "touched".into(),
-                reason: "only tiles, clusters without normals, grids and models can make some lists anew \
+                reason: "only tiles, clusters without normals, grids and models can make only some lists \
                          and keep the others"
                     .into(),
+            });
+        }
+        let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
+        if has < STORAGE_BUFFERS {
+            return Err(AssignError::Unsupported {
+                strategy: inner.id(),
+                asked: "touched".into(),
+                reason: format!(
+                    "it needs {STORAGE_BUFFERS} storage buffers in a shader stage, and the device has {has}"
+                ),
             });
         }
         inner.lists_mut().leave_room(ROOM);
@@ -104,7 +119,7 @@ impl Assignment for Touched {
             && self.changes.serves(frame.lights)
             && self.models == frame.models.unwrap_or_default();
         // After an error there are no lists.
-        self.made = None;
+        (self.made, self.next) = (None, None);
         if !stays {
             self.changes.restart(frame.lights);
             self.models = frame.models.unwrap_or_default().to_vec();

@@ -6,7 +6,7 @@ use crate::{
     kernel::{MAX_WORKGROUPS, bind_entries, pipeline},
 };
 
-/// The groups that get new lists in a frame of which only some lights changed.
+/// The groups that get new lists when only some lights changed.
 #[derive(Debug)]
 pub(crate) struct TouchedGroups {
     touched: LiveGroups,

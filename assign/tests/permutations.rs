@@ -107,6 +107,7 @@ fn every_kernel_of_touched_groups_validates() {
         let source = LightChanges::kernel_source(kinds).unwrap();
         let module = LinkedModule::new("the kernel of light changes", &source);
         let plain = kinds == LightKinds::default();
+        assert_eq!(module.constant("MOST_BALLS"), LightChanges::MOST_BALLS);
         let bytes = module.layout_of("Known").bytes;
         assert_eq!(bytes, if plain { 16 } else { 80 }, "{kinds:?}");
     }

@@ -124,7 +124,7 @@ pub const CASES: &[Case] = &[
     case("light-count-changes", "lights come and go, spots among them", counts_change),
     case("gpu-order", "the GPU sorts lights that move in every frame", |r| living::few(r, 1, false)),
     case("gpu-order-stale", "lights move, come and go without a new order", |r| living::few(r, 3, false)),
-    case("gpu-order-drift", "all lights drift on, each in its slot", living::drift),
+    case("gpu-order-some-move", "a few lights move at a time, and all stay in their slots", living::some),
     case("gpu-order-many", "14,000 lights that move, in a hierarchy of two levels", living::many),
     case("lights-from-gpu", "the GPU writes lights, faulty ones among them, and their number", |r| {
         living::few(r, 2, true)

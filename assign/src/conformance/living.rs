@@ -35,17 +35,17 @@ pub(super) fn few(rng: &mut Rng, every: u32, from_gpu: bool) -> Plan {
     Plan::Living(Living { frames: frames.into(), bad, every, from_gpu })
 }
 
-/// Frames in which the same lights move on, each in a direction of its own, and stay in their slots.
-pub(super) fn drift(rng: &mut Rng) -> Plan {
+/// Frames in each of which a few lights move, by a metre, and all stay in their slots. A large light stands
+/// still: all others stay inside its box, so that groups may stay as they are.
+pub(super) fn some(rng: &mut Rng) -> Plan {
     let stage = in_room(rng, &default_view()).thinned(600);
-    let lights = mix(rng, &stage, 600, (0.2, 5.0), Kinds::Mixed);
-    let steps: Vec<Vec3> = lights.iter().map(|_| rng.direction().as_vec3() * 0.1).collect();
-    let frames = (0..6).map(|frame| {
-        let mut lights = lights.clone();
-        for (light, step) in lights.iter_mut().zip(&steps) {
-            light.position += *step * frame as f32;
+    let mut lights = mix(rng, &stage, 600, (0.2, 3.0), Kinds::Mixed);
+    lights[0] = Light::point(lights[0].position, 500.0, Vec3::ONE);
+    let frames = (0..7).map(|frame| {
+        for light in lights.iter_mut().skip(frame).step_by(200).filter(|_| frame > 0) {
+            light.position += rng.direction().as_vec3();
         }
-        Lit { lights, stage: stage.clone(), opaque_only: false }
+        Lit { lights: lights.clone(), stage: stage.clone(), opaque_only: false }
     });
     Plan::Living(Living { frames: frames.collect(), bad: 0, every: 100, from_gpu: false })
 }

@@ -17,7 +17,7 @@ const MASK: &str = "mask";
 const REUSE: &str = "reuse";
 /// The prefix of a segment that sets for how many frames lists of larger lights are kept.
 const KEEP: &str = "keep";
-/// The segment that makes only the lists anew that a changed light touches.
+/// The segment that makes only those lists again that a changed light touches.
 const TOUCHED: &str = "touched";
 /// The segment that turns the early exit off.
 const NO_EXIT: &str = "no-exit";
@@ -43,7 +43,7 @@ pub enum Axis {
     Reuse,
     /// For how many frames lists are kept that hold all lights wherever they may move: `keep4`.
     Keep,
-    /// Whether only the lists are made anew that a changed light touches: `touched`.
+    /// Whether only those lists are made again that a changed light touches: `touched`.
     Touched,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
@@ -90,7 +90,7 @@ impl Axis {
                 "keep and the most frames for which lists of larger lights are kept, such as keep4"
             }
             Self::Touched => {
-                "touched, which makes only the lists anew that a changed light touches"
+                "touched, which makes only those lists again that a changed light touches"
             }
             Self::Exit => "no-exit, which evaluates every listed light",
         }

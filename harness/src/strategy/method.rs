@@ -51,7 +51,7 @@ pub struct Options {
     pub reuse: Option<u32>,
     /// The most frames for which lists of larger lights are kept.
     pub keep: Option<u32>,
-    /// Whether only the lists are made anew that a changed light touches.
+    /// Whether only those lists are made again that a changed light touches.
     pub is_touched: bool,
     /// Whether shading evaluates every listed light.
     pub evaluates_all: bool,

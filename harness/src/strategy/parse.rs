@@ -83,8 +83,7 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
         if options.is_touched
             && let Some(segment) = other.segment(options)
         {
-            let reason =
-                "only whole lists without normals, made for the lights of one frame, can stay";
+            let reason = "`touched` needs lists without a cap and without normals, made for the lights of each frame";
             return Err(contradiction(id, "touched", &segment, reason));
         }
     }
