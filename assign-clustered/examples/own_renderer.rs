@@ -15,9 +15,9 @@ use glam::Vec3;
 /// The renderer's own shader. It finds the plane under each pixel and sums the lights of the pixel's list.
 const SHADE: &str = "
 import package::lights::light_spheres;
-import package::lists::{entries, list_of, ENTRY_LIGHT};
+import package::lists::{END, ENTRY_LIGHT};
+import package::look_up::{next_light, open_lights};
 import package::sample::ViewSample;
-import package::strategy::group_of;
 import package::view::{view, eye_world, ndc_of_pixel, position_view_at, world_of_view};
 import package::window::{fall_off, MIN_DISTANCE_2};
 
@@ -33,15 +33,21 @@ fn shade(@builtin(global_invocation_id) thread: vec3u) {
   let ahead = world_of_view(position_view_at(ndc_of_pixel(pixel), 1.0)) - eye_world();
   let t = -eye_world().y / ahead.y;
   let position = eye_world() + t * ahead;
-  let list = list_of(group_of(ViewSample(pixel, 0.5, t, position, vec3f(0.0, 1.0, 0.0), 0u)));
+  var cursor = open_lights(ViewSample(pixel, 0.5, t, position, vec3f(0.0, 1.0, 0.0), 0u));
   var brightness = 0.0;
-  for (var i = 0u; i < list.count; i++) {
-    let sphere = light_spheres[entries[list.first + i] & ENTRY_LIGHT];
+  var listed = 0.0;
+  loop {
+    let entry = next_light(&cursor);
+    if entry == END {
+      break;
+    }
+    listed += 1.0;
+    let sphere = light_spheres[entry & ENTRY_LIGHT];
     let to_light = sphere.position_world - position;
     // The ball around a point light has the light's range as its radius.
     brightness += fall_off(dot(to_light, to_light), sphere.radius_m, MIN_DISTANCE_2);
   }
-  image[thread.x + thread.y * u32(view.viewport_size.x)] = vec4f(brightness, f32(list.count), 0.0, 1.0);
+  image[thread.x + thread.y * u32(view.viewport_size.x)] = vec4f(brightness, listed, 0.0, 1.0);
 }
 ";
 

@@ -52,9 +52,9 @@ pub trait Assignment {
 
 /// What a renderer links into its own shading shader.
 ///
-/// Mount `module` with [`Shader::strategy`](crate::Shader::strategy), import
-/// `package::strategy::group_of` and call `list_of(group_of(sample))`; bind [`Assignment::bind_group`] at the group that the shader was
-/// made for.
+/// Mount `module` with [`Shader::strategy`](crate::Shader::strategy). Import `open_lights` and `next_light` from
+/// `package::look_up`, and `END` from `package::lists`. Bind [`Assignment::bind_group`] at the group that the
+/// shader was made for.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {
     /// WESL that defines `fn group_of(sample: ViewSample) -> u32`.

@@ -137,8 +137,9 @@ impl Deferred {
             .options
             .set_flags(images.set_flags(lighting_modules(LISTS_GROUP)))
             .strategy(lists.lookup.module);
-        // SAFETY: its loops count up to the number of suns and to the length of a list, which is a
-        // `u32` read once. The strategy's author guarantees that loops of its look-up end.
+        // SAFETY: its loops count up to the number of suns, or end with the strategy's look-up, which
+        // returns at most as many lights as a `u32` counts. Loops in look-ups end: those of `assign` do,
+        // and the strategy's author guarantees it of its own.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::deferred") }?;
         let layouts = [Some(renderer.frame.layout()), Some(lists.lookup.layout), Some(&layout)];
