@@ -15,7 +15,7 @@ use glam::Vec3;
 /// The renderer's own shader. It finds the plane under each pixel and sums the lights of the pixel's list.
 const SHADE: &str = "
 import package::lights::light_spheres;
-import package::lists::{END, ENTRY_LIGHT};
+import package::lists::ENTRY_LIGHT;
 import package::look_up::{next_light, open_lights};
 import package::sample::ViewSample;
 import package::view::{view, eye_world, ndc_of_pixel, position_view_at, world_of_view};
@@ -36,13 +36,9 @@ fn shade(@builtin(global_invocation_id) thread: vec3u) {
   var cursor = open_lights(ViewSample(pixel, 0.5, t, position, vec3f(0.0, 1.0, 0.0), 0u));
   var brightness = 0.0;
   var listed = 0.0;
-  loop {
-    let entry = next_light(&cursor);
-    if entry == END {
-      break;
-    }
+  while next_light(&cursor) {
     listed += 1.0;
-    let sphere = light_spheres[entry & ENTRY_LIGHT];
+    let sphere = light_spheres[cursor.entry & ENTRY_LIGHT];
     let to_light = sphere.position_world - position;
     // The ball around a point light has the light's range as its radius.
     brightness += fall_off(dot(to_light, to_light), sphere.radius_m, MIN_DISTANCE_2);

@@ -1,4 +1,4 @@
-//! Tiled light assignment: tiles of pixels, each with one list of lights.
+//! Tiled light assignment: tiles of pixels, each with one list of lights, or with two.
 //!
 //! # Idea
 //!
@@ -9,12 +9,15 @@
 //! |---|---|
 //! | `T-I` | its whole frustum, from the near to the far plane (implicit) |
 //! | `T-E` | its frustum between the nearest and the farthest sample in it (explicit) |
+//! | `HalfZ` | the same, cut in the middle: two groups (Thomas 2015) |
+//! | `ModifiedHalfZ` | both halves, each shrunk to the samples in it (Thomas 2015) |
 //!
 //! # Phases
 //!
-//! 1. `bounds` (only T-E) gives each tile one workgroup, which reads the tile's depths and reduces them to a
+//! 1. `bounds` (all but T-I) gives each tile one workgroup, which reads the tile's depths and reduces them to a
 //!    range in workgroup memory. It needs no global atomics. A tile without samples gets an empty range.
-//! 2. `cull` gives each tile one workgroup, which tests lights against the tile's frustum and writes its list.
+//!    ModifiedHalfZ reads the depths a second time, once the middle is known.
+//! 2. `cull` gives each group one workgroup, which tests lights against its frustum and writes its list.
 //!
 //! # Cost
 //!
@@ -34,10 +37,13 @@
 //! - T-E lists every light between the nearest and the farthest sample of a tile. At a depth discontinuity, such
 //!   as a fence in front of a far wall, these include all lights in the gap between, which reach no sample. T-I
 //!   also lists the lights beyond the wall.
+//! - HalfZ and ModifiedHalfZ help at such a discontinuity: a sample reads only the lights of its own half, and
+//!   ModifiedHalfZ leaves the gap out. They test every light twice, and gain nothing where a tile shows one
+//!   surface, or three.
 //! - Smaller tiles do not help there. The longest lists are at silhouettes, where tiles of any size see both
 //!   depths.
 //!
-//! T-I serves look-ups at any depth. T-E serves only opaque surfaces, and refuses any other look-up.
+//! T-I serves look-ups at any depth. The others serve only opaque surfaces, and refuse any other look-up.
 
 mod tile_bounds;
 mod tile_wesl;
@@ -45,6 +51,6 @@ mod tiled;
 mod tiles;
 
 pub use tile_bounds::bounds_source;
-pub use tile_wesl::{EXPLICIT_WESL, IMPLICIT_WESL};
+pub use tile_wesl::tile_wesl;
 pub use tiled::Tiled;
-pub use tiles::{TileSize, TilesUniform};
+pub use tiles::{TileDepths, TileSize, TilesUniform};

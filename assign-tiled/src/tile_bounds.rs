@@ -1,16 +1,16 @@
-//! The pass `bounds`: finds the depth range of each tile's samples.
+//! The pass `bounds`: finds the depth range of each group's samples.
 
 use assign::{
     AssignError, FIRST_STRATEGY_BINDING, Frame, FrameBindings, Gpu, Passes, Shader, entry, kernel,
     storage_entry, texture, texture_entry, uniform_entry,
 };
 
-use crate::tile_wesl::EXPLICIT_WESL;
+use crate::{TileDepths, tile_wesl::tile_wesl};
 
 /// Bind group of the pass's own resources and of the tiles' uniform.
 const BOUNDS_GROUP: u32 = 1;
 
-/// Reads the depth buffer once.
+/// Reads the depth buffer once, or twice for halves that shrink.
 #[derive(Debug)]
 pub(crate) struct TileBounds {
     frame: FrameBindings,
@@ -19,22 +19,26 @@ pub(crate) struct TileBounds {
     pipeline: wgpu::ComputePipeline,
     depths: wgpu::Buffer,
     counts: [u32; 2],
+    /// Lists per tile.
+    lists: u32,
 }
 
 impl TileBounds {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+    pub(crate) fn new(gpu: &Gpu, tile_depths: TileDepths) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let depth = texture_entry(0, stages, wgpu::TextureSampleType::Depth);
         let entries =
             [depth, storage_entry(1, stages, false), uniform_entry(FIRST_STRATEGY_BINDING, stages)];
         let layout = gpu.bind_group_layout("tile bounds", &entries);
         let frame = FrameBindings::new(gpu);
-        // SAFETY: its one loop counts up to the number of pixels of a tile.
-        #[allow(unsafe_code, reason = "its loop ends")]
-        let module = unsafe { bounds_shader().create_uncounted(gpu, "package::tile_bounds") }?;
+        // SAFETY: its loops count up to the number of pixels of a tile.
+        #[allow(unsafe_code, reason = "its loops end")]
+        let module =
+            unsafe { bounds_shader(tile_depths).create_uncounted(gpu, "package::tile_bounds") }?;
         let pipeline = kernel::pipeline(gpu, &module, "reduce", &[frame.layout(), &layout]);
         let depths = gpu.storage("tile depths", 0)?;
-        Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0] })
+        let lists = tile_depths.lists();
+        Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0], lists })
     }
 
     /// Sizes the buffer for `counts` tiles along x and y, and binds it: outside the clock.
@@ -48,7 +52,7 @@ impl TileBounds {
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
         self.counts = counts;
-        let bytes = u64::from(counts[0]) * u64::from(counts[1]) * 8;
+        let bytes = u64::from(counts[0]) * u64::from(counts[1]) * u64::from(self.lists) * 8;
         if self.depths.size() < bytes {
             self.depths = gpu.storage("tile depths", bytes)?;
         }
@@ -79,19 +83,20 @@ impl TileBounds {
         self.depths.size() + self.frame.bytes()
     }
 
-    /// Nearest and farthest view depth of each tile's samples, metres: `array<vec2f>`.
+    /// Nearest and farthest view depth of each group's samples, metres: `array<vec2f>`.
     pub(crate) fn depths(&self) -> &wgpu::Buffer {
         &self.depths
     }
 }
 
-fn bounds_shader<'a>() -> Shader<'a> {
+fn bounds_shader<'a>(depths: TileDepths) -> Shader<'a> {
     Shader::new(BOUNDS_GROUP)
         .module("package::tile_bounds", include_str!("shaders/tile_bounds.wesl"))
-        .strategy(EXPLICIT_WESL)
+        .strategy(tile_wesl(depths))
+        .flag("tight_halves", depths == TileDepths::ModifiedHalfZ)
 }
 
 /// The linked WGSL of the pass, for tests of layout and validity.
-pub fn bounds_source() -> Result<String, AssignError> {
-    bounds_shader().link("package::tile_bounds")
+pub fn bounds_source(depths: TileDepths) -> Result<String, AssignError> {
+    bounds_shader(depths).link("package::tile_bounds")
 }

@@ -2,11 +2,18 @@
 
 use assign::{Storage, StrategyWesl};
 
-/// The WESL of tiles bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: StrategyWesl<'static> = tiles_wesl(&[("explicit_bounds", false)]);
+use crate::TileDepths;
 
-/// The WESL of tiles bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: StrategyWesl<'static> = tiles_wesl(&[("explicit_bounds", true)]);
+/// The WESL of tiles: `group_of` and `group_bounds`.
+pub const fn tile_wesl(depths: TileDepths) -> StrategyWesl<'static> {
+    match depths {
+        TileDepths::Implicit => tiles_wesl(&[("explicit_bounds", false), ("halves", false)]),
+        TileDepths::Explicit => tiles_wesl(&[("explicit_bounds", true), ("halves", false)]),
+        TileDepths::HalfZ | TileDepths::ModifiedHalfZ => {
+            tiles_wesl(&[("explicit_bounds", true), ("halves", true)])
+        }
+    }
+}
 
 const fn tiles_wesl(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'static> {
     StrategyWesl {

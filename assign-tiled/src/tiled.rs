@@ -1,22 +1,23 @@
-//! T-I and T-E: tiles with implicit and with explicit bounds.
+//! Tiles with implicit or explicit bounds, whole or in halves: T-I, T-E, HalfZ and ModifiedHalfZ.
 
 use assign::{
-    AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor,
-    FIRST_STRATEGY_BINDING, Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs,
-    Passes, SampleDomain, StrategyModule, entry, storage_entry, uniform_entry,
+    AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, SampleDomain,
+    StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
 use crate::{
     tile_bounds::TileBounds,
-    tile_wesl::{EXPLICIT_WESL, IMPLICIT_WESL},
-    tiles::{TileSize, TilesUniform},
+    tile_wesl::tile_wesl,
+    tiles::{TileDepths, TileSize, TilesUniform},
 };
 
 /// Tiles that each have a list of lights.
 #[derive(Debug)]
 pub struct Tiled {
     size: TileSize,
+    depths: TileDepths,
     settings: CullSettings,
     tiles: wgpu::Buffer,
     tile_bounds: Option<TileBounds>,
@@ -28,36 +29,38 @@ impl Tiled {
     pub fn new(
         gpu: &Gpu,
         size: TileSize,
-        bounds: Bounds,
+        depths: impl Into<TileDepths>,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
         size.check()?;
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         let tiles = uniform_entry(FIRST_STRATEGY_BINDING, stages);
-        let depths = storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true);
-        let (label, module, bindings) = match bounds {
-            Bounds::Implicit => ("T-I", IMPLICIT_WESL, vec![tiles]),
-            Bounds::Explicit => ("T-E", EXPLICIT_WESL, vec![tiles, depths]),
+        let depths = depths.into();
+        let mut bindings = vec![tiles];
+        let tile_bounds = match depths {
+            TileDepths::Implicit => None,
+            TileDepths::Explicit | TileDepths::HalfZ | TileDepths::ModifiedHalfZ => {
+                bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true));
+                Some(TileBounds::new(gpu, depths)?)
+            }
         };
         Ok(Self {
             size,
+            depths,
             settings,
             tiles: gpu.uniform("tiles", size_of::<TilesUniform>() as u64),
-            tile_bounds: match bounds {
-                Bounds::Implicit => None,
-                Bounds::Explicit => Some(TileBounds::new(gpu)?),
-            },
+            tile_bounds,
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
-                    label,
+                    label: depths.family(),
                     shape: GroupShape::Frustum,
                     settings,
                     sparse: false,
                     facing: Facing::Unknown,
                     // SAFETY: the module of tiles has no loop.
                     #[allow(unsafe_code, reason = "it has no loop")]
-                    module: unsafe { StrategyModule::new(module) },
+                    module: unsafe { StrategyModule::new(tile_wesl(depths)) },
                     bindings: &bindings,
                 },
             )?,
@@ -67,7 +70,7 @@ impl Tiled {
 
 impl Assignment for Tiled {
     fn id(&self) -> String {
-        let family = if self.tile_bounds.is_some() { "T-E" } else { "T-I" };
+        let family = self.depths.family();
         format!("{family}/{}{}", self.size, self.settings.suffix(GroupShape::Frustum))
     }
 
@@ -100,7 +103,12 @@ impl Assignment for Tiled {
             resources.push(entry(FIRST_STRATEGY_BINDING + 1, tile_bounds.depths()));
         }
         gpu.queue.write_buffer(&self.tiles, 0, bytes_of(&tiles));
-        self.culler.prepare(gpu, frame, Groups::All(tiles.group_count()), &resources)
+        self.culler.prepare(
+            gpu,
+            frame,
+            Groups::All(tiles.tile_count() * self.depths.lists()),
+            &resources,
+        )
     }
 
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {

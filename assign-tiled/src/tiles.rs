@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use assign::{AssignError, View, intersect::UNBOUNDED};
+use assign::{AssignError, Bounds, View, intersect::UNBOUNDED};
 use bytemuck::{Pod, Zeroable};
 
 /// Width and height of a tile, pixels.
@@ -52,6 +52,48 @@ impl FromStr for TileSize {
     }
 }
 
+/// The depths of a tile that have a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TileDepths {
+    /// From the near to the far plane: T-I.
+    Implicit,
+    /// From the nearest to the farthest sample: T-E, *MinMax*.
+    Explicit,
+    /// The same, cut in the middle: two lists per tile (Thomas 2015, *HalfZ*).
+    HalfZ,
+    /// Both halves, each shrunk to the samples in it (Thomas 2015, *modified HalfZ*).
+    ModifiedHalfZ,
+}
+
+impl TileDepths {
+    /// The family in ids.
+    pub fn family(self) -> &'static str {
+        match self {
+            Self::Implicit => "T-I",
+            Self::Explicit => "T-E",
+            Self::HalfZ => "HalfZ",
+            Self::ModifiedHalfZ => "ModifiedHalfZ",
+        }
+    }
+
+    /// Lists per tile.
+    pub(crate) fn lists(self) -> u32 {
+        match self {
+            Self::Implicit | Self::Explicit => 1,
+            Self::HalfZ | Self::ModifiedHalfZ => 2,
+        }
+    }
+}
+
+impl From<Bounds> for TileDepths {
+    fn from(bounds: Bounds) -> Self {
+        match bounds {
+            Bounds::Implicit => Self::Implicit,
+            Bounds::Explicit => Self::Explicit,
+        }
+    }
+}
+
 /// The tiles as shaders read them: `struct Tiles` of `tiles.wesl`. 40 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -88,7 +130,7 @@ impl TilesUniform {
     }
 
     /// Number of tiles.
-    pub fn group_count(&self) -> u32 {
+    pub fn tile_count(&self) -> u32 {
         self.counts.iter().product()
     }
 }
@@ -114,7 +156,7 @@ mod tests {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
         let tiles = TilesUniform::new(TileSize([64, 64]), &view);
         assert_eq!(tiles.counts, [3, 1]);
-        assert_eq!(tiles.group_count(), 3);
+        assert_eq!(tiles.tile_count(), 3);
         assert_eq!(tiles.far_m, UNBOUNDED);
     }
 }

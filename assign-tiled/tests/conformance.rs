@@ -5,19 +5,19 @@ use assign::{
     SampleDomain, View,
     conformance::{self, faulty::Fault},
 };
-use assign_tiled::Tiled;
+use assign_tiled::{TileDepths, Tiled};
 use glam::Vec3;
 
 fn tiled(
-    bounds: Bounds,
+    depths: impl Into<TileDepths> + Copy,
     size: &str,
     settings: CullSettings,
 ) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
-    move |gpu| Ok(Box::new(Tiled::new(gpu, size.parse()?, bounds, settings)?))
+    move |gpu| Ok(Box::new(Tiled::new(gpu, size.parse()?, depths, settings)?))
 }
 
-fn conforms(bounds: Bounds, size: &str, settings: CullSettings) {
-    let report = conformance::run(&tiled(bounds, size, settings)).expect("conforms");
+fn conforms(depths: impl Into<TileDepths> + Copy, size: &str, settings: CullSettings) {
+    let report = conformance::run(&tiled(depths, size, settings)).expect("conforms");
     println!("{report}");
 }
 
@@ -33,6 +33,14 @@ fn explicit_conforms() {
     conforms(Bounds::Explicit, "28x28", CullSettings::default());
     conforms(Bounds::Explicit, "13x9", CullSettings::default());
     conforms(Bounds::Explicit, "4096x4096", CullSettings::default());
+}
+
+#[test]
+fn halves_conform() {
+    for depths in [TileDepths::HalfZ, TileDepths::ModifiedHalfZ] {
+        conforms(depths, "28x28", CullSettings::default());
+    }
+    conforms(TileDepths::ModifiedHalfZ, "13x9", CullSettings::default());
 }
 
 #[test]
@@ -78,13 +86,17 @@ fn only_explicit_tiles_refuse_look_ups_at_any_depth() {
 /// A strategy that lists every light for every sample conforms too, so this test checks that lists are short.
 #[test]
 fn lists_are_short() {
-    let listed = |bounds| {
-        let make = tiled(bounds, "16x16", CullSettings::default());
+    let listed = |depths: TileDepths| {
+        let make = tiled(depths, "16x16", CullSettings::default());
         let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
         case.listed_per_sample().expect("passed")
     };
-    let (implicit, explicit) = (listed(Bounds::Implicit), listed(Bounds::Explicit));
-    println!("{implicit:.1} and {explicit:.1} of 600 lights listed per sample");
+    let [implicit, explicit] = [TileDepths::Implicit, TileDepths::Explicit].map(listed);
+    let [half, modified] = [TileDepths::HalfZ, TileDepths::ModifiedHalfZ].map(listed);
+    println!(
+        "{implicit:.1}, {explicit:.1}, {half:.1} and {modified:.1} of 600 lights listed per sample"
+    );
+    assert!(modified < 0.98 * half && half < 0.9 * explicit, "listed: {half}, {modified}");
     assert!(
         implicit < 400.0 && explicit < 0.9 * implicit,
         "listed per sample: T-I {implicit}, T-E {explicit}"
@@ -93,8 +105,10 @@ fn lists_are_short() {
 
 #[test]
 fn faults_are_rejected() {
-    for bounds in [Bounds::Implicit, Bounds::Explicit] {
-        let make = tiled(bounds, "16x16", CullSettings::default());
+    for depths in
+        [TileDepths::Implicit, TileDepths::Explicit, TileDepths::HalfZ, TileDepths::ModifiedHalfZ]
+    {
+        let make = tiled(depths, "16x16", CullSettings::default());
         assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
     }
 }

@@ -4,18 +4,18 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use assign::{
-    Bounds, CullSettings, Culler, FIRST_STRATEGY_BINDING, GroupShape, LightKinds, LightSource,
+    CullSettings, Culler, FIRST_STRATEGY_BINDING, GroupShape, LightKinds, LightSource,
     conformance::LinkedModule, struct_layout,
 };
-use assign_tiled::{EXPLICIT_WESL, IMPLICIT_WESL, TilesUniform, bounds_source};
+use assign_tiled::{TileDepths, TilesUniform, bounds_source, tile_wesl};
+
+const ALL: [TileDepths; 4] =
+    [TileDepths::Implicit, TileDepths::Explicit, TileDepths::HalfZ, TileDepths::ModifiedHalfZ];
 
 /// The culling kernel of tiles, validated.
-fn kernel(bounds: Bounds, settings: CullSettings, kinds: LightKinds) -> LinkedModule {
-    let module = match bounds {
-        Bounds::Implicit => IMPLICIT_WESL,
-        Bounds::Explicit => EXPLICIT_WESL,
-    };
-    let what = format!("{bounds:?}, {settings:?}, {kinds:?}");
+fn kernel(depths: TileDepths, settings: CullSettings, kinds: LightKinds) -> LinkedModule {
+    let module = tile_wesl(depths);
+    let what = format!("{depths:?}, {settings:?}, {kinds:?}");
     let source = Culler::kernel_source(GroupShape::Frustum, settings, false, module, kinds)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
     LinkedModule::new(&what, &source)
@@ -23,13 +23,13 @@ fn kernel(bounds: Bounds, settings: CullSettings, kinds: LightKinds) -> LinkedMo
 
 #[test]
 fn kernels_validate() {
-    for bounds in [Bounds::Implicit, Bounds::Explicit] {
+    for depths in ALL {
         for source in [LightSource::Linear, LightSource::Hierarchy] {
             for union in ["hs+sat-n", "hs", "sat-e+sat-p+sat-v"] {
                 for kinds in LightKinds::ALL {
                     let tests = union.parse().unwrap();
                     let settings = CullSettings { tests, source, ..CullSettings::default() };
-                    kernel(bounds, settings, kinds);
+                    kernel(depths, settings, kinds);
                 }
             }
         }
@@ -45,12 +45,14 @@ fn check_tiles(module: &LinkedModule) {
 
 #[test]
 fn tiles_have_one_layout_in_wesl_and_rust() {
-    for bounds in [Bounds::Implicit, Bounds::Explicit] {
-        check_tiles(&kernel(bounds, CullSettings::default(), LightKinds::default()));
+    for depths in ALL {
+        check_tiles(&kernel(depths, CullSettings::default(), LightKinds::default()));
     }
 }
 
 #[test]
 fn the_pass_bounds_validates_and_reads_the_same_layout() {
-    check_tiles(&LinkedModule::new("tile bounds", &bounds_source().unwrap()));
+    for depths in &ALL[1..] {
+        check_tiles(&LinkedModule::new("tile bounds", &bounds_source(*depths).unwrap()));
+    }
 }

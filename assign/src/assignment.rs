@@ -53,7 +53,7 @@ pub trait Assignment {
 /// What a renderer links into its own shading shader.
 ///
 /// Mount `module` with [`Shader::strategy`](crate::Shader::strategy). Import `open_lights` and `next_light` from
-/// `package::look_up`, and `END` from `package::lists`. Bind [`Assignment::bind_group`] at the group that the
+/// `package::look_up`. Bind [`Assignment::bind_group`] at the group that the
 /// shader was made for.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {

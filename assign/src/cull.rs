@@ -91,6 +91,16 @@ impl Variant {
                 reason: "only groups of shape Box can know normals".into(),
             });
         }
+        // What the others leave out of lists, they mark in an entry's flags.
+        if !matches!(self.facing, Facing::Unknown | Facing::Horizon)
+            && self.settings.storage == Storage::Masks
+        {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: "bit masks with a specular cut".into(),
+                reason: "a bit cannot say which terms of a light to leave out".into(),
+            });
+        }
         Ok(())
     }
 }

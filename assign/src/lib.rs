@@ -10,8 +10,8 @@
 //!    [needs](Assignment::needs).
 //! 2. [`Assignment::prepare`] sizes buffers and is not timed. [`Assignment::record`] records named
 //!    passes, which are timed.
-//! 3. Shading calls `open_lights(sample)`, and then `next_light(&cursor)` until it returns `END`, both
-//!    from the WESL module `package::look_up`, which [`Lookup`] supplies. It sums the lights in this order:
+//! 3. Shading calls `open_lights(sample)`, and then `next_light(&cursor)` until it returns false,
+//!    both from the WESL module `package::look_up`, which [`Lookup`] supplies. It sums the lights in this order:
 //!    ascending index, whatever the [`Storage`]. The order is the same for every strategy, so images can be
 //!    compared bit for bit. Take the fall-off from the WESL module `package::window`: a light's support
 //!    ends where that window does, so a list may lack lights that another fall-off would still show.

@@ -247,10 +247,19 @@ impl LightLists {
     /// Replaces the buffer of bit masks if they no longer fit, and sets all bits of the first.
     fn size_masks(&mut self, gpu: &Gpu, lights: u32, regions: u64) -> Result<bool, AssignError> {
         let masks = MaskLayout::over(lights)?;
-        let bytes = u64::from(masks.stride) * regions * 4;
-        let changed = self.entries.size() < bytes;
+        let words = u64::from(masks.stride) * regions;
+        let most = (gpu.max_storage_bytes() / 4).min(u64::from(u32::MAX));
+        if words > most {
+            return Err(AssignError::TooLarge {
+                what: format!("the bit masks of {lights} lights in {regions} groups"),
+                bytes: words * 4,
+                limit: most * 4,
+            });
+        }
+        let changed = self.entries.size() < words * 4;
         if changed {
-            self.entries = gpu.storage("light masks", bytes)?;
+            // A quarter more, so that a growing number of lights does not replace it in each frame.
+            self.entries = gpu.storage("light masks", (words + words / 4).min(most) * 4)?;
         }
         if changed || masks != self.masks {
             let all = vec![u32::MAX; masks.stride as usize];

@@ -1,11 +1,10 @@
 //! Storage of a group's lights as a bit per light instead of a list of entries.
 //!
-//! Each group has a region of the entries' buffer. `lists[g + 1] = (first, count)` points into it:
+//! A node holds 64 lights. Each group has a region of the entries' buffer. `lists[g + 1] = (first, count)` points into it:
 //!
-//! - from `first` on, two words per 64 lights: the bits of the lights that may reach the group. 64 lights
-//!   are a node of the hierarchy.
+//! - from `first` on, two words per node: the bits of the lights that may reach the group.
 //! - before `first`, backwards, the summary: bit `n % 32` of word `first - 1 - n / 32` says whether node `n`
-//!   has any bit set. Words of other nodes are not written, and nobody reads them.
+//!   has any bit set. The words of other nodes are neither written nor read.
 //!
 //! `count` is the number of set bits. Region 0 has all bits set, and its `count` is the number of lights. So
 //! the look-up reads lights in ascending index, as from a list, until it has read `count` of them.
@@ -16,12 +15,13 @@
 //!
 //! Tiled renderers that ship use bit masks because their size is known beforehand, no pool can overflow, and
 //! masks can be joined: Call of Duty: Infinite Warfare (Drobot 2017, "Improved Culling for Tiled and
-//! Clustered Rendering"), Unity's HDRP and Wicked Engine. They make no second pass over the lights, whatever
+//! Clustered Rendering"), Unity's Universal Render Pipeline (Forward+) and Wicked Engine. They make no second pass over the lights, whatever
 //! the length of the list.
 //!
-//! Where it fails: memory and, without the summary, reading grow with groups times lights, not with what
-//! reaches the groups: 36,800 clusters and 100,000 lights take 475 MB. An entry has no flags, so both terms
-//! of an area light are evaluated wherever one reaches.
+//! Where it fails: memory grows with groups times lights, not with what reaches the groups: 36,800 clusters and
+//! 100,000 lights take 467 MB. A sample reads up to one word of summary per 2,048 lights. An entry has no
+//! flags, so both terms of an area light are evaluated wherever one reaches. A mask holds at most 1,048,576
+//! lights.
 
 use crate::{AssignError, LightList, light_nodes::NODE_LIGHTS, list_records::ALL_TERMS};
 
@@ -45,7 +45,8 @@ impl Storage {
     }
 }
 
-/// Words of summary that a workgroup holds while it culls: `MOST_SUMMARY` of `cull.wesl`.
+/// Words of summary that a workgroup holds while it culls: `MOST_SUMMARY` of `cull.wesl` and of
+/// `look_up_mask.wesl`.
 const MOST_SUMMARY: u32 = 512;
 
 /// The sizes of a region.
@@ -76,14 +77,15 @@ impl MaskLayout {
         Ok(Self { summary, stride: summary + 2 * nodes })
     }
 
-    /// The lists that the words of `entries` stand for, and their entries. A record that points outside stays as
-    /// it is.
+    /// The lists that the words of `entries` stand for, and their entries. A record that points outside, or has
+    /// fewer bits than lights, points outside the entries.
     pub(crate) fn decode(self, records: &[LightList], words: &[u32]) -> (Vec<LightList>, Vec<u32>) {
         let mut entries = Vec::new();
         let decoded = records.iter().map(|record| {
             let begin = u32::try_from(entries.len()).unwrap_or(u32::MAX);
             match self.lights(*record, words) {
-                None => *record,
+                None if record.first == u32::MAX => *record,
+                None => LightList { first: u32::MAX, ..*record },
                 Some(lights) => {
                     entries.extend(lights.into_iter().map(|light| light | ALL_TERMS));
                     LightList { first: begin, count: record.count }
@@ -133,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn records_outside_stay_and_words_of_other_nodes_are_not_read() {
+    fn records_without_their_bits_point_outside_and_words_of_other_nodes_are_not_read() {
         let layout = MaskLayout::over(70).unwrap();
         let outside = LightList { first: 7, count: 1 };
         let more_than_bits = LightList { first: 1, count: 3 };
@@ -141,7 +143,8 @@ mod tests {
         let words = [0b01, 0b101, 0, 77, 77];
         let records = [outside, more_than_bits, empty, LightList { first: 1, count: 2 }];
         let (lists, entries) = layout.decode(&records, &words);
-        assert_eq!(lists[..3], [outside, more_than_bits, empty]);
+        let lost = |record| LightList { first: u32::MAX, ..record };
+        assert_eq!(lists[..3], [lost(outside), lost(more_than_bits), empty]);
         assert_eq!(entries, [ALL_TERMS, 2 | ALL_TERMS]);
     }
 

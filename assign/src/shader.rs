@@ -4,14 +4,14 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::{AssignError, Gpu, LightKinds, StrategyWesl, compiled::ModuleKey};
+use crate::{AssignError, Gpu, LightKinds, Storage, StrategyWesl, compiled::ModuleKey};
 
 /// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
 /// to WGSL.
 ///
 /// It starts with the contract's modules: `package::view`, `package::sample`, `package::lights`,
-/// `package::volume`, `package::window`, `package::lists` and, for kernels that make lists,
-/// `package::keys` and `package::reserve`.
+/// `package::volume`, `package::window`, `package::lists`, `package::look_up` and, for kernels that make
+/// lists, `package::keys` and `package::reserve`.
 #[derive(Clone, Debug)]
 pub struct Shader<'a> {
     modules: Vec<(String, Cow<'a, str>)>,
@@ -38,6 +38,7 @@ impl<'a> Shader<'a> {
             .module("package::window", include_str!("shaders/window.wesl"))
             .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
+            .module("package::look_up", Storage::Lists.look_up())
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
             .flag("hard_cut", false)

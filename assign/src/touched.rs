@@ -6,7 +6,7 @@
 //! 1. finds the lights that changed since the frame before ([`LightChanges`], pass `changes`),
 //! 2. finds the groups that one of them reached or reaches (pass `touch`), and
 //! 3. makes lists for these groups only (pass `cull`). They follow the others in the pool, which is
-//!    therefore kept three times as large.
+//!    therefore kept three times as large. Bit masks stay at their places.
 //!
 //! It skips the passes that bound groups, and the culling of groups that no change touches. This is future
 //! work of the comparison paper (Enhuber 2019, section 8). The CPU has all lists made again if the view

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail it")]
 
 use assign::{
-    AreaBounds, CullSettings, Culler, GroupShape, LightChanges, LightKinds, LightSource,
+    AreaBounds, CullSettings, Culler, GroupShape, LightChanges, LightKinds, LightSource, Storage,
     conformance::LinkedModule,
 };
 
@@ -48,6 +48,12 @@ fn permutations() -> Vec<Permutation> {
                 all.push((shape, bounds, settings("hs", source), sparse));
             }
         }
+    }
+    let masks = CullSettings { storage: Storage::Masks, ..settings("hs", LightSource::Hierarchy) };
+    for sparse in [false, true] {
+        let linear = CullSettings { source: LightSource::Linear, ..masks };
+        all.extend([masks, linear].map(|masks| (FRUSTUM.0, FRUSTUM.1, masks, sparse)));
+        all.extend(BOXES.map(|(shape, bounds)| (shape, bounds, masks, sparse)));
     }
     all
 }
@@ -125,6 +131,19 @@ fn reservations_at_once_cannot_wrap_the_cursor() {
     let careful = LinkedModule::new("the culling kernel", &source).constant("CAREFUL");
     let most = 65_535 * u64::from(careful) + (1 << 30);
     assert!(careful > 0 && most < 1 << 32, "CAREFUL is {careful}: the cursor may reach {most}");
+}
+
+/// A workgroup holds the summary of a bit mask.
+#[test]
+fn masks_hold_a_million_lights() {
+    let settings = CullSettings { storage: Storage::Masks, ..CullSettings::default() };
+    let strategy = strategy(FRUSTUM.1);
+    let kinds = LightKinds::default();
+    let source =
+        Culler::kernel_source(FRUSTUM.0, settings, false, strategy.as_str(), kinds).unwrap();
+    let summary = LinkedModule::new("the culling kernel", &source).constant("MOST_SUMMARY");
+    // 32 nodes of 64 lights per word.
+    assert_eq!(summary * 32 * 64, 1 << 20);
 }
 
 /// The setting for area lights changes only the kernels of scenes with area lights.

@@ -198,7 +198,9 @@ impl Run<'_> {
             let words = "images were not compared with no culling (--checks 0)";
             self.results.warnings.push(words.to_owned());
         }
-        self.results.warnings.extend(self.uneven_sorts());
+        if choices.iter().any(|choice| choice.id().is_bvh()) {
+            self.results.warnings.extend(self.uneven_sorts());
+        }
         let name = &self.stage.scene.name;
         if self.args.path && !self.stage.scene.path.moves() {
             self.results
@@ -214,9 +216,12 @@ impl Run<'_> {
         let frames = self.plan.timed;
         let is_uneven = self.plan.laps > 0 && !frames.is_multiple_of(every);
         is_uneven.then(|| {
-            let sorts = frames.div_ceil(every);
+            let sorts = match frames.div_ceil(every) {
+                1 => "once".to_owned(),
+                sorts => format!("{sorts} times"),
+            };
             format!(
-                "a lap of {frames} frames sorts the lights {sorts} times, which is more than once every {every} \
+                "a lap of {frames} frames sorts the lights {sorts}, which is more than once every {every} \
                  frames: the pass order takes less with --frames a multiple of {every}"
             )
         })

@@ -130,7 +130,7 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
 }
 
 /// The most entries that the probe reads: `MOST_READ` of `probe.wesl`.
-const MOST_READ: usize = 4096;
+const MOST_READ: usize = 16_384;
 
 /// A number that tells which entries there are, and in which order.
 fn hash_of(entries: &[u32]) -> u32 {

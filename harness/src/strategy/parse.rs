@@ -79,18 +79,22 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             "`dif` cannot be combined with normal cones",
         ));
     }
-    for other in [Axis::Normals, Axis::Cap, Axis::Reuse, Axis::Keep] {
+    for (other, reason) in [
+        (Axis::Normals, "a list that is split by normals may change though its lights do not"),
+        (Axis::Cap, "a list with a cap does not tell which lights it lacks"),
+        (Axis::Reuse, "both say when lists are made again"),
+        (Axis::Keep, "both say when lists are made again"),
+    ] {
         if options.is_touched
             && let Some(segment) = other.segment(options)
         {
-            let reason = "`touched` needs lists without a cap and without normals, made for the lights of each frame";
             return Err(contradiction(id, "touched", &segment, reason));
         }
     }
     if options.storage == Storage::Masks
         && let Some(segment) = Axis::Specular.segment(options)
     {
-        let reason = "a bit per light has no room for the terms to leave out";
+        let reason = "a mask cannot store which terms to leave out";
         return Err(contradiction(id, "mask", &segment, reason));
     }
     let settings = options.settings();

@@ -1,8 +1,10 @@
 //! Tiles of the screen (`assign-tiled`).
 
-use assign::Bounds::{self, Explicit, Implicit};
 use assign::{AssignError, FrustumTests, Gpu};
-use assign_tiled::Tiled;
+use assign_tiled::{
+    TileDepths::{self, Explicit, HalfZ, Implicit, ModifiedHalfZ},
+    Tiled,
+};
 
 use super::super::{Axis, Colour, Method, Options, Role, Row, Sizes, StandIn, row::NEEDS_DEPTH};
 
@@ -32,7 +34,30 @@ pub(super) const ROWS: &[Row] = &[
         make: |gpu, options| make(gpu, options, Explicit),
         ..TILES
     },
+    Row {
+        family: "HalfZ",
+        name: "tiles in two halves",
+        about: "as T-E, but the depths of a tile are cut in the middle, and each half has a list",
+        colour: Colour { light: "#7a9a00", dark: "#b5d633" },
+        make: |gpu, options| make(gpu, options, HalfZ),
+        ..HALVES
+    },
+    Row {
+        family: "ModifiedHalfZ",
+        name: "tiles in two tight halves",
+        about: "as HalfZ, but each half shrinks to the samples in it",
+        colour: Colour { light: "#00809c", dark: "#3fd0ee" },
+        make: |gpu, options| make(gpu, options, ModifiedHalfZ),
+        ..HALVES
+    },
 ];
+
+const HALVES: Row = Row {
+    role: Role::OtherPaper,
+    source: "Thomas 2015, \"Advancements in Tile-Based Compute Rendering\", GDC",
+    needs: NEEDS_DEPTH,
+    ..TILES
+};
 
 /// The only test of earlier versions, whose stages had no far plane and so no far corners.
 const HS: FrustumTests =
@@ -63,7 +88,7 @@ const TILES: Row = Row {
     ..Row::PLAIN
 };
 
-fn make(gpu: &Gpu, options: &Options, bounds: Bounds) -> Result<Method, AssignError> {
+fn make(gpu: &Gpu, options: &Options, depths: TileDepths) -> Result<Method, AssignError> {
     let size = options.parameters.parse()?;
-    Ok(Method::lists(Tiled::new(gpu, size, bounds, options.settings())?))
+    Ok(Method::lists(Tiled::new(gpu, size, depths, options.settings())?))
 }

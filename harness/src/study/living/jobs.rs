@@ -245,10 +245,17 @@ mod tests {
     }
 
     #[test]
-    fn four_strategies_run_and_tiles_read_the_plain_list() {
+    fn explicit_bounds_and_other_papers_run_and_tiles_read_the_plain_list() {
         assert_eq!(
             strategies(),
-            ["T-E/28x28", "DC-E/64x64x40/bvh", "SC-E/48x48x40/bvh", "HG/48x48x40"]
+            [
+                "T-E/28x28",
+                "HalfZ/28x28",
+                "ModifiedHalfZ/28x28",
+                "DC-E/64x64x40/bvh",
+                "SC-E/48x48x40/bvh",
+                "HG/48x48x40"
+            ]
         );
     }
 
