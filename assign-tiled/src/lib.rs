@@ -11,12 +11,13 @@
 //! | `T-E` | its frustum between the nearest and the farthest sample in it (explicit) |
 //! | `HalfZ` | the same, cut in the middle: two groups (Thomas 2015) |
 //! | `ModifiedHalfZ` | both halves, each shrunk to the samples in it (Thomas 2015) |
+//! | `T-25D` | as T-E, without those of 32 depth slices that hold no sample (Harada 2012, "2.5D culling") |
 //!
 //! # Phases
 //!
 //! 1. `bounds` (all but T-I) gives each tile one workgroup, which reads the tile's depths and reduces them to a
 //!    range in workgroup memory. It needs no global atomics. A tile without samples gets an empty range.
-//!    ModifiedHalfZ reads the depths a second time, once the middle is known.
+//!    ModifiedHalfZ and T-25D read the depths a second time, once the range is known.
 //! 2. `cull` gives each group one workgroup, which tests lights against its frustum and writes its list.
 //!
 //! # Cost
@@ -40,6 +41,9 @@
 //! - HalfZ and ModifiedHalfZ help at such a discontinuity: a sample reads only the lights of its own half, and
 //!   ModifiedHalfZ leaves the gap out. They test every light twice, and gain nothing where a tile shows one
 //!   surface, or three.
+//! - T-25D leaves out lights in gaps of any number, but its samples still share one list, which holds the lights
+//!   of all surfaces in the tile. A slice is a 32nd of the range, so behind a fence that hides a wall far away
+//!   slices are coarse.
 //! - Smaller tiles do not help there. The longest lists are at silhouettes, where tiles of any size see both
 //!   depths.
 //!

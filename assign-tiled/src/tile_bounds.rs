@@ -18,6 +18,8 @@ pub(crate) struct TileBounds {
     bind_group: Option<wgpu::BindGroup>,
     pipeline: wgpu::ComputePipeline,
     depths: wgpu::Buffer,
+    /// The depth slices of each tile that hold samples: `array<u32>`.
+    masks: Option<wgpu::Buffer>,
     counts: [u32; 2],
     /// Lists per tile.
     lists: u32,
@@ -27,8 +29,18 @@ impl TileBounds {
     pub(crate) fn new(gpu: &Gpu, tile_depths: TileDepths) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
         let depth = texture_entry(0, stages, wgpu::TextureSampleType::Depth);
-        let entries =
-            [depth, storage_entry(1, stages, false), uniform_entry(FIRST_STRATEGY_BINDING, stages)];
+        let mut entries = vec![
+            depth,
+            storage_entry(1, stages, false),
+            uniform_entry(FIRST_STRATEGY_BINDING, stages),
+        ];
+        let masks = match tile_depths {
+            TileDepths::Sliced => Some(gpu.storage("tile depth masks", 0)?),
+            _ => None,
+        };
+        if masks.is_some() {
+            entries.push(storage_entry(2, stages, false));
+        }
         let layout = gpu.bind_group_layout("tile bounds", &entries);
         let frame = FrameBindings::new(gpu);
         // SAFETY: its loops count up to the number of pixels of a tile.
@@ -38,7 +50,7 @@ impl TileBounds {
         let pipeline = kernel::pipeline(gpu, &module, "reduce", &[frame.layout(), &layout]);
         let depths = gpu.storage("tile depths", 0)?;
         let lists = tile_depths.lists();
-        Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0], lists })
+        Ok(Self { frame, layout, bind_group: None, pipeline, depths, counts: [0, 0], lists, masks })
     }
 
     /// Sizes the buffer for `counts` tiles along x and y, and binds it: outside the clock.
@@ -56,15 +68,15 @@ impl TileBounds {
         if self.depths.size() < bytes {
             self.depths = gpu.storage("tile depths", bytes)?;
         }
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tile bounds"),
-            layout: &self.layout,
-            entries: &[
-                texture(0, depth),
-                entry(1, &self.depths),
-                entry(FIRST_STRATEGY_BINDING, tiles),
-            ],
-        }));
+        if let Some(masks) = &mut self.masks
+            && masks.size() < bytes / 2
+        {
+            *masks = gpu.storage("tile depth masks", bytes / 2)?;
+        }
+        let mut entries =
+            vec![texture(0, depth), entry(1, &self.depths), entry(FIRST_STRATEGY_BINDING, tiles)];
+        entries.extend(self.masks.as_ref().map(|masks| entry(2, masks)));
+        self.bind_group = Some(kernel::bind_entries(gpu, &self.layout, &entries));
         Ok(())
     }
 
@@ -80,12 +92,17 @@ impl TileBounds {
 
     /// Bytes of its buffers.
     pub(crate) fn bytes(&self) -> u64 {
-        self.depths.size() + self.frame.bytes()
+        let masks = self.masks.as_ref().map_or(0, wgpu::Buffer::size);
+        self.depths.size() + masks + self.frame.bytes()
     }
 
-    /// Nearest and farthest view depth of each group's samples, metres: `array<vec2f>`.
-    pub(crate) fn depths(&self) -> &wgpu::Buffer {
-        &self.depths
+    /// What the pass fills, for the strategy's bindings from the second on: nearest and farthest view depth of
+    /// each group's samples, metres, as `array<vec2f>`; and the slices that hold samples, as `array<u32>`.
+    pub(crate) fn resources(&self) -> impl Iterator<Item = wgpu::BindGroupEntry<'_>> {
+        let buffers = [Some(&self.depths), self.masks.as_ref()];
+        (FIRST_STRATEGY_BINDING + 1..)
+            .zip(buffers.into_iter().flatten())
+            .map(|(binding, buffer)| entry(binding, buffer))
     }
 }
 

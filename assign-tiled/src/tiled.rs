@@ -39,8 +39,11 @@ impl Tiled {
         let mut bindings = vec![tiles];
         let tile_bounds = match depths {
             TileDepths::Implicit => None,
-            TileDepths::Explicit | TileDepths::HalfZ | TileDepths::ModifiedHalfZ => {
+            _ => {
                 bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true));
+                if depths == TileDepths::Sliced {
+                    bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 2, stages, true));
+                }
                 Some(TileBounds::new(gpu, depths)?)
             }
         };
@@ -54,7 +57,10 @@ impl Tiled {
                 gpu,
                 &CullerDescriptor {
                     label: depths.family(),
-                    shape: GroupShape::Frustum,
+                    shape: match depths {
+                        TileDepths::Sliced => GroupShape::MaskedFrustum,
+                        _ => GroupShape::Frustum,
+                    },
                     settings,
                     sparse: false,
                     facing: Facing::Unknown,
@@ -100,7 +106,7 @@ impl Assignment for Tiled {
             let depth = frame.depth.ok_or_else(missing)?;
             tiles.surfaces_only = 1;
             tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;
-            resources.push(entry(FIRST_STRATEGY_BINDING + 1, tile_bounds.depths()));
+            resources.extend(tile_bounds.resources());
         }
         gpu.queue.write_buffer(&self.tiles, 0, bytes_of(&tiles));
         self.culler.prepare(

@@ -63,6 +63,9 @@ pub enum TileDepths {
     HalfZ,
     /// Both halves, each shrunk to the samples in it (Thomas 2015, *modified HalfZ*).
     ModifiedHalfZ,
+    /// From the nearest to the farthest sample, without the 32 slices between them that hold none (Harada 2012,
+    /// *2.5D culling*).
+    Sliced,
 }
 
 impl TileDepths {
@@ -73,13 +76,14 @@ impl TileDepths {
             Self::Explicit => "T-E",
             Self::HalfZ => "HalfZ",
             Self::ModifiedHalfZ => "ModifiedHalfZ",
+            Self::Sliced => "T-25D",
         }
     }
 
     /// Lists per tile.
     pub(crate) fn lists(self) -> u32 {
         match self {
-            Self::Implicit | Self::Explicit => 1,
+            Self::Implicit | Self::Explicit | Self::Sliced => 1,
             Self::HalfZ | Self::ModifiedHalfZ => 2,
         }
     }

@@ -36,8 +36,8 @@ fn explicit_conforms() {
 }
 
 #[test]
-fn halves_conform() {
-    for depths in [TileDepths::HalfZ, TileDepths::ModifiedHalfZ] {
+fn halves_and_slices_conform() {
+    for depths in [TileDepths::HalfZ, TileDepths::ModifiedHalfZ, TileDepths::Sliced] {
         conforms(depths, "28x28", CullSettings::default());
     }
     conforms(TileDepths::ModifiedHalfZ, "13x9", CullSettings::default());
@@ -86,13 +86,19 @@ fn only_explicit_tiles_refuse_look_ups_at_any_depth() {
 /// A strategy that lists every light for every sample conforms too, so this test checks that lists are short.
 #[test]
 fn lists_are_short() {
-    let listed = |depths: TileDepths| {
+    let listed_in = |case: &str, depths: TileDepths| {
         let make = tiled(depths, "16x16", CullSettings::default());
-        let case = conformance::run_case("mixed-kinds", &make).expect("conforms");
+        let case = conformance::run_case(case, &make).expect("conforms");
         case.listed_per_sample().expect("passed")
     };
+    let listed = |depths| listed_in("mixed-kinds", depths);
     let [implicit, explicit] = [TileDepths::Implicit, TileDepths::Explicit].map(listed);
     let [half, modified] = [TileDepths::HalfZ, TileDepths::ModifiedHalfZ].map(listed);
+    // Only small lights fit between the surfaces of a tile.
+    let [whole, sliced] = [TileDepths::Explicit, TileDepths::Sliced]
+        .map(|depths| listed_in("gpu-order-many", depths));
+    println!("{whole:.1} and {sliced:.1} of 14,000 lights listed per sample");
+    assert!(sliced < 0.985 * whole, "listed: {sliced} of {whole}");
     println!(
         "{implicit:.1}, {explicit:.1}, {half:.1} and {modified:.1} of 600 lights listed per sample"
     );
@@ -105,9 +111,13 @@ fn lists_are_short() {
 
 #[test]
 fn faults_are_rejected() {
-    for depths in
-        [TileDepths::Implicit, TileDepths::Explicit, TileDepths::HalfZ, TileDepths::ModifiedHalfZ]
-    {
+    for depths in [
+        TileDepths::Implicit,
+        TileDepths::Explicit,
+        TileDepths::HalfZ,
+        TileDepths::ModifiedHalfZ,
+        TileDepths::Sliced,
+    ] {
         let make = tiled(depths, "16x16", CullSettings::default());
         assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
     }

@@ -9,14 +9,23 @@ use assign::{
 };
 use assign_tiled::{TileDepths, TilesUniform, bounds_source, tile_wesl};
 
-const ALL: [TileDepths; 4] =
-    [TileDepths::Implicit, TileDepths::Explicit, TileDepths::HalfZ, TileDepths::ModifiedHalfZ];
+const ALL: [TileDepths; 5] = [
+    TileDepths::Implicit,
+    TileDepths::Explicit,
+    TileDepths::HalfZ,
+    TileDepths::ModifiedHalfZ,
+    TileDepths::Sliced,
+];
 
 /// The culling kernel of tiles, validated.
 fn kernel(depths: TileDepths, settings: CullSettings, kinds: LightKinds) -> LinkedModule {
     let module = tile_wesl(depths);
+    let shape = match depths {
+        TileDepths::Sliced => GroupShape::MaskedFrustum,
+        _ => GroupShape::Frustum,
+    };
     let what = format!("{depths:?}, {settings:?}, {kinds:?}");
-    let source = Culler::kernel_source(GroupShape::Frustum, settings, false, module, kinds)
+    let source = Culler::kernel_source(shape, settings, false, module, kinds)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
     LinkedModule::new(&what, &source)
 }

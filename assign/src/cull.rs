@@ -309,7 +309,9 @@ impl Culler {
 
 fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTraits) -> Shader<'a> {
     let bounds = match variant.shape {
-        GroupShape::Frustum => include_str!("shaders/bounds_frustum.wesl"),
+        GroupShape::Frustum | GroupShape::MaskedFrustum => {
+            include_str!("shaders/bounds_frustum.wesl")
+        }
         GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
         GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
     };
@@ -329,6 +331,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .flag("reflected", variant.facing == Facing::ReflectedCone)
         .flag("where_diffuse", variant.facing == Facing::WhereDiffuse)
         .flag("gloss", variant.facing == Facing::HorizonAndGloss)
+        .flag("depth_mask", variant.shape == GroupShape::MaskedFrustum)
         .flag("hs", tests.hs)
         .flag("sat_e", tests.sat_e)
         .flag("sat_n", tests.sat_n)

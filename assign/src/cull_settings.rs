@@ -138,7 +138,8 @@ impl CullSettings {
     /// nothing, and tests appear only if groups are frusta.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
-        if shape == GroupShape::Frustum && self.tests != FrustumTests::default() {
+        let is_frustum = matches!(shape, GroupShape::Frustum | GroupShape::MaskedFrustum);
+        if is_frustum && self.tests != FrustumTests::default() {
             suffix = format!("/{}", self.tests);
         }
         if self.source == LightSource::Hierarchy {

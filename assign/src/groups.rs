@@ -7,6 +7,9 @@ use crate::LiveGroups;
 pub enum GroupShape {
     /// A pixel rectangle and a depth range: `bounds_frustum.wesl`.
     Frustum,
+    /// The same, with a mask of the depth slices that hold samples: [`Frustum`](Self::Frustum) with the flag
+    /// `depth_mask`. A light is listed only if it reaches such a slice.
+    MaskedFrustum,
     /// A box along the world's axes: `bounds_box.wesl`.
     Box,
     /// A box along axes of its own: `bounds_oriented_box.wesl`.

@@ -38,6 +38,7 @@ impl<'a> Shader<'a> {
             .module("package::window", include_str!("shaders/window.wesl"))
             .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
+            .module("package::depth_slices", include_str!("shaders/depth_slices.wesl"))
             .module("package::look_up", Storage::Lists.look_up())
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)

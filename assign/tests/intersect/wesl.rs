@@ -103,6 +103,7 @@ impl Tester {
             .module("package::driver", DRIVER)
             .module("package::bounds", bounds)
             .module("package::strategy", strategy)
+            .flag("depth_mask", false)
             .flag("hs", tests.hs)
             .flag("sat_e", tests.sat_e)
             .flag("sat_n", tests.sat_n)

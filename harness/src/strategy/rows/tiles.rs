@@ -2,7 +2,7 @@
 
 use assign::{AssignError, FrustumTests, Gpu};
 use assign_tiled::{
-    TileDepths::{self, Explicit, HalfZ, Implicit, ModifiedHalfZ},
+    TileDepths::{self, Explicit, HalfZ, Implicit, ModifiedHalfZ, Sliced},
     Tiled,
 };
 
@@ -48,6 +48,16 @@ pub(super) const ROWS: &[Row] = &[
         about: "as HalfZ, but each half shrinks to the samples in it",
         colour: Colour { light: "#00809c", dark: "#3fd0ee" },
         make: |gpu, options| make(gpu, options, ModifiedHalfZ),
+        ..HALVES
+    },
+    Row {
+        family: "T-25D",
+        name: "tiles with depth masks (2.5D)",
+        about: "as T-E, but the depths of a tile are cut into 32 slices, and lights that reach only empty slices are \
+                left out",
+        source: "Harada 2012, \"A 2.5D Culling for Forward+\"",
+        colour: Colour { light: "#b3006b", dark: "#ff6fb5" },
+        make: |gpu, options| make(gpu, options, Sliced),
         ..HALVES
     },
 ];

@@ -252,6 +252,7 @@ mod tests {
                 "T-E/28x28",
                 "HalfZ/28x28",
                 "ModifiedHalfZ/28x28",
+                "T-25D/28x28",
                 "DC-E/64x64x40/bvh",
                 "SC-E/48x48x40/bvh",
                 "HG/48x48x40"
