@@ -22,8 +22,8 @@
 //!
 //! # Cost
 //!
-//! `cull` grows with tiles times lights, `bounds` with pixels. Memory is 8 bytes per tile (16 with T-E's depth
-//! range) and 4 bytes per listed light: the least of all strategies in screen space.
+//! `cull` grows with tiles times lights, `bounds` with pixels. Memory per tile is 8 bytes for T-I, 16 for T-E, 20
+//! for T-25D and 32 for both halves, and 4 bytes per listed light: the least of all strategies in screen space.
 //!
 //! Measured for 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25; `results/h200-all/sponza-1.6.json`,
 //! whose command is in `results/README.md`):
@@ -39,12 +39,13 @@
 //!   as a fence in front of a far wall, these include all lights in the gap between, which reach no sample. T-I
 //!   also lists the lights beyond the wall.
 //! - HalfZ and ModifiedHalfZ help at such a discontinuity: a sample reads only the lights of its own half, and
-//!   ModifiedHalfZ leaves the gap out. They test every light twice, and gain nothing where a tile shows one
-//!   surface, or three.
-//! - T-25D leaves out lights in gaps of any number, but its samples still share one list, which holds the lights
-//!   of all surfaces in the tile. A slice is a 32nd of the range, so behind a fence that hides a wall far away
-//!   slices are coarse.
-//! - Smaller tiles do not help there. The longest lists are at silhouettes, where tiles of any size see both
+//!   ModifiedHalfZ leaves the gap out. They gain nothing where a tile shows one surface, and little where it
+//!   shows three. Here each half has a workgroup of its own, which tests all lights. The talk's sample code
+//!   tests a light's sides once for both halves, so its culling costs less than ours.
+//! - T-25D leaves out lights in any number of gaps, but the samples of a tile still share one list, which holds
+//!   the lights of all its surfaces. A slice is a 32nd of the range of depths: where a near fence stands before
+//!   a far wall, slices are long.
+//! - Smaller tiles do not help at a discontinuity. The longest lists are at silhouettes, where tiles of any size see both
 //!   depths.
 //!
 //! T-I serves look-ups at any depth. The others serve only opaque surfaces, and refuse any other look-up.

@@ -10,7 +10,7 @@ use crate::{TileDepths, tile_wesl::tile_wesl};
 /// Bind group of the pass's own resources and of the tiles' uniform.
 const BOUNDS_GROUP: u32 = 1;
 
-/// Reads the depth buffer once, or twice for halves that shrink.
+/// Reads the depth buffer once, or twice for halves that shrink and for slices.
 #[derive(Debug)]
 pub(crate) struct TileBounds {
     frame: FrameBindings,

@@ -1,4 +1,4 @@
-//! Tiles with implicit or explicit bounds, whole or in halves: T-I, T-E, HalfZ and ModifiedHalfZ.
+//! Tiles: T-I, T-E, HalfZ, ModifiedHalfZ and T-25D.
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,

@@ -53,6 +53,10 @@ fn permutations() -> Vec<Permutation> {
     for sparse in [false, true] {
         let linear = CullSettings { source: LightSource::Linear, ..masks };
         all.extend([masks, linear].map(|masks| (FRUSTUM.0, FRUSTUM.1, masks, sparse)));
+        for settings in [masks, settings("hs+sat-n", LightSource::Linear)] {
+            let bounds = "vec2f(-1.0), vec2f(1.0), 1.0, 2.0, 5u";
+            all.push((GroupShape::MaskedFrustum, bounds, settings, sparse));
+        }
         all.extend(BOXES.map(|(shape, bounds)| (shape, bounds, masks, sparse)));
     }
     all

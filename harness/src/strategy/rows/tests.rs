@@ -50,6 +50,9 @@ fn ids_are_those_of_the_strategies() {
     for id in [
         "T-I/hs/bvh",
         "T-E/16x16/ball/hs+sat-p",
+        "HalfZ/bvh/mask",
+        "ModifiedHalfZ/16x16",
+        "T-25D/hs/bvh",
         "DC-I/40x40x24/bvh",
         "DC-E/ball",
         "SC-I/hs",

@@ -55,7 +55,7 @@ pub(super) const ROWS: &[Row] = &[
         name: "tiles with depth masks (2.5D)",
         about: "as T-E, but the depths of a tile are cut into 32 slices, and lights that reach only empty slices are \
                 left out",
-        source: "Harada 2012, \"A 2.5D Culling for Forward+\"",
+        source: "Harada 2012, \"A 2.5D Culling for Forward+\", SIGGRAPH Asia Technical Briefs",
         colour: Colour { light: "#b3006b", dark: "#ff6fb5" },
         make: |gpu, options| make(gpu, options, Sliced),
         ..HALVES
@@ -64,7 +64,7 @@ pub(super) const ROWS: &[Row] = &[
 
 const HALVES: Row = Row {
     role: Role::OtherPaper,
-    source: "Thomas 2015, \"Advancements in Tile-Based Compute Rendering\", GDC",
+    source: "Thomas 2015, \"Advancements in Tiled-Based Compute Rendering\", GDC",
     needs: NEEDS_DEPTH,
     ..TILES
 };
