@@ -133,6 +133,10 @@ impl Run<'_> {
         self.figures.samples += seen.probes.len() as u64;
         self.figures.pairs += pairs.reaching;
         self.figures.listed += pairs.listed;
+        if !seen.overflowed() {
+            self.figures.fitting[0] += seen.probes.len() as u64;
+            self.figures.fitting[1] += pairs.listed;
+        }
         self.figures.any_depth |= session.domain == SampleDomain::AnyDepth;
         Ok(seen)
     }

@@ -141,6 +141,8 @@ pub struct Figures {
     pub pairs: u64,
     /// (light, sample) pairs that the lists held.
     pub listed: u64,
+    /// View samples and listed pairs of the frames in which every list fitted.
+    pub fitting: [u64; 2],
     /// Whether look-ups at any depth were also served and checked.
     pub any_depth: bool,
 }
@@ -175,10 +177,13 @@ pub struct Report {
 }
 
 impl CaseReport {
-    /// Mean number of entries that a sample reads; `None` if the case did not pass.
+    /// Mean number of entries that a sample reads in frames in which every list fitted; `None` if the case did not
+    /// pass. When counters arrive decides how many frames overflow, and lists of all lights would drown the others.
     pub fn listed_per_sample(&self) -> Option<f64> {
         match &self.outcome {
-            Outcome::Passed(figures) => Some(figures.listed as f64 / figures.samples.max(1) as f64),
+            Outcome::Passed(Figures { fitting: [samples, listed], .. }) => {
+                Some(*listed as f64 / (*samples).max(1) as f64)
+            }
             Outcome::Failed(_) | Outcome::Unserved(_) => None,
         }
     }
