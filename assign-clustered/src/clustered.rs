@@ -8,7 +8,7 @@ use assign::{
 use bytemuck::bytes_of;
 
 use crate::{
-    Normals, Occupancy, SpecularCut,
+    Normals, Occupancy, Slices, SpecularCut,
     cluster_wesl::cluster_wesl,
     froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform},
     gather::{Gather, Images},
@@ -22,6 +22,7 @@ const MARKS_BINDING: u32 = FROXELS_BINDING + 1;
 #[derive(Debug)]
 pub struct Clustered {
     size: FroxelSize,
+    slices: Slices,
     bounds: Bounds,
     occupancy: Occupancy,
     normals: Normals,
@@ -88,6 +89,7 @@ impl Clustered {
         let reads_samples = sparse || bounds == Bounds::Explicit;
         Ok(Self {
             size,
+            slices: Slices::default(),
             bounds,
             occupancy,
             normals,
@@ -117,6 +119,14 @@ impl Clustered {
     }
 }
 
+impl Clustered {
+    /// The same with depth cut into other slices. Checks them.
+    pub fn with_slices(self, slices: Slices) -> Result<Self, AssignError> {
+        slices.check()?;
+        Ok(Self { slices, ..self })
+    }
+}
+
 fn family(bounds: Bounds, occupancy: Occupancy) -> &'static str {
     match (occupancy, bounds) {
         (Occupancy::Dense, Bounds::Implicit) => "DC-I",
@@ -138,7 +148,12 @@ impl Assignment for Clustered {
         let suffix = self.settings.suffix(shape(self.bounds));
         let normals = self.normals.segment();
         let cut = self.cut.segment();
-        format!("{}/{}{normals}{cut}{suffix}", family(self.bounds, self.occupancy), self.size)
+        let slices = self.slices.segment();
+        format!(
+            "{}/{}{slices}{normals}{cut}{suffix}",
+            family(self.bounds, self.occupancy),
+            self.size
+        )
     }
 
     fn needs(&self) -> Needs {
@@ -157,7 +172,8 @@ impl Assignment for Clustered {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.light_bounds())?;
+        let mut froxels =
+            FroxelsUniform::new(self.size, self.slices, frame.view, frame.light_bounds())?;
         let count = group_count(self.size, &froxels, self.normals, frame.view.viewport)?;
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];

@@ -6,6 +6,8 @@ use assign::{AssignError, FIRST_STRATEGY_BINDING, Projection, View, intersect::U
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::Slices;
+
 /// The size of froxels: pixels of a tile, and the number of depth slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FroxelSize {
@@ -89,7 +91,7 @@ pub struct FroxelsUniform {
     pub tile_px: [u32; 2],
     /// Upper left pixel of the viewport.
     pub origin_px: [u32; 2],
-    /// View depth at which slice 0 begins, metres.
+    /// View depth at which the regular slices begin, metres.
     pub first_m: f32,
     /// Least view depth of a sample, metres: the near plane, as shading rebuilds it.
     pub near_m: f32,
@@ -99,21 +101,25 @@ pub struct FroxelsUniform {
     pub exponential: u32,
     /// 1: lists serve only the surfaces in the depth buffer. 0: lists serve any depth.
     pub surfaces_only: u32,
+    /// Slices before the one that begins at `first_m`: 1 if the first slice is of its own depth, else 0.
+    pub own_slices: f32,
     /// Pads to 64 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 impl FroxelsUniform {
     /// Cuts `view` into froxels; lists serve any depth.
     ///
-    /// Slices run from the near to the far plane. In a perspective view they grow exponentially with depth
-    /// (Enhuber 2019, equation 3.3); in an orthographic view they are equally deep.
+    /// Slices run from the near to the far plane. In a perspective view they grow with depth as `slices` says; in an
+    /// orthographic view they are equally deep. A first slice of its own depth must end between the near plane and
+    /// the end of all slices, or slices are exponential.
     ///
     /// If the far plane of a perspective view lies beyond every light, slices end at the farthest point that a
     /// light reaches, which is a corner of `light_bounds`. The last slice then continues to the far plane or
     /// to infinity ([`View::slices_end_m`]).
     pub fn new(
         size: FroxelSize,
+        slices: Slices,
         view: &View,
         light_bounds: Option<(Vec3, Vec3)>,
     ) -> Result<Self, AssignError> {
@@ -129,23 +135,33 @@ impl FroxelsUniform {
             });
         }
         let near = view.near_m;
-        let exponential = matches!(view.projection, Projection::Perspective { .. });
-        let last = match (exponential, view.far_m) {
+        let perspective = matches!(view.projection, Projection::Perspective { .. });
+        let last = match (perspective, view.far_m) {
             (false, Some(far)) => far,
             _ => view.slices_end_m(light_bounds).min(near * MAX_DEPTH_RATIO),
         };
-        let span = if exponential { (last / near).log2() } else { last - near };
+        let exponential = perspective && slices != Slices::Even;
+        let (first_m, own) = match slices {
+            Slices::Near(end_m)
+                if exponential && size.slices > 1 && end_m > near && end_m < last =>
+            {
+                (end_m, 1)
+            }
+            _ => (near, 0),
+        };
+        let span = if exponential { (last / first_m).log2() } else { last - first_m };
         Ok(Self {
             counts,
-            slices_per_unit: size.slices as f32 / span,
+            slices_per_unit: (size.slices - own) as f32 / span,
             tile_px: size.tile_px,
             origin_px: [view.viewport.x, view.viewport.y],
-            first_m: near,
+            first_m,
             near_m: view.nearest_rebuilt_m(),
             far_m: view.farthest_rebuilt_m().unwrap_or(UNBOUNDED),
             exponential: u32::from(exponential),
             surfaces_only: 0,
-            padding: [0; 3],
+            own_slices: own as f32,
+            padding: [0; 2],
         })
     }
 
@@ -164,6 +180,8 @@ impl FroxelsUniform {
 mod tests {
     use super::*;
 
+    const EXPONENTIAL: Slices = Slices::Exponential;
+
     #[test]
     fn sizes_print_as_they_parse() {
         let size: FroxelSize = "64x32x24".parse().unwrap();
@@ -179,10 +197,28 @@ mod tests {
         let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [130, 64]);
         view.far_m = Some(512.0);
         let size = "64x64x20".parse().unwrap();
-        let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+        let froxels = FroxelsUniform::new(size, EXPONENTIAL, &view, None).unwrap();
         assert_eq!(froxels.counts, [3, 1, 20]);
         // Ten octaves, two slices each.
         assert_eq!(froxels.slices_per_unit, 2.0);
+    }
+
+    #[test]
+    fn a_first_slice_of_its_own_depth_leaves_the_others_to_the_rest() {
+        let mut view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.5, [64, 64]);
+        view.far_m = Some(64.0);
+        let size = "64x64x9".parse().unwrap();
+        let cut = |slices| FroxelsUniform::new(size, slices, &view, None).unwrap();
+        // Four octaves, two slices each.
+        let near = cut(Slices::Near(4.0));
+        assert_eq!((near.first_m, near.slices_per_unit, near.own_slices), (4.0, 2.0, 1.0));
+        let even = cut(Slices::Even);
+        assert_eq!((even.exponential, even.own_slices), (0, 0.0));
+        assert_eq!(even.slices_per_unit, 9.0 / 63.5);
+        // It would end before the near plane, or behind the last slice.
+        for outside in [0.4, 64.0] {
+            assert_eq!(cut(Slices::Near(outside)), cut(EXPONENTIAL));
+        }
     }
 
     #[test]
@@ -190,12 +226,12 @@ mod tests {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [64, 64]);
         let bounds = Some((Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE));
         let size = "64x64x8".parse().unwrap();
-        let froxels = FroxelsUniform::new(size, &view, bounds).unwrap();
+        let froxels = FroxelsUniform::new(size, EXPONENTIAL, &view, bounds).unwrap();
         assert_eq!(froxels.slices_per_unit, 2.0);
         assert_eq!(froxels.far_m, UNBOUNDED);
         // With all lights behind the camera, slices span one octave.
         let behind = Some((Vec3::new(-1.0, -1.0, 2.0), Vec3::splat(9.0)));
-        let froxels = FroxelsUniform::new(size, &view, behind).unwrap();
+        let froxels = FroxelsUniform::new(size, EXPONENTIAL, &view, behind).unwrap();
         assert_eq!(froxels.slices_per_unit, 8.0);
     }
 
@@ -205,7 +241,7 @@ mod tests {
         view.far_m = Some(1_024.0);
         let size = "64x64x8".parse().unwrap();
         let per_octave = |view: &View, bounds| {
-            FroxelsUniform::new(size, view, Some(bounds)).unwrap().slices_per_unit
+            FroxelsUniform::new(size, EXPONENTIAL, view, Some(bounds)).unwrap().slices_per_unit
         };
         // Four octaves to the farthest light, as without a far plane.
         let bounds = (Vec3::new(-1.0, -1.0, -16.0), Vec3::ONE);
@@ -214,7 +250,7 @@ mod tests {
         // The far plane is nearer than the farthest light: two octaves.
         assert_eq!(per_octave(&View { far_m: Some(4.0), ..view }, bounds), 4.0);
         // The last slice continues to the far plane.
-        let froxels = FroxelsUniform::new(size, &view, Some(bounds)).unwrap();
+        let froxels = FroxelsUniform::new(size, EXPONENTIAL, &view, Some(bounds)).unwrap();
         assert!((1_023.0..1_025.0).contains(&froxels.far_m), "{froxels:?}");
     }
 
@@ -224,11 +260,11 @@ mod tests {
         view.far_m = Some(1_000.0);
         view.depth = assign::DepthMapping::Standard;
         let size = "64x64x8".parse().unwrap();
-        let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+        let froxels = FroxelsUniform::new(size, EXPONENTIAL, &view, None).unwrap();
         assert!((1_048.5..1_049.0).contains(&froxels.far_m), "{froxels:?}");
         // f32 cannot tell this far plane from infinity.
         view.far_m = Some(1e6);
-        let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+        let froxels = FroxelsUniform::new(size, EXPONENTIAL, &view, None).unwrap();
         assert_eq!(froxels.far_m, UNBOUNDED);
     }
 
@@ -236,7 +272,8 @@ mod tests {
     fn too_many_froxels_are_refused() {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [16_384, 16_384]);
         let count = |size: &str| {
-            FroxelsUniform::new(size.parse().unwrap(), &view, None).map(|grid| grid.froxel_count())
+            FroxelsUniform::new(size.parse().unwrap(), EXPONENTIAL, &view, None)
+                .map(|grid| grid.froxel_count())
         };
         assert_eq!(count("16x16x16").unwrap(), 1 << 24);
         let error = count("16x16x17").unwrap_err().to_string();

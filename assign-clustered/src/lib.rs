@@ -98,6 +98,7 @@ mod hybrid;
 mod normal_bins;
 mod normals;
 mod occupancy;
+mod slices;
 mod specular_cut;
 
 pub use cluster_wesl::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL};
@@ -108,4 +109,5 @@ pub use hybrid::{HYBRID_WESL, HybridGrid, HybridParts, HybridShader};
 pub use normal_bins::NormalBinsUniform;
 pub use normals::Normals;
 pub use occupancy::Occupancy;
+pub use slices::Slices;
 pub use specular_cut::{PAPERS_LOBE_DEGREES, SpecularCut};

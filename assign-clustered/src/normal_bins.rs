@@ -64,7 +64,7 @@ mod tests {
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [16_384, 16_384]);
         let groups = |size: &str, normals| {
             let size = size.parse().unwrap();
-            let froxels = FroxelsUniform::new(size, &view, None).unwrap();
+            let froxels = FroxelsUniform::new(size, crate::Slices::default(), &view, None).unwrap();
             group_count(size, &froxels, normals, view.viewport)
         };
         assert_eq!(groups("16x16x8", Normals::None).unwrap(), 1 << 23);

@@ -6,7 +6,7 @@ use assign::{
     AssignError, Assignment, Bounds, CullSettings, Gpu, LightSource,
     conformance::{self, faulty::Fault},
 };
-use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
+use assign_clustered::{Clustered, Normals, Occupancy, Slices, SpecularCut};
 
 const DC_I: (Bounds, Occupancy) = (Bounds::Implicit, Occupancy::Dense);
 const DC_E: (Bounds, Occupancy) = (Bounds::Explicit, Occupancy::Dense);
@@ -65,6 +65,21 @@ fn sparse_explicit_conforms() {
     conforms(SC_E, "32x32x8", CullSettings::default());
     conforms(SC_E, "13x9x40", CullSettings::default());
     conforms(SC_E, "3x3x200", CullSettings::default());
+}
+
+#[test]
+fn other_slices_conform() {
+    for (variant, slices) in
+        [(DC_I, Slices::Even), (DC_I, Slices::Near(2.0)), (SC_E, Slices::Near(0.5))]
+    {
+        let (bounds, occupancy) = variant;
+        let make = move |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+            let (size, settings) = ("16x16x8".parse()?, CullSettings::default());
+            let clusters = Clustered::new(gpu, size, bounds, occupancy, settings)?;
+            Ok(Box::new(clusters.with_slices(slices)?))
+        };
+        conformance::run(&make).expect("conforms");
+    }
 }
 
 #[test]

@@ -86,7 +86,9 @@ fn rates(gpu: &Gpu, view: &View, ranges_m: [f32; 2]) -> (usize, f64) {
         .collect();
     let buffer = LightBuffer::new(gpu, &lights).unwrap();
     let size: FroxelSize = "48x48x24".parse().unwrap();
-    let uniform = FroxelsUniform::new(size, view, buffer.bounds()).unwrap();
+    let uniform =
+        FroxelsUniform::new(size, assign_clustered::Slices::default(), view, buffer.bounds())
+            .unwrap();
     let mut strategy = HybridGrid::new(gpu, size).unwrap();
     let frame = Frame::new(view, &buffer).sampled_at(SampleDomain::AnyDepth);
     // The pool grows before the second frame.

@@ -102,7 +102,7 @@ fn froxel_shaders() -> Vec<(String, LinkedModule)> {
 #[test]
 fn froxels_have_one_layout_in_all_shaders_and_in_rust() {
     let rust = struct_layout!(FroxelsUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential, surfaces_only);
+        near_m, far_m, exponential, surfaces_only, own_slices);
     for (what, module) in froxel_shaders() {
         assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING), rust, "{what}: WESL, then Rust");
     }

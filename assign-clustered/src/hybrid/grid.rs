@@ -7,6 +7,7 @@ use assign::{
 use bytemuck::bytes_of;
 
 use super::{passes::HybridPasses, shader::HYBRID_WESL};
+use crate::Slices;
 use crate::froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform};
 
 /// HG: a grid of cells that lights add themselves to.
@@ -49,7 +50,8 @@ impl Assignment for HybridGrid {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let mut froxels = FroxelsUniform::new(self.size, frame.view, frame.lights.bounds())?;
+        let mut froxels =
+            FroxelsUniform::new(self.size, Slices::default(), frame.view, frame.lights.bounds())?;
         let depth =
             match frame.samples {
                 SampleDomain::AnyDepth => None,

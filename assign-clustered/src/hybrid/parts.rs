@@ -43,7 +43,9 @@ mod tests {
     fn no_lane_loops_for_long() {
         for (size, target) in [("1x1x1", 4096), ("1x1x1024", 128), ("48x48x40", 8192)] {
             let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 1.0, [target; 2]);
-            let froxels = FroxelsUniform::new(size.parse().unwrap(), &view, None).unwrap();
+            let froxels =
+                FroxelsUniform::new(size.parse().unwrap(), crate::Slices::default(), &view, None)
+                    .unwrap();
             let parts = HybridParts::new(&froxels);
             let count = parts.part_count(&froxels);
             assert!((1..=129).contains(&count), "{size}: {count} parts");

@@ -1,12 +1,16 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
 use assign::{AreaBounds, FrustumTests, LightSource, Storage};
-use assign_clustered::{Normals, SpecularCut};
+use assign_clustered::{Normals, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
 
 use super::{Options, specular};
 
+/// The segment of slices that are equally deep.
+const EVEN: &str = "even";
+/// The prefix of a segment that gives the first slice a depth of its own.
+const NEAR: &str = "near";
 /// The prefix of a segment that sets the bins of normals.
 const NORMALS: &str = "n";
 /// The prefix of a segment that sets the most lights of a list.
@@ -25,6 +29,8 @@ const NO_EXIT: &str = "no-exit";
 /// An axis besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
+    /// How depth is cut into slices: `even`, or `near5`.
+    Slices,
     /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
     Box,
     /// Bins of normals that split clusters: `n6`.
@@ -53,7 +59,8 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
+        Self::Slices,
         Self::Box,
         Self::Normals,
         Self::Specular,
@@ -71,6 +78,10 @@ impl Axis {
     /// What its segment may be.
     pub fn accepted(self) -> &'static str {
         match self {
+            Self::Slices => {
+                "even for slices that are equally deep, or near and where the first slice ends, in metres, such as \
+                 near5"
+            }
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
             Self::AreaBounds => "ball or outline",
@@ -105,6 +116,8 @@ impl Axis {
             _ if segment.starts_with(CAP) => Some(Self::Cap),
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
             NO_EXIT => Some(Self::Exit),
+            EVEN => Some(Self::Slices),
+            _ if segment.starts_with(NEAR) => Some(Self::Slices),
             MASK => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
@@ -140,6 +153,13 @@ impl Axis {
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
+            Self::Slices => {
+                options.slices = match segment.strip_prefix(NEAR) {
+                    None => Slices::Even,
+                    Some(end_m) => Slices::Near(end_m.parse().ok()?),
+                };
+                options.slices.check().ok()?;
+            }
             Self::Storage => options.storage = Storage::Masks,
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
@@ -169,6 +189,7 @@ impl Axis {
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
+            Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
             Self::Storage => (options.storage == Storage::Masks).then(|| MASK.to_owned()),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
@@ -203,6 +224,11 @@ impl Axis {
             Self::Cap => ("list_cap", options.cap?.into()),
             Self::Reuse => ("reuse_frames", options.reuse?.into()),
             Self::Keep => ("keep_frames", options.keep?.into()),
+            Self::Slices => match options.slices {
+                Slices::Exponential => return None,
+                Slices::Even => ("slicing", EVEN.into()),
+                Slices::Near(end_m) => ("first_slice_end_m", shortest(end_m)),
+            },
             Self::Storage if options.storage == Storage::Masks => ("storage", MASK.into()),
             Self::Storage => return None,
             Self::Touched if options.is_touched => ("touched", true.into()),

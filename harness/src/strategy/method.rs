@@ -1,7 +1,7 @@
 //! How a strategy lights its pixels, and the point on its axes at which it does.
 
 use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, LightSource, Storage};
-use assign_clustered::{Normals, SpecularCut};
+use assign_clustered::{Normals, Slices, SpecularCut};
 use assign_grid::GridBox;
 
 /// How a strategy lights its pixels.
@@ -37,6 +37,8 @@ pub struct Options {
     pub source: Option<LightSource>,
     /// What bounds the reach of an area light.
     pub area_bounds: AreaBounds,
+    /// How depth is cut into slices.
+    pub slices: Slices,
     /// Where a group's lights are kept.
     pub storage: Storage,
     /// The box that a grid cuts into cells.

@@ -55,6 +55,7 @@ pub(super) const ROWS: &[Row] = &[
         about: "every cluster that holds samples has a list of the lights that reach the box around them",
         in_default: Some("SC-E/bvh"),
         axes: &[
+            Axis::Slices,
             Axis::Normals,
             Axis::Specular,
             Axis::Source,
@@ -85,6 +86,7 @@ const CLUSTERS: Row = Row {
 };
 
 const FRUSTA: &[Axis] = &[
+    Axis::Slices,
     Axis::Tests,
     Axis::Source,
     Axis::AreaBounds,
@@ -96,6 +98,7 @@ const FRUSTA: &[Axis] = &[
     Axis::Exit,
 ];
 const BOXES: &[Axis] = &[
+    Axis::Slices,
     Axis::Source,
     Axis::AreaBounds,
     Axis::Storage,
@@ -140,7 +143,7 @@ fn make(
     let size = options.parameters.parse()?;
     let Options { normals, specular, .. } = *options;
     let settings = options.settings();
-    Ok(Method::lists(Clustered::with_normals(
-        gpu, size, bounds, occupancy, normals, specular, settings,
-    )?))
+    let clusters =
+        Clustered::with_normals(gpu, size, bounds, occupancy, normals, specular, settings)?;
+    Ok(Method::lists(clusters.with_slices(options.slices)?))
 }

@@ -54,6 +54,8 @@ fn ids_are_those_of_the_strategies() {
         "ModifiedHalfZ/16x16",
         "T-25D/hs/bvh",
         "DC-I/40x40x24/bvh",
+        "DC-I/even/hs",
+        "SC-E/near5/n6/bvh/mask",
         "DC-E/ball",
         "SC-I/hs",
         "SC-E/n24/s0.001/bvh",
