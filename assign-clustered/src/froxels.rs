@@ -112,7 +112,7 @@ impl FroxelsUniform {
     ///
     /// Slices run from the near to the far plane. In a perspective view they grow with depth as `slices` says; in an
     /// orthographic view they are equally deep. A first slice of its own depth must end between the near plane and
-    /// the end of all slices, or slices are exponential.
+    /// half the depth at which slices end, and must not be the only one, or slices are exponential.
     ///
     /// If the far plane of a perspective view lies beyond every light, slices end at the farthest point that a
     /// light reaches, which is a corner of `light_bounds`. The last slice then continues to the far plane or
@@ -142,8 +142,9 @@ impl FroxelsUniform {
         };
         let exponential = perspective && slices != Slices::Even;
         let (first_m, own) = match slices {
+            // The others need an octave at least, as `View::slices_end_m` leaves: samples must not meet all slices.
             Slices::Near(end_m)
-                if exponential && size.slices > 1 && end_m > near && end_m < last =>
+                if exponential && size.slices > 1 && end_m > near && 2.0 * end_m <= last =>
             {
                 (end_m, 1)
             }
@@ -215,8 +216,9 @@ mod tests {
         let even = cut(Slices::Even);
         assert_eq!((even.exponential, even.own_slices), (0, 0.0));
         assert_eq!(even.slices_per_unit, 9.0 / 63.5);
-        // It would end before the near plane, or behind the last slice.
-        for outside in [0.4, 64.0] {
+        // It would end before the near plane, or leave less than an octave to the others.
+        assert_eq!(cut(Slices::Near(32.0)).own_slices, 1.0);
+        for outside in [0.4, 32.1, 64.0] {
             assert_eq!(cut(Slices::Near(outside)), cut(EXPONENTIAL));
         }
     }

@@ -3,8 +3,9 @@
 //! # Idea
 //!
 //! A froxel is a tile of pixels and a slice of view depth; every view sample lies in exactly one. In a
-//! perspective view slices grow exponentially with depth, so froxels stay about as deep as they are wide
-//! (Olsson et al. 2012; Enhuber 2019, section 3.2). A cluster is a froxel with a list of lights.
+//! perspective view slices grow exponentially with depth, unless [`Slices`] says otherwise, so froxels stay
+//! about as deep as they are wide (Olsson et al. 2012; Enhuber 2019, section 3.2). A cluster is a froxel with
+//! a list of lights.
 //!
 //! | id | which clusters get a list | bounds of a cluster |
 //! |---|---|---|

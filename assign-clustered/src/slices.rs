@@ -14,7 +14,8 @@ pub enum Slices {
     Even,
     /// The first slice reaches from the near plane to this view depth, metres, and the others grow as
     /// exponential ones from there. Exponential slices spend many on the first metres, where few samples are
-    /// (Persson 2013, "Practical Clustered Shading").
+    /// (Persson 2013, "Practical Clustered Shading"). Where the others would have less than an octave, or there is
+    /// only one slice, slices are exponential.
     Near(f32),
 }
 

@@ -69,9 +69,12 @@ fn sparse_explicit_conforms() {
 
 #[test]
 fn other_slices_conform() {
-    for (variant, slices) in
-        [(DC_I, Slices::Even), (DC_I, Slices::Near(2.0)), (SC_E, Slices::Near(0.5))]
-    {
+    for (variant, slices) in [
+        (DC_I, Slices::Even),
+        (DC_I, Slices::Near(2.0)),
+        (SC_E, Slices::Near(0.5)),
+        (SC_E, Slices::Even),
+    ] {
         let (bounds, occupancy) = variant;
         let make = move |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
             let (size, settings) = ("16x16x8".parse()?, CullSettings::default());

@@ -154,11 +154,12 @@ impl Axis {
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
             Self::Slices => {
-                options.slices = match segment.strip_prefix(NEAR) {
+                let slices = match segment.strip_prefix(NEAR) {
                     None => Slices::Even,
                     Some(end_m) => Slices::Near(end_m.parse().ok()?),
                 };
-                options.slices.check().ok()?;
+                slices.check().ok()?;
+                options.slices = slices;
             }
             Self::Storage => options.storage = Storage::Masks,
             Self::Touched => options.is_touched = true,
