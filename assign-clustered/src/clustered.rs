@@ -117,9 +117,7 @@ impl Clustered {
             )?,
         })
     }
-}
 
-impl Clustered {
     /// The same with depth cut into other slices. Checks them.
     pub fn with_slices(self, slices: Slices) -> Result<Self, AssignError> {
         slices.check()?;

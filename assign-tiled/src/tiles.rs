@@ -63,7 +63,7 @@ pub enum TileDepths {
     HalfZ,
     /// Both halves, each shrunk to the samples in it (Thomas 2015, *modified HalfZ*).
     ModifiedHalfZ,
-    /// From the nearest to the farthest sample, without the 32 slices between them that hold none (Harada 2012,
+    /// From the nearest to the farthest sample, cut into 32 slices, without those that hold none (Harada 2012,
     /// *2.5D culling*).
     Sliced,
 }

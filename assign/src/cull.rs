@@ -138,10 +138,11 @@ impl Culler {
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
         self.is_update = frame.changes.is_some();
-        match frame.changes {
-            None => self.lists.prepare(gpu, frame.lights, groups.count())?,
-            Some(_) => self.lists.prepare_update(gpu, frame.lights)?,
-        };
+        if self.is_update {
+            self.lists.prepare_update(gpu, frame.lights);
+        } else {
+            self.lists.prepare(gpu, frame.lights, groups.count())?;
+        }
         self.cull.bind(gpu, &self.lists, resources);
         self.look_up.bind(gpu, &self.lists, resources);
         let source = match frame.changes {

@@ -164,14 +164,9 @@ impl LightLists {
 
     /// Prepares a frame that makes only some lists, for as many lights and groups as the frame before.
     /// It replaces no buffer, because the others stay.
-    pub(crate) fn prepare_update(
-        &mut self,
-        gpu: &Gpu,
-        lights: &LightBuffer,
-    ) -> Result<bool, AssignError> {
+    pub(crate) fn prepare_update(&mut self, gpu: &Gpu, lights: &LightBuffer) {
         self.readback.poll(gpu);
         self.upload(gpu, lights.levels());
-        Ok(false)
     }
 
     /// Uploads the numbers of the prepared frame.
