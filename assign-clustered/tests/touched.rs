@@ -1,10 +1,11 @@
 //! Lists that stay where no light changed lose no light, and only touched groups get new lists.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use assign::{
-    AssignError, Assignment, Bounds, CullSettings, EncoderPasses, Frame, Gpu, Light, LightBuffer,
-    LightOrder, LightShape, LightSource, ListsSnapshot, Passes, Touched, View, conformance,
+    AssignError, Assignment, Bounds, CullSettings, Frame, Gpu, Light, LightBuffer, LightOrder,
+    LightShape, LightSource, ListsSnapshot, Touched, View,
+    conformance::{self, CountedPasses},
 };
 use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
 use glam::Vec3;
@@ -48,35 +49,9 @@ fn lists_that_stay_conform() {
     }
 }
 
-/// Remembers the names of the passes.
-struct Named<'a> {
-    passes: EncoderPasses<'a>,
-    names: &'a mut BTreeSet<String>,
-}
-
-impl Passes for Named<'_> {
-    fn compute(&mut self, name: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)) {
-        self.names.insert(name.to_owned());
-        self.passes.compute(name, record);
-    }
-
-    fn render(
-        &mut self,
-        name: &str,
-        descriptor: &wgpu::RenderPassDescriptor<'_>,
-        record: &mut dyn FnMut(&mut wgpu::RenderPass<'_>),
-    ) {
-        self.passes.render(name, descriptor, record);
-    }
-
-    fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
-        self.passes.encoder()
-    }
-}
-
 /// A frame's passes and lists, and how many entries were written.
 struct Drawn {
-    names: BTreeSet<String>,
+    passes: BTreeMap<String, u32>,
     lists: ListsSnapshot,
 }
 
@@ -88,7 +63,7 @@ impl Drawn {
     }
 
     fn is_update(&self) -> bool {
-        self.names.contains("touch")
+        self.passes.contains_key("touch")
     }
 }
 
@@ -109,15 +84,17 @@ impl Wall {
         );
         let frame = Frame::new(&view, lights).with_depth(&self.depth);
         strategy.prepare(&self.gpu, &frame).expect("prepares");
-        let mut names = BTreeSet::new();
+        let mut passes_recorded = BTreeMap::new();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let passes = EncoderPasses { encoder: &mut encoder };
-        let mut passes = Named { passes, names: &mut names };
+        let mut passes = CountedPasses::new(&mut encoder, &mut passes_recorded);
         lights.record(&mut passes);
         strategy.record(&frame, &mut passes);
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait().expect("waits");
-        Drawn { names, lists: strategy.lists().snapshot(&self.gpu).expect("lists") }
+        Drawn {
+            passes: passes_recorded,
+            lists: strategy.lists().snapshot(&self.gpu).expect("lists"),
+        }
     }
 }
 
@@ -173,7 +150,7 @@ fn only_touched_groups_get_new_lists() {
         assert_eq!(next(&moving, 0.0).0, 0, "light that is less bright reaches as far");
         moving[44].position.x += 0.1;
         let (written, drawn) = next(&moving, 0.0);
-        assert!(drawn.is_update() && !drawn.names.contains("bounds"), "{:?}", drawn.names);
+        assert!(drawn.is_update() && !drawn.passes.contains_key("bounds"), "{:?}", drawn.passes);
         assert!((1..requested as u32 / 4).contains(&written), "{written} of {requested}");
         // A light that jumps touches the groups that it leaves. A new order shifts the slots between its
         // two places, and their lights count as changed.

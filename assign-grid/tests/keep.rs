@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use assign::{
-    AssignError, Assignment, CullSettings, EncoderPasses, Frame, Gpu, Keep, Light, LightBuffer,
-    LightOrder, Passes, Touched, View, conformance,
+    AssignError, Assignment, CullSettings, Frame, Gpu, Keep, Light, LightBuffer, LightOrder,
+    Touched, View,
+    conformance::{self, CountedPasses},
 };
 use assign_grid::{Grid, GridBox};
 use glam::Vec3;
@@ -46,32 +47,6 @@ fn lists_that_stay_conform() {
     }
 }
 
-/// Counts the passes of each name.
-struct Counted<'a> {
-    passes: EncoderPasses<'a>,
-    counts: &'a mut BTreeMap<String, u32>,
-}
-
-impl Passes for Counted<'_> {
-    fn compute(&mut self, name: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)) {
-        *self.counts.entry(name.to_owned()).or_default() += 1;
-        self.passes.compute(name, record);
-    }
-
-    fn render(
-        &mut self,
-        name: &str,
-        descriptor: &wgpu::RenderPassDescriptor<'_>,
-        record: &mut dyn FnMut(&mut wgpu::RenderPass<'_>),
-    ) {
-        self.passes.render(name, descriptor, record);
-    }
-
-    fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
-        self.passes.encoder()
-    }
-}
-
 /// How often lists are made in 9 frames, in each of which every light moves by `step_m`.
 fn made(order: LightOrder, step_m: f32, view_step_m: f32) -> u32 {
     let gpu = Gpu::open(None).expect("a GPU");
@@ -88,8 +63,7 @@ fn made(order: LightOrder, step_m: f32, view_step_m: f32) -> u32 {
         let frame = Frame::new(&view, buffer);
         strategy.prepare(&gpu, &frame).expect("prepares");
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let passes = EncoderPasses { encoder: &mut encoder };
-        let mut passes = Counted { passes, counts: &mut counts };
+        let mut passes = CountedPasses::new(&mut encoder, &mut counts);
         buffer.record(&mut passes);
         strategy.record(&frame, &mut passes);
         gpu.queue.submit([encoder.finish()]);

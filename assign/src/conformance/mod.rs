@@ -49,6 +49,7 @@
 
 mod cases;
 mod check;
+mod counted_passes;
 mod fault;
 pub mod faulty;
 mod feed;
@@ -68,6 +69,7 @@ mod violation;
 use std::sync::OnceLock;
 
 pub use cases::{CASES, Case, SHARED_CASES};
+pub use counted_passes::CountedPasses;
 use faulty::{Fault, Faulty};
 pub use flat_depth::flat_depth;
 pub use linked::{LinkedModule, StructLayout};
