@@ -3,13 +3,14 @@
 use std::process::Command;
 
 /// What the program is built from, relative to the workspace.
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 12] = [
     "assign",
     "assign-cdi",
     "assign-clustered",
     "assign-grid",
     "assign-model",
     "assign-tiled",
+    "assign-walk",
     "scenes",
     "shading",
     "harness",

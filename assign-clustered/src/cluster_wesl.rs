@@ -1,6 +1,6 @@
 //! The WESL of clusters: one main module, the modules that it imports, and the flags of each variant.
 
-use assign::{Bounds, Storage, StrategyWesl};
+use assign::{Bounds, LightReader, Storage, StrategyWesl};
 
 use crate::Normals;
 
@@ -36,7 +36,7 @@ const fn clusters(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'stati
         main: include_str!("shaders/clusters.wesl"),
         imports: IMPORTS,
         flags,
-        storage: Storage::Lists,
+        reader: LightReader::Stored(Storage::Lists),
     }
 }
 

@@ -62,6 +62,7 @@ impl Finder {
             .module("package::driver", DRIVER)
             .module("package::facing", facing)
             .module("package::bounds", bounds)
+            .flag("lane_bounds", false)
             .strategy(BINS_WESL)
             .create(&gpu, "package::driver")
             .unwrap();

@@ -1,6 +1,6 @@
 //! The WESL of tiles: one module, and the flag of each variant.
 
-use assign::{Storage, StrategyWesl};
+use assign::{LightReader, Storage, StrategyWesl};
 
 use crate::TileDepths;
 
@@ -28,6 +28,6 @@ const fn tiles_wesl(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'sta
         main: include_str!("shaders/tiles.wesl"),
         imports: &[],
         flags,
-        storage: Storage::Lists,
+        reader: LightReader::Stored(Storage::Lists),
     }
 }

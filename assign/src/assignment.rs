@@ -62,3 +62,11 @@ pub struct Lookup<'a> {
     /// Layout of the lists and of what the module reads.
     pub layout: &'a wgpu::BindGroupLayout,
 }
+
+impl Lookup<'_> {
+    /// Whether samples of one group may read different lights. The strategy's lists then do not say what a
+    /// sample reads; only the look-up does.
+    pub fn is_per_sample(&self) -> bool {
+        self.module.wesl().reader.is_per_sample()
+    }
+}

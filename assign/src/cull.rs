@@ -6,8 +6,8 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
-    Storage, StrategyModule, StrategyWesl,
+    LightKinds, LightLists, LightReader, LightSource, LightTraits, ListsBindings, Lookup, Passes,
+    Shader, Storage, StrategyModule, StrategyWesl,
     entries::{entry, storage_entry},
     touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
@@ -17,6 +17,10 @@ const LISTS_GROUP: u32 = 1;
 
 /// Bind group of the kernel's input: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
+
+/// WESL of tests against boxes along the world's axes. With the flag `lane_bounds`, each lane has a box of its
+/// own, for look-ups that test lights; without, the workgroup has one.
+pub const BOUNDS_BOX_WESL: &str = include_str!("shaders/bounds_box.wesl");
 
 /// What a strategy hands to [`Culler::new`].
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +45,7 @@ pub struct CullerDescriptor<'a> {
 /// The driver of one strategy.
 #[derive(Debug)]
 pub struct Culler {
+    label: String,
     variant: Variant,
     module: StrategyModule,
     kernel: Option<Kernel>,
@@ -112,9 +117,11 @@ impl Culler {
             *descriptor;
         let variant = Variant { shape, settings, sparse, facing };
         variant.check(label)?;
+        LightReader::from(settings.storage).check(gpu, label)?;
         Ok(Self {
+            label: label.to_owned(),
             variant,
-            module: module.stored_as(settings.storage),
+            module: module.read_by(settings.storage.into()),
             kernel: None,
             frame: FrameBindings::new(gpu),
             cull: ListsBindings::of_kernel(gpu, label, bindings),
@@ -137,6 +144,8 @@ impl Culler {
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
+        let reader = LightReader::from(self.variant.settings.storage);
+        reader.check_lights(gpu, &self.label, frame.lights.count())?;
         self.is_update = frame.changes.is_some();
         if self.is_update {
             self.lists.prepare_update(gpu, frame.lights);
@@ -313,7 +322,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         GroupShape::Frustum | GroupShape::MaskedFrustum => {
             include_str!("shaders/bounds_frustum.wesl")
         }
-        GroupShape::Box => include_str!("shaders/bounds_box.wesl"),
+        GroupShape::Box => BOUNDS_BOX_WESL,
         GroupShape::OrientedBox => include_str!("shaders/bounds_oriented_box.wesl"),
     };
     let tests = variant.settings.tests;
@@ -328,6 +337,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .strategy(wesl)
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
         .module("package::reflected", include_str!("shaders/reflected.wesl"))
+        .flag("lane_bounds", false)
         .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))
         .flag("reflected", variant.facing == Facing::ReflectedCone)
         .flag("where_diffuse", variant.facing == Facing::WhereDiffuse)

@@ -134,7 +134,7 @@ pub struct CullSettings {
 }
 
 impl CullSettings {
-    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, `/mask`. Defaults add
+    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, `/mask`, `/prune`. Defaults add
     /// nothing, and tests appear only if groups are frusta.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
@@ -148,9 +148,11 @@ impl CullSettings {
         if self.area_bounds == AreaBounds::Ball {
             suffix += "/ball";
         }
-        if self.storage == Storage::Masks {
-            suffix += "/mask";
-        }
+        suffix += match self.storage {
+            Storage::Lists => "",
+            Storage::Masks => "/mask",
+            Storage::PrunedLists => "/prune",
+        };
         suffix
     }
 }

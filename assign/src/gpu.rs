@@ -35,10 +35,11 @@ struct MapCounter {
     bytes: AtomicU64,
 }
 
-/// Features that the device uses if the adapter has them: GPU time, and blending of light volumes
-/// in f32.
-const OPTIONAL_FEATURES: wgpu::Features =
-    wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::FLOAT32_BLENDABLE);
+/// Features that the device uses if the adapter has them: GPU time, blending of light volumes in f32,
+/// and operations of the lanes that run in step.
+const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
+    .union(wgpu::Features::FLOAT32_BLENDABLE)
+    .union(wgpu::Features::SUBGROUP);
 
 impl Gpu {
     /// Wraps a renderer's own device.
@@ -110,6 +111,11 @@ impl Gpu {
     /// Whether passes run on the CPU. Its timestamps are meaningless.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether shaders may use subgroup operations.
+    pub fn has_subgroups(&self) -> bool {
+        self.device.features().contains(wgpu::Features::SUBGROUP)
     }
 
     /// The most loop rounds that one invocation may take in total on this adapter; `None` if there

@@ -150,7 +150,9 @@ impl LightLists {
             None
         };
         let mut changed = match self.storage {
-            Storage::Lists => self.size_entries(gpu, light_count, group_count, asked)?,
+            Storage::Lists | Storage::PrunedLists => {
+                self.size_entries(gpu, light_count, group_count, asked)?
+            }
             Storage::Masks => self.size_masks(gpu, light_count, records)?,
         };
         if let Some(lists) = larger {
@@ -307,12 +309,14 @@ impl LightLists {
         let counters: Counters = bytemuck::pod_read_unaligned(&counters);
         let lists: Vec<LightList> = pod_collect_to_vec(&lists);
         let used = match self.storage {
-            Storage::Lists => self.light_capacity + counters.cursor.min(self.pool_capacity),
+            Storage::Lists | Storage::PrunedLists => {
+                self.light_capacity + counters.cursor.min(self.pool_capacity)
+            }
             Storage::Masks => (self.counts.1 + 1) * self.masks.stride,
         };
         let entries: Vec<u32> = pod_collect_to_vec(&gpu.read(&self.entries, u64::from(used) * 4)?);
         let (lists, entries) = match self.storage {
-            Storage::Lists => (lists, entries),
+            Storage::Lists | Storage::PrunedLists => (lists, entries),
             Storage::Masks => self.masks.decode(&lists, &entries),
         };
         Ok(ListsSnapshot { lists, entries, counters })

@@ -33,16 +33,9 @@ pub enum Storage {
     Lists,
     /// As a bit per light.
     Masks,
-}
-
-impl Storage {
-    /// The WESL that reads a sample's lights one after the other: `package::look_up`.
-    pub(crate) fn look_up(self) -> &'static str {
-        match self {
-            Self::Lists => include_str!("shaders/look_up_list.wesl"),
-            Self::Masks => include_str!("shaders/look_up_mask.wesl"),
-        }
-    }
+    /// As a list of entries in a pool, of which the subgroup that reads it leaves out what misses the box around
+    /// its samples (Mikkelsen 2016 prunes lists of large tiles for small ones, before shading).
+    PrunedLists,
 }
 
 /// Words of summary that a workgroup holds while it culls: `MOST_SUMMARY` of `cull.wesl` and of

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use wesl::{CompileOptions, Feature, VirtualResolver, Wesl};
 
-use crate::{AssignError, Gpu, LightKinds, Storage, StrategyWesl, compiled::ModuleKey};
+use crate::{
+    AssignError, Gpu, LightKinds, LightReader, Storage, StrategyWesl, compiled::ModuleKey,
+};
 
 /// A set of WESL modules and flags, and the bind group from which shaders read lists. It is linked
 /// to WGSL.
@@ -29,7 +31,9 @@ impl<'a> Shader<'a> {
     /// - `hard_cut`: with it, lights end at their range without a window (`package::window`).
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
-        Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] }
+        let empty = Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] };
+        LightReader::Stored(Storage::Lists)
+            .mount(empty)
             .module("package::slots", slots)
             .module("package::view", include_str!("shaders/view.wesl"))
             .module("package::sample", include_str!("shaders/sample.wesl"))
@@ -39,7 +43,6 @@ impl<'a> Shader<'a> {
             .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::depth_slices", include_str!("shaders/depth_slices.wesl"))
-            .module("package::look_up", Storage::Lists.look_up())
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
             .flag("hard_cut", false)
@@ -62,9 +65,8 @@ impl<'a> Shader<'a> {
     /// a sample's lights; and its flags. Linking fails
     /// if [`flag`](Self::flag) sets one of these flags too, before or after.
     pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
-        let StrategyWesl { main, imports, flags, storage } = wesl.into();
-        let shader =
-            self.module("package::strategy", main).module("package::look_up", storage.look_up());
+        let StrategyWesl { main, imports, flags, reader } = wesl.into();
+        let shader = reader.mount(self.module("package::strategy", main));
         let shader = Self { strategy_flags: flags, ..shader };
         imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source))
     }

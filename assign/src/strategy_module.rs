@@ -1,6 +1,6 @@
 //! Holds a strategy's shader text, which kernels and renderers mount to look lists up.
 
-use crate::Storage;
+use crate::{LightReader, Storage};
 
 /// WESL of a strategy: its main module, the modules that this one imports, and the flags that both read.
 ///
@@ -17,14 +17,14 @@ pub struct StrategyWesl<'a> {
     /// Name and value of each flag that these modules read with `@if`, without the contract's own (`spots`,
     /// `areas`, `hard_cut`, `lanes_reserve`). The renderer must have no flag of the same name.
     pub flags: &'a [(&'a str, bool)],
-    /// Where a group's lights are kept.
-    pub storage: Storage,
+    /// How a sample's lights are read.
+    pub reader: LightReader<'a>,
 }
 
 impl<'a> From<&'a str> for StrategyWesl<'a> {
     /// A main module that imports nothing of its own and reads no flag; its groups have lists.
     fn from(main: &'a str) -> Self {
-        Self { main, imports: &[], flags: &[], storage: Storage::Lists }
+        Self { main, imports: &[], flags: &[], reader: LightReader::Stored(Storage::Lists) }
     }
 }
 
@@ -42,10 +42,10 @@ impl StrategyModule {
         Self(wesl.into())
     }
 
-    /// The same with another storage.
+    /// The same with another reader.
     #[must_use]
-    pub const fn stored_as(self, storage: Storage) -> Self {
-        Self(StrategyWesl { storage, ..self.0 })
+    pub const fn read_by(self, reader: LightReader<'static>) -> Self {
+        Self(StrategyWesl { reader, ..self.0 })
     }
 
     /// The WESL.

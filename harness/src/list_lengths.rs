@@ -21,14 +21,14 @@ pub fn bin_of(lights: u32) -> usize {
 }
 
 impl ListLengths {
-    /// Counts a frame's lists. `per_pixel` and `histogram` count only lists that a sample reads. Other
-    /// records may be an earlier frame's, so `all_groups` is only right if the camera has not moved since the
-    /// lists were made.
-    pub fn new(samples: &Samples, lists: &ListsSnapshot, pixels: usize) -> Self {
+    /// Counts a frame's lists, of an image of so many pixels. `per_pixel` and `histogram` count only lists that
+    /// a sample reads. Other records may be an earlier frame's, so `all_groups` is only right if the camera has
+    /// not moved since the lists were made.
+    pub fn add(&mut self, samples: &Samples, lists: &ListsSnapshot, pixels: usize) {
         let length = |group: u32| lists.list(group).map_or(0, |list| list.count);
-        let mut per_pixel = vec![None; pixels];
+        self.per_pixel.resize(pixels, None);
         for (&pixel, &group) in samples.pixels.iter().zip(&samples.groups) {
-            if let Some(place) = per_pixel.get_mut(pixel as usize) {
+            if let Some(place) = self.per_pixel.get_mut(pixel as usize) {
                 *place = Some(length(group));
             }
         }
@@ -36,23 +36,20 @@ impl ListLengths {
         groups.sort_unstable();
         groups.dedup();
         let read = groups.into_iter().filter(|&group| group != ALL_LIGHTS);
-        let histogram = histogram_of(read.map(length));
+        count_in(&mut self.histogram, read.map(length));
         // The first record lists all lights.
-        let all_groups = histogram_of(lists.lists.iter().skip(1).map(|list| list.count));
-        Self { per_pixel, histogram, all_groups }
+        count_in(&mut self.all_groups, lists.lists.iter().skip(1).map(|list| list.count));
     }
 }
 
-/// The number of lists in each bin.
-fn histogram_of(lengths: impl Iterator<Item = u32>) -> Vec<u64> {
-    let mut bins = Vec::new();
+/// Counts lengths in their bins.
+fn count_in(bins: &mut Vec<u64>, lengths: impl Iterator<Item = u32>) {
     for bin in lengths.map(bin_of) {
         if bins.len() <= bin {
             bins.resize(bin + 1, 0);
         }
         bins[bin] += 1;
     }
-    bins
 }
 
 #[cfg(test)]
@@ -81,7 +78,8 @@ mod tests {
             groups: vec![1, 0, 1, ALL_LIGHTS],
             pixels: vec![0, 2, 3, 4],
         };
-        let lengths = ListLengths::new(&samples, &lists, 5);
+        let mut lengths = ListLengths::default();
+        lengths.add(&samples, &lists, 5);
         assert_eq!(lengths.per_pixel, [Some(3), None, Some(0), Some(3), Some(9)]);
         // No sample reads group 2, and the record of all lights is no group.
         assert_eq!(lengths.histogram, [1, 0, 1]);

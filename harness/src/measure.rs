@@ -10,7 +10,7 @@ use assign::{
 };
 use shading::{
     Cut, HdrImage, LightBvh, LightingOptions, ListsTruth, Mode, Operations, count_operations,
-    probe, record_for_probe,
+    record_for_probe, visit_lists,
 };
 
 use crate::{
@@ -332,10 +332,13 @@ fn count(
     let truth = match truth {
         None => None,
         Some(bvh) => {
-            let samples = probe(renderer, strategy, &frame)?;
             let pixels = view.viewport.width as usize * view.viewport.height as usize;
-            lengths = ListLengths::new(&samples, &snapshot, pixels);
-            Some(bvh.check(&samples, &snapshot, strategy.needs().normals))
+            let mut found = ListsTruth::default();
+            visit_lists(renderer, strategy, &frame, &snapshot, &mut |samples, lists| {
+                lengths.add(samples, lists, pixels);
+                found = found.plus(bvh.check(samples, lists, strategy.needs().normals));
+            })?;
+            Some(found)
         }
     };
     Ok(ListsFigures {

@@ -53,6 +53,14 @@ pub enum ShadingError {
         /// The kinds of the prepared lights.
         lights: LightKinds,
     },
+    /// A sample's look-up returned another number of lights than before.
+    #[error(
+        "two look-ups of the same frame returned different lights: {strategy} must return the same"
+    )]
+    Unsteady {
+        /// The strategy's id.
+        strategy: String,
+    },
     /// A table of linearly transformed cosines is not valid.
     #[error("LTC table: {field} is {value}: it must be {accepted}")]
     LtcTable {

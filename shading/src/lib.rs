@@ -20,6 +20,7 @@
 //! bit. [`traced`] renders the true image, including shadows and bounces.
 
 mod area_model;
+mod dump;
 mod error;
 mod gbuffer_inputs;
 mod geometry;
@@ -49,6 +50,7 @@ mod truth;
 mod world_triangles;
 
 pub use area_model::{ACCEPTED_AREA_MODELS, AreaModel, MAX_AREA_SAMPLES};
+pub use dump::visit_lists;
 pub use error::ShadingError;
 pub use geometry::{InstanceRecord, SceneGpu};
 pub use heat_map::{HEAT_MAP_RED, heat_color, heat_map_png};

@@ -67,6 +67,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         .module("package::deferred", include_str!("shaders/deferred.wesl"))
         .module("package::operations", include_str!("shaders/operations.wesl"))
         .module("package::probe", include_str!("shaders/probe.wesl"))
+        .module("package::dump", include_str!("shaders/dump.wesl"))
         .module("package::surfaces", include_str!("shaders/surfaces.wesl"))
         .module("package::raster_spheres", include_str!("shaders/raster_spheres.wesl"));
     flags.into_iter().fold(shader, |shader, flag| shader.flag(flag, false))

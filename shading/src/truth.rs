@@ -45,7 +45,9 @@ impl ListsTruth {
         self.listed as f64 / self.samples.max(1) as f64
     }
 
-    fn plus(self, other: Self) -> Self {
+    /// The check of the samples of both.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
         Self {
             samples: self.samples + other.samples,
             contributing: self.contributing + other.contributing,

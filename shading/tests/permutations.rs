@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use assign::{Storage, StrategyWesl, conformance::LinkedModule};
+use assign::{LightReader, Storage, StrategyWesl, conformance::LinkedModule};
 
 /// A strategy's look-up: name, WESL, bindings.
 type LookUp = (&'static str, StrategyWesl<'static>, &'static [u32]);
@@ -13,7 +13,7 @@ const NO_CULLING: StrategyWesl<'static> = StrategyWesl {
     main: include_str!("../../assign/src/shaders/everything.wesl"),
     imports: &[],
     flags: &[],
-    storage: Storage::Lists,
+    reader: LightReader::Stored(Storage::Lists),
 };
 
 const LOOK_UPS: [LookUp; 2] =

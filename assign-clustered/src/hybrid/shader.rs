@@ -1,6 +1,8 @@
 //! The shaders of HG.
 
-use assign::{AssignError, Gpu, LightKinds, LiveGroups, Shader, Storage, StrategyWesl};
+use assign::{
+    AssignError, Gpu, LightKinds, LightReader, LiveGroups, Shader, Storage, StrategyWesl,
+};
 
 use crate::cluster_wesl::FROXELS;
 
@@ -12,7 +14,7 @@ pub const HYBRID_WESL: StrategyWesl<'static> = StrategyWesl {
     main: include_str!("../shaders/hybrid_cells.wesl"),
     imports: &[FROXELS],
     flags: &[],
-    storage: Storage::Lists,
+    reader: LightReader::Stored(Storage::Lists),
 };
 
 /// A shader of HG. Those that read lights are linked for the kinds of lights in a scene.

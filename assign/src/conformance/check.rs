@@ -7,45 +7,12 @@ use glam::DVec3;
 use super::{
     reaching::{LightBits, Reaching},
     rig::Probe,
+    seen::{Seen, UNWRITTEN},
     violation::{Breach, Findings, Place, SamplePlace},
 };
 use crate::{
     ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, ListsSnapshot,
 };
-
-/// A record that no pass writes. Records are filled with it before the first frame.
-pub(super) const UNWRITTEN: LightList = LightList { first: u32::MAX, count: u32::MAX };
-
-/// One frame that was drawn and read back.
-pub(super) struct Seen {
-    pub(super) snapshot: ListsSnapshot,
-    pub(super) probes: Vec<Probe>,
-    pub(super) group_count: u32,
-    pub(super) light_count: u32,
-    /// Whether lists may omit lights below a sample's horizon.
-    pub(super) knows_normals: bool,
-}
-
-impl Seen {
-    pub(super) fn overflowed(&self) -> bool {
-        self.snapshot.counters.overflowed_groups > 0
-    }
-
-    fn list(&self, group: u32) -> Option<LightList> {
-        let exists = group == ALL_LIGHTS || group < self.group_count;
-        self.snapshot.list(group).filter(|_| exists)
-    }
-
-    /// A group's entries; empty if the group or its list does not exist.
-    fn entries(&self, group: u32) -> &[u32] {
-        self.list(group).and_then(|_| self.snapshot.entries_of(group)).unwrap_or_default()
-    }
-
-    /// Whether a group fell back to all lights. Lists in the pool never start at entry 0.
-    fn fell_back(list: LightList) -> bool {
-        list.first == 0 && list.count > 0
-    }
-}
 
 /// Counts of (light, sample) pairs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,6 +26,9 @@ pub(super) struct Pairs {
 /// Checks the lists that samples look up. With `complete` it checks every record and the exact
 /// counters; set it only if no earlier frame left records behind.
 pub(super) fn lists(seen: &Seen, complete: bool, findings: &mut Findings) {
+    if let Some(read) = &seen.per_sample {
+        lists(read, complete, findings);
+    }
     record_0(seen, findings);
     let mut looked_up: Vec<u32> = seen.probes.iter().map(|p| p.group).collect();
     looked_up.sort_unstable();
@@ -99,6 +69,8 @@ fn record_0(seen: &Seen, findings: &mut Findings) {
 fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
     let place = Place { group: Some(probe.group), light: None, sample: Some(sample_place(probe)) };
     match seen.list(probe.group) {
+        // Only the look-up knows what the sample reads.
+        Some(list) if list != UNWRITTEN && seen.per_sample.is_some() => {}
         None => {
             let detail = format!("there are {} groups", seen.group_count);
             findings.add(Breach::NoSuchGroup, place, detail);
@@ -204,6 +176,7 @@ fn counters(seen: &Seen, groups: &[u32], complete: bool, findings: &mut Findings
 
 /// Checks that each sample's list holds every light that reaches the sample.
 pub(super) fn pairs(seen: &Seen, lights: &[Light], findings: &mut Findings) -> Pairs {
+    let seen = seen.read();
     let reaching = Reaching::find(findings.case, &seen.probes, lights, seen.knows_normals);
     let mut order: Vec<(&Probe, &LightBits)> =
         seen.probes.iter().zip(&reaching.by_sample).collect();
@@ -273,6 +246,7 @@ fn describe(light: &Light, probe: &Probe, terms: &str, listed: usize) -> String 
 
 /// Checks that two frames gave every sample the same entries. A difference is reported as `breach`.
 pub(super) fn same(a: &Seen, b: &Seen, breach: Breach, findings: &mut Findings) {
+    let (a, b) = (a.read(), b.read());
     let mut compared = HashSet::new();
     for (old, new) in a.probes.iter().zip(&b.probes) {
         if !compared.insert((old.group, new.group)) {
@@ -313,7 +287,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::{Counters, Emitter, LightShape};
+    use crate::{Counters, Emitter, LightShape, ListsSnapshot};
 
     /// One sample at `point`, with an empty list.
     fn empty_list_at(point: Vec3) -> Seen {
@@ -329,6 +303,7 @@ mod tests {
             group_count: 1,
             light_count: 1,
             knows_normals: false,
+            per_sample: None,
         }
     }
 

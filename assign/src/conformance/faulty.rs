@@ -192,8 +192,8 @@ impl Assignment for Faulty {
                 // SAFETY: it has no loop.
                 #[allow(unsafe_code, reason = "it has no loop")]
                 let module = unsafe { StrategyModule::new(LOST_GROUP_WESL) };
-                let storage = self.inner.lists().storage();
-                Lookup { module: module.stored_as(storage), ..inner }
+                let reader = inner.module.wesl().reader;
+                Lookup { module: module.read_by(reader), ..inner }
             }
             _ => inner,
         }

@@ -66,10 +66,31 @@ impl LinkedModule {
 
     /// As [`new`](Self::new), or why the source is not valid.
     pub fn validate(what: &str, source: &str) -> Result<Self, String> {
+        let validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+        Self::validate_by(validator, what, source)
+    }
+
+    /// As [`new`](Self::new), for a source that also uses subgroup operations.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the source is not valid, or if it uses no subgroup operation.
+    #[track_caller]
+    pub fn with_subgroups(what: &str, source: &str) -> Self {
+        assert!(Self::validate(what, source).is_err(), "{what} uses no subgroup operation");
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::SUBGROUP);
+        validator
+            .subgroup_stages(naga::valid::ShaderStages::COMPUTE)
+            .subgroup_operations(naga::valid::SubgroupOperationSet::all());
+        match Self::validate_by(validator, what, source) {
+            Ok(module) => module,
+            Err(reason) => panic!("{what}: {reason}"),
+        }
+    }
+
+    fn validate_by(mut validator: Validator, what: &str, source: &str) -> Result<Self, String> {
         let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
-        let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-            .validate(&module)
-            .map_err(|e| e.emit_to_string(source))?;
+        let info = validator.validate(&module).map_err(|e| e.emit_to_string(source))?;
         Ok(Self { what: what.to_owned(), module, info })
     }
 

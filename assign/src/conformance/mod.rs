@@ -61,6 +61,7 @@ mod plan;
 mod reaching;
 mod rig;
 mod run_kernel;
+mod seen;
 mod session;
 mod stage;
 mod views;
@@ -132,7 +133,7 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
     let has_groups = session::has_groups(rig, plain, make).map_err(|e| failed(plain, e))?;
     let strategy = make(&rig.gpu).map_err(setup)?;
     let normals = strategy.needs().normals;
-    let entries = strategy.lists().storage() == Storage::Lists;
+    let entries = strategy.lists().storage() != Storage::Masks;
     let mut planted = Vec::new();
     for fault in Fault::ALL {
         let applies = (has_groups || !fault.needs_groups())

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, pod_collect_to_vec};
 
 use super::stage::Stage;
 use crate::{
-    AssignError, Assignment, FrameBindings, Gpu, Shader, entry, kernel::bind_entries,
-    storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Assignment, FrameBindings, Gpu, LightKinds, LightList, Shader, entry,
+    kernel::bind_entries, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 /// Bind group of the lists in the probe shader.
@@ -38,7 +38,7 @@ pub(super) struct Surfaces {
     pub(super) normals: wgpu::TextureView,
     probes: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
-    count: u32,
+    pub(super) count: u32,
 }
 
 /// The device and the pipeline that draws surfaces. All strategies of a process share them.
@@ -46,6 +46,7 @@ pub(super) struct Rig {
     pub(super) gpu: Gpu,
     draw: wgpu::RenderPipeline,
     probe_layout: wgpu::BindGroupLayout,
+    dump_layout: wgpu::BindGroupLayout,
 }
 
 impl Rig {
@@ -57,7 +58,9 @@ impl Rig {
             texture_entry(2, stages, wgpu::TextureSampleType::Float { filterable: true }),
         ];
         let probe_layout = gpu.bind_group_layout("probe", &entries);
-        Self { draw: draw_pipeline(&gpu), gpu, probe_layout }
+        let more = [storage_entry(3, stages, true), storage_entry(4, stages, false)];
+        let dump_layout = gpu.bind_group_layout("dump", &[&entries[..], &more].concat());
+        Self { draw: draw_pipeline(&gpu), gpu, probe_layout, dump_layout }
     }
 
     /// Uploads the samples, all or only those on surfaces, and draws the surfaces.
@@ -135,17 +138,23 @@ impl Rig {
         Ok(())
     }
 
+    /// The pipeline that looks samples up; with `dump` it writes their entries.
     fn probe_pipeline(
         &self,
         strategy: &dyn Assignment,
         frame: &FrameBindings,
+        kinds: LightKinds,
+        dump: bool,
     ) -> Result<wgpu::ComputePipeline, AssignError> {
         let lookup = strategy.lookup();
         let module = Shader::new(LISTS_GROUP)
             .module("package::probe", include_str!("probe.wesl"))
             .strategy(lookup.module)
+            .flag("dump", dump)
+            .light_kinds(kinds)
             .create(&self.gpu, "package::probe")?;
-        let layouts = [Some(frame.layout()), Some(lookup.layout), Some(&self.probe_layout)];
+        let probe = if dump { &self.dump_layout } else { &self.probe_layout };
+        let layouts = [Some(frame.layout()), Some(lookup.layout), Some(probe)];
         Ok(self.gpu.compute_pipeline(&module, "look_up", &layouts, true))
     }
 
@@ -155,13 +164,14 @@ impl Rig {
         encoder: &mut wgpu::CommandEncoder,
         strategy: &dyn Assignment,
         frame: &FrameBindings,
+        kinds: LightKinds,
         surfaces: &Surfaces,
     ) -> Result<(), AssignError> {
         if strategy.bind_group().is_none() {
             let id = strategy.id();
             return Err(AssignError::Device(format!("{id} has no bind group after prepare")));
         }
-        let pipeline = self.probe_pipeline(strategy, frame)?;
+        let pipeline = self.probe_pipeline(strategy, frame, kinds, false)?;
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, frame.bind_group(), &[]);
@@ -169,6 +179,53 @@ impl Rig {
         pass.set_bind_group(PROBE_GROUP, &surfaces.bind_group, &[]);
         pass.dispatch_workgroups(surfaces.count.div_ceil(64), 1, 1);
         Ok(())
+    }
+
+    /// Looks every sample up once more and reads the entries that the look-up returns, for strategies whose
+    /// lists do not say them: the list of each sample, and all entries. `probes` are those of the frame.
+    pub(super) fn dump(
+        &self,
+        strategy: &dyn Assignment,
+        frame: &FrameBindings,
+        kinds: LightKinds,
+        surfaces: &Surfaces,
+        probes: &[Probe],
+    ) -> Result<(Vec<LightList>, Vec<u32>), AssignError> {
+        let gpu = &self.gpu;
+        let mut end = 0u32;
+        let mut lists = Vec::with_capacity(probes.len());
+        for probe in probes {
+            lists.push(LightList { first: end, count: probe.read });
+            end = end.checked_add(probe.read).ok_or_else(|| AssignError::TooLarge {
+                what: "the entries of all samples".into(),
+                bytes: (u64::from(end) + u64::from(probe.read)) * 4,
+                limit: u64::from(u32::MAX) * 4,
+            })?;
+        }
+        let firsts: Vec<u32> = lists.iter().map(|list| list.first).chain([end]).collect();
+        let places = gpu.storage("places", size_of_val(&firsts[..]) as u64)?;
+        gpu.queue.write_buffer(&places, 0, cast_slice(&firsts));
+        let dumped = gpu.storage("dumped entries", u64::from(end) * 4)?;
+        let entries = [
+            entry(0, &surfaces.probes),
+            texture(1, &surfaces.depth),
+            texture(2, &surfaces.normals),
+            entry(3, &places),
+            entry(4, &dumped),
+        ];
+        let bind_group = bind_entries(gpu, &self.dump_layout, &entries);
+        let pipeline = self.probe_pipeline(strategy, frame, kinds, true)?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, frame.bind_group(), &[]);
+        pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
+        pass.set_bind_group(PROBE_GROUP, &bind_group, &[]);
+        pass.dispatch_workgroups(surfaces.count.div_ceil(64), 1, 1);
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+        let entries = pod_collect_to_vec(&gpu.read(&dumped, u64::from(end) * 4)?);
+        Ok((lists, entries))
     }
 
     /// Reads the samples back after submission.

@@ -6,16 +6,17 @@ use glam::Vec3;
 use super::{
     Make,
     cases::Case,
-    check::{self, Seen, UNWRITTEN},
+    check,
     feed::Feed,
     plan::{Lit, Living, Plan},
     rig::{Rig, Surfaces},
+    seen::{Seen, UNWRITTEN},
     stage::Rng,
     violation::{Breach, Figures, Findings, Outcome, Place},
 };
 use crate::{
-    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, Light, LightBuffer, LightOrder,
-    SampleDomain, Storage,
+    AssignError, Assignment, EncoderPasses, Frame, FrameBindings, Light, LightBuffer, LightKinds,
+    LightOrder, SampleDomain, Storage,
 };
 
 /// The number of frames after which the pool must fit all lists.
@@ -64,7 +65,8 @@ pub(super) fn has_groups(rig: &Rig, case: &Case, make: &Make<'_>) -> Result<bool
     };
     let mut session = Session::new(rig, make)?;
     session.set_up(rig, &lit)?;
-    Ok(session.draw(rig, &lit, false)?.group_count > 0)
+    session.draw(rig, &lit, false)?;
+    Ok(session.strategy.lists().group_count() > 0)
 }
 
 /// The state of a running case.
@@ -191,8 +193,9 @@ impl Run<'_> {
         for wipe in [true, false] {
             let seen = self.frame(&mut session, lit, wipe, true)?;
             // Bit masks have no pool.
-            let has_pool = session.strategy.lists().storage() == Storage::Lists;
-            if has_pool && seen.group_count > 0 && !seen.overflowed() {
+            let lists = session.strategy.lists();
+            let has_pool = lists.storage() != Storage::Masks && lists.group_count() > 0;
+            if has_pool && !seen.overflowed() {
                 let detail =
                     format!("with {} lights and a pool of {TINY_POOL} entries", seen.light_count);
                 self.findings.add(Breach::NoOverflow, Place::default(), detail);
@@ -308,15 +311,31 @@ impl Session {
         self.strategy.record(&frame, &mut passes);
         let surfaces = self.surfaces.as_ref();
         let surfaces = surfaces.ok_or_else(|| AssignError::Device("no stage set up".into()))?;
-        rig.record_probe(&mut encoder, &*self.strategy, &self.frame, surfaces)?;
+        let kinds = self.kinds();
+        rig.record_probe(&mut encoder, &*self.strategy, &self.frame, kinds, surfaces)?;
         gpu.queue.submit([encoder.finish()]);
-        Ok(Seen {
+        let seen = Seen {
             snapshot: self.strategy.lists().snapshot(gpu)?,
             probes: rig.read_probes(surfaces)?,
             group_count,
             light_count: self.lights.read(gpu)?.len() as u32,
             knows_normals: self.strategy.needs().normals,
-        })
+            per_sample: None,
+        };
+        if !self.strategy.lookup().is_per_sample() {
+            return Ok(seen);
+        }
+        let dumped = rig.dump(&*self.strategy, &self.frame, kinds, surfaces, &seen.probes)?;
+        Ok(seen.with_read(dumped, rig.read_probes(surfaces)?))
+    }
+
+    /// The kinds of lights for which the look-up is compiled.
+    fn kinds(&self) -> LightKinds {
+        match self.strategy.lookup().is_per_sample() {
+            true => self.lights.kinds(),
+            // It reads no lights, and one look-up serves all cases.
+            false => LightKinds::default(),
+        }
     }
 }
 

@@ -205,6 +205,7 @@ fn wesl(view: &View, pairs: &[Pair]) -> Vec<(bool, bool, f32)> {
         .module("package::facing", include_str!("../../src/shaders/facing.wesl"))
         .module("package::gloss", include_str!("../../src/shaders/gloss.wesl"))
         .module("package::reflected", include_str!("../../src/shaders/reflected.wesl"))
+        .flag("lane_bounds", false)
         .light_kinds(LightKinds { spots: false, areas: true })
         .create(&gpu, "package::driver")
         .unwrap();

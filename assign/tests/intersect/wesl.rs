@@ -104,6 +104,7 @@ impl Tester {
             .module("package::bounds", bounds)
             .module("package::strategy", strategy)
             .flag("depth_mask", false)
+            .flag("lane_bounds", false)
             .flag("hs", tests.hs)
             .flag("sat_e", tests.sat_e)
             .flag("sat_n", tests.sat_n)

@@ -17,6 +17,8 @@ const NORMALS: &str = "n";
 const CAP: &str = "cap";
 /// The segment that keeps a bit per light in place of a list.
 const MASK: &str = "mask";
+/// The segment that lets subgroups prune lists while they read them.
+const PRUNE: &str = "prune";
 /// The prefix of a segment that sets for how many frames lists are used.
 const REUSE: &str = "reuse";
 /// The prefix of a segment that sets for how many frames lists of larger lights are kept.
@@ -43,7 +45,8 @@ pub enum Axis {
     Source,
     /// What bounds the reach of an area light: `ball` instead of its outline.
     AreaBounds,
-    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list.
+    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list; `prune`, a list that subgroups
+    /// prune while they read it.
     Storage,
     /// For how many frames lists are used: `reuse4`. Lossy where groups or lights move.
     Reuse,
@@ -85,7 +88,10 @@ impl Axis {
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
             Self::AreaBounds => "ball or outline",
-            Self::Storage => "mask, which keeps a bit per light in place of a list",
+            Self::Storage => {
+                "mask, which keeps a bit per light in place of a list, or prune, which lets the lanes of a subgroup \
+                 leave out lights of the list that miss their samples"
+            }
             Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
             Self::Specular => {
@@ -118,7 +124,7 @@ impl Axis {
             NO_EXIT => Some(Self::Exit),
             EVEN => Some(Self::Slices),
             _ if segment.starts_with(NEAR) => Some(Self::Slices),
-            MASK => Some(Self::Storage),
+            MASK | PRUNE => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
@@ -161,7 +167,12 @@ impl Axis {
                 slices.check().ok()?;
                 options.slices = slices;
             }
-            Self::Storage => options.storage = Storage::Masks,
+            Self::Storage => {
+                options.storage = match segment {
+                    PRUNE => Storage::PrunedLists,
+                    _ => Storage::Masks,
+                };
+            }
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
         }
@@ -191,7 +202,7 @@ impl Axis {
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
-            Self::Storage => (options.storage == Storage::Masks).then(|| MASK.to_owned()),
+            Self::Storage => storage_name(options.storage).map(str::to_owned),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
         }
@@ -230,8 +241,7 @@ impl Axis {
                 Slices::Even => ("slicing", EVEN.into()),
                 Slices::Near(end_m) => ("first_slice_end_m", shortest(end_m)),
             },
-            Self::Storage if options.storage == Storage::Masks => ("storage", MASK.into()),
-            Self::Storage => return None,
+            Self::Storage => ("storage", storage_name(options.storage)?.into()),
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
@@ -248,4 +258,13 @@ fn shortest(number: f32) -> Value {
 /// The number after a prefix, from 1.
 fn number_after(segment: &str, prefix: &str) -> Option<u32> {
     segment.strip_prefix(prefix)?.parse().ok().filter(|number| *number > 0)
+}
+
+/// The segment of a storage; `None` for lists.
+fn storage_name(storage: Storage) -> Option<&'static str> {
+    match storage {
+        Storage::Lists => None,
+        Storage::Masks => Some(MASK),
+        Storage::PrunedLists => Some(PRUNE),
+    }
 }

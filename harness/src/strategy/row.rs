@@ -100,7 +100,7 @@ pub struct Row {
     pub axes: &'static [Axis],
     /// The parameters that searches try.
     pub sizes: Sizes,
-    /// Whether it cuts the samples into groups, each with a list of lights.
+    /// Whether it cuts the samples into groups, each with a list of lights. Others have no lists to count.
     pub has_groups: bool,
     /// What it reads besides the view and the lights.
     pub needs: Needs,

@@ -8,6 +8,7 @@ mod hybrid;
 pub(crate) mod made_up;
 mod models;
 mod tiles;
+mod walks;
 
 use std::sync::LazyLock;
 
@@ -33,6 +34,7 @@ const FILES: &[&[Row]] = &[
     grid::ROWS,
     models::ROWS,
     hybrid::ROWS,
+    walks::ROWS,
     // A family for tests of what one row is enough for.
     #[cfg(test)]
     made_up::ROWS,

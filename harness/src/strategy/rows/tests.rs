@@ -67,6 +67,9 @@ fn ids_are_those_of_the_strategies() {
         "M/0.5/ball",
         "HG/32x32x8",
         "T-E/bvh/reuse4",
+        "W",
+        "W/bvh",
+        "W1",
     ] {
         let choice = Choice::parse(id).expect(id);
         let Method::Lists { strategy, .. } = choice.make(&gpu).expect(id) else { panic!("{id}") };
@@ -113,7 +116,8 @@ fn rows_are_complete() {
         for text in [row.name, row.about, row.source, row.krate] {
             assert!(!text.is_empty() && !text.contains("  "), "{family}: {text:?}");
         }
-        assert!(row.has_groups || row.axes.is_empty(), "{family}");
+        let needs_lists = |axis: &Axis| !matches!(axis, Axis::Source | Axis::Exit);
+        assert!(row.has_groups || !row.axes.iter().any(needs_lists), "{family}");
         assert!(row.parameters.is_empty() == row.sizes.few.is_empty(), "{family}: sizes to search");
         assert!(!row.sizes.few.contains(&row.default), "{family}: advice has measured the default");
         assert!(

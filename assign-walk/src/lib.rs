@@ -1,0 +1,44 @@
+//! Light assignment without lists: a sample's lights are found while it is shaded.
+//!
+//! # Idea
+//!
+//! A list is made once and read by many samples. If lights are few, making lists, and even the passes that do
+//! so, cost more than they save. Here there is no assignment pass: the look-up itself tests lights.
+//!
+//! | id | who tests |
+//! |---|---|
+//! | `W` | the lanes of a subgroup together: each tests one light against the box around their samples |
+//! | `W/bvh` | the same, first boxes around 64 lights, and then only the lights of boxes that reach the samples |
+//! | `W1` | each sample for itself, through the same boxes |
+//!
+//! A subgroup is what runs in step: 32 lanes on NVIDIA, 32 or 64 on AMD, 8 to 32 on Intel. In a compute shader
+//! with workgroups of 8 x 8 pixels, 32 lanes are 8 x 4 pixels.
+//!
+//! No engine that we know of ships W. W1 is what the comparison paper calls direct light data: each sample finds
+//! its lights in a structure over them (Enhuber 2019, outlook).
+//!
+//! # Phases
+//!
+//! None: shading is all. The hierarchy, if used, is made by [`LightBuffer`](assign::LightBuffer), and its passes
+//! count as assignment.
+//!
+//! # Cost
+//!
+//! W tests every light once per subgroup: `pixels / 32 * lights` tests of 16 bytes each, and lights that pass are
+//! then evaluated by all lanes. W/bvh tests `lights / 64` boxes instead, and 64 lights per box that reaches the
+//! subgroup. There is no memory besides the hierarchy: 0.5 bytes per light.
+//!
+//! # Where it fails
+//!
+//! - Many lights: W grows with lights times pixels. W/bvh grows slower, but finds the same lights again for each
+//!   subgroup of 32 pixels, where a tile finds them once for 784.
+//! - A subgroup at a silhouette has a long box, which lists the lights of the gap. A cluster would not.
+//! - A shader that samples many textures or evaluates heavy materials has fewer registers left, because the
+//!   search's state lives beside the surface's.
+//! - Without subgroup operations W and W/bvh are refused. W1 needs none.
+//! - Only the look-up knows a sample's lights, so there are no lists to inspect. Tools run the look-up and write
+//!   down what it returns.
+
+mod walk;
+
+pub use walk::{Walk, walk_wesl};

@@ -1,0 +1,120 @@
+//! W and W1: the look-up finds a sample's lights itself.
+
+use assign::{
+    AssignError, Assignment, FIRST_STRATEGY_BINDING, Frame, Gpu, LightLists, LightReader,
+    LightSource, ListsBindings, Lookup, Needs, Passes, StrategyModule, StrategyWesl, Team, entry,
+    storage_entry, uniform_entry,
+};
+
+/// The WESL of the strategy.
+pub const fn walk_wesl(team: Team, source: LightSource) -> StrategyWesl<'static> {
+    StrategyWesl {
+        main: include_str!("shaders/walk.wesl"),
+        imports: &[],
+        flags: &[],
+        reader: LightReader::Walk { team, source },
+    }
+}
+
+/// Finds a sample's lights while it is shaded.
+#[derive(Debug)]
+pub struct Walk {
+    team: Team,
+    source: LightSource,
+    /// Only record 0, which lists all lights.
+    lists: LightLists,
+    bindings: ListsBindings,
+    hierarchy_bytes: u64,
+}
+
+impl Walk {
+    /// Makes the strategy. Lanes always use the hierarchy, whatever `source` says.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] for [`Team::Subgroup`] on a device without subgroup operations.
+    pub fn new(gpu: &Gpu, team: Team, source: LightSource) -> Result<Self, AssignError> {
+        let source = match team {
+            Team::Subgroup => source,
+            Team::Lane => LightSource::Hierarchy,
+        };
+        LightReader::Walk { team, source }.check(gpu, id_of(team, source))?;
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        let mut bindings = vec![uniform_entry(FIRST_STRATEGY_BINDING, stages)];
+        if source == LightSource::Hierarchy {
+            bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true));
+        }
+        Ok(Self {
+            team,
+            source,
+            lists: LightLists::new(gpu)?,
+            bindings: ListsBindings::of_look_up(gpu, id_of(team, source), &bindings),
+            hierarchy_bytes: 0,
+        })
+    }
+}
+
+fn id_of(team: Team, source: LightSource) -> &'static str {
+    match (team, source) {
+        (Team::Subgroup, LightSource::Linear) => "W",
+        (Team::Subgroup, LightSource::Hierarchy) => "W/bvh",
+        (Team::Lane, _) => "W1",
+    }
+}
+
+impl Assignment for Walk {
+    fn id(&self) -> String {
+        id_of(self.team, self.source).into()
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { hierarchy: self.source == LightSource::Hierarchy, ..Needs::default() }
+    }
+
+    fn is_view_bound(&self) -> bool {
+        false
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        frame.view.check()?;
+        let reader = LightReader::Walk { team: self.team, source: self.source };
+        reader.check_lights(gpu, id_of(self.team, self.source), frame.lights.count())?;
+        self.lists.prepare(gpu, frame.lights, 0)?;
+        let mut resources = vec![entry(FIRST_STRATEGY_BINDING, self.lists.uniform())];
+        if self.source == LightSource::Hierarchy {
+            resources.push(entry(FIRST_STRATEGY_BINDING + 1, frame.lights.nodes()));
+            self.hierarchy_bytes = frame.lights.nodes().size();
+        }
+        self.bindings.bind(gpu, &self.lists, &resources);
+        Ok(())
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some(count) = frame.lights.live_count() {
+            self.lists.record_reset(passes.encoder(), Some(count));
+        }
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        // SAFETY: the module has no loop.
+        #[allow(unsafe_code, reason = "it has no loop")]
+        let module = unsafe { StrategyModule::new(walk_wesl(self.team, self.source)) };
+        Lookup { module, layout: self.bindings.layout() }
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.bindings.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        &self.lists
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        &mut self.lists
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.lists.memory_bytes() + self.hierarchy_bytes
+    }
+}

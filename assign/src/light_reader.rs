@@ -1,0 +1,117 @@
+//! How shading reads a sample's lights one after the other: the WESL module `package::look_up`.
+
+use crate::{AssignError, Gpu, LightSource, Shader, Storage, cull::BOUNDS_BOX_WESL};
+
+/// What reads the lights of a sample: which `package::look_up` a shader gets.
+///
+/// Each defines `struct LightCursor` with the field `entry`, `open_lights(sample: ViewSample) -> LightCursor`, and
+/// `next_light(cursor: ptr<function, LightCursor>) -> bool`, which finds the next entry in ascending light index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LightReader<'a> {
+    /// Reads what the culling driver stored for the sample's group.
+    Stored(Storage),
+    /// Reads no list: tests lights while it looks them up. The strategy's module defines `lights: Cull`, and
+    /// `light_nodes: array<LightNode>` if lights come from the hierarchy.
+    Walk {
+        /// Who tests lights together.
+        team: Team,
+        /// Whether boxes around lights are tested before.
+        source: LightSource,
+    },
+    /// The strategy's own.
+    Own(&'a str),
+}
+
+/// Who tests lights together while looking them up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Team {
+    /// The lanes of a subgroup that look lights up at the same time: each tests one light, and the box around
+    /// all their samples counts. It needs `wgpu::Features::SUBGROUP`.
+    Subgroup,
+    /// Each lane for itself.
+    Lane,
+}
+
+impl From<Storage> for LightReader<'_> {
+    fn from(storage: Storage) -> Self {
+        Self::Stored(storage)
+    }
+}
+
+impl<'a> LightReader<'a> {
+    /// Whether samples of one group may read different lights.
+    pub const fn is_per_sample(self) -> bool {
+        !matches!(self, Self::Stored(Storage::Lists | Storage::Masks))
+    }
+
+    /// Whether its shaders use subgroup operations.
+    pub const fn needs_subgroups(self) -> bool {
+        matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { team: Team::Subgroup, .. })
+    }
+
+    /// Checks that a device can run it. `strategy` is the strategy's id.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] if it needs subgroup operations, and the device has none.
+    pub fn check(self, gpu: &Gpu, strategy: &str) -> Result<(), AssignError> {
+        if self.needs_subgroups() && !gpu.has_subgroups() {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: format!("the device {}", gpu.info.name),
+                reason: "it has no subgroup operations (wgpu::Features::SUBGROUP)".into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Checks that a device can read so many lights for a sample. llvmpipe ends an invocation's loops silently
+    /// after a number of rounds. A reader that tests lights takes at most two rounds for a light, one to test it
+    /// and one to return it, and shading takes one; boxes take fewer than one more.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] above that number.
+    pub fn check_lights(self, gpu: &Gpu, strategy: &str, lights: u32) -> Result<(), AssignError> {
+        let most = gpu.max_loop_rounds().filter(|_| self.is_per_sample()).map(|rounds| rounds / 4);
+        match most.filter(|most| lights > *most) {
+            None => Ok(()),
+            Some(most) => Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: format!("{lights} lights"),
+                reason: format!(
+                    "{} ends long loops silently: it takes at most {most} lights here",
+                    gpu.info.name
+                ),
+            }),
+        }
+    }
+
+    /// Adds the module, what it imports, and its flags.
+    pub(crate) fn mount(self, shader: Shader<'a>) -> Shader<'a> {
+        match self {
+            Self::Stored(Storage::Lists) => {
+                shader.module("package::look_up", include_str!("shaders/look_up_list.wesl"))
+            }
+            Self::Stored(Storage::Masks) => {
+                shader.module("package::look_up", include_str!("shaders/look_up_mask.wesl"))
+            }
+            Self::Stored(Storage::PrunedLists) => {
+                walk(shader, Team::Subgroup, LightSource::Linear, true)
+            }
+            Self::Walk { team, source } => walk(shader, team, source, false),
+            Self::Own(source) => shader.module("package::look_up", source),
+        }
+    }
+}
+
+/// Adds the look-up that tests lights: those of the group's list if `listed`.
+fn walk(shader: Shader<'_>, team: Team, source: LightSource, listed: bool) -> Shader<'_> {
+    shader
+        .module("package::look_up", include_str!("shaders/look_up_walk.wesl"))
+        .module("package::lane_bounds", BOUNDS_BOX_WESL)
+        .flag("lane_bounds", true)
+        .flag("subgroups", team == Team::Subgroup)
+        .flag("walk_nodes", source == LightSource::Hierarchy)
+        .flag("listed", listed)
+}
