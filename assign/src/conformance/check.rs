@@ -10,9 +10,7 @@ use super::{
     seen::{Seen, UNWRITTEN},
     violation::{Breach, Findings, Place, SamplePlace},
 };
-use crate::{
-    ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList, ListsSnapshot,
-};
+use crate::{ALL_LIGHTS, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightList};
 
 /// Counts of (light, sample) pairs.
 #[derive(Clone, Copy, Debug, Default)]
