@@ -14,6 +14,9 @@
 //! | `SC-I` | those that hold a sample (sparse) | its whole frustum |
 //! | `SC-E` | those that hold a sample (sparse) | the box around the samples |
 //!
+//! [`ZBins`], `ZB`, has a bit mask per tile and one per slice in place of a list per froxel; `z_bins.rs` describes
+//! it.
+//!
 //! [`HybridGrid`], `HG`, shares the froxels but works from the other side: lights add themselves to the froxels
 //! that they touch. `hybrid/mod.rs` describes it. The rest of this page is about clusters.
 //!
@@ -101,6 +104,7 @@ mod normals;
 mod occupancy;
 mod slices;
 mod specular_cut;
+mod z_bins;
 
 pub use cluster_wesl::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL};
 pub use clustered::Clustered;
@@ -112,3 +116,4 @@ pub use normals::Normals;
 pub use occupancy::Occupancy;
 pub use slices::Slices;
 pub use specular_cut::{PAPERS_LOBE_DEGREES, SpecularCut};
+pub use z_bins::{Z_BINS_WESL, ZBins};

@@ -9,7 +9,8 @@
 //! |---|---|
 //! | `T-I` | its whole frustum, from the near to the far plane (implicit) |
 //! | `T-E` | its frustum between the nearest and the farthest sample in it (explicit) |
-//! | `HalfZ` | the same, cut in the middle: two groups (Thomas 2015) |
+//! | `T-E1` | the same, found by the pass that culls |
+//! | `HalfZ` | as T-E, cut in the middle: two groups (Thomas 2015) |
 //! | `ModifiedHalfZ` | both halves, each shrunk to the samples in it (Thomas 2015) |
 //! | `T-25D` | as T-E, without those of 32 depth slices that hold no sample (Harada 2012, "2.5D culling") |
 //!

@@ -38,7 +38,7 @@ impl Tiled {
         let depths = depths.into();
         let mut bindings = vec![tiles];
         let tile_bounds = match depths {
-            TileDepths::Implicit => None,
+            TileDepths::Implicit | TileDepths::ExplicitAtOnce => None,
             _ => {
                 bindings.push(storage_entry(FIRST_STRATEGY_BINDING + 1, stages, true));
                 if depths == TileDepths::Sliced {
@@ -74,6 +74,13 @@ impl Tiled {
     }
 }
 
+impl Tiled {
+    /// Whether the samples in a tile bound it.
+    fn is_explicit(&self) -> bool {
+        self.depths != TileDepths::Implicit
+    }
+}
+
 impl Assignment for Tiled {
     fn id(&self) -> String {
         let family = self.depths.family();
@@ -82,31 +89,34 @@ impl Assignment for Tiled {
 
     fn needs(&self) -> Needs {
         let hierarchy = self.culler.reads_hierarchy();
-        Needs { depth: self.tile_bounds.is_some(), hierarchy, ..Needs::default() }
+        Needs { depth: self.is_explicit(), hierarchy, ..Needs::default() }
     }
 
     fn updates_groups(&self) -> bool {
-        true
+        // It would find the bounds of all tiles again.
+        self.depths != TileDepths::ExplicitAtOnce
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
         let mut tiles = TilesUniform::new(self.size, frame.view);
         let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.tiles)];
-        let id = self.id();
-        if let Some(tile_bounds) = &mut self.tile_bounds {
+        if self.is_explicit() {
+            let strategy = self.id();
             if frame.samples == SampleDomain::AnyDepth {
                 return Err(AssignError::Unsupported {
-                    strategy: id,
+                    strategy,
                     asked: "look-ups at any depth".into(),
                     reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
                 });
             }
-            let missing = || AssignError::Missing { strategy: id, missing: "depth" };
+            let missing = || AssignError::Missing { strategy, missing: "depth" };
             let depth = frame.depth.ok_or_else(missing)?;
             tiles.surfaces_only = 1;
-            tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;
-            resources.extend(tile_bounds.resources());
+            if let Some(tile_bounds) = &mut self.tile_bounds {
+                tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;
+                resources.extend(tile_bounds.resources());
+            }
         }
         gpu.queue.write_buffer(&self.tiles, 0, bytes_of(&tiles));
         self.culler.prepare(

@@ -59,7 +59,9 @@ pub enum TileDepths {
     Implicit,
     /// From the nearest to the farthest sample: T-E, *MinMax*.
     Explicit,
-    /// The same, cut in the middle: two lists per tile (Thomas 2015, *HalfZ*).
+    /// The same, found by the pass that culls (Andersson 2009).
+    ExplicitAtOnce,
+    /// As `Explicit`, cut in the middle: two lists per tile (Thomas 2015, *HalfZ*).
     HalfZ,
     /// Both halves, each shrunk to the samples in it (Thomas 2015, *modified HalfZ*).
     ModifiedHalfZ,
@@ -74,6 +76,7 @@ impl TileDepths {
         match self {
             Self::Implicit => "T-I",
             Self::Explicit => "T-E",
+            Self::ExplicitAtOnce => "T-E1",
             Self::HalfZ => "HalfZ",
             Self::ModifiedHalfZ => "ModifiedHalfZ",
             Self::Sliced => "T-25D",
@@ -83,7 +86,7 @@ impl TileDepths {
     /// Lists per tile.
     pub(crate) fn lists(self) -> u32 {
         match self {
-            Self::Implicit | Self::Explicit | Self::Sliced => 1,
+            Self::Implicit | Self::Explicit | Self::ExplicitAtOnce | Self::Sliced => 1,
             Self::HalfZ | Self::ModifiedHalfZ => 2,
         }
     }

@@ -36,6 +36,16 @@ fn explicit_conforms() {
 }
 
 #[test]
+fn tiles_that_find_their_bounds_while_culling_conform() {
+    for (size, source) in [("28x28", LightSource::Linear), ("13x9", LightSource::Hierarchy)] {
+        let settings = CullSettings { source, ..CullSettings::default() };
+        conforms(TileDepths::ExplicitAtOnce, size, settings);
+    }
+    let make = tiled(TileDepths::ExplicitAtOnce, "16x16", CullSettings::default());
+    assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
+}
+
+#[test]
 fn halves_and_slices_conform() {
     for depths in [TileDepths::HalfZ, TileDepths::ModifiedHalfZ, TileDepths::Sliced] {
         conforms(depths, "28x28", CullSettings::default());

@@ -1,13 +1,10 @@
 //! W and W1 keep the contract's promises, and the suite rejects look-ups with planted faults.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use assign::{
-    AssignError, Assignment, BOUNDS_BOX_WESL, Frame, Gpu, LightLists, LightReader, LightSource,
-    Lookup, Needs, Passes, StrategyModule, StrategyWesl, Team,
-    conformance::{self, Breach, ConformanceError},
+    AssignError, Assignment, BOUNDS_BOX_WESL, Gpu, LightReader, LightSource, StrategyWesl, Team,
+    conformance::{self, Breach, Reworded, reword},
 };
-use assign_walk::{Walk, walk_wesl};
+use assign_walk::Walk;
 
 fn walk(
     team: Team,
@@ -42,86 +39,26 @@ fn lanes_conform() {
 /// The look-up that W and W1 use.
 const LOOK_UP: &str = include_str!("../../assign/src/shaders/look_up_walk.wesl");
 
-/// A strategy whose look-up was altered.
-struct Altered {
-    inner: Walk,
-    wesl: StrategyWesl<'static>,
-}
-
-impl Altered {
-    /// Replaces a part of the look-up's text, which must be there.
-    fn new(gpu: &Gpu, team: Team, source: LightSource, part: [&str; 2]) -> Self {
-        assert!(LOOK_UP.contains(part[0]), "the look-up has no {:?}", part[0]);
-        let flags = vec![
-            ("lane_bounds", true),
-            ("subgroups", team == Team::Subgroup),
-            ("walk_nodes", source == LightSource::Hierarchy),
-            ("listed", false),
-        ];
-        let wesl = StrategyWesl {
-            imports: &[("package::lane_bounds", BOUNDS_BOX_WESL)],
-            flags: flags.leak(),
-            reader: LightReader::Own(LOOK_UP.replace(part[0], part[1]).leak()),
-            ..walk_wesl(team, source)
-        };
-        Self { inner: Walk::new(gpu, team, source).unwrap(), wesl }
-    }
-}
-
-impl Assignment for Altered {
-    fn id(&self) -> String {
-        self.inner.id()
-    }
-    fn needs(&self) -> Needs {
-        self.inner.needs()
-    }
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        self.inner.prepare(gpu, frame)
-    }
-    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
-        self.inner.record(frame, passes);
-    }
-    fn lookup(&self) -> Lookup<'_> {
-        // SAFETY: the parts that tests replace leave the loops as they are.
-        #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { StrategyModule::new(self.wesl) };
-        Lookup { module, ..self.inner.lookup() }
-    }
-    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
-        self.inner.bind_group()
-    }
-    fn lists(&self) -> &LightLists {
-        self.inner.lists()
-    }
-    fn lists_mut(&mut self) -> &mut LightLists {
-        self.inner.lists_mut()
-    }
-    fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
-    }
-}
-
-/// Runs a case with an altered look-up. It must be rejected for `breach`.
+/// Replaces a part of the look-up's text. A case must reject it for `breach`.
 fn rejects(team: Team, source: LightSource, part: [&str; 2], case: &str, breach: Breach) {
+    let look_up = reword(LOOK_UP, part[0], part[1]);
+    let flags = vec![
+        ("lane_bounds", true),
+        ("subgroups", team == Team::Subgroup),
+        ("walk_nodes", source == LightSource::Hierarchy),
+        ("listed", false),
+    ];
+    let flags: &[(&str, bool)] = flags.leak();
     let make = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
-        Ok(Box::new(Altered::new(gpu, team, source, part)))
+        let other = |wesl| StrategyWesl {
+            imports: &[("package::lane_bounds", BOUNDS_BOX_WESL)],
+            flags,
+            reader: LightReader::Own(look_up),
+            ..wesl
+        };
+        Ok(Box::new(Reworded::new(walk(team, source)(gpu)?, other)))
     };
-    match conformance::run_case(case, &make) {
-        Err(error @ ConformanceError::Rejected(_)) => {
-            let text = error.to_string();
-            let named = format!("{breach:?}");
-            assert!(is_named(&error, breach), "{part:?} must break {named}: {text}");
-        }
-        other => panic!("{part:?} in {case}: {other:?}"),
-    }
-}
-
-fn is_named(error: &ConformanceError, breach: Breach) -> bool {
-    let ConformanceError::Rejected(report) = error else { return false };
-    report.cases.iter().any(|case| match &case.outcome {
-        conformance::Outcome::Failed(violations) => violations.iter().any(|v| v.breach == breach),
-        _ => false,
-    })
+    conformance::rejects_in(&format!("{part:?}"), case, breach, &make).expect("rejects");
 }
 
 #[test]
@@ -133,10 +70,16 @@ fn planted_faults_are_rejected() {
     rejects(Team::Subgroup, Linear, small, "33-lights", MissedPair);
     rejects(Team::Subgroup, Hierarchy, small, "33-lights", MissedPair);
     // The last light of each batch is not tested.
-    let last = ["if rank < count && hits", "if rank + 1u < count && hits"];
+    let last = ["is_hit = rank < count", "is_hit = rank + 1u < count"];
     rejects(Team::Subgroup, Linear, last, "33-lights", MissedPair);
     // Hits of other lanes are not shared.
-    rejects(Team::Subgroup, Linear, ["subgroupOr(hit)", "hit"], "33-lights", MissedPair);
+    rejects(
+        Team::Subgroup,
+        Linear,
+        ["subgroupBallot(is_hit).x", "select(0u, 1u << rank, is_hit)"],
+        "33-lights",
+        MissedPair,
+    );
     // The last hit comes first.
     let reversed = [
         "(*cursor).lights.first + firstTrailingBit(found);",

@@ -6,9 +6,9 @@
 
 use crate::{
     AreaBounds, AssignError, CullSettings, Facing, Frame, FrameBindings, Gpu, GroupShape, Groups,
-    LightKinds, LightLists, LightReader, LightSource, LightTraits, ListsBindings, Lookup, Passes,
-    Shader, Storage, StrategyModule, StrategyWesl,
-    entries::{entry, storage_entry},
+    LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
+    Storage, StrategyModule, StrategyWesl,
+    entries::{entry, storage_entry, texture, texture_entry},
     touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
 
@@ -117,11 +117,12 @@ impl Culler {
             *descriptor;
         let variant = Variant { shape, settings, sparse, facing };
         variant.check(label)?;
-        LightReader::from(settings.storage).check(gpu, label)?;
+        let reader = module.wesl().reader.of_storage(settings.storage);
+        reader.check(gpu, label)?;
         Ok(Self {
             label: label.to_owned(),
             variant,
-            module: module.read_by(settings.storage.into()),
+            module: module.read_by(reader),
             kernel: None,
             frame: FrameBindings::new(gpu),
             cull: ListsBindings::of_kernel(gpu, label, bindings),
@@ -144,8 +145,7 @@ impl Culler {
         resources: &[wgpu::BindGroupEntry<'_>],
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
-        let reader = LightReader::from(self.variant.settings.storage);
-        reader.check_lights(gpu, &self.label, frame.lights.count())?;
+        self.module.wesl().reader.check_lights(gpu, &self.label, frame.lights.count())?;
         self.is_update = frame.changes.is_some();
         if self.is_update {
             self.lists.prepare_update(gpu, frame.lights);
@@ -155,7 +155,7 @@ impl Culler {
         self.cull.bind(gpu, &self.lists, resources);
         self.look_up.bind(gpu, &self.lists, resources);
         let source = match frame.changes {
-            None => self.bind_source(gpu, frame, groups),
+            None => self.bind_source(gpu, frame, groups)?,
             Some(changes) => {
                 let mut touched = match self.touched.take() {
                     Some(touched) => touched,
@@ -164,7 +164,7 @@ impl Culler {
                 touched.prepare(gpu, changes, groups)?;
                 let live = touched.groups();
                 let source =
-                    self.bind_source(gpu, frame, Groups::Live { count: groups.count(), live });
+                    self.bind_source(gpu, frame, Groups::Live { count: groups.count(), live })?;
                 self.touched = Some(touched);
                 source
             }
@@ -183,7 +183,12 @@ impl Culler {
         Ok(())
     }
 
-    fn bind_source(&self, gpu: &Gpu, frame: &Frame<'_>, groups: Groups<'_>) -> Source {
+    fn bind_source(
+        &self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        groups: Groups<'_>,
+    ) -> Result<Source, AssignError> {
         let mut entries = Vec::new();
         if let Groups::Live { live, .. } = groups {
             entries.push(entry(0, live.buffer()));
@@ -191,13 +196,35 @@ impl Culler {
         if self.reads_hierarchy() {
             entries.push(entry(1, frame.lights.nodes()));
         }
-        let layout = source_layout(gpu, self.variant, matches!(groups, Groups::Live { .. }));
+        if self.module.wesl().finds_bounds_by_lanes() {
+            let strategy = self.label.clone();
+            let missing = || AssignError::Missing { strategy, missing: "depth" };
+            entries.push(texture(2, frame.depth.ok_or_else(missing)?));
+        }
+        let layout = self.source_layout(gpu, matches!(groups, Groups::Live { .. }));
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("cull source"),
             layout: &layout,
             entries: &entries,
         });
-        Source { bind_group, dispatch: Dispatch::over(groups) }
+        Ok(Source { bind_group, dispatch: Dispatch::over(groups) })
+    }
+
+    /// Layout of the kernel's input: the groups if not all are culled, light nodes if there is a hierarchy, the
+    /// depth buffer if lanes find bounds.
+    fn source_layout(&self, gpu: &Gpu, sparse: bool) -> wgpu::BindGroupLayout {
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let mut entries = Vec::new();
+        if sparse {
+            entries.push(storage_entry(0, stages, true));
+        }
+        if self.reads_hierarchy() {
+            entries.push(storage_entry(1, stages, true));
+        }
+        if self.module.wesl().finds_bounds_by_lanes() {
+            entries.push(texture_entry(2, stages, wgpu::TextureSampleType::Depth));
+        }
+        gpu.bind_group_layout("cull source", &entries)
     }
 
     fn compile_touched(&self, gpu: &Gpu) -> Result<TouchedGroups, AssignError> {
@@ -252,7 +279,7 @@ impl Culler {
         // The strategy's author guarantees the same for its module.
         #[allow(unsafe_code, reason = "its loops end")]
         let module = unsafe { shader.create_uncounted(gpu, "package::cull") }?;
-        let source = source_layout(gpu, variant, sparse);
+        let source = self.source_layout(gpu, sparse);
         let layouts = [Some(self.frame.layout()), Some(self.cull.layout()), Some(&source)];
         // The kernel writes workgroup memory before it reads it.
         let pipeline = gpu.compute_pipeline(&module, "cull_groups", &layouts, false);
@@ -338,6 +365,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .module("package::gloss", include_str!("shaders/gloss.wesl"))
         .module("package::reflected", include_str!("shaders/reflected.wesl"))
         .flag("lane_bounds", false)
+        .flag("bounds_by_lanes", wesl.finds_bounds_by_lanes())
         .flag("facing", matches!(variant.facing, Facing::Horizon | Facing::HorizonAndGloss))
         .flag("reflected", variant.facing == Facing::ReflectedCone)
         .flag("where_diffuse", variant.facing == Facing::WhereDiffuse)
@@ -355,17 +383,4 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .flag("sparse", variant.sparse)
         .flag("masks", variant.settings.storage == Storage::Masks)
         .light_kinds(lights.kinds)
-}
-
-/// Layout of the kernel's input: the groups if not all are culled, light nodes if there is a hierarchy.
-fn source_layout(gpu: &Gpu, variant: Variant, sparse: bool) -> wgpu::BindGroupLayout {
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let mut entries = Vec::new();
-    if sparse {
-        entries.push(storage_entry(0, stages, true));
-    }
-    if variant.settings.source == LightSource::Hierarchy {
-        entries.push(storage_entry(1, stages, true));
-    }
-    gpu.bind_group_layout("cull source", &entries)
 }

@@ -10,6 +10,9 @@ use crate::{AssignError, Gpu, LightSource, Shader, Storage, cull::BOUNDS_BOX_WES
 pub enum LightReader<'a> {
     /// Reads what the culling driver stored for the sample's group.
     Stored(Storage),
+    /// Reads the lights that are in the bit masks of both groups of a sample: the strategy's module also defines
+    /// `second_group_of(sample: ViewSample) -> u32`. If one is `ALL_LIGHTS`, both are.
+    BothMasks,
     /// Reads no list: tests lights while it looks them up. The strategy's module defines `lights: Cull`, and
     /// `light_nodes: array<LightNode>` if lights come from the hierarchy.
     Walk {
@@ -39,9 +42,23 @@ impl From<Storage> for LightReader<'_> {
 }
 
 impl<'a> LightReader<'a> {
+    /// The same for another storage, if it reads what is stored for one group.
+    #[must_use]
+    pub const fn of_storage(self, storage: Storage) -> Self {
+        match self {
+            Self::Stored(_) => Self::Stored(storage),
+            other => other,
+        }
+    }
+
     /// Whether samples of one group may read different lights.
     pub const fn is_per_sample(self) -> bool {
         !matches!(self, Self::Stored(Storage::Lists | Storage::Masks))
+    }
+
+    /// Whether it tests lights while it looks them up.
+    const fn tests_lights(self) -> bool {
+        matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { .. })
     }
 
     /// Whether its shaders use subgroup operations.
@@ -73,7 +90,7 @@ impl<'a> LightReader<'a> {
     ///
     /// [`AssignError::Unsupported`] above that number.
     pub fn check_lights(self, gpu: &Gpu, strategy: &str, lights: u32) -> Result<(), AssignError> {
-        let most = gpu.max_loop_rounds().filter(|_| self.is_per_sample()).map(|rounds| rounds / 4);
+        let most = gpu.max_loop_rounds().filter(|_| self.tests_lights()).map(|rounds| rounds / 4);
         match most.filter(|most| lights > *most) {
             None => Ok(()),
             Some(most) => Err(AssignError::Unsupported {
@@ -98,6 +115,9 @@ impl<'a> LightReader<'a> {
             }
             Self::Stored(Storage::PrunedLists) => {
                 walk(shader, Team::Subgroup, LightSource::Linear, true)
+            }
+            Self::BothMasks => {
+                shader.module("package::look_up", include_str!("shaders/look_up_both_masks.wesl"))
             }
             Self::Walk { team, source } => walk(shader, team, source, false),
             Self::Own(source) => shader.module("package::look_up", source),

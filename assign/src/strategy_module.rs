@@ -21,6 +21,15 @@ pub struct StrategyWesl<'a> {
     pub reader: LightReader<'a>,
 }
 
+impl StrategyWesl<'_> {
+    /// Whether the lanes that cull a group first find its bounds together, from the depth buffer. Then `imports`
+    /// has a module `package::strategy::by_lanes` with `bounds_by_lanes(group: u32, lane: u32) -> GroupBounds`,
+    /// which all lanes of the workgroup call, and which reads the depth buffer at binding 2 of bind group 2.
+    pub fn finds_bounds_by_lanes(&self) -> bool {
+        self.imports.iter().any(|(path, _)| *path == "package::strategy::by_lanes")
+    }
+}
+
 impl<'a> From<&'a str> for StrategyWesl<'a> {
     /// A main module that imports nothing of its own and reads no flag; its groups have lists.
     fn from(main: &'a str) -> Self {

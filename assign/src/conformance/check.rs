@@ -67,8 +67,6 @@ fn record_0(seen: &Seen, findings: &mut Findings) {
 fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
     let place = Place { group: Some(probe.group), light: None, sample: Some(sample_place(probe)) };
     match seen.list(probe.group) {
-        // Only the look-up knows what the sample reads.
-        Some(list) if list != UNWRITTEN && seen.per_sample.is_some() => {}
         None => {
             let detail = format!("there are {} groups", seen.group_count);
             findings.add(Breach::NoSuchGroup, place, detail);
@@ -84,6 +82,8 @@ fn look_up(seen: &Seen, probe: &Probe, findings: &mut Findings) {
             );
             findings.add(Breach::Lookup, place, detail);
         }
+        // Only the look-up knows what the sample reads.
+        Some(_) if seen.per_sample.is_some() => {}
         Some(_) => {
             let entries = seen.entries(probe.group);
             let held = &entries[..entries.len().min(MOST_READ)];

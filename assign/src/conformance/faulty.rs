@@ -16,6 +16,10 @@ import package::sample::ViewSample;
 fn group_of(sample: ViewSample) -> u32 {
   return 0x7ffffff0u;
 }
+
+fn second_group_of(sample: ViewSample) -> u32 {
+  return 0x7ffffff0u;
+}
 ";
 
 /// Bytes of a light's sphere, and of its emission.

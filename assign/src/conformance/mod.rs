@@ -59,6 +59,7 @@ mod linked;
 mod living;
 mod plan;
 mod reaching;
+mod reworded;
 mod rig;
 mod run_kernel;
 mod seen;
@@ -74,6 +75,7 @@ pub use counted_passes::CountedPasses;
 use faulty::{Fault, Faulty};
 pub use flat_depth::flat_depth;
 pub use linked::{LinkedModule, StructLayout};
+pub use reworded::{Reworded, reword};
 use rig::Rig;
 pub use run_kernel::{Bound, download, run_kernel, upload};
 pub use violation::{
@@ -151,14 +153,39 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
 /// Plants one fault and requires the suite to reject it with the right breach.
 pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceError> {
     let (name, breach) = fault.shows_in();
-    let case = find(name)?;
     let faulty = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
         Ok(Box::new(Faulty::new(gpu, make(gpu)?, fault)?))
     };
-    let outcome = one(rig()?, case, &faulty)?.outcome;
+    let is_per_sample = make(&rig()?.gpu).map_err(setup)?.lookup().is_per_sample();
+    // Of a sample's own list only its contents can be checked.
+    let breach =
+        if is_per_sample && breach == Breach::Lookup { Breach::MissedPair } else { breach };
+    rejects(&format!("{fault:?}"), name, breach, fault.shows_from_stage(), &faulty)
+}
+
+/// Requires a case to reject a strategy with a breach. `fault` names what is wrong with the strategy.
+pub fn rejects_in(
+    fault: &str,
+    case: &str,
+    breach: Breach,
+    make: &Make<'_>,
+) -> Result<(), ConformanceError> {
+    rejects(fault, case, breach, 0, make)
+}
+
+/// The same for a breach that may not show before a stage.
+fn rejects(
+    fault: &str,
+    case: &str,
+    breach: Breach,
+    from_stage: u32,
+    make: &Make<'_>,
+) -> Result<(), ConformanceError> {
+    let case = find(case)?;
+    let outcome = one(rig()?, case, make)?.outcome;
     let is_named = match &outcome {
         Outcome::Failed(violations) => {
-            let is_early = |v: &Violation| v.stage < fault.shows_from_stage();
+            let is_early = |v: &Violation| v.stage < from_stage;
             violations.iter().any(|v| v.breach == breach) && !violations.iter().any(is_early)
         }
         _ => false,
@@ -167,7 +194,7 @@ pub fn rejects_fault(fault: Fault, make: &Make<'_>) -> Result<(), ConformanceErr
         return Ok(());
     }
     Err(ConformanceError::FaultPassed {
-        fault: format!("{fault:?}"),
+        fault: fault.to_owned(),
         case: case.name,
         outcome: format!("{outcome:?}"),
     })

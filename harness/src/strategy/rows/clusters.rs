@@ -8,6 +8,7 @@ use assign::{
 use assign_clustered::{
     Clustered,
     Occupancy::{self, Dense, Sparse},
+    ZBins,
 };
 
 use super::super::{Axis, Colour, Method, Options, Role, Row, Sizes, row::NEEDS_DEPTH};
@@ -72,7 +73,28 @@ pub(super) const ROWS: &[Row] = &[
         make: |gpu, options| make(gpu, options, Explicit, Sparse),
         ..CLUSTERS
     },
+    Z_BINS,
 ];
+
+const Z_BINS: Row = Row {
+    family: "ZB",
+    name: "z-bins",
+    about: "a bit mask per tile and one per depth slice of the whole view; a sample's lights are those of both",
+    role: Role::Engine,
+    source: "Drobot 2017, \"Improved Culling for Tiled and Clustered Rendering\", SIGGRAPH Advances in Real-Time \
+             Rendering",
+    default: "32x32x64",
+    sizes: Sizes {
+        few: &["16x16x64", "24x24x64", "32x32x32", "48x48x64"],
+        many: &["16x16x64", "24x24x64", "32x32x32", "32x32x64", "32x32x128", "48x48x64"],
+    },
+    axes: &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Keep, Axis::Touched, Axis::Exit],
+    colour: Colour { light: "#0057b8", dark: "#8d99ae" },
+    make: |gpu, options| {
+        Ok(Method::lists(ZBins::new(gpu, options.parameters.parse()?, options.settings())?))
+    },
+    ..CLUSTERS
+};
 
 const CLUSTERS: Row = Row {
     role: Role::ComparisonPaper,

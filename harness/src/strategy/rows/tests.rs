@@ -69,6 +69,10 @@ fn ids_are_those_of_the_strategies() {
         "T-E/bvh/reuse4",
         "W",
         "W/bvh",
+        "T-E1/16x16/hs/bvh",
+        "T-I/prune",
+        "SC-E/96x96x16/bvh/prune",
+        "ZB/hs/bvh",
         "W1",
     ] {
         let choice = Choice::parse(id).expect(id);

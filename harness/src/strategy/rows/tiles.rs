@@ -2,7 +2,7 @@
 
 use assign::{AssignError, FrustumTests, Gpu};
 use assign_tiled::{
-    TileDepths::{self, Explicit, HalfZ, Implicit, ModifiedHalfZ, Sliced},
+    TileDepths::{self, Explicit, ExplicitAtOnce, HalfZ, Implicit, ModifiedHalfZ, Sliced},
     Tiled,
 };
 
@@ -32,6 +32,28 @@ pub(super) const ROWS: &[Row] = &[
         needs: NEEDS_DEPTH,
         colour: Colour { light: "#8b3a8f", dark: "#cf84d2" },
         make: |gpu, options| make(gpu, options, Explicit),
+        ..TILES
+    },
+    Row {
+        family: "T-E1",
+        name: "tiles, explicit bounds, in one pass",
+        about: "as T-E, but the workgroup that culls a tile first finds its nearest and its farthest sample: one pass \
+                less",
+        role: Role::Engine,
+        source: "Andersson 2009, \"Parallel Graphics in Frostbite\", SIGGRAPH Beyond Programmable Shading course",
+        needs: NEEDS_DEPTH,
+        axes: &[
+            Axis::Tests,
+            Axis::Source,
+            Axis::AreaBounds,
+            Axis::Storage,
+            Axis::Cap,
+            Axis::Reuse,
+            Axis::Keep,
+            Axis::Exit,
+        ],
+        colour: Colour { light: "#e600e6", dark: "#ff66ff" },
+        make: |gpu, options| make(gpu, options, ExplicitAtOnce),
         ..TILES
     },
     Row {

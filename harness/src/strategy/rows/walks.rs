@@ -13,7 +13,7 @@ pub(super) const ROWS: &[Row] = &[
                 shade",
         source: "no paper: our own",
         axes: &[Axis::Source, Axis::Exit],
-        colour: Colour { light: "#5a5200", dark: "#d6c84a" },
+        colour: Colour { light: "#2b2b2b", dark: "#e8e8e8" },
         make: |gpu, options| {
             Ok(Method::lists(Walk::new(gpu, Team::Subgroup, options.settings().source)?))
         },
@@ -26,7 +26,7 @@ pub(super) const ROWS: &[Row] = &[
         source: "Enhuber 2019, outlook (direct light data)",
         axes: &[Axis::Exit],
         needs: Needs { hierarchy: true, ..NEEDS_NOTHING },
-        colour: Colour { light: "#6b4a2b", dark: "#c79a6f" },
+        colour: Colour { light: "#ff3b30", dark: "#ffe08a" },
         make: |gpu, _| Ok(Method::lists(Walk::new(gpu, Team::Lane, LightSource::Hierarchy)?)),
         ..WALK
     },

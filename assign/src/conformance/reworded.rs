@@ -1,0 +1,78 @@
+//! Negative controls of a strategy's own shader: the same strategy with other WESL.
+
+use crate::{
+    AssignError, Assignment, Frame, Gpu, LightLists, Lookup, Needs, Passes, StrategyModule,
+    StrategyWesl,
+};
+
+/// A strategy whose look-up has other text, to plant faults in it.
+pub struct Reworded {
+    inner: Box<dyn Assignment>,
+    module: StrategyModule,
+}
+
+impl Reworded {
+    /// Gives `inner` the WESL of `reword`, which gets the strategy's own. Its kernels stay as they are.
+    pub fn new(
+        inner: Box<dyn Assignment>,
+        reword: impl FnOnce(StrategyWesl<'static>) -> StrategyWesl<'static>,
+    ) -> Self {
+        let wesl = reword(inner.lookup().module.wesl());
+        // SAFETY: tests replace words, and leave the loops as they are.
+        #[allow(unsafe_code, reason = "its loops end")]
+        let module = unsafe { StrategyModule::new(wesl) };
+        Self { inner, module }
+    }
+}
+
+/// `text` with `part` replaced by `other`, for the rest of the program's life.
+///
+/// # Panics
+///
+/// Panics if the text does not hold the part.
+pub fn reword(text: &str, part: &str, other: &str) -> &'static str {
+    assert!(text.contains(part), "the text has no {part:?}");
+    text.replace(part, other).leak()
+}
+
+impl Assignment for Reworded {
+    fn id(&self) -> String {
+        self.inner.id()
+    }
+
+    fn needs(&self) -> Needs {
+        self.inner.needs()
+    }
+
+    fn is_view_bound(&self) -> bool {
+        self.inner.is_view_bound()
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
+        self.inner.prepare(gpu, frame)
+    }
+
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        self.inner.record(frame, passes);
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        Lookup { module: self.module, ..self.inner.lookup() }
+    }
+
+    fn bind_group(&self) -> Option<&wgpu::BindGroup> {
+        self.inner.bind_group()
+    }
+
+    fn lists(&self) -> &LightLists {
+        self.inner.lists()
+    }
+
+    fn lists_mut(&mut self) -> &mut LightLists {
+        self.inner.lists_mut()
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes()
+    }
+}
