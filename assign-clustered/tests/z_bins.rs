@@ -19,7 +19,6 @@ fn z_bins(
 fn z_bins_conform() {
     conformance::run(&z_bins("16x16x24", LightSource::Linear)).expect("conforms");
     conformance::run(&z_bins("13x9x7", LightSource::Hierarchy)).expect("conforms");
-    conformance::run(&z_bins("40x40x1", LightSource::Linear)).expect("conforms");
 }
 
 #[test]
