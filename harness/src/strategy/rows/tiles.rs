@@ -40,6 +40,11 @@ pub(super) const ROWS: &[Row] = &[
         about: "as T-E, but the workgroup that culls a tile first finds its nearest and its farthest sample: one pass \
                 less",
         role: Role::Engine,
+        default: "32x32",
+        sizes: Sizes {
+            few: &["16x16", "24x24", "28x28", "48x48", "64x64"],
+            many: &["16x16", "24x24", "28x28", "32x32", "40x40", "48x48", "64x64"],
+        },
         source: "Andersson 2009, \"Parallel Graphics in Frostbite\", SIGGRAPH Beyond Programmable Shading course",
         needs: NEEDS_DEPTH,
         axes: &[

@@ -57,7 +57,7 @@ const FULL: Extent = Extent {
     poses: [24, 16],
     laps: 6,
     warmup: 4,
-    checks: 4,
+    checks: 2,
     // Those that the thesis leads with.
     dense: &[200_000, 1_000_000, 4_000_000],
     compared: Size { width: 384, height: 216 },
@@ -75,14 +75,18 @@ const QUICK: Extent = Extent {
     compared: Size { width: 96, height: 54 },
 };
 
-/// The ids that are measured: families of the comparison paper with explicit bounds, and those of other papers
-/// that make lists. Clusters look for lights through the hierarchy if they can. Tiles read the plain list, which
-/// needs no order.
-fn strategies() -> Vec<String> {
+/// The ids that are measured: families of the comparison paper with explicit bounds, and the other families that
+/// make lists. Clusters look for lights through the hierarchy if they can. Tiles read the plain list, which needs
+/// no order, but not a list of many lights: they would take 40 ms for four million on an H200.
+fn strategies(has_many_lights: bool) -> Vec<String> {
     let is_explicit = |row: &Row| row.role == Role::ComparisonPaper && row.family.ends_with("-E");
-    let is_other = |row: &Row| row.role == Role::OtherPaper && row.has_groups;
+    // What has no list to cap has bit masks, which do not hold four million lights.
+    let has_lists = |row: &Row| row.has_groups && row.has_axis(Axis::Cap);
+    let is_other =
+        |row: &Row| matches!(row.role, Role::OtherPaper | Role::Engine) && has_lists(row);
     let id = |row: &Row| {
-        let through = row.parameters.contains(&"slices") && row.has_axis(Axis::Source);
+        let is_large = row.parameters.contains(&"slices") || has_many_lights;
+        let through = is_large && row.has_axis(Axis::Source);
         row.default_id() + if through { "/bvh" } else { "" }
     };
     rows().filter(|row| is_explicit(row) || is_other(row)).map(id).collect()
@@ -115,7 +119,7 @@ pub(crate) fn jobs(
 /// The jobs of a scene whose core has this volume, cubic metres.
 fn plan(args: &StudyArgs, scene: &StudyScene, volume_m3: f64) -> Vec<Job> {
     let extent = if args.quick { QUICK } else { FULL };
-    let plan = Plan { args, scene, ids: strategies().join(","), extent };
+    let plan = Plan { args, scene, extent };
     let mut jobs = Vec::new();
     for &count in plan.extent.counts {
         for movement in Movement::ALL {
@@ -141,7 +145,6 @@ fn plan(args: &StudyArgs, scene: &StudyScene, volume_m3: f64) -> Vec<Job> {
 struct Plan<'a> {
     args: &'a StudyArgs,
     scene: &'a StudyScene,
-    ids: String,
     extent: Extent,
 }
 
@@ -206,10 +209,11 @@ impl Plan<'_> {
         let scene = StudyScene { scale, ..self.scene.clone() };
         let drawn = scene.options(size, self.args.seed);
         let moved = movement.options(law.map_or(LAW, MotionChoice::name), speed);
+        let ids = strategies(count >= self.extent.many).join(",");
         let (count, warmup) = (count.to_string(), self.extent.warmup.to_string());
         let mut words = vec!["compare"];
         words.extend(drawn.iter().map(String::as_str));
-        words.extend(["--lights", &count, "--strategies", &self.ids, "--warmup", &warmup]);
+        words.extend(["--lights", &count, "--strategies", &ids, "--warmup", &warmup]);
         words.extend(own);
         words.extend(["--truth", "none", "--pictures", "none"]);
         words.extend(moved.iter().map(String::as_str));
@@ -245,11 +249,12 @@ mod tests {
     }
 
     #[test]
-    fn explicit_bounds_and_other_papers_run_and_tiles_read_the_plain_list() {
+    fn explicit_bounds_and_other_papers_run_and_tiles_read_the_plain_list_of_few_lights() {
         assert_eq!(
-            strategies(),
+            strategies(false),
             [
                 "T-E/28x28",
+                "T-E1/32x32",
                 "HalfZ/28x28",
                 "ModifiedHalfZ/28x28",
                 "T-25D/28x28",
@@ -258,6 +263,9 @@ mod tests {
                 "HG/48x48x40"
             ]
         );
+        let is_plain = |id: &String| !id.ends_with("/bvh");
+        let plain: Vec<String> = strategies(true).into_iter().filter(is_plain).collect();
+        assert_eq!(plain, ["HG/48x48x40"]);
     }
 
     #[test]
