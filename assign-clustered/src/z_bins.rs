@@ -57,6 +57,7 @@ pub const Z_BINS_WESL: StrategyWesl<'static> = StrategyWesl {
 #[derive(Debug)]
 pub struct ZBins {
     size: FroxelSize,
+    slices: Slices,
     settings: CullSettings,
     froxels: wgpu::Buffer,
     culler: Culler,
@@ -70,6 +71,7 @@ impl ZBins {
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             size,
+            slices: Slices::default(),
             settings,
             froxels: gpu.uniform("froxels", size_of::<FroxelsUniform>() as u64),
             culler: Culler::new(
@@ -88,12 +90,19 @@ impl ZBins {
             )?,
         })
     }
+
+    /// The same with depth cut into other slices. Checks them.
+    pub fn with_slices(self, slices: Slices) -> Result<Self, AssignError> {
+        slices.check()?;
+        Ok(Self { slices, ..self })
+    }
 }
 
 impl Assignment for ZBins {
     fn id(&self) -> String {
         let settings = CullSettings { storage: Storage::Lists, ..self.settings };
-        format!("ZB/{}{}", self.size, settings.suffix(GroupShape::Frustum))
+        let slices = self.slices.segment();
+        format!("ZB/{}{slices}{}", self.size, settings.suffix(GroupShape::Frustum))
     }
 
     fn needs(&self) -> Needs {
@@ -106,8 +115,8 @@ impl Assignment for ZBins {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let slices = Slices::Exponential;
-        let froxels = FroxelsUniform::new(self.size, slices, frame.view, frame.light_bounds())?;
+        let froxels =
+            FroxelsUniform::new(self.size, self.slices, frame.view, frame.light_bounds())?;
         gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
         let [tiles_x, tiles_y, slices] = froxels.counts;
         self.culler.prepare(

@@ -1,7 +1,7 @@
 //! ZB passes the conformance suite, and the suite rejects it with each planted fault.
 
 use assign::{
-    AssignError, Assignment, CullSettings, Gpu, LightKinds, LightReader, LightSource, Shader,
+    AssignError, Assignment, CullSettings, Gpu, Keep, LightKinds, LightReader, LightSource, Shader,
     StrategyWesl,
     conformance::{self, Breach, LinkedModule, Reworded, faulty::Fault, reword},
 };
@@ -19,6 +19,21 @@ fn z_bins(
 fn z_bins_conform() {
     conformance::run(&z_bins("16x16x24", LightSource::Linear)).expect("conforms");
     conformance::run(&z_bins("13x9x7", LightSource::Hierarchy)).expect("conforms");
+}
+
+#[test]
+fn kept_and_touched_masks_conform() {
+    let make = z_bins("16x16x24", LightSource::Hierarchy);
+    let touched = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Touched::new(gpu, make(gpu)?)?))
+    };
+    let kept = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(Keep::new(gpu, make(gpu)?, 3)?))
+    };
+    for case in ["33-lights", "light-count-changes", "gpu-order-some-move", "lights-from-gpu"] {
+        conformance::run_case(case, &touched).expect(case);
+        conformance::run_case(case, &kept).expect(case);
+    }
 }
 
 #[test]

@@ -16,14 +16,15 @@
 //!
 //! # Phases
 //!
-//! 1. `bounds` (all but T-I) gives each tile one workgroup, which reads the tile's depths and reduces them to a
+//! 1. `bounds` (all but T-I and T-E1) gives each tile one workgroup, which reads the tile's depths and reduces them to a
 //!    range in workgroup memory. It needs no global atomics. A tile without samples gets an empty range.
 //!    ModifiedHalfZ and T-25D read the depths a second time, once the range is known.
+//!    In T-E1, the workgroup that culls the tile does the same before it culls (Andersson 2009).
 //! 2. `cull` gives each group one workgroup, which tests lights against its frustum and writes its list.
 //!
 //! # Cost
 //!
-//! `cull` grows with tiles times lights, `bounds` with pixels. Memory per tile is 8 bytes for T-I, 16 for T-E, 20
+//! `cull` grows with tiles times lights, `bounds` with pixels. Memory per tile is 8 bytes for T-I and T-E1, 16 for T-E, 20
 //! for T-25D and 32 for both halves, and 4 bytes per listed light: the least of all strategies in screen space.
 //!
 //! Measured for 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25; `results/h200-all/sponza-1.6.json`,
@@ -46,6 +47,8 @@
 //! - T-25D leaves out lights in any number of gaps, but the samples of a tile still share one list, which holds
 //!   the lights of all its surfaces. A slice is a 32nd of the range of depths: where a near fence stands before
 //!   a far wall, slices are long.
+//! - T-E1 saves a pass, but cannot make only some lists again (`/touched`), because it finds the bounds of all tiles
+//!   each time.
 //! - Smaller tiles do not help at a discontinuity. The longest lists are at silhouettes, where tiles of any size see both
 //!   depths.
 //!

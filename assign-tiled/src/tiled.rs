@@ -64,8 +64,8 @@ impl Tiled {
                     settings,
                     sparse: false,
                     facing: Facing::Unknown,
-                    // SAFETY: the module of tiles has no loop.
-                    #[allow(unsafe_code, reason = "it has no loop")]
+                    // SAFETY: the loop over a tile's pixels counts up to their number.
+                    #[allow(unsafe_code, reason = "its loop ends")]
                     module: unsafe { StrategyModule::new(tile_wesl(depths)) },
                     bindings: &bindings,
                 },

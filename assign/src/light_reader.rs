@@ -61,7 +61,8 @@ impl<'a> LightReader<'a> {
         matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { .. })
     }
 
-    /// Whether its shaders use subgroup operations.
+    /// Whether its shaders use subgroup operations. Fragment shaders must not: mount them with
+    /// [`Shader::without_subgroups`].
     pub const fn needs_subgroups(self) -> bool {
         matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { team: Team::Subgroup, .. })
     }
@@ -82,25 +83,34 @@ impl<'a> LightReader<'a> {
         Ok(())
     }
 
+    /// The most loop rounds of an invocation that looks so many lights up, besides those of its own loop over the
+    /// lights. A reader that tests lights takes one round to test a light at most, and one to return it; 64
+    /// lights below a box take two more.
+    pub const fn loop_rounds(self, lights: u64) -> u64 {
+        if self.tests_lights() { 2 * lights + lights / 16 + 16 } else { 0 }
+    }
+
     /// Checks that a device can read so many lights for a sample. llvmpipe ends an invocation's loops silently
-    /// after a number of rounds. A reader that tests lights takes at most two rounds for a light, one to test it
-    /// and one to return it, and shading takes one; boxes take fewer than one more.
+    /// after a number of rounds.
     ///
     /// # Errors
     ///
     /// [`AssignError::Unsupported`] above that number.
     pub fn check_lights(self, gpu: &Gpu, strategy: &str, lights: u32) -> Result<(), AssignError> {
-        let most = gpu.max_loop_rounds().filter(|_| self.tests_lights()).map(|rounds| rounds / 4);
-        match most.filter(|most| lights > *most) {
-            None => Ok(()),
-            Some(most) => Err(AssignError::Unsupported {
-                strategy: strategy.into(),
-                asked: format!("{lights} lights"),
-                reason: format!(
-                    "{} ends long loops silently: it takes at most {most} lights here",
-                    gpu.info.name
-                ),
-            }),
+        // Its own round for each light, as the caller's loop has.
+        let rounds = u64::from(lights) + self.loop_rounds(u64::from(lights));
+        match gpu.max_loop_rounds() {
+            Some(most) if self.tests_lights() && rounds > u64::from(most) => {
+                Err(AssignError::Unsupported {
+                    strategy: strategy.into(),
+                    asked: format!("{lights} lights"),
+                    reason: format!(
+                        "{} ends loops silently after {most} rounds, and these may take {rounds}",
+                        gpu.info.name
+                    ),
+                })
+            }
+            _ => Ok(()),
         }
     }
 

@@ -71,6 +71,12 @@ impl<'a> Shader<'a> {
         imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source))
     }
 
+    /// Has each lane look lights up for itself. Call it after [`strategy`](Self::strategy) for fragment shaders:
+    /// some of their lanes are helpers, which may run without taking part in subgroup operations.
+    pub fn without_subgroups(self) -> Self {
+        self.flag("subgroups", false)
+    }
+
     /// Sets a flag that `@if` reads. Linking fails if a module reads a flag that is not set.
     pub fn flag(mut self, name: &str, value: bool) -> Self {
         self.flags.retain(|(known, _)| known != name);

@@ -15,7 +15,8 @@ pub struct StrategyWesl<'a> {
     /// with `package::strategy::`, so that they meet no module of a renderer.
     pub imports: &'a [(&'a str, &'a str)],
     /// Name and value of each flag that these modules read with `@if`, without the contract's own (`spots`,
-    /// `areas`, `hard_cut`, `lanes_reserve`). The renderer must have no flag of the same name.
+    /// `areas`, `hard_cut`, `lanes_reserve`, and those of look-ups that test lights: `lane_bounds`, `subgroups`,
+    /// `walk_nodes`, `listed`). The renderer must have no flag of the same name.
     pub flags: &'a [(&'a str, bool)],
     /// How a sample's lights are read.
     pub reader: LightReader<'a>,
@@ -23,7 +24,7 @@ pub struct StrategyWesl<'a> {
 
 impl StrategyWesl<'_> {
     /// Whether the lanes that cull a group first find its bounds together, from the depth buffer. Then `imports`
-    /// has a module `package::strategy::by_lanes` with `bounds_by_lanes(group: u32, lane: u32) -> GroupBounds`,
+    /// has a module `package::strategy::by_lanes` with `bounds_by_lanes(group: u32, lane: u32, lanes: u32) -> GroupBounds`,
     /// which all lanes of the workgroup call, and which reads the depth buffer at binding 2 of bind group 2.
     pub fn finds_bounds_by_lanes(&self) -> bool {
         self.imports.iter().any(|(path, _)| *path == "package::strategy::by_lanes")

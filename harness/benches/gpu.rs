@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use assign::Gpu;
+use assign::{AssignError, Gpu};
 use criterion::{Criterion, criterion_group, criterion_main};
 use harness::{
     choice::Choice,
@@ -98,6 +98,11 @@ fn methods(criterion: &mut Criterion) {
             })
         };
         for choice in args.choices()? {
+            if !choice.is_named && matches!(choice.make(&gpu), Err(AssignError::Unsupported { .. }))
+            {
+                // This device cannot run it.
+                continue;
+            }
             let scene = args.stage.scene.rsplit('/').next().unwrap_or_default();
             let motion = args.stage.motion.motion.map_or(STILL, MotionChoice::name);
             let name = format!("{}/{scene}/{}/{motion}", choice.id(), args.stage.lights);

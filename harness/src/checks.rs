@@ -122,12 +122,15 @@ pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, Ha
     let mut checked: Vec<Choice> = Vec::new();
     for choice in choices {
         let id = choice.id();
-        choice.make(gpu).map_err(|error| match error {
-            AssignError::Parameter { .. } => {
-                HarnessError::Cli(CliError::new(format!("--strategies {id}: {error}")))
+        match choice.make(gpu) {
+            Ok(_) => {}
+            // `served` leaves it out, and says so.
+            Err(AssignError::Unsupported { .. }) if !choice.is_named => {}
+            Err(error @ AssignError::Parameter { .. }) => {
+                return Err(CliError::new(format!("--strategies {id}: {error}")).into());
             }
-            other => other.into(),
-        })?;
+            Err(other) => return Err(other.into()),
+        }
         if checked.iter().any(|known| known.id() == id) {
             if !choice.is_named {
                 continue;

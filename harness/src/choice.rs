@@ -1,6 +1,6 @@
 //! A strategy that a command line asks for, ready to be made.
 
-use assign::{AssignError, FrustumTests, Gpu, Keep, LightSource, Reuse, Touched};
+use assign::{AssignError, Fewer, FrustumTests, Gpu, Keep, LightSource, Reuse, Touched};
 use assign_clustered::SpecularCut;
 use shading::Mode;
 
@@ -57,6 +57,9 @@ impl Choice {
             }
         }
         let Method::Lists { mut strategy, early_exit } = method else { return Ok(method) };
+        if let Some((kept, most)) = options.fewer {
+            strategy = Box::new(Fewer::new(gpu, strategy, kept, most)?);
+        }
         if options.is_touched {
             strategy = Box::new(Touched::new(gpu, strategy)?);
         }

@@ -163,7 +163,7 @@ enum Command {
     Cdi(CdiArgs),
     /// Fit linearly transformed cosines to the BRDF, and compare them with those in use
     FitLtc(FitLtcArgs),
-    /// List the names of strategies, scenes, adapters or studies
+    /// List the names of strategies, engines, scenes, adapters or studies
     List {
         /// What to list
         what: Listing,
@@ -175,6 +175,8 @@ enum Command {
 pub enum Listing {
     /// Every strategy with its parameters
     Strategies,
+    /// Every engine whose default is known, for --strategies engine:NAME
+    Engines,
     /// Every scene that needs no file
     Scenes,
     /// Every adapter that wgpu can drive; the first is the default

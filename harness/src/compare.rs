@@ -29,7 +29,7 @@ use crate::{
     schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
-    strategy::BASELINE,
+    strategy::{BASELINE, engines},
 };
 
 /// Frames on the clock along a path: on a GPU, and on a software adapter.
@@ -173,6 +173,15 @@ impl Run<'_> {
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self, choices: &[Choice]) {
         note_faults(&mut self.results, self.stage);
+        if self.args.strategies.0.iter().any(|id| engines::is_engine(id)) {
+            let size = [self.args.stage.size.width, self.args.stage.size.height];
+            for choice in choices {
+                for engine in engines::engines_of(choice.id(), size) {
+                    let (name, id) = (engine.name, choice.id());
+                    say(format!("engine   {name} is {id}, except that {}", engine.differs));
+                }
+            }
+        }
         if let Some(vpls) = &self.stage.vpls {
             let words = vpls.summary();
             say(format!("vpls     {words}"));

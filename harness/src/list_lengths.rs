@@ -8,7 +8,8 @@ use shading::Samples;
 pub struct ListLengths {
     /// Lights in the list of each pixel's group, rows from the top; `None` without a surface.
     pub per_pixel: Vec<Option<u32>>,
-    /// The number of groups that samples read, per bin of list length: see [`bin_of`].
+    /// The number of groups that samples read, per bin of list length: see [`bin_of`]. If each sample reads a list of
+    /// its own, each is counted.
     pub histogram: Vec<u64>,
     /// The number of all groups per bin, read or not. A group that the pass skips, such as a cluster without
     /// samples, counts as empty.
@@ -39,6 +40,13 @@ impl ListLengths {
         count_in(&mut self.histogram, read.map(length));
         // The first record lists all lights.
         count_in(&mut self.all_groups, lists.lists.iter().skip(1).map(|list| list.count));
+    }
+}
+
+impl ListLengths {
+    /// The length of the longest list that a pixel reads.
+    pub fn longest(&self) -> u32 {
+        self.per_pixel.iter().flatten().copied().max().unwrap_or(0)
     }
 }
 

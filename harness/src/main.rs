@@ -14,7 +14,7 @@ use harness::{
     interrupted,
     messages::{print, say_error},
     stored_report::report_stored,
-    strategy,
+    strategy::{self, engines},
     study::{studies, study},
     truth::truth,
 };
@@ -40,6 +40,7 @@ fn run() -> Result<(), HarnessError> {
     let text = match invocation {
         Invocation::Show(text) => text,
         Invocation::List(Listing::Strategies) => strategy::list(),
+        Invocation::List(Listing::Engines) => engines::list(),
         Invocation::List(Listing::Scenes) => scenes(),
         Invocation::List(Listing::Adapters) => adapters()?,
         Invocation::List(Listing::Studies) => {

@@ -334,16 +334,30 @@ fn count(
         Some(bvh) => {
             let pixels = view.viewport.width as usize * view.viewport.height as usize;
             let mut found = ListsTruth::default();
-            visit_lists(renderer, strategy, &frame, &snapshot, &mut |samples, lists| {
-                lengths.add(samples, lists, pixels);
-                found = found.plus(bvh.check(samples, lists, strategy.needs().normals));
-            })?;
+            let is_forward = mode.is_forward();
+            visit_lists(
+                renderer,
+                strategy,
+                &frame,
+                &snapshot,
+                is_forward,
+                &mut |samples, lists| {
+                    lengths.add(samples, lists, pixels);
+                    found = found.plus(bvh.check(samples, lists, strategy.needs().normals));
+                },
+            )?;
             Some(found)
         }
     };
+    let mut counters = snapshot.counters;
+    if truth.is_some() && strategy.lookup().is_per_sample() {
+        // Each sample has a list of its own, which is no group's.
+        counters.longest = lengths.longest();
+        lengths.all_groups.clear();
+    }
     Ok(ListsFigures {
         groups: u64::from(strategy.lists().group_count()),
-        counters: snapshot.counters,
+        counters,
         bytes: strategy.lists().bytes(),
         memory_bytes: memory_bytes(stage, strategy, mode),
         truth,

@@ -23,6 +23,7 @@
 //! in [`Options`].
 
 mod axis;
+pub mod engines;
 mod id;
 mod method;
 mod parse;

@@ -23,6 +23,10 @@ const MOST_AT_ONCE: usize = 16 << 20;
 /// [each sample reads its own lights](assign::Lookup::is_per_sample), with some samples at a time, each a group
 /// of its own. Blocks.
 ///
+/// A sample's own lists are what a compute shader with workgroups of 8 x 8 pixels reads, as in deferred shading.
+/// With `is_forward`, each sample looks its lights up for itself, as in forward shading. A driver may choose another
+/// size of subgroups for this shader than for shading.
+///
 /// `snapshot` are the strategy's lists. Depth, normals and model ids are those of the last recorded geometry
 /// passes: see [`record_for_probe`](crate::record_for_probe).
 ///
@@ -34,6 +38,7 @@ pub fn visit_lists(
     strategy: &dyn Assignment,
     frame: &Frame<'_>,
     snapshot: &ListsSnapshot,
+    is_forward: bool,
     visit: &mut dyn FnMut(&Samples, &ListsSnapshot),
 ) -> Result<(), ShadingError> {
     let samples = probe(renderer, strategy, frame)?;
@@ -41,7 +46,8 @@ pub fn visit_lists(
         visit(&samples, snapshot);
         return Ok(());
     }
-    let counts = counts(renderer, strategy, frame, None)?;
+    let dump = Dump { renderer, strategy, frame, is_forward };
+    let counts = dump.counts()?;
     let length = |pixel: u32| counts.get(pixel as usize).map_or(0, |&count| count as usize);
     let mut next = 0;
     while next < samples.pixels.len() {
@@ -55,7 +61,7 @@ pub fn visit_lists(
             end += length(pixel);
         }
         let range = next..next + lists.len() - 1;
-        let entries = entries(renderer, strategy, frame, &counts, &samples.pixels[range.clone()])?;
+        let entries = dump.entries(&counts, &samples.pixels[range.clone()])?;
         let some = Samples {
             positions: samples.positions[range.clone()].to_vec(),
             normals: samples.normals[range.clone()].to_vec(),
@@ -68,67 +74,77 @@ pub fn visit_lists(
     Ok(())
 }
 
-/// The buffers of places and entries.
-type Room<'a> = (&'a wgpu::Buffer, &'a wgpu::Buffer);
-
-/// The number of entries that each pixel's look-up returns. With `room`, it also writes entries there.
-fn counts(
-    renderer: &Renderer,
-    strategy: &dyn Assignment,
-    frame: &Frame<'_>,
-    room: Option<Room<'_>>,
-) -> Result<Vec<u32>, ShadingError> {
-    let gpu = &renderer.gpu;
-    let bytes = u64::from(frame.view.viewport.width) * u64::from(frame.view.viewport.height) * 4;
-    let counts = gpu.storage("entries per pixel", bytes)?;
-    let stages = wgpu::ShaderStages::COMPUTE;
-    let mut layout = vec![storage_entry(COUNTS_BINDING, stages, false)];
-    let mut resources = vec![entry(COUNTS_BINDING, &counts)];
-    if let Some((places, dumped)) = room {
-        layout.push(storage_entry(PLACES_BINDING, stages, true));
-        layout.push(storage_entry(DUMPED_BINDING, stages, false));
-        resources.extend([entry(PLACES_BINDING, places), entry(DUMPED_BINDING, dumped)]);
-    }
-    let pass = PixelPass {
-        name: "dump",
-        entry_point: "look_up",
-        shader: lighting_modules(LISTS_GROUP)
-            .flag("dump", room.is_some())
-            .light_kinds(frame.lights.kinds()),
-        images: GBufferInputs::of_sample(strategy.needs().models),
-        layout,
-        resources,
-        strategy: Some(strategy),
-    };
-    pass.submit(renderer, frame.view.viewport)?;
-    Ok(pod_collect_to_vec(&gpu.read(&counts, bytes)?))
+/// One frame's look-ups.
+struct Dump<'a> {
+    renderer: &'a Renderer,
+    strategy: &'a dyn Assignment,
+    frame: &'a Frame<'a>,
+    is_forward: bool,
 }
 
-/// The entries of some pixels, one after the other.
-fn entries(
-    renderer: &Renderer,
-    strategy: &dyn Assignment,
-    frame: &Frame<'_>,
-    counts_before: &[u32],
-    pixels: &[u32],
-) -> Result<Vec<u32>, ShadingError> {
-    let gpu = &renderer.gpu;
-    let mut places = Vec::with_capacity(counts_before.len() + 1);
-    let mut wanted = pixels.iter().peekable();
-    let mut end = 0u32;
-    for (pixel, &count) in (0..).zip(counts_before) {
-        places.push(end);
-        if wanted.next_if_eq(&&pixel).is_some() {
-            end += count;
+impl Dump<'_> {
+    /// The number of entries that each pixel's look-up returns.
+    fn counts(&self) -> Result<Vec<u32>, ShadingError> {
+        // No pixel has room for entries.
+        let viewport = self.frame.view.viewport;
+        let pixels = viewport.width as usize * viewport.height as usize;
+        Ok(self.run(&vec![0; pixels + 1])?.0)
+    }
+
+    /// The entries of some pixels, one after the other.
+    fn entries(&self, counts_before: &[u32], pixels: &[u32]) -> Result<Vec<u32>, ShadingError> {
+        let mut places = Vec::with_capacity(counts_before.len() + 1);
+        let mut wanted = pixels.iter().peekable();
+        let mut end = 0u32;
+        for (pixel, &count) in (0..).zip(counts_before) {
+            places.push(end);
+            if wanted.next_if_eq(&&pixel).is_some() {
+                end += count;
+            }
         }
+        places.push(end);
+        let (counts, entries) = self.run(&places)?;
+        if counts != counts_before {
+            return Err(ShadingError::Unsteady { strategy: self.strategy.id() });
+        }
+        Ok(entries)
     }
-    places.push(end);
-    let place_buffer = gpu.storage("places", size_of_val(&places[..]) as u64)?;
-    gpu.queue.write_buffer(&place_buffer, 0, cast_slice(&places));
-    let dumped = gpu.storage("dumped entries", u64::from(end) * 4)?;
-    let counts = counts(renderer, strategy, frame, Some((&place_buffer, &dumped)))?;
-    if counts != counts_before {
-        return Err(ShadingError::Unsteady { strategy: strategy.id() });
+
+    /// Looks every pixel up: the number of entries of each, and the entries of those that have places for them.
+    /// Each call runs the same shader, so that lanes work together in the same way.
+    fn run(&self, places: &[u32]) -> Result<(Vec<u32>, Vec<u32>), ShadingError> {
+        let Self { renderer, strategy, frame, is_forward } = *self;
+        let gpu = &renderer.gpu;
+        let place_buffer = gpu.storage("places", size_of_val(places) as u64)?;
+        gpu.queue.write_buffer(&place_buffer, 0, cast_slice(places));
+        let entry_bytes = u64::from(places.last().copied().unwrap_or(0)) * 4;
+        let dumped = gpu.storage("dumped entries", entry_bytes)?;
+        let count_bytes = (places.len() as u64 - 1) * 4;
+        let counts = gpu.storage("entries per pixel", count_bytes)?;
+        let stages = wgpu::ShaderStages::COMPUTE;
+        let shader = lighting_modules(LISTS_GROUP).light_kinds(frame.lights.kinds());
+        let pass = PixelPass {
+            name: "dump",
+            entry_point: "look_up",
+            shader,
+            images: GBufferInputs::of_sample(strategy.needs().models),
+            layout: vec![
+                storage_entry(COUNTS_BINDING, stages, false),
+                storage_entry(PLACES_BINDING, stages, true),
+                storage_entry(DUMPED_BINDING, stages, false),
+            ],
+            resources: vec![
+                entry(COUNTS_BINDING, &counts),
+                entry(PLACES_BINDING, &place_buffer),
+                entry(DUMPED_BINDING, &dumped),
+            ],
+            strategy: Some(strategy),
+            is_alone: is_forward,
+        };
+        pass.submit(renderer, frame.view.viewport)?;
+        Ok((
+            pod_collect_to_vec(&gpu.read(&counts, count_bytes)?),
+            pod_collect_to_vec(&gpu.read(&dumped, entry_bytes)?),
+        ))
     }
-    Ok(pod_collect_to_vec(&gpu.read(&dumped, u64::from(end) * 4)?))
 }

@@ -103,7 +103,7 @@ impl Lighting {
         if !made.cover(lights.kinds) {
             return Err(ShadingError::Kinds { made, lights: lights.kinds });
         }
-        lights.check(&renderer.gpu, self.options)?;
+        lights.check(&renderer.gpu, self.options, strategy.lookup().module.wesl().reader)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
             Kind::Forward(Forward { pipelines, scene, has_depth }) => {

@@ -3,7 +3,9 @@
 //! llvmpipe counts the rounds of all loops of an invocation together, and ends the loops silently
 //! at its limit. The image would be wrong, so such a scene is refused.
 
-use assign::{AssignError, Gpu, Light, LightBuffer, LightKinds, LightShape, MAX_VERTICES};
+use assign::{
+    AssignError, Gpu, Light, LightBuffer, LightKinds, LightReader, LightShape, MAX_VERTICES,
+};
 
 use crate::{AreaModel, LightingOptions, ShadingError};
 
@@ -78,8 +80,14 @@ impl LightTotals {
 
     /// Checks that an adapter can light a sample by all of the lights, because any list may hold
     /// all of them.
-    pub(crate) fn check(&self, gpu: &Gpu, options: LightingOptions) -> Result<(), ShadingError> {
-        self.check_rounds(gpu, self.rounds(options.area) + rounds_of_suns(options))
+    pub(crate) fn check(
+        &self,
+        gpu: &Gpu,
+        options: LightingOptions,
+        reader: LightReader<'_>,
+    ) -> Result<(), ShadingError> {
+        let rounds = self.rounds(options.area) + rounds_of_suns(options);
+        self.check_rounds(gpu, rounds + reader.loop_rounds(self.count))
     }
 
     /// The same for counting light operations, which walks the vertices twice more: for the closest
@@ -88,8 +96,9 @@ impl LightTotals {
         &self,
         gpu: &Gpu,
         options: LightingOptions,
+        reader: LightReader<'_>,
     ) -> Result<(), ShadingError> {
-        let walks = 2 * (self.vertices + self.areas);
+        let walks = 2 * (self.vertices + self.areas) + reader.loop_rounds(self.count);
         self.check_rounds(gpu, self.rounds(options.area) + rounds_of_suns(options) + walks)
     }
 

@@ -80,7 +80,7 @@ pub fn count_operations(
     exposure: f32,
 ) -> Result<Operations, ShadingError> {
     let gpu = &renderer.gpu;
-    renderer.lights.check_counted(gpu, options)?;
+    renderer.lights.check_counted(gpu, options, strategy.lookup().module.wesl().reader)?;
     let viewport = frame.view.viewport;
     let bytes = u64::from(viewport.width) * u64::from(viewport.height) * 32;
     let counts = gpu.storage("operations", bytes)?;
@@ -101,6 +101,7 @@ pub fn count_operations(
         layout,
         resources,
         strategy: Some(strategy),
+        is_alone: false,
     };
     pass.submit(renderer, viewport)?;
     let counts: Vec<[[u32; 4]; 2]> = pod_collect_to_vec(&gpu.read(&counts, bytes)?);

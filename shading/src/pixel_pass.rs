@@ -21,6 +21,8 @@ pub(crate) struct PixelPass<'a> {
     pub(crate) resources: Vec<wgpu::BindGroupEntry<'a>>,
     /// The strategy whose look-up the shader calls.
     pub(crate) strategy: Option<&'a dyn Assignment>,
+    /// Whether each lane looks lights up for itself, as in fragment shaders.
+    pub(crate) is_alone: bool,
 }
 
 impl PixelPass<'_> {
@@ -41,6 +43,9 @@ impl PixelPass<'_> {
         let lookup = self.strategy.map(|strategy| strategy.lookup());
         if let Some(lookup) = &lookup {
             shader = shader.strategy(lookup.module);
+            if self.is_alone {
+                shader = shader.without_subgroups();
+            }
         }
         let module = shader.create(gpu, &format!("package::{}", self.name))?;
         let lists = lookup.map(|lookup| lookup.layout);

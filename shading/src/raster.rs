@@ -123,7 +123,7 @@ pub(crate) fn shader<'a>(pass: RasterPass<'a>, key: DrawKey, shown: Shown) -> Sh
         shader = shader.flag(flag, material.textures[slot]);
     }
     if let RasterPass::Forward { lists, .. } = pass {
-        shader = lists.options.set_flags(shader).strategy(lists.lookup.module);
+        shader = lists.options.set_flags(shader).strategy(lists.lookup.module).without_subgroups();
     }
     shader
 }

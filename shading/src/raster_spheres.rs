@@ -5,7 +5,9 @@
 //! one light to one pixel, and blending sums them. So a pixel is read and written once per volume
 //! that covers it.
 
-use assign::{AssignError, DepthMapping, LightBuffer, LightKinds, Passes, Suns, View};
+use assign::{
+    AssignError, DepthMapping, LightBuffer, LightKinds, LightReader, Passes, Storage, Suns, View,
+};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
@@ -103,7 +105,7 @@ impl RasterSpheres {
         }
         // Each fragment adds only one light, so each is checked separately.
         for light in LightTotals::of_each(lights) {
-            light.check(&renderer.gpu, self.options)?;
+            light.check(&renderer.gpu, self.options, LightReader::Stored(Storage::Lists))?;
         }
         let targets = &renderer.targets;
         let mut entries = self.images.entries(targets);

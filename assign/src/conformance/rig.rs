@@ -181,20 +181,25 @@ impl Rig {
         Ok(())
     }
 
-    /// Looks every sample up once more and reads the entries that the look-up returns, for strategies whose
-    /// lists do not say them: the list of each sample, and all entries. `probes` are those of the frame.
+    /// Looks every sample up twice more, for strategies whose lists do not say what a sample reads: once to count
+    /// the entries, and once to read them. Returns the list of each sample, and all entries. Both runs are of one
+    /// shader, so that lanes work together in the same way.
     pub(super) fn dump(
         &self,
         strategy: &dyn Assignment,
         frame: &FrameBindings,
         kinds: LightKinds,
         surfaces: &Surfaces,
-        probes: &[Probe],
     ) -> Result<(Vec<LightList>, Vec<u32>), AssignError> {
-        let gpu = &self.gpu;
+        let pipeline = self.probe_pipeline(strategy, frame, kinds, true)?;
+        let run = |places: &[u32]| -> Result<Vec<u32>, AssignError> {
+            self.run_dump(&pipeline, (frame.bind_group(), strategy.bind_group()), surfaces, places)
+        };
+        // No sample has room for entries.
+        run(&vec![0; surfaces.count as usize + 1])?;
         let mut end = 0u32;
-        let mut lists = Vec::with_capacity(probes.len());
-        for probe in probes {
+        let mut lists = Vec::new();
+        for probe in self.read_probes(surfaces)? {
             lists.push(LightList { first: end, count: probe.read });
             end = end.checked_add(probe.read).ok_or_else(|| AssignError::TooLarge {
                 what: "the entries of all samples".into(),
@@ -202,30 +207,40 @@ impl Rig {
                 limit: u64::from(u32::MAX) * 4,
             })?;
         }
-        let firsts: Vec<u32> = lists.iter().map(|list| list.first).chain([end]).collect();
-        let places = gpu.storage("places", size_of_val(&firsts[..]) as u64)?;
-        gpu.queue.write_buffer(&places, 0, cast_slice(&firsts));
-        let dumped = gpu.storage("dumped entries", u64::from(end) * 4)?;
+        let places: Vec<u32> = lists.iter().map(|list| list.first).chain([end]).collect();
+        Ok((lists, run(&places)?))
+    }
+
+    fn run_dump(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        (frame, lists): (Option<&wgpu::BindGroup>, Option<&wgpu::BindGroup>),
+        surfaces: &Surfaces,
+        places: &[u32],
+    ) -> Result<Vec<u32>, AssignError> {
+        let gpu = &self.gpu;
+        let place_buffer = gpu.storage("places", size_of_val(places) as u64)?;
+        gpu.queue.write_buffer(&place_buffer, 0, cast_slice(places));
+        let bytes = u64::from(places.last().copied().unwrap_or(0)) * 4;
+        let dumped = gpu.storage("dumped entries", bytes)?;
         let entries = [
             entry(0, &surfaces.probes),
             texture(1, &surfaces.depth),
             texture(2, &surfaces.normals),
-            entry(3, &places),
+            entry(3, &place_buffer),
             entry(4, &dumped),
         ];
         let bind_group = bind_entries(gpu, &self.dump_layout, &entries);
-        let pipeline = self.probe_pipeline(strategy, frame, kinds, true)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, frame.bind_group(), &[]);
-        pass.set_bind_group(LISTS_GROUP, strategy.bind_group(), &[]);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, frame, &[]);
+        pass.set_bind_group(LISTS_GROUP, lists, &[]);
         pass.set_bind_group(PROBE_GROUP, &bind_group, &[]);
         pass.dispatch_workgroups(surfaces.count.div_ceil(64), 1, 1);
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
-        let entries = pod_collect_to_vec(&gpu.read(&dumped, u64::from(end) * 4)?);
-        Ok((lists, entries))
+        Ok(pod_collect_to_vec(&gpu.read(&dumped, bytes)?))
     }
 
     /// Reads the samples back after submission.

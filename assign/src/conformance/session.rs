@@ -325,7 +325,7 @@ impl Session {
         if !self.strategy.lookup().is_per_sample() {
             return Ok(seen);
         }
-        let dumped = rig.dump(&*self.strategy, &self.frame, kinds, surfaces, &seen.probes)?;
+        let dumped = rig.dump(&*self.strategy, &self.frame, kinds, surfaces)?;
         Ok(seen.with_read(dumped, rig.read_probes(surfaces)?))
     }
 

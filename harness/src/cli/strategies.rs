@@ -3,7 +3,7 @@
 use super::{CliError, CompareArgs};
 use crate::{
     choice::Choice,
-    strategy::{IdError, rows},
+    strategy::{IdError, engines, rows},
 };
 
 /// Names every strategy, at its default parameters.
@@ -16,9 +16,18 @@ impl CompareArgs {
     ///
     /// An id that is not understood, and options that contradict it.
     pub fn choices(&self) -> Result<Vec<Choice>, CliError> {
+        let size = [self.stage.size.width, self.stage.size.height];
         let mut asked = Vec::new();
         for id in &self.strategies.0 {
-            if id.eq_ignore_ascii_case(ALL) {
+            if let Some(ids) = engines::expand(id, size) {
+                let ids = ids.map_err(|known| {
+                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                    CliError::unknown("engine", id, &known)
+                })?;
+                for id in ids {
+                    asked.push(Choice::parse(&id)?);
+                }
+            } else if id.eq_ignore_ascii_case(ALL) {
                 for row in rows() {
                     let mut choice = Choice::parse(row.family)?;
                     choice.is_named = false;
@@ -88,6 +97,14 @@ mod tests {
         let with_source = rows().filter(|row| row.has_axis(Axis::Source)).count();
         assert_eq!(both.len(), count + with_source);
         assert!(both.contains(&"SC-E/48x48x40/bvh".to_owned()), "{both:?}");
+    }
+
+    #[test]
+    fn engines_stand_for_the_ids_of_their_defaults() {
+        let small = ["--size", "960x540", "--strategies", "SC-E/bvh,engine:babylon"];
+        assert_eq!(asked(&small), ["SC-E/48x48x40/bvh", "ZB/15x9x16"]);
+        let unknown = choices(&["--strategies", "engine:doom"]).expect_err("an error").to_string();
+        assert!(unknown.contains("engine:doom") && unknown.contains("engine:bevy"), "{unknown}");
     }
 
     #[test]

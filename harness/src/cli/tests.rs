@@ -67,6 +67,7 @@ fn compare_is_the_default_command() {
 #[test]
 fn list_takes_strategies_scenes_or_adapters() {
     assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
+    assert_eq!(parse_line("list engines"), Ok(Invocation::List(Listing::Engines)));
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
     assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
     assert_eq!(parse_line("list studies"), Ok(Invocation::List(Listing::Studies)));

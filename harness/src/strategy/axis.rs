@@ -1,6 +1,6 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
-use assign::{AreaBounds, FrustumTests, LightSource, Storage};
+use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage};
 use assign_clustered::{Normals, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
@@ -48,6 +48,8 @@ pub enum Axis {
     /// Where a group's lights are kept: `mask`, a bit per light, in place of a list; `prune`, a list that subgroups
     /// prune while they read it.
     Storage,
+    /// The most lights of a frame: `first256` or `nearest256`, the others dropped. Lossy.
+    Fewer,
     /// For how many frames lists are used: `reuse4`. Lossy where groups or lights move.
     Reuse,
     /// For how many frames lists are kept that hold all lights wherever they may move: `keep4`.
@@ -62,7 +64,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Slices,
         Self::Box,
         Self::Normals,
@@ -71,6 +73,7 @@ impl Axis {
         Self::Source,
         Self::AreaBounds,
         Self::Storage,
+        Self::Fewer,
         Self::Reuse,
         Self::Keep,
         Self::Touched,
@@ -100,6 +103,10 @@ impl Axis {
                  all beyond the reach of diffuse light"
             }
             Self::Cap => "cap and the most lights of a list, such as cap32",
+            Self::Fewer => {
+                "first or nearest and the most lights of a frame, such as nearest256, which drops lights that are \
+                 farther away"
+            }
             Self::Reuse => {
                 "reuse and the number of frames for which lists are used, such as reuse4"
             }
@@ -123,6 +130,7 @@ impl Axis {
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
             NO_EXIT => Some(Self::Exit),
             EVEN => Some(Self::Slices),
+            _ if fewer_of(segment).is_some() => Some(Self::Fewer),
             _ if segment.starts_with(NEAR) => Some(Self::Slices),
             MASK | PRUNE => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
@@ -157,6 +165,7 @@ impl Axis {
             }
             Self::Specular => options.specular = specular::parse(segment)?,
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
+            Self::Fewer => options.fewer = Some(fewer_of(segment)?),
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
             Self::Slices => {
@@ -199,6 +208,7 @@ impl Axis {
             },
             Self::Specular => specular::segment(options.specular),
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
+            Self::Fewer => options.fewer.map(|(kept, most)| format!("{}{most}", kept.name())),
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
@@ -234,6 +244,7 @@ impl Axis {
                 SpecularCut::WhereDiffuse => ("specular_where_diffuse", true.into()),
             },
             Self::Cap => ("list_cap", options.cap?.into()),
+            Self::Fewer => ("frame_cap", self.segment(options)?.into()),
             Self::Reuse => ("reuse_frames", options.reuse?.into()),
             Self::Keep => ("keep_frames", options.keep?.into()),
             Self::Slices => match options.slices {
@@ -267,4 +278,11 @@ fn storage_name(storage: Storage) -> Option<&'static str> {
         Storage::Masks => Some(MASK),
         Storage::PrunedLists => Some(PRUNE),
     }
+}
+
+/// What a segment such as `nearest256` says.
+fn fewer_of(segment: &str) -> Option<(Kept, u32)> {
+    [Kept::First, Kept::Nearest]
+        .into_iter()
+        .find_map(|kept| Some((kept, number_after(segment, kept.name())?)))
 }

@@ -156,6 +156,7 @@ impl StrategyId {
     /// Whether it may show another image than no culling of that many lights, because a knob says so.
     pub fn is_lossy(&self, lights: u64) -> bool {
         self.options.cap.is_some_and(|most| u64::from(most) < lights)
+            || self.options.fewer.is_some_and(|(_, most)| u64::from(most) < lights)
             || self.options.reuse.is_some_and(|frames| frames > 1)
             || self.options.specular != SpecularCut::None
     }

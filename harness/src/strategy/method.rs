@@ -1,6 +1,6 @@
 //! How a strategy lights its pixels, and the point on its axes at which it does.
 
-use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, LightSource, Storage};
+use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, Kept, LightSource, Storage};
 use assign_clustered::{Normals, Slices, SpecularCut};
 use assign_grid::GridBox;
 
@@ -49,6 +49,8 @@ pub struct Options {
     pub specular: SpecularCut,
     /// The most lights of a list.
     pub cap: Option<u32>,
+    /// Which lights of a frame have lists, and how many.
+    pub fewer: Option<(Kept, u32)>,
     /// The number of frames for which lists are used.
     pub reuse: Option<u32>,
     /// The most frames for which lists of larger lights are kept.

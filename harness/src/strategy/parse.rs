@@ -79,6 +79,13 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             "`dif` cannot be combined with normal cones",
         ));
     }
+    if let (Some(fewer), Some(source)) = (
+        Axis::Fewer.segment(options),
+        Axis::Keep.segment(options).or_else(|| Axis::Touched.segment(options)),
+    ) {
+        let reason = "a light that moves may leave the frame's lights, or enter them";
+        return Err(contradiction(id, &fewer, &source, reason));
+    }
     for (other, reason) in [
         (Axis::Normals, "a list that is split by normals may change though its lights do not"),
         (Axis::Cap, "a list with a cap does not tell which lights it lacks"),

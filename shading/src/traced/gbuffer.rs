@@ -66,6 +66,7 @@ impl GBufferSamples {
             layout,
             resources: buffers.iter().map(|(binding, buffer)| entry(*binding, buffer)).collect(),
             strategy: None,
+            is_alone: false,
         };
         pass.submit(renderer, view.viewport)?;
         let mut texels = Vec::new();

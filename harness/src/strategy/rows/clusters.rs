@@ -62,6 +62,7 @@ pub(super) const ROWS: &[Row] = &[
             Axis::Source,
             Axis::AreaBounds,
             Axis::Storage,
+            Axis::Fewer,
             Axis::Cap,
             Axis::Reuse,
             Axis::Keep,
@@ -88,10 +89,20 @@ const Z_BINS: Row = Row {
         few: &["16x16x64", "24x24x64", "32x32x32", "48x48x64"],
         many: &["16x16x64", "24x24x64", "32x32x32", "32x32x64", "32x32x128", "48x48x64"],
     },
-    axes: &[Axis::Tests, Axis::Source, Axis::AreaBounds, Axis::Keep, Axis::Touched, Axis::Exit],
+    axes: &[
+        Axis::Slices,
+        Axis::Tests,
+        Axis::Source,
+        Axis::AreaBounds,
+        Axis::Fewer,
+        Axis::Keep,
+        Axis::Touched,
+        Axis::Exit,
+    ],
     colour: Colour { light: "#0057b8", dark: "#8d99ae" },
     make: |gpu, options| {
-        Ok(Method::lists(ZBins::new(gpu, options.parameters.parse()?, options.settings())?))
+        let z_bins = ZBins::new(gpu, options.parameters.parse()?, options.settings())?;
+        Ok(Method::lists(z_bins.with_slices(options.slices)?))
     },
     ..CLUSTERS
 };
@@ -113,6 +124,7 @@ const FRUSTA: &[Axis] = &[
     Axis::Source,
     Axis::AreaBounds,
     Axis::Storage,
+    Axis::Fewer,
     Axis::Cap,
     Axis::Reuse,
     Axis::Keep,
@@ -124,6 +136,7 @@ const BOXES: &[Axis] = &[
     Axis::Source,
     Axis::AreaBounds,
     Axis::Storage,
+    Axis::Fewer,
     Axis::Cap,
     Axis::Reuse,
     Axis::Keep,

@@ -21,6 +21,7 @@ pub(super) const ROWS: &[Row] = &[Row {
         Axis::Source,
         Axis::AreaBounds,
         Axis::Storage,
+        Axis::Fewer,
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,
