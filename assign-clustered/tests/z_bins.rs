@@ -2,7 +2,7 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Gpu, Keep, LightKinds, LightReader, LightSource, Shader,
-    StrategyWesl,
+    StrategyWesl, Touched,
     conformance::{self, Breach, LinkedModule, Reworded, faulty::Fault, reword},
 };
 use assign_clustered::{Z_BINS_WESL, ZBins};
