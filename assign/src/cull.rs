@@ -9,6 +9,7 @@ use crate::{
     LightKinds, LightLists, LightSource, LightTraits, ListsBindings, Lookup, Passes, Shader,
     Storage, StrategyModule, StrategyWesl,
     entries::{entry, storage_entry, texture, texture_entry},
+    light_reader::BOUNDS_BOX_WESL,
     touched_groups::{Dispatch, TouchedGroups, touched_shader},
 };
 
@@ -17,10 +18,6 @@ const LISTS_GROUP: u32 = 1;
 
 /// Bind group of the kernel's input: live groups and light nodes.
 const SOURCE_GROUP: u32 = 2;
-
-/// WESL of tests against boxes along the world's axes. With the flag `lane_bounds`, each lane has a box of its
-/// own, for look-ups that test lights; without, the workgroup has one.
-pub const BOUNDS_BOX_WESL: &str = include_str!("shaders/bounds_box.wesl");
 
 /// What a strategy hands to [`Culler::new`].
 #[derive(Clone, Copy, Debug)]

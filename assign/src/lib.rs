@@ -69,7 +69,7 @@ mod view;
 mod window;
 
 pub use assignment::{Assignment, Lookup};
-pub use cull::{BOUNDS_BOX_WESL, Culler, CullerDescriptor};
+pub use cull::{Culler, CullerDescriptor};
 pub use cull_settings::{AreaBounds, Bounds, CullSettings, FrustumTests, LightSource};
 pub use emitter::{Emitter, MAX_VERTICES, Outline};
 pub use entries::{UNFILTERED, entry, storage_entry, texture, texture_entry, uniform_entry};
@@ -86,7 +86,7 @@ pub use light_changes::LightChanges;
 pub use light_fault::LightFault;
 pub use light_nodes::LightNode;
 pub use light_order::LightOrder;
-pub use light_reader::{LightReader, Team};
+pub use light_reader::{BOUNDS_BOX_WESL, LightReader, Team};
 pub use light_record::{LightEmission, LightKind, LightKinds, LightSphere, LightTraits};
 pub use list_records::{
     ALL_LIGHTS, Counters, CullUniform, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, LightList,

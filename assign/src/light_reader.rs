@@ -1,6 +1,10 @@
 //! How shading reads a sample's lights one after the other: the WESL module `package::look_up`.
 
-use crate::{AssignError, Gpu, LightSource, Shader, Storage, cull::BOUNDS_BOX_WESL};
+use crate::{AssignError, Gpu, LightSource, Storage};
+
+/// WESL of tests against boxes along the world's axes. With the flag `lane_bounds`, each lane has a box of its
+/// own, for look-ups that test lights; without, the workgroup has one.
+pub const BOUNDS_BOX_WESL: &str = include_str!("shaders/bounds_box.wesl");
 
 /// What reads the lights of a sample: which `package::look_up` a shader gets.
 ///
@@ -62,7 +66,7 @@ impl<'a> LightReader<'a> {
     }
 
     /// Whether its shaders use subgroup operations. Fragment shaders must not: mount them with
-    /// [`Shader::without_subgroups`].
+    /// [`Shader::without_subgroups`](crate::Shader::without_subgroups).
     pub const fn needs_subgroups(self) -> bool {
         matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { team: Team::Subgroup, .. })
     }
@@ -114,34 +118,41 @@ impl<'a> LightReader<'a> {
         }
     }
 
-    /// Adds the module, what it imports, and its flags.
-    pub(crate) fn mount(self, shader: Shader<'a>) -> Shader<'a> {
+    /// Path and source of the module `package::look_up` and of what only it imports.
+    pub(crate) fn modules(self) -> Vec<(&'static str, &'a str)> {
+        let look_up = |source| ("package::look_up", source);
         match self {
             Self::Stored(Storage::Lists) => {
-                shader.module("package::look_up", include_str!("shaders/look_up_list.wesl"))
+                vec![look_up(include_str!("shaders/look_up_list.wesl"))]
             }
             Self::Stored(Storage::Masks) => {
-                shader.module("package::look_up", include_str!("shaders/look_up_mask.wesl"))
+                vec![look_up(include_str!("shaders/look_up_mask.wesl"))]
             }
-            Self::Stored(Storage::PrunedLists) => {
-                walk(shader, Team::Subgroup, LightSource::Linear, true)
-            }
-            Self::BothMasks => {
-                shader.module("package::look_up", include_str!("shaders/look_up_both_masks.wesl"))
-            }
-            Self::Walk { team, source } => walk(shader, team, source, false),
-            Self::Own(source) => shader.module("package::look_up", source),
+            Self::BothMasks => vec![look_up(include_str!("shaders/look_up_both_masks.wesl"))],
+            Self::Stored(Storage::PrunedLists) | Self::Walk { .. } => vec![
+                look_up(include_str!("shaders/look_up_walk.wesl")),
+                ("package::lane_bounds", BOUNDS_BOX_WESL),
+            ],
+            Self::Own(source) => vec![look_up(source)],
         }
     }
-}
 
-/// Adds the look-up that tests lights: those of the group's list if `listed`.
-fn walk(shader: Shader<'_>, team: Team, source: LightSource, listed: bool) -> Shader<'_> {
-    shader
-        .module("package::look_up", include_str!("shaders/look_up_walk.wesl"))
-        .module("package::lane_bounds", BOUNDS_BOX_WESL)
-        .flag("lane_bounds", true)
-        .flag("subgroups", team == Team::Subgroup)
-        .flag("walk_nodes", source == LightSource::Hierarchy)
-        .flag("listed", listed)
+    /// Name and value of each flag that these modules read.
+    pub(crate) fn flags(self) -> Vec<(&'static str, bool)> {
+        let walk = |team, source, listed| {
+            vec![
+                ("lane_bounds", true),
+                ("subgroups", team == Team::Subgroup),
+                ("walk_nodes", source == LightSource::Hierarchy),
+                ("listed", listed),
+            ]
+        };
+        match self {
+            Self::Stored(Storage::PrunedLists) => walk(Team::Subgroup, LightSource::Linear, true),
+            Self::Walk { team, source } => walk(team, source, false),
+            Self::Stored(Storage::Lists | Storage::Masks) | Self::BothMasks | Self::Own(_) => {
+                Vec::new()
+            }
+        }
+    }
 }

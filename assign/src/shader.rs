@@ -32,8 +32,8 @@ impl<'a> Shader<'a> {
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         let empty = Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] };
-        LightReader::Stored(Storage::Lists)
-            .mount(empty)
+        empty
+            .reader(LightReader::Stored(Storage::Lists))
             .module("package::slots", slots)
             .module("package::view", include_str!("shaders/view.wesl"))
             .module("package::sample", include_str!("shaders/sample.wesl"))
@@ -66,9 +66,16 @@ impl<'a> Shader<'a> {
     /// if [`flag`](Self::flag) sets one of these flags too, before or after.
     pub fn strategy(self, wesl: impl Into<StrategyWesl<'a>>) -> Self {
         let StrategyWesl { main, imports, flags, reader } = wesl.into();
-        let shader = reader.mount(self.module("package::strategy", main));
+        let shader = self.module("package::strategy", main).reader(reader);
         let shader = Self { strategy_flags: flags, ..shader };
         imports.iter().fold(shader, |shader, (path, source)| shader.module(path, *source))
+    }
+
+    /// Mounts what reads the lights of a sample.
+    fn reader(self, reader: LightReader<'a>) -> Self {
+        let modules = reader.modules().into_iter();
+        let shader = modules.fold(self, |shader, (path, source)| shader.module(path, source));
+        reader.flags().into_iter().fold(shader, |shader, (name, value)| shader.flag(name, value))
     }
 
     /// Has each lane look lights up for itself. Call it after [`strategy`](Self::strategy) for fragment shaders:

@@ -24,8 +24,7 @@ pub struct CompareArgs {
 
     /// Strategies to compare, separated by commas; `all` takes every one
     ///
-    /// None is no culling. `lightbench list strategies` lists all ids and their parameters. engine:NAME is the
-    /// default of an engine, such as engine:bevy: `lightbench list engines`.
+    /// `lightbench list strategies` lists all ids; `list engines` lists names like engine:bevy.
     #[arg(
         long,
         display_order = 6,

@@ -104,7 +104,7 @@ mod tests {
         let small = ["--size", "960x540", "--strategies", "SC-E/bvh,engine:babylon"];
         assert_eq!(asked(&small), ["SC-E/48x48x40/bvh", "ZB/15x9x16"]);
         let unknown = choices(&["--strategies", "engine:doom"]).expect_err("an error").to_string();
-        assert!(unknown.contains("engine:doom") && unknown.contains("engine:bevy"), "{unknown}");
+        assert!(unknown.contains("engine:doom") && unknown.contains("engine:godot"), "{unknown}");
     }
 
     #[test]

@@ -71,10 +71,13 @@ fn list_takes_strategies_scenes_or_adapters() {
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
     assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
     assert_eq!(parse_line("list studies"), Ok(Invocation::List(Listing::Studies)));
-    assert_eq!(error_of("list"), "list needs <WHAT>: one of strategies, scenes, adapters, studies");
+    assert_eq!(
+        error_of("list"),
+        "list needs <WHAT>: one of strategies, engines, scenes, adapters, studies"
+    );
     let unknown = error_of("list lights");
     assert!(
-        unknown.ends_with("is lights: it must be one of strategies, scenes, adapters, studies"),
+        unknown.ends_with("is lights: it must be one of strategies, engines, scenes, adapters, studies"),
         "{unknown}"
     );
 }
