@@ -87,7 +87,7 @@ impl Fewer {
         let seen = copy.iter().enumerate().filter(|(_, light)| is_seen(light));
         let lost = beyond(seen.map(|(ix, light)| (key(ix, light), ix)), self.most as usize);
         for ix in lost {
-            copy[ix] = Light { range_m: MIN_RANGE_M, shape: LightShape::Point, ..copy[ix].clone() };
+            copy[ix] = Light { range_m: MIN_RANGE_M, shape: LightShape::Point, ..copy[ix] };
         }
         self.copy.update(gpu, &copy)
     }

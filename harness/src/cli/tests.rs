@@ -77,7 +77,9 @@ fn list_takes_strategies_scenes_or_adapters() {
     );
     let unknown = error_of("list lights");
     assert!(
-        unknown.ends_with("is lights: it must be one of strategies, engines, scenes, adapters, studies"),
+        unknown.ends_with(
+            "is lights: it must be one of strategies, engines, scenes, adapters, studies"
+        ),
         "{unknown}"
     );
 }
