@@ -24,11 +24,11 @@
 //!
 //! # Where it fails
 //!
-//! - A light is listed if it is somewhere in the tile's column and somewhere in the slice, also if it is not in
-//!   both at once: a light in front of the slice that is as wide as the tile, say, only at another depth. Clusters
-//!   test both together.
-//! - All slices hold all lights at their depth, so joining masks costs more the more lights the view has, also
-//!   those far away from the sample.
+//! - A light is listed if it reaches the tile's column somewhere and the slice somewhere, even if it reaches both at
+//!   no place. Such a light may reach the column only in front of the slice, and the slice only beside the column.
+//!   Clusters test both together.
+//! - A slice holds the lights at its depth across the whole view. So joining masks costs more with more lights in
+//!   view, even where they are far from the sample.
 //! - As for all masks, an entry has no flags, and memory grows with all lights.
 
 use assign::{

@@ -39,12 +39,6 @@ pub enum Team {
     Lane,
 }
 
-impl From<Storage> for LightReader<'_> {
-    fn from(storage: Storage) -> Self {
-        Self::Stored(storage)
-    }
-}
-
 impl<'a> LightReader<'a> {
     /// The same for another storage, if it reads what is stored for one group.
     #[must_use]

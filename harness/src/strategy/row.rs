@@ -20,6 +20,8 @@ pub enum Role {
     OtherPaper,
     /// A strategy that engines ship.
     Engine,
+    /// A strategy of this workspace.
+    Own,
 }
 
 impl Role {
@@ -32,6 +34,7 @@ impl Role {
             Self::ComparisonPaper => "of the comparison paper",
             Self::OtherPaper => "of another paper",
             Self::Engine => "shipped by engines",
+            Self::Own => "our own",
         }
     }
 }

@@ -11,7 +11,8 @@ pub(super) const ROWS: &[Row] = &[
         name: "culling while shading",
         about: "no lists: the lanes of a subgroup, 8 x 4 pixels on most GPUs, test the lights together while they \
                 shade",
-        source: "no paper: our own",
+        role: Role::Own,
+        source: "this workspace, crate assign-walk",
         axes: &[Axis::Source, Axis::Exit],
         colour: Colour { light: "#2b2b2b", dark: "#e8e8e8" },
         make: |gpu, options| {
