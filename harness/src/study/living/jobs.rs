@@ -29,6 +29,10 @@ pub(crate) const IMAGES: &str = "images";
 /// The scene has its own scale up to this number of lights.
 const BASE_LIGHTS: u32 = 10_000;
 
+/// The most lights that the CPU moves. To check, convert and upload so many takes it 0.26 s per frame, on the
+/// machine of an H200.
+const MOST_BY_CPU: u32 = 1_000_000;
+
 /// The law by which lights move, unless the command line names another.
 const LAW: &str = "drift";
 
@@ -122,7 +126,7 @@ fn plan(args: &StudyArgs, scene: &StudyScene, volume_m3: f64) -> Vec<Job> {
     let plan = Plan { args, scene, extent };
     let mut jobs = Vec::new();
     for &count in plan.extent.counts {
-        for movement in Movement::ALL {
+        for movement in movements(count) {
             jobs.push(plan.along_path(LIGHTS, count, movement, &[]));
         }
         if count >= plan.extent.many {
@@ -140,6 +144,11 @@ fn plan(args: &StudyArgs, scene: &StudyScene, volume_m3: f64) -> Vec<Job> {
         jobs.push(plan.dense(count, (scene.scale * factor).clamp(1e-6, 1e6)));
     }
     jobs
+}
+
+/// The ways in which so many lights move.
+fn movements(count: u32) -> impl Iterator<Item = Movement> {
+    Movement::ALL.into_iter().filter(move |way| *way != Movement::Cpu || count <= MOST_BY_CPU)
 }
 
 struct Plan<'a> {
@@ -281,16 +290,15 @@ mod tests {
                     })
                     .collect();
                 let drift = "--motion drift --speed 1 --moved-by";
-                assert_eq!(
-                    orders,
-                    [
-                        " bvh".to_owned(),
-                        format!("{drift} gpu gpu8"),
-                        format!("{drift} gpu gpu"),
-                        format!("{drift} cpu gpu8")
-                    ],
-                    "{count}"
-                );
+                let known = [
+                    " bvh".to_owned(),
+                    format!("{drift} gpu gpu8"),
+                    format!("{drift} gpu gpu"),
+                    format!("{drift} cpu gpu8"),
+                ];
+                // The CPU does not move the most lights.
+                let ways = if count > MOST_BY_CPU { &known[..3] } else { &known[..] };
+                assert_eq!(orders, ways, "{count}");
             }
             // Laps have as many sorts as they should.
             assert!(in_section(&jobs, LIGHTS).all(|args| args.frames.unwrap().is_multiple_of(8)));
