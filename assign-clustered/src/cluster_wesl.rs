@@ -2,7 +2,7 @@
 
 use assign::{Bounds, LightReader, Storage, StrategyWesl};
 
-use crate::Normals;
+use crate::ClusterOptions;
 
 /// The shared froxel grid, to mount next to a main module that imports it.
 pub(crate) const FROXELS: (&str, &str) =
@@ -10,26 +10,59 @@ pub(crate) const FROXELS: (&str, &str) =
 
 const IMPORTS: &[(&str, &str)] = &[
     FROXELS,
+    ("package::strategy::cascades", include_str!("shaders/cascades.wesl")),
     ("package::strategy::marks", include_str!("shaders/marks.wesl")),
     ("package::strategy::normal_bins", include_str!("shaders/normal_bins.wesl")),
 ];
 
 /// Clusters bounded by their frusta: `group_of` and `group_bounds`.
-pub const IMPLICIT_WESL: StrategyWesl<'static> =
-    clusters(&[("explicit_bounds", false), ("split_by_normals", false), ("glossy", false)]);
+pub const IMPLICIT_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", false),
+    ("split_by_normals", false),
+    ("glossy", false),
+    ("cascaded", false),
+]);
 
 /// Clusters bounded by the samples in them: `group_of` and `group_bounds`.
-pub const EXPLICIT_WESL: StrategyWesl<'static> =
-    clusters(&[("explicit_bounds", true), ("split_by_normals", false), ("glossy", false)]);
+pub const EXPLICIT_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", true),
+    ("split_by_normals", false),
+    ("glossy", false),
+    ("cascaded", false),
+]);
+
+/// [`IMPLICIT_WESL`] for tiles that grow towards the eye.
+pub const IMPLICIT_CASCADES_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", false),
+    ("split_by_normals", false),
+    ("glossy", false),
+    ("cascaded", true),
+]);
+
+/// [`EXPLICIT_WESL`] for tiles that grow towards the eye.
+pub const EXPLICIT_CASCADES_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", true),
+    ("split_by_normals", false),
+    ("glossy", false),
+    ("cascaded", true),
+]);
 
 /// Clusters bounded by the samples in them and split by normals: also `group_facing` and
 /// `group_reflection`.
-pub const BINS_WESL: StrategyWesl<'static> =
-    clusters(&[("explicit_bounds", true), ("split_by_normals", true), ("glossy", false)]);
+pub const BINS_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", true),
+    ("split_by_normals", true),
+    ("glossy", false),
+    ("cascaded", false),
+]);
 
 /// [`BINS_WESL`] for clusters that also know how their samples reflect: `group_gloss` too.
-pub const GLOSSY_BINS_WESL: StrategyWesl<'static> =
-    clusters(&[("explicit_bounds", true), ("split_by_normals", true), ("glossy", true)]);
+pub const GLOSSY_BINS_WESL: StrategyWesl<'static> = clusters(&[
+    ("explicit_bounds", true),
+    ("split_by_normals", true),
+    ("glossy", true),
+    ("cascaded", false),
+]);
 
 const fn clusters(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'static> {
     StrategyWesl {
@@ -40,16 +73,14 @@ const fn clusters(flags: &'static [(&'static str, bool)]) -> StrategyWesl<'stati
     }
 }
 
-/// The WESL of a variant. Only clusters with explicit bounds have normals or gloss.
-pub(crate) fn cluster_wesl(
-    bounds: Bounds,
-    normals: Normals,
-    glossy: bool,
-) -> StrategyWesl<'static> {
-    match bounds {
-        Bounds::Implicit => IMPLICIT_WESL,
-        Bounds::Explicit if glossy => GLOSSY_BINS_WESL,
-        Bounds::Explicit if normals.is_some() => BINS_WESL,
-        Bounds::Explicit => EXPLICIT_WESL,
+/// The WESL of clusters. Only clusters with explicit bounds have normals or gloss, and then no cascades.
+pub(crate) fn cluster_wesl(options: &ClusterOptions) -> StrategyWesl<'static> {
+    match (options.bounds, options.slices.is_cascaded()) {
+        (Bounds::Implicit, false) => IMPLICIT_WESL,
+        (Bounds::Implicit, true) => IMPLICIT_CASCADES_WESL,
+        (Bounds::Explicit, _) if options.cut.is_glossy() => GLOSSY_BINS_WESL,
+        (Bounds::Explicit, _) if options.normals.is_some() => BINS_WESL,
+        (Bounds::Explicit, false) => EXPLICIT_WESL,
+        (Bounds::Explicit, true) => EXPLICIT_CASCADES_WESL,
     }
 }

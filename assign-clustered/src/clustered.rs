@@ -1,4 +1,4 @@
-//! DC-I, DC-E, SC-I and SC-E: clusters by bounds, by occupancy and by normals.
+//! DC-I, DC-E, SC-I, SC-E, DA-I and DA-E: clusters by bounds, by occupancy and by normals.
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu,
@@ -18,16 +18,91 @@ use crate::{
 /// Binding of the marks: `clusters.wesl`.
 const MARKS_BINDING: u32 = FROXELS_BINDING + 1;
 
+/// What tells one strategy of clusters from another.
+#[derive(Clone, Copy, Debug)]
+pub struct ClusterOptions {
+    /// Pixels of a tile, and the number of slices.
+    pub size: FroxelSize,
+    /// What lights are tested against.
+    pub bounds: Bounds,
+    /// Which clusters get a list.
+    pub occupancy: Occupancy,
+    /// How depth is cut into slices.
+    pub slices: Slices,
+    /// How clusters are split by normals. Only sparse clusters with explicit bounds, SC-E, can be.
+    pub normals: Normals,
+    /// Which specular light of area lights is left out; also only for SC-E.
+    pub cut: SpecularCut,
+    /// The settings of the culling driver.
+    pub settings: CullSettings,
+}
+
+impl ClusterOptions {
+    /// Exponential slices, without normals and without a cut.
+    pub fn new(
+        size: FroxelSize,
+        bounds: Bounds,
+        occupancy: Occupancy,
+        settings: CullSettings,
+    ) -> Self {
+        let (slices, normals, cut) = (Slices::default(), Normals::None, SpecularCut::None);
+        Self { size, bounds, occupancy, slices, normals, cut, settings }
+    }
+
+    fn family(&self) -> &'static str {
+        match (self.occupancy, self.bounds) {
+            (Occupancy::Dense, Bounds::Implicit) => "DC-I",
+            (Occupancy::Dense, Bounds::Explicit) => "DC-E",
+            (Occupancy::Sparse, Bounds::Implicit) => "SC-I",
+            (Occupancy::Sparse, Bounds::Explicit) => "SC-E",
+            (Occupancy::DepthAware, Bounds::Implicit) => "DA-I",
+            (Occupancy::DepthAware, Bounds::Explicit) => "DA-E",
+        }
+    }
+
+    fn shape(&self) -> GroupShape {
+        match self.bounds {
+            Bounds::Implicit => GroupShape::Frustum,
+            Bounds::Explicit => GroupShape::Box,
+        }
+    }
+
+    fn check(&self) -> Result<(), AssignError> {
+        let Self { size, bounds, occupancy, slices, normals, cut, .. } = *self;
+        size.check()?;
+        occupancy.check(size, slices)?;
+        slices.check(size.slices)?;
+        normals.check()?;
+        cut.check(normals)?;
+        if slices.is_cascaded() && normals.is_some() {
+            return Err(AssignError::Unsupported {
+                strategy: self.family().into(),
+                asked: "cascades".into(),
+                reason: "clusters that are split by normals have tiles of one size".into(),
+            });
+        }
+        let is_plain = !normals.is_some() && cut == SpecularCut::None;
+        if is_plain || (bounds, occupancy) == (Bounds::Explicit, Occupancy::Sparse) {
+            return Ok(());
+        }
+        let asked = match normals.is_some() {
+            true => format!("{} bins of normals", normals.bins()),
+            false => format!("the specular cut {cut:?}"),
+        };
+        Err(AssignError::Unsupported {
+            strategy: self.family().into(),
+            asked,
+            reason: "only sparse clusters with explicit bounds, SC-E, can be split by normals or leave out \
+                     specular light"
+                .into(),
+        })
+    }
+}
+
 /// Clusters that each have a list of lights.
 #[derive(Debug)]
 pub struct Clustered {
-    size: FroxelSize,
-    slices: Slices,
-    bounds: Bounds,
-    occupancy: Occupancy,
-    normals: Normals,
-    cut: SpecularCut,
-    settings: CullSettings,
+    options: ClusterOptions,
     froxels: wgpu::Buffer,
     bins: wgpu::Buffer,
     gather: Option<Gather>,
@@ -35,7 +110,7 @@ pub struct Clustered {
 }
 
 impl Clustered {
-    /// Makes the strategy without normals and without a cut. Checks `size`.
+    /// Makes the strategy with exponential slices, without normals and without a cut. Checks `size`.
     pub fn new(
         gpu: &Gpu,
         size: FroxelSize,
@@ -43,40 +118,18 @@ impl Clustered {
         occupancy: Occupancy,
         settings: CullSettings,
     ) -> Result<Self, AssignError> {
-        let (normals, cut) = (Normals::None, SpecularCut::None);
-        Self::with_normals(gpu, size, bounds, occupancy, normals, cut, settings)
+        Self::with_options(gpu, ClusterOptions::new(size, bounds, occupancy, settings))
     }
 
-    /// Makes the strategy with clusters split by normals and with a cut of specular light. Only sparse clusters
-    /// with explicit bounds can have either. Checks all parameters.
-    pub fn with_normals(
-        gpu: &Gpu,
-        size: FroxelSize,
-        bounds: Bounds,
-        occupancy: Occupancy,
-        normals: Normals,
-        cut: SpecularCut,
-        settings: CullSettings,
-    ) -> Result<Self, AssignError> {
-        size.check()?;
-        normals.check()?;
-        cut.check(normals)?;
-        let glossy = cut.is_glossy();
-        let is_plain = !normals.is_some() && cut == SpecularCut::None;
-        if !is_plain && (bounds, occupancy) != (Bounds::Explicit, Occupancy::Sparse) {
-            let asked = match normals.is_some() {
-                true => format!("{} bins of normals", normals.bins()),
-                false => format!("the specular cut {cut:?}"),
-            };
-            return Err(AssignError::Unsupported {
-                strategy: family(bounds, occupancy).into(),
-                asked,
-                reason:
-                    "only sparse clusters with explicit bounds, SC-E, can be split by normals or \
-                         leave out specular light"
-                        .into(),
-            });
-        }
+    /// Makes the strategy.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] for an option out of its range, and [`AssignError::Unsupported`] for options that
+    /// exclude each other.
+    pub fn with_options(gpu: &Gpu, options: ClusterOptions) -> Result<Self, AssignError> {
+        options.check()?;
+        let ClusterOptions { bounds, normals, settings, .. } = options;
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         let mut bindings = vec![uniform_entry(FROXELS_BINDING, stages)];
         if bounds == Bounds::Explicit {
@@ -85,81 +138,53 @@ impl Clustered {
         if normals.is_some() {
             bindings.push(uniform_entry(BINS_BINDING, stages));
         }
-        let sparse = occupancy == Occupancy::Sparse;
+        let sparse = options.occupancy.is_sparse();
         let reads_samples = sparse || bounds == Bounds::Explicit;
         Ok(Self {
-            size,
-            slices: Slices::default(),
-            bounds,
-            occupancy,
-            normals,
-            cut,
-            settings,
+            options,
             froxels: gpu.uniform("froxels", size_of::<FroxelsUniform>() as u64),
             bins: gpu.uniform("normal bins", size_of::<NormalBinsUniform>() as u64),
             gather: match reads_samples {
-                true => Some(Gather::new(gpu, bounds, occupancy, normals, glossy)?),
+                true => Some(Gather::new(gpu, &options)?),
                 false => None,
             },
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
-                    label: family(bounds, occupancy),
-                    shape: shape(bounds),
+                    label: options.family(),
+                    shape: options.shape(),
                     settings,
                     sparse,
-                    facing: cut.facing(normals),
-                    // SAFETY: the modules of clusters have no loop.
-                    #[allow(unsafe_code, reason = "they have no loop")]
-                    module: unsafe { StrategyModule::new(cluster_wesl(bounds, normals, glossy)) },
+                    facing: options.cut.facing(normals),
+                    // SAFETY: the modules of clusters have loops over four cascades, and no others.
+                    #[allow(unsafe_code, reason = "their loops end")]
+                    module: unsafe { StrategyModule::new(cluster_wesl(&options)) },
                     bindings: &bindings,
                 },
             )?,
         })
     }
-
-    /// The same with depth cut into other slices. Checks them.
-    pub fn with_slices(self, slices: Slices) -> Result<Self, AssignError> {
-        slices.check()?;
-        Ok(Self { slices, ..self })
-    }
-}
-
-fn family(bounds: Bounds, occupancy: Occupancy) -> &'static str {
-    match (occupancy, bounds) {
-        (Occupancy::Dense, Bounds::Implicit) => "DC-I",
-        (Occupancy::Dense, Bounds::Explicit) => "DC-E",
-        (Occupancy::Sparse, Bounds::Implicit) => "SC-I",
-        (Occupancy::Sparse, Bounds::Explicit) => "SC-E",
-    }
-}
-
-fn shape(bounds: Bounds) -> GroupShape {
-    match bounds {
-        Bounds::Implicit => GroupShape::Frustum,
-        Bounds::Explicit => GroupShape::Box,
-    }
 }
 
 impl Assignment for Clustered {
     fn id(&self) -> String {
-        let suffix = self.settings.suffix(shape(self.bounds));
-        let normals = self.normals.segment();
-        let cut = self.cut.segment();
-        let slices = self.slices.segment();
+        let ClusterOptions { size, slices, normals, cut, settings, .. } = self.options;
         format!(
-            "{}/{}{slices}{normals}{cut}{suffix}",
-            family(self.bounds, self.occupancy),
-            self.size
+            "{}/{size}{}{}{}{}",
+            self.options.family(),
+            slices.segment(),
+            normals.segment(),
+            cut.segment(),
+            settings.suffix(self.options.shape()),
         )
     }
 
     fn needs(&self) -> Needs {
         Needs {
             depth: self.gather.is_some(),
-            normals: self.normals.is_some(),
+            normals: self.options.normals.is_some(),
             hierarchy: self.culler.reads_hierarchy(),
-            materials: self.cut.is_glossy(),
+            materials: self.options.cut.is_glossy(),
             ..Needs::default()
         }
     }
@@ -170,9 +195,14 @@ impl Assignment for Clustered {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let mut froxels =
-            FroxelsUniform::new(self.size, self.slices, frame.view, frame.light_bounds())?;
-        let count = group_count(self.size, &froxels, self.normals, frame.view.viewport)?;
+        let mut froxels = FroxelsUniform::new(
+            self.options.size,
+            self.options.slices,
+            frame.view,
+            frame.light_bounds(),
+        )?;
+        let count =
+            group_count(self.options.size, &froxels, self.options.normals, frame.view.viewport)?;
         let mut groups = Groups::All(count);
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
         let id = self.id();
@@ -187,27 +217,27 @@ impl Assignment for Clustered {
             let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
             let images = Images {
                 depth: frame.depth.ok_or_else(|| missing("depth"))?,
-                normals: match self.normals {
+                normals: match self.options.normals {
                     Normals::None => None,
                     Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),
                 },
-                base_color: match self.cut.is_glossy() {
+                base_color: match self.options.cut.is_glossy() {
                     false => None,
                     true => Some(frame.base_color.ok_or_else(|| missing("base colours"))?),
                 },
             };
             froxels.surfaces_only = 1;
-            gather.prepare(gpu, frame, images, [&self.froxels, &self.bins], count)?;
-            if self.occupancy == Occupancy::Sparse {
+            gather.prepare(gpu, frame, images, (&froxels, [&self.froxels, &self.bins]), count)?;
+            if self.options.occupancy.is_sparse() {
                 groups = Groups::Live { count, live: gather.live() };
             }
-            if self.bounds == Bounds::Explicit {
+            if self.options.bounds == Bounds::Explicit {
                 resources.push(entry(MARKS_BINDING, gather.marks()));
             }
         }
         gpu.queue.write_buffer(&self.froxels, 0, bytes_of(&froxels));
-        if self.normals.is_some() {
-            let bins = NormalBinsUniform::new(self.normals, self.cut);
+        if self.options.normals.is_some() {
+            let bins = NormalBinsUniform::new(self.options.normals, self.options.cut);
             gpu.queue.write_buffer(&self.bins, 0, bytes_of(&bins));
             resources.push(entry(BINS_BINDING, &self.bins));
         }
@@ -218,7 +248,7 @@ impl Assignment for Clustered {
         if let Some(gather) = &self.gather
             && frame.changes.is_none()
         {
-            gather.record(frame.view, passes);
+            gather.record(passes);
         }
         self.culler.record(passes);
     }
@@ -241,7 +271,7 @@ impl Assignment for Clustered {
 
     fn memory_bytes(&self) -> u64 {
         let gather = self.gather.as_ref().map_or(0, Gather::bytes);
-        let bins = if self.normals.is_some() { self.bins.size() } else { 0 };
+        let bins = if self.options.normals.is_some() { self.bins.size() } else { 0 };
         self.froxels.size() + bins + gather + self.culler.memory_bytes()
     }
 }

@@ -79,7 +79,7 @@ impl FromStr for FroxelSize {
 /// rest. `DEPTH_SLACK` of `froxels.wesl` is derived for no more.
 const MAX_DEPTH_RATIO: f32 = (1_u64 << 40) as f32;
 
-/// The grid as shaders read it: `struct Froxels` of `froxels.wesl`. 64 bytes.
+/// The grid as shaders read it: `struct Froxels` of `froxels.wesl`. 128 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct FroxelsUniform {
@@ -103,8 +103,13 @@ pub struct FroxelsUniform {
     pub surfaces_only: u32,
     /// Slices before the one that begins at `first_m`: 1 if the first slice is of its own depth, else 0.
     pub own_slices: f32,
+    /// Cascades in use; 0 if all tiles have one size.
+    pub cascade_count: u32,
     /// Pads to 64 bytes.
-    pub padding: [u32; 2],
+    pub padding: u32,
+    /// Of each cascade, near to far: its first cluster, its tiles along x and y, its first slice. Those not in use
+    /// begin after the last cluster and the last slice.
+    pub cascades: [[u32; 4]; Slices::MAX_CASCADES as usize],
 }
 
 impl FroxelsUniform {
@@ -126,7 +131,7 @@ impl FroxelsUniform {
         let [width, height] = [view.viewport.width, view.viewport.height];
         let counts =
             [width.div_ceil(size.tile_px[0]), height.div_ceil(size.tile_px[1]), size.slices];
-        let total = counts.iter().map(|&n| u64::from(n)).product::<u64>();
+        let (cascade_count, cascades, total) = cut_cascades(counts, slices);
         if total > MAX_GROUPS {
             return Err(AssignError::Parameter {
                 field: "froxel size".into(),
@@ -162,19 +167,46 @@ impl FroxelsUniform {
             exponential: u32::from(exponential),
             surfaces_only: 0,
             own_slices: own as f32,
-            padding: [0; 2],
+            cascade_count,
+            padding: 0,
+            cascades,
         })
     }
 
     /// Number of froxels.
     pub fn froxel_count(&self) -> u32 {
-        self.counts.iter().product()
+        let end = |[first, x, y, first_slice]: [u32; 4], end_slice: u32| {
+            first + x * y * (end_slice - first_slice)
+        };
+        match self.cascade_count as usize {
+            0 => self.counts.iter().product(),
+            count => end(self.cascades[count - 1], self.counts[2]),
+        }
     }
 
     /// Number of tiles.
     pub fn tile_count(&self) -> u32 {
         self.counts[0] * self.counts[1]
     }
+}
+
+/// The number of cascades, where each begins, and the number of froxels. `counts` are those of the grid.
+fn cut_cascades(counts: [u32; 3], slices: Slices) -> (u32, [[u32; 4]; 4], u64) {
+    let [x, y, slice_count] = counts;
+    let Slices::Cascaded(count) = slices else {
+        let total = counts.iter().map(|&n| u64::from(n)).product();
+        return (0, [[u32::MAX, 1, 1, u32::MAX]; 4], total);
+    };
+    let mut cascades = [[u32::MAX, 1, 1, u32::MAX]; 4];
+    let mut total = 0_u64;
+    let first_slice = |cascade: u32| slice_count * cascade / count;
+    for (cascade, known) in (0..count).zip(&mut cascades) {
+        let tiles = [x, y].map(|tiles| tiles.div_ceil(1 << (count - 1 - cascade)));
+        *known = [total.min(u32::MAX.into()) as u32, tiles[0], tiles[1], first_slice(cascade)];
+        let slices = first_slice(cascade + 1) - first_slice(cascade);
+        total += u64::from(tiles[0]) * u64::from(tiles[1]) * u64::from(slices);
+    }
+    (count, cascades, total)
 }
 
 #[cfg(test)]

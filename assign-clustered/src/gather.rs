@@ -2,12 +2,14 @@
 //! normals.
 
 use assign::{
-    AssignError, Bounds, Frame, FrameBindings, Gpu, LiveGroups, Passes, Shader, UNFILTERED, View,
-    entry, kernel, storage_entry, texture, texture_entry, uniform_entry,
+    AssignError, Bounds, Frame, FrameBindings, Gpu, LiveGroups, Passes, Shader, UNFILTERED, entry,
+    kernel, storage_entry, texture, texture_entry, uniform_entry,
 };
 
 use crate::{
-    Normals, Occupancy, cluster_wesl::cluster_wesl, froxels::FROXELS_BINDING,
+    ClusterOptions, Occupancy,
+    cluster_wesl::cluster_wesl,
+    froxels::{FROXELS_BINDING, FroxelsUniform},
     normal_bins::BINS_BINDING,
 };
 
@@ -37,42 +39,46 @@ pub(crate) struct Gather {
     marks: wgpu::Buffer,
     live: LiveGroups,
     clear_workgroups: u32,
+    /// Workgroups of `gather` along x and y.
+    workgroups: [u32; 2],
+    occupancy: Occupancy,
 }
 
 impl Gather {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        bounds: Bounds,
-        occupancy: Occupancy,
-        normals: Normals,
-        glossy: bool,
-    ) -> Result<Self, AssignError> {
+    pub(crate) fn new(gpu: &Gpu, options: &ClusterOptions) -> Result<Self, AssignError> {
+        let ClusterOptions { bounds, occupancy, normals, .. } = *options;
         let stages = wgpu::ShaderStages::COMPUTE;
         let mut entries = vec![
             texture_entry(0, stages, wgpu::TextureSampleType::Depth),
-            storage_entry(1, stages, false),
             uniform_entry(FROXELS_BINDING, stages),
         ];
+        let per_tile = occupancy == Occupancy::DepthAware;
+        // One workgroup per tile keeps marks to itself, and stores only boxes.
+        let has_marks = !per_tile || bounds == Bounds::Explicit;
+        if has_marks {
+            entries.push(storage_entry(1, stages, false));
+        }
         if normals.is_some() {
             entries.push(texture_entry(2, stages, UNFILTERED));
             entries.push(uniform_entry(BINS_BINDING, stages));
         }
-        if glossy {
+        if options.cut.is_glossy() {
             entries.push(texture_entry(3, stages, UNFILTERED));
         }
         let layout = gpu.bind_group_layout("gather", &entries);
         let live_layout = gpu.bind_group_layout("live groups", &[storage_entry(0, stages, false)]);
         let frame = FrameBindings::new(gpu);
-        let shader = gather_shader(bounds, occupancy, normals, glossy);
+        let shader = gather_shader(options);
         // SAFETY: a loop counts up to a constant, or to the length of a buffer by a step of at least one
-        // workgroup, or over slices, at most 1,024, or over cells along an edge, at most 3.
+        // workgroup, or over slices, at most 1,024, or over cells along an edge, at most 3, or over the pixels of
+        // a lane, at most 64 along each side.
         #[allow(unsafe_code, reason = "its loops end")]
-        let module = unsafe { shader.create_uncounted(gpu, "package::gather") }?;
+        let module = unsafe { shader.create_uncounted(gpu, root(occupancy)) }?;
         let layouts = [frame.layout(), &layout, &live_layout];
         let pipeline = |entry_point| kernel::pipeline(gpu, &module, entry_point, &layouts);
         let (clear, gather) = (pipeline("clear"), pipeline("gather"));
         Ok(Self {
-            words: marks_words(bounds, normals, glossy).into(),
+            words: if has_marks { marks_words(options).into() } else { 0 },
             frame,
             layout,
             bind_group: None,
@@ -83,6 +89,8 @@ impl Gather {
             marks: gpu.storage("cluster marks", 0)?,
             live: LiveGroups::new(gpu)?,
             clear_workgroups: 0,
+            workgroups: [0; 2],
+            occupancy,
         })
     }
 
@@ -93,7 +101,7 @@ impl Gather {
         gpu: &Gpu,
         frame: &Frame<'_>,
         images: Images<'_>,
-        uniforms: [&wgpu::Buffer; 2],
+        (froxels, uniforms): (&FroxelsUniform, [&wgpu::Buffer; 2]),
         count: u32,
     ) -> Result<(), AssignError> {
         self.frame.update(gpu, frame)?;
@@ -102,13 +110,19 @@ impl Gather {
             self.marks = gpu.storage("cluster marks", marks * 4)?;
         }
         // The kernel clears the whole buffer, which may have grown for a larger view.
-        self.clear_workgroups = kernel::workgroups(self.marks.size() / 4, CLEARED);
+        let blocks = |pixels: u32| pixels.div_ceil(BLOCK_PX);
+        (self.clear_workgroups, self.workgroups) = match self.occupancy {
+            Occupancy::DepthAware => (1, [froxels.counts[0], froxels.counts[1]]),
+            Occupancy::Dense | Occupancy::Sparse => (
+                kernel::workgroups(self.marks.size() / 4, CLEARED),
+                [frame.view.viewport.width, frame.view.viewport.height].map(blocks),
+            ),
+        };
         self.live.prepare(gpu, count)?;
-        let mut entries = vec![
-            texture(0, images.depth),
-            entry(1, &self.marks),
-            entry(FROXELS_BINDING, uniforms[0]),
-        ];
+        let mut entries = vec![texture(0, images.depth), entry(FROXELS_BINDING, uniforms[0])];
+        if self.words > 0 {
+            entries.push(entry(1, &self.marks));
+        }
         if let Some(normals) = images.normals {
             entries.extend([texture(2, normals), entry(BINS_BINDING, uniforms[1])]);
         }
@@ -120,7 +134,7 @@ impl Gather {
     }
 
     /// Records the pass `bounds`: inside the clock.
-    pub(crate) fn record(&self, view: &View, passes: &mut dyn Passes) {
+    pub(crate) fn record(&self, passes: &mut dyn Passes) {
         passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(GATHER_GROUP, self.bind_group.as_ref(), &[]);
@@ -128,8 +142,7 @@ impl Gather {
             pass.set_pipeline(&self.clear);
             pass.dispatch_workgroups(self.clear_workgroups, 1, 1);
             pass.set_pipeline(&self.gather);
-            let blocks = |pixels: u32| pixels.div_ceil(BLOCK_PX);
-            pass.dispatch_workgroups(blocks(view.viewport.width), blocks(view.viewport.height), 1);
+            pass.dispatch_workgroups(self.workgroups[0], self.workgroups[1], 1);
         });
     }
 
@@ -150,11 +163,11 @@ impl Gather {
 }
 
 /// Words of the marks per group: `WORDS` of `marks.wesl`.
-pub fn marks_words(bounds: Bounds, normals: Normals, glossy: bool) -> u32 {
-    match bounds {
+pub fn marks_words(options: &ClusterOptions) -> u32 {
+    match options.bounds {
         Bounds::Implicit => 1,
-        Bounds::Explicit if glossy => 15,
-        Bounds::Explicit if normals.is_some() => 12,
+        Bounds::Explicit if options.cut.is_glossy() => 15,
+        Bounds::Explicit if options.normals.is_some() => 12,
         Bounds::Explicit => 6,
     }
 }
@@ -170,25 +183,28 @@ pub(crate) struct Images<'a> {
 }
 
 /// The pass's shader.
-fn gather_shader<'a>(
-    bounds: Bounds,
-    occupancy: Occupancy,
-    normals: Normals,
-    glossy: bool,
-) -> Shader<'a> {
+fn gather_shader<'a>(options: &ClusterOptions) -> Shader<'a> {
+    let occupancy = options.occupancy;
+    let source = match occupancy {
+        Occupancy::DepthAware => include_str!("shaders/gather_tiles.wesl"),
+        Occupancy::Dense | Occupancy::Sparse => include_str!("shaders/gather.wesl"),
+    };
     Shader::new(GATHER_GROUP)
-        .module("package::gather", include_str!("shaders/gather.wesl"))
+        .module(root(occupancy), source)
         .module("package::live", LiveGroups::WESL)
-        .strategy(cluster_wesl(bounds, normals, glossy))
+        .strategy(cluster_wesl(options))
         .flag("sparse", occupancy == Occupancy::Sparse)
 }
 
+/// The module with the pass's entry points.
+fn root(occupancy: Occupancy) -> &'static str {
+    match occupancy {
+        Occupancy::DepthAware => "package::gather_tiles",
+        Occupancy::Dense | Occupancy::Sparse => "package::gather",
+    }
+}
+
 /// The linked WGSL of the pass, for tests of layout and validity.
-pub fn gather_source(
-    bounds: Bounds,
-    occupancy: Occupancy,
-    normals: Normals,
-    glossy: bool,
-) -> Result<String, AssignError> {
-    gather_shader(bounds, occupancy, normals, glossy).link("package::gather")
+pub fn gather_source(options: &ClusterOptions) -> Result<String, AssignError> {
+    gather_shader(options).link(root(options.occupancy))
 }

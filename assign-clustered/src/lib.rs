@@ -13,25 +13,35 @@
 //! | `DC-E` | all (dense) | the world-space box around the samples in it (explicit) |
 //! | `SC-I` | those that hold a sample (sparse) | its whole frustum |
 //! | `SC-E` | those that hold a sample (sparse) | the box around the samples |
+//! | `DA-I` | as SC-I, found tile by tile (depth-aware) | its whole frustum |
+//! | `DA-E` | as SC-E, found tile by tile (depth-aware) | the box around the samples |
 //!
 //! [`ZBins`], `ZB`, has a bit mask per tile and one per slice in place of a list per froxel; `z_bins.rs` describes
 //! it.
 //!
 //! [`HybridGrid`], `HG`, shares the froxels but works from the other side: lights add themselves to the froxels
-//! that they touch. `hybrid/mod.rs` describes it. The rest of this page is about clusters.
+//! that they touch, by compute lanes or by the rasteriser (`/raster`). `hybrid/mod.rs` describes it. The rest of this page is about clusters.
 //!
 //! # Phases
 //!
-//! 1. `bounds` (all but DC-I) reads the depth buffer once. Each workgroup reads 32 x 32 pixels, and collects
+//! 1. `bounds` (all but DC-I) reads the depth buffer once. In DC-E, SC-I and SC-E, each workgroup reads 32 x 32 pixels, and collects
 //!    their clusters and the boxes around their samples in a hash table in workgroup memory. Then it merges the
 //!    table into global memory, with one set of atomics per cluster and block. The first workgroup to meet a
-//!    cluster appends it to the live clusters.
+//!    cluster appends it to the live clusters. In DA-I and DA-E, each workgroup reads one tile, and has a place for
+//!    each slice in workgroup memory; nothing is merged (after the unique clusters per tile of Olsson et al. 2012).
 //! 2. `cull` gives each cluster one workgroup: every cluster, or only the live ones. It tests lights against
 //!    the cluster's frustum (by default HS and SAT-N) or box (NP), and writes the cluster's list.
 //!
 //! Worked example: a view's samples lie in clusters 2, 5 and 6 of clusters 0 to 7. Dense strategies cull all
 //! eight clusters. Sparse ones append `[5, 2, 6]`, in any order, and cull three; shading never looks up the
 //! lists of the others.
+//!
+//! # Cascades
+//!
+//! A tile covers a small window of the world near the camera, and a large one far away. `/cascades3` cuts the slices
+//! into three cascades. The farthest has tiles of the grid's size; each nearer one has tiles of twice the sides, so
+//! near clusters are fewer, and hold more samples each (Billeter 2015; Enhuber 2019, section 2.2). The paper chooses a
+//! number of slices per cascade too; here, all have about as many.
 //!
 //! # Normals
 //!
@@ -62,7 +72,7 @@
 //! |---|---|
 //! | per cluster | 8 |
 //! | more per cluster, explicit bounds | 28 |
-//! | more per cluster, sparse with implicit bounds | 8 |
+//! | more per cluster, sparse with implicit bounds | 8, or 4 for DA-I |
 //! | per cluster and bin, with normals, whether it holds samples or not | 60 |
 //! | per cluster and bin, with a specular threshold | 72 |
 //! | per listed light | 4 |
@@ -85,6 +95,8 @@
 //! - Dense strategies also cull empty clusters, and most of a dense grid shows no surface.
 //! - Implicit bounds are loose for slices far away, which are deep, and for large tiles, whose clusters are wide.
 //!   Such clusters list lights that reach no visible sample.
+//! - DA-I and DA-E have one workgroup per tile: large tiles leave processors idle, and small ones leave lanes idle.
+//!   Tiles have sides of at most 1,024 pixels, and at most 128 slices.
 //! - A near plane much closer than the first surface spends slices on nothing: the octaves to cover grow with
 //!   `log(far / near)`.
 //! - With normals, surfaces of many directions make many groups. Each is culled on its own, and neighbouring
@@ -106,11 +118,14 @@ mod slices;
 mod specular_cut;
 mod z_bins;
 
-pub use cluster_wesl::{BINS_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_WESL};
-pub use clustered::Clustered;
+pub use cluster_wesl::{
+    BINS_WESL, EXPLICIT_CASCADES_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_CASCADES_WESL,
+    IMPLICIT_WESL,
+};
+pub use clustered::{ClusterOptions, Clustered};
 pub use froxels::{FroxelSize, FroxelsUniform};
 pub use gather::{gather_source, marks_words};
-pub use hybrid::{HYBRID_WESL, HybridGrid, HybridParts, HybridShader};
+pub use hybrid::{HYBRID_WESL, HybridGrid, HybridParts, HybridShader, Scatter};
 pub use normal_bins::NormalBinsUniform;
 pub use normals::Normals;
 pub use occupancy::Occupancy;

@@ -93,7 +93,14 @@ impl ZBins {
 
     /// The same with depth cut into other slices. Checks them.
     pub fn with_slices(self, slices: Slices) -> Result<Self, AssignError> {
-        slices.check()?;
+        if slices.is_cascaded() {
+            return Err(AssignError::Unsupported {
+                strategy: self.id(),
+                asked: "cascades".into(),
+                reason: "it has one mask per tile for all slices".into(),
+            });
+        }
+        slices.check(self.size.slices)?;
         Ok(Self { slices, ..self })
     }
 }

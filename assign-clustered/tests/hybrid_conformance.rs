@@ -4,14 +4,18 @@
 
 use assign::{
     AssignError, Assignment, Counters, ENTRY_LIGHT, EncoderPasses, Frame, Gpu, Light, LightBuffer,
-    ListsSnapshot, Reuse, SampleDomain, View,
+    LightShape, ListsSnapshot, Reuse, SampleDomain, View,
     conformance::{self, faulty::Fault, flat_depth},
 };
-use assign_clustered::HybridGrid;
+use assign_clustered::{HybridGrid, Scatter};
 use glam::Vec3;
 
 fn grid(size: &str) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
     move |gpu| Ok(Box::new(HybridGrid::new(gpu, size.parse()?)?))
+}
+
+fn raster_grid(size: &str) -> impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> {
+    move |gpu| Ok(Box::new(HybridGrid::with_scatter(gpu, size.parse()?, Scatter::Raster)?))
 }
 
 fn conforms(size: &str) {
@@ -33,6 +37,62 @@ fn odd_cells_conform() {
 #[test]
 fn fine_cells_conform() {
     conforms("9x7x200");
+}
+
+#[test]
+fn rasterised_cells_conform() {
+    for size in ["48x48x40", "4096x4096x1", "9x7x200"] {
+        conformance::run(&raster_grid(size)).expect("conforms");
+    }
+}
+
+#[test]
+fn faults_of_rasterised_cells_are_rejected() {
+    let make = raster_grid("16x16x8");
+    assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
+}
+
+/// The rasteriser finds the tiles that lanes find: lists are equal, entry for entry.
+#[test]
+fn the_rasteriser_makes_the_lists_of_the_lanes() {
+    let gpu = Gpu::open(None).unwrap();
+    let lights: Vec<Light> = (0..200)
+        .map(|i| {
+            let at = |step: u32| (i * step % 101) as f32 / 25.0 - 2.0;
+            let position = Vec3::new(at(17), at(29), at(43));
+            let range_m = 0.1 + (i * 7 % 13) as f32 * 0.2;
+            match i % 3 {
+                0 => Light {
+                    shape: LightShape::Spot {
+                        direction: Vec3::new(at(5), 1.0, at(3)).normalize(),
+                        inner_angle: 0.2,
+                        outer_angle: 0.5,
+                    },
+                    ..Light::point(position, range_m, Vec3::ONE)
+                },
+                _ => Light::point(position, range_m, Vec3::ONE),
+            }
+        })
+        .collect();
+    let lights = LightBuffer::new(&gpu, &lights).unwrap();
+    // A viewport inside a larger target, whose last tiles are cut.
+    let mut view = View::look_at(Vec3::ONE, Vec3::ZERO, 1.0, 0.1, [61, 45]);
+    view.viewport = assign::Viewport { x: 5, y: 3, ..view.viewport };
+    let frame = Frame::new(&view, &lights).sampled_at(SampleDomain::AnyDepth);
+    let [lanes, raster] = [Scatter::Compute, Scatter::Raster].map(|scatter| {
+        let mut strategy =
+            HybridGrid::with_scatter(&gpu, "7x5x9".parse().unwrap(), scatter).unwrap();
+        draw(&gpu, &mut strategy, &frame);
+        gpu.wait().unwrap();
+        let drawn = draw(&gpu, &mut strategy, &frame);
+        assert_eq!(drawn.counters.overflowed_groups, 0);
+        drawn
+    });
+    assert!(lanes.counters.requested() > 1_000, "{:?}", lanes.counters);
+    assert_eq!(lanes.counters, raster.counters);
+    for group in 0..9 * 9 * 9 {
+        assert_eq!(lanes.entries_of(group), raster.entries_of(group), "group {group}");
+    }
 }
 
 #[test]

@@ -8,8 +8,9 @@ use assign::{
     LightSource, conformance::LinkedModule, struct_layout,
 };
 use assign_clustered::{
-    BINS_WESL, EXPLICIT_WESL, FroxelsUniform, GLOSSY_BINS_WESL, HybridShader, IMPLICIT_WESL,
-    NormalBinsUniform, Normals, Occupancy, gather_source, marks_words,
+    BINS_WESL, ClusterOptions, EXPLICIT_WESL, FroxelsUniform, GLOSSY_BINS_WESL, HybridShader,
+    IMPLICIT_WESL, NormalBinsUniform, Normals, Occupancy, Slices, SpecularCut, gather_source,
+    marks_words,
 };
 
 /// The culling kernel of clusters, validated.
@@ -61,19 +62,36 @@ fn kernels_with_normals_or_cuts_validate() {
 #[test]
 fn the_pass_bounds_validates() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
-        for occupancy in [Occupancy::Dense, Occupancy::Sparse] {
-            let what = format!("{bounds:?}, {occupancy:?}");
-            LinkedModule::new(
-                &what,
-                &gather_source(bounds, occupancy, Normals::None, false).unwrap(),
-            );
+        for occupancy in [Occupancy::Dense, Occupancy::Sparse, Occupancy::DepthAware] {
+            gather(options(bounds, occupancy));
         }
+        gather(ClusterOptions {
+            slices: Slices::Cascaded(3),
+            ..options(bounds, Occupancy::Sparse)
+        });
     }
     for glossy in [false, true] {
-        let what = format!("with normals, glossy {glossy}");
-        let (bounds, occupancy, normals) = (Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6));
-        LinkedModule::new(&what, &gather_source(bounds, occupancy, normals, glossy).unwrap());
+        gather(split(glossy));
     }
+}
+
+fn options(bounds: Bounds, occupancy: Occupancy) -> ClusterOptions {
+    ClusterOptions::new("8x8x8".parse().unwrap(), bounds, occupancy, CullSettings::default())
+}
+
+/// SC-E split by six bins of normals.
+fn split(glossy: bool) -> ClusterOptions {
+    let cut = if glossy { SpecularCut::Below(0.001) } else { SpecularCut::None };
+    ClusterOptions {
+        normals: Normals::Bins(6),
+        cut,
+        ..options(Bounds::Explicit, Occupancy::Sparse)
+    }
+}
+
+/// The pass `bounds`, validated.
+fn gather(options: ClusterOptions) -> LinkedModule {
+    LinkedModule::new(&format!("{options:?}"), &gather_source(&options).unwrap())
 }
 
 /// Every shader that reads the froxels: kernels and passes of clusters, and those of HG.
@@ -83,13 +101,17 @@ fn froxel_shaders() -> Vec<(String, LinkedModule)> {
         let module = kernel(Bounds::Implicit, false, LightSource::Linear, kinds);
         shaders.push((format!("cull, {kinds:?}"), module));
     }
-    let (explicit, sparse) = (Bounds::Explicit, Occupancy::Sparse);
-    for normals in [Normals::None, Normals::Bins(6)] {
-        let what = format!("bounds, {normals:?}");
-        let source = gather_source(explicit, sparse, normals, false).unwrap();
-        let module = LinkedModule::new(&what, &source);
-        shaders.push((what, module));
+    for options in [options(Bounds::Explicit, Occupancy::Sparse), split(false)] {
+        shaders.push((format!("bounds, {:?}", options.normals), gather(options)));
     }
+    let module = gather(options(Bounds::Explicit, Occupancy::DepthAware));
+    assert_eq!(module.constant("SLICES_MAX"), Occupancy::MAX_SLICES);
+    assert_eq!(
+        module.constant("SIDE") * 64,
+        Occupancy::MAX_TILE_PX,
+        "at most 64 x 64 pixels per lane"
+    );
+    shaders.push(("bounds, by tile".to_owned(), module));
     // `sort` reads only lists.
     for shader in [HybridShader::Occupancy, HybridShader::Scatter, HybridShader::Reserve] {
         let what = format!("HG, {shader:?}");
@@ -102,7 +124,7 @@ fn froxel_shaders() -> Vec<(String, LinkedModule)> {
 #[test]
 fn froxels_have_one_layout_in_all_shaders_and_in_rust() {
     let rust = struct_layout!(FroxelsUniform: counts, slices_per_unit, tile_px, origin_px, first_m,
-        near_m, far_m, exponential, surfaces_only, own_slices);
+        near_m, far_m, exponential, surfaces_only, own_slices, cascade_count, cascades);
     for (what, module) in froxel_shaders() {
         assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING), rust, "{what}: WESL, then Rust");
     }
@@ -111,24 +133,16 @@ fn froxels_have_one_layout_in_all_shaders_and_in_rust() {
 #[test]
 fn normal_bins_have_one_layout_in_wesl_and_rust() {
     let rust = struct_layout!(NormalBinsUniform: side, specular_limit);
-    let (bounds, occupancy, normals) = (Bounds::Explicit, Occupancy::Sparse, Normals::Bins(6));
-    let source = gather_source(bounds, occupancy, normals, true).unwrap();
-    let module = LinkedModule::new("bounds", &source);
+    let module = gather(split(true));
     assert_eq!(module.uniform_at(FIRST_STRATEGY_BINDING + 2), rust, "WESL, then Rust");
 }
 
 /// Rust sizes the buffer of marks, WESL indexes it.
 #[test]
 fn marks_have_as_many_words_in_wesl_as_in_rust() {
-    for (bounds, normals, glossy) in [
-        (Bounds::Implicit, Normals::None, false),
-        (Bounds::Explicit, Normals::None, false),
-        (Bounds::Explicit, Normals::Bins(6), false),
-        (Bounds::Explicit, Normals::Bins(6), true),
-    ] {
-        let what = format!("{bounds:?}, {normals:?}, glossy {glossy}");
-        let source = gather_source(bounds, Occupancy::Sparse, normals, glossy).unwrap();
-        let wesl = LinkedModule::new(&what, &source).constant("WORDS");
-        assert_eq!(wesl, marks_words(bounds, normals, glossy), "{what}: WESL, then Rust");
+    let plain = |bounds| options(bounds, Occupancy::Sparse);
+    for options in [plain(Bounds::Implicit), plain(Bounds::Explicit), split(false), split(true)] {
+        let wesl = gather(options).constant("WORDS");
+        assert_eq!(wesl, marks_words(&options), "{options:?}: WESL, then Rust");
     }
 }

@@ -5,7 +5,7 @@
 use assign::{
     Assignment, Bounds, CullSettings, Frame, Gpu, Light, LightBuffer, SampleDomain, View,
 };
-use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
+use assign_clustered::{ClusterOptions, Clustered, Normals, Occupancy, SpecularCut};
 use glam::Vec3;
 
 /// Any texture view that can be bound as an image of the G-buffer.
@@ -41,7 +41,7 @@ fn bytes_per_group_are_those_of_the_table() {
         (strategy.lists().group_count(), strategy.memory_bytes() - entries)
     };
     let (implicit, explicit) = (Bounds::Implicit, Bounds::Explicit);
-    let (dense, sparse) = (Occupancy::Dense, Occupancy::Sparse);
+    let (dense, sparse, aware) = (Occupancy::Dense, Occupancy::Sparse, Occupancy::DepthAware);
     let bins = Normals::Bins(6);
     let cut = SpecularCut::Below(0.001);
     for (bounds, occupancy, normals, cut, per_group) in [
@@ -49,13 +49,16 @@ fn bytes_per_group_are_those_of_the_table() {
         (implicit, sparse, Normals::None, SpecularCut::None, 8 + 8),
         (explicit, dense, Normals::None, SpecularCut::None, 8 + 28),
         (explicit, sparse, Normals::None, SpecularCut::None, 8 + 28),
+        (implicit, aware, Normals::None, SpecularCut::None, 8 + 4),
+        (explicit, aware, Normals::None, SpecularCut::None, 8 + 28),
         (explicit, sparse, bins, SpecularCut::None, 60),
         (explicit, sparse, bins, cut, 72),
     ] {
         let size = "16x16x8".parse().unwrap();
         let settings = CullSettings::default();
-        let mut strategy =
-            Clustered::with_normals(&gpu, size, bounds, occupancy, normals, cut, settings).unwrap();
+        let plain = ClusterOptions::new(size, bounds, occupancy, settings);
+        let options = ClusterOptions { normals, cut, ..plain };
+        let mut strategy = Clustered::with_options(&gpu, options).unwrap();
         let (few, small) = bytes(&mut strategy, 64);
         let (many, large) = bytes(&mut strategy, 256);
         let found = (large - small) / u64::from(many - few);

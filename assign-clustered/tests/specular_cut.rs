@@ -10,7 +10,9 @@ use assign::{
     conformance::flat_depth,
     intersect::{Aabb, Gloss, LightVolume, MirrorGroup, NormalCone, SeenGroup},
 };
-use assign_clustered::{Clustered, Normals, Occupancy, PAPERS_LOBE_DEGREES, SpecularCut};
+use assign_clustered::{
+    ClusterOptions, Clustered, Normals, Occupancy, PAPERS_LOBE_DEGREES, SpecularCut,
+};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [64, 48];
@@ -69,9 +71,9 @@ fn flags(gpu: &Gpu, lights: &[Light], normals: Normals, cut: SpecularCut) -> Vec
     assert!(buffer.rejected().is_empty());
     // One tile; the wall lies in one of its slices.
     let (size, settings) = ("64x64x8".parse().unwrap(), CullSettings::default());
-    let (bounds, occupancy) = (Bounds::Explicit, Occupancy::Sparse);
-    let mut strategy =
-        Clustered::with_normals(gpu, size, bounds, occupancy, normals, cut, settings).unwrap();
+    let plain = ClusterOptions::new(size, Bounds::Explicit, Occupancy::Sparse, settings);
+    let options = ClusterOptions { normals, cut, ..plain };
+    let mut strategy = Clustered::with_options(gpu, options).unwrap();
     let frame = Frame::new(&view, &buffer)
         .with_depth(&depth)
         .with_normals(&normal_image)

@@ -7,7 +7,7 @@ use assign::{
     LightShape, LightSource, ListsSnapshot, Touched, View,
     conformance::{self, CountedPasses},
 };
-use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
+use assign_clustered::{ClusterOptions, Clustered, Normals, Occupancy};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [64, 48];
@@ -234,10 +234,9 @@ fn no_light_at_all_is_served() {
 fn strategies_that_read_normals_are_refused() {
     let gpu = Gpu::open(None).expect("a GPU");
     let (size, normals) = ("8x8x8".parse().expect("a size"), Normals::Bins(6));
-    let (bounds, occupancy) = (Bounds::Explicit, Occupancy::Sparse);
-    let cut = SpecularCut::None;
     let settings = CullSettings::default();
-    let split = Clustered::with_normals(&gpu, size, bounds, occupancy, normals, cut, settings);
+    let plain = ClusterOptions::new(size, Bounds::Explicit, Occupancy::Sparse, settings);
+    let split = Clustered::with_options(&gpu, ClusterOptions { normals, ..plain });
     let split = split.expect("a strategy");
     assert!(Touched::new(&gpu, Box::new(split)).is_err());
 }

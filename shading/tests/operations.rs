@@ -9,7 +9,7 @@ use assign::{
     Assignment, Bounds, CullSettings, ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Emitter,
     EncoderPasses, Everything, Gpu, Light, LightBuffer, LightShape, View,
 };
-use assign_clustered::{Clustered, Normals, Occupancy, SpecularCut};
+use assign_clustered::{ClusterOptions, Clustered, Normals, Occupancy, SpecularCut};
 use glam::{DVec3, Vec3};
 use scenes::{Instance, Scene};
 use shading::{
@@ -227,8 +227,9 @@ fn check(name: &str, counted: &Counted, exits: bool) -> (Operations, Doubts) {
 
 fn clusters(gpu: &Gpu, cut: SpecularCut) -> Clustered {
     let (size, settings) = ("16x16x8".parse().unwrap(), CullSettings::default());
-    let (bounds, occupancy) = (Bounds::Explicit, Occupancy::Sparse);
-    Clustered::with_normals(gpu, size, bounds, occupancy, Normals::Bins(6), cut, settings).unwrap()
+    let plain = ClusterOptions::new(size, Bounds::Explicit, Occupancy::Sparse, settings);
+    let options = ClusterOptions { normals: Normals::Bins(6), cut, ..plain };
+    Clustered::with_options(gpu, options).unwrap()
 }
 
 #[test]

@@ -6,7 +6,7 @@ use assign::{
 };
 use bytemuck::bytes_of;
 
-use super::{passes::HybridPasses, shader::HYBRID_WESL};
+use super::{Scatter, passes::HybridPasses, shader::HYBRID_WESL};
 use crate::Slices;
 use crate::froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform};
 
@@ -14,6 +14,7 @@ use crate::froxels::{FROXELS_BINDING, FroxelSize, FroxelsUniform};
 #[derive(Debug)]
 pub struct HybridGrid {
     size: FroxelSize,
+    scatter: Scatter,
     froxels: wgpu::Buffer,
     lists: LightLists,
     look_up: ListsBindings,
@@ -21,12 +22,22 @@ pub struct HybridGrid {
 }
 
 impl HybridGrid {
-    /// Makes the strategy. Checks `size`.
+    /// Makes the strategy with compute lanes that add lights to cells. Checks `size`.
     pub fn new(gpu: &Gpu, size: FroxelSize) -> Result<Self, AssignError> {
+        Self::with_scatter(gpu, size, Scatter::Compute)
+    }
+
+    /// Makes the strategy. Checks `size`.
+    pub fn with_scatter(
+        gpu: &Gpu,
+        size: FroxelSize,
+        scatter: Scatter,
+    ) -> Result<Self, AssignError> {
         size.check()?;
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         Ok(Self {
             size,
+            scatter,
             froxels: gpu.uniform("froxels", size_of::<FroxelsUniform>() as u64),
             lists: LightLists::new(gpu)?,
             look_up: ListsBindings::of_look_up(
@@ -34,14 +45,14 @@ impl HybridGrid {
                 "HG",
                 &[uniform_entry(FROXELS_BINDING, stages)],
             ),
-            passes: HybridPasses::new(gpu)?,
+            passes: HybridPasses::new(gpu, scatter)?,
         })
     }
 }
 
 impl Assignment for HybridGrid {
     fn id(&self) -> String {
-        format!("HG/{}", self.size)
+        format!("HG/{}{}", self.size, self.scatter.segment())
     }
 
     fn needs(&self) -> Needs {

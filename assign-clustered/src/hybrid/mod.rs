@@ -53,13 +53,28 @@
 //! - A surface whose depth equals the cleared depth cannot be told from background. Its samples get all lights.
 //!
 //! HG serves look-ups at any depth. Then every cell counts as holding samples.
+//!
+//! # By the rasteriser: `HG/…/raster`
+//!
+//! `count` and `fill` may leave the walk over tiles to the rasteriser, as Örtegren and Persson (2016), Bevy and Godot
+//! do. The target has one pixel per tile; each light draws a rectangle of whole tiles, and each fragment tests its
+//! light against its tile as a lane does. Örtegren and Persson draw a mesh of the light's shape instead, and read the
+//! depths over a tile from its front and back faces; that needs conservative rasterisation, which WebGPU lacks. So
+//! their proxy is tighter on the screen, and this test is tighter in depth. The rectangle is that of the light's ball;
+//! fragments outside the outline of a cone end at once.
+//!
+//! It balances work by itself: a light that covers all tiles is spread over the whole GPU. But fragments are shaded
+//! in blocks of four, so small lights waste up to three of four lanes, and GPUs of data centres run fragment
+//! shaders on few of their processors.
 
 mod buffers;
 mod grid;
 mod parts;
 mod passes;
+mod scatter;
 mod shader;
 
 pub use grid::HybridGrid;
 pub use parts::HybridParts;
+pub use scatter::Scatter;
 pub use shader::{HYBRID_WESL, HybridShader};

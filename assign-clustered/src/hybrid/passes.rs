@@ -8,6 +8,7 @@ use assign::{
 use super::{
     buffers::{Buffers, Sizes},
     parts::HybridParts,
+    scatter::{Scatter, ScatterPipeline},
     shader::{HybridShader, LISTS_GROUP},
 };
 use crate::froxels::{FROXELS_BINDING, FroxelsUniform};
@@ -35,23 +36,20 @@ pub(crate) struct HybridPasses {
     clear: wgpu::ComputePipeline,
     reserve: wgpu::ComputePipeline,
     sort: wgpu::ComputePipeline,
+    scatter: Scatter,
     /// The kinds of lights that it is compiled for, and the pipeline.
-    scatter: Option<(LightKinds, wgpu::ComputePipeline)>,
+    scatter_pipeline: Option<(LightKinds, ScatterPipeline)>,
     buffers: Buffers,
     sizes: Sizes,
 }
 
 impl HybridPasses {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, AssignError> {
+    pub(crate) fn new(gpu: &Gpu, scatter: Scatter) -> Result<Self, AssignError> {
         let stages = wgpu::ShaderStages::COMPUTE;
-        let cells = [
-            uniform_entry(FROXELS_BINDING, stages),
-            storage_entry(MASKS, stages, false),
-            storage_entry(CURSORS, stages, false),
-            storage_entry(UNSORTED, stages, false),
-        ];
-        let uniforms = [uniform_entry(3, stages), uniform_entry(PARTS, stages)];
         let frame = FrameBindings::new(gpu);
+        let uniform_stages = scatter.uniform_stages();
+        let uniforms = [uniform_entry(3, uniform_stages), uniform_entry(PARTS, uniform_stages)];
+        let cells = cells_entries(uniform_stages, scatter.stages());
         let cells_layout = gpu.bind_group_layout("hybrid cells", &[&uniforms, &cells[..]].concat());
         let depth_layout = gpu.bind_group_layout(
             "hybrid depth",
@@ -60,7 +58,8 @@ impl HybridPasses {
         let live_layouts = [false, true].map(|read_only| {
             gpu.bind_group_layout("hybrid live", &[storage_entry(0, stages, read_only)])
         });
-        let bound_lists = ListsBindings::of_kernel(gpu, "hybrid lists", &cells);
+        let bound_lists =
+            ListsBindings::of_kernel(gpu, "hybrid lists", &cells_entries(stages, stages));
         let kinds = LightKinds::default();
         let occupancy = HybridShader::Occupancy.create(gpu, kinds)?;
         let reserve = HybridShader::Reserve.create(gpu, kinds)?;
@@ -82,7 +81,8 @@ impl HybridPasses {
             depth_bind_group: None,
             live_layouts,
             live_bind_groups: None,
-            scatter: None,
+            scatter,
+            scatter_pipeline: None,
             buffers: Buffers::new(gpu)?,
             sizes: Sizes::default(),
         })
@@ -105,11 +105,13 @@ impl HybridPasses {
         self.bind(gpu, uniform, lists, depth);
         self.sizes = Sizes::new(frame, froxels, parts, &self.buffers);
         let kinds = frame.lights.kinds();
-        if self.scatter.as_ref().is_none_or(|(known, _)| *known != kinds) {
-            let module = HybridShader::Scatter.create(gpu, kinds)?;
+        if self.scatter_pipeline.as_ref().is_none_or(|(known, _)| *known != kinds) {
             let layouts = [self.frame.layout(), &self.cells_layout];
-            let pipeline = kernel::pipeline(gpu, &module, "scatter", &layouts);
-            self.scatter = Some((kinds, pipeline));
+            let pipeline = ScatterPipeline::new(gpu, self.scatter, kinds, layouts)?;
+            self.scatter_pipeline = Some((kinds, pipeline));
+        }
+        if let Some((_, pipeline)) = &mut self.scatter_pipeline {
+            pipeline.resize(gpu, froxels);
         }
         Ok(())
     }
@@ -154,13 +156,13 @@ impl HybridPasses {
                 pass.dispatch_workgroups(sizes.blocks[0], sizes.blocks[1], 1);
             }
         });
-        self.add_lights("count", passes);
+        self.add_lights("count", frame, passes);
         passes.compute("reserve", &mut |pass| {
             self.bind_lists(pass);
             pass.set_pipeline(&self.reserve);
             pass.dispatch_workgroups(sizes.reserve, 1, 1);
         });
-        self.add_lights("fill", passes);
+        self.add_lights("fill", frame, passes);
         passes.compute("sort", &mut |pass| {
             self.bind_lists(pass);
             pass.set_bind_group(2, self.live_bind_groups.as_ref().map(|[_, read]| read), &[]);
@@ -171,20 +173,16 @@ impl HybridPasses {
 
     /// Bytes of its buffers.
     pub(crate) fn bytes(&self) -> u64 {
-        self.buffers.bytes() + self.frame.bytes()
+        let target = self.scatter_pipeline.as_ref().map_or(0, |(_, pipeline)| pipeline.bytes());
+        self.buffers.bytes() + self.frame.bytes() + target
     }
 
     /// The pass that adds lights to cells. It counts them first, and places them after `reserve`.
-    fn add_lights(&self, name: &str, passes: &mut dyn Passes) {
-        let Some((_, scatter)) = &self.scatter else {
-            return;
-        };
-        let [workgroups, parts] = self.sizes.scatter;
-        passes.compute(name, &mut |pass| {
-            self.bind_cells(pass);
-            pass.set_pipeline(scatter);
-            pass.dispatch_workgroups(workgroups, parts, 1);
-        });
+    fn add_lights(&self, name: &str, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some((_, pipeline)) = &self.scatter_pipeline {
+            let bound = [self.frame.bind_group(), self.cells_bind_group.as_ref()];
+            pipeline.record(name, frame.lights.count(), self.sizes.scatter, bound, passes);
+        }
     }
 
     fn bind_cells(&self, pass: &mut wgpu::ComputePass<'_>) {
@@ -197,4 +195,17 @@ impl HybridPasses {
         let live = self.live_bind_groups.as_ref().map(|[written, _]| written);
         pass.set_bind_group(2, live, &[]);
     }
+}
+
+/// The cells besides their uniforms: what `occupancy` and the scatter passes read and write.
+fn cells_entries(
+    uniform: wgpu::ShaderStages,
+    storage: wgpu::ShaderStages,
+) -> [wgpu::BindGroupLayoutEntry; 4] {
+    [
+        uniform_entry(FROXELS_BINDING, uniform),
+        storage_entry(MASKS, storage, false),
+        storage_entry(CURSORS, storage, false),
+        storage_entry(UNSORTED, storage, false),
+    ]
 }

@@ -22,8 +22,10 @@ pub const HYBRID_WESL: StrategyWesl<'static> = StrategyWesl {
 pub enum HybridShader {
     /// Finds the cells that hold samples.
     Occupancy,
-    /// Adds lights to cells: first counts, then places.
+    /// Adds lights to cells by compute lanes: first counts, then places.
     Scatter,
+    /// The same by the rasteriser.
+    Raster,
     /// Clears the cells, and reserves the places of lists.
     Reserve,
     /// Sorts the lists.
@@ -32,7 +34,8 @@ pub enum HybridShader {
 
 impl HybridShader {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Occupancy, Self::Scatter, Self::Reserve, Self::Sort];
+    pub const ALL: [Self; 5] =
+        [Self::Occupancy, Self::Scatter, Self::Raster, Self::Reserve, Self::Sort];
 
     /// Its linked WGSL, for tests of layout and validity.
     pub fn source(self, kinds: LightKinds) -> Result<String, AssignError> {
@@ -43,6 +46,7 @@ impl HybridShader {
         match self {
             Self::Occupancy => "package::hybrid_occupancy",
             Self::Scatter => "package::hybrid_scatter",
+            Self::Raster => "package::hybrid_raster",
             Self::Reserve => "package::hybrid_reserve",
             Self::Sort => "package::hybrid_sort",
         }
@@ -57,9 +61,17 @@ impl HybridShader {
             Self::Occupancy => {
                 shader.module(self.root(), include_str!("../shaders/hybrid_occupancy.wesl"))
             }
-            Self::Scatter => shader
-                .module(self.root(), include_str!("../shaders/hybrid_scatter.wesl"))
-                .module("package::hybrid_outline", include_str!("../shaders/hybrid_outline.wesl")),
+            Self::Scatter | Self::Raster => {
+                let root = match self {
+                    Self::Raster => include_str!("../shaders/hybrid_raster.wesl"),
+                    _ => include_str!("../shaders/hybrid_scatter.wesl"),
+                };
+                let outline = include_str!("../shaders/hybrid_outline.wesl");
+                shader
+                    .module(self.root(), root)
+                    .module("package::hybrid_add", include_str!("../shaders/hybrid_add.wesl"))
+                    .module("package::hybrid_outline", outline)
+            }
             Self::Reserve => shader
                 .module(self.root(), include_str!("../shaders/hybrid_reserve.wesl"))
                 .module("package::live", LiveGroups::WESL)

@@ -12,6 +12,7 @@
 //! | deferred | the frame has depth and G-buffer; one that needs models pays for `model-ids` | the same |
 //! | deferred, ids in the G-buffer | the frame has everything | the same |
 
+use assign_clustered::Scatter;
 use shading::Mode;
 
 use super::{PassKind, Record};
@@ -42,6 +43,7 @@ pub fn is_raster_pass(name: &str, mode: Mode, strategy: &StrategyId) -> bool {
     match name {
         "depth" | "gbuffer" | "model-ids" | "clay" | "rsm-depth" | "rsm-gbuffer" => true,
         "shade" => mode.is_forward() || strategy.shade_rasterises(),
+        "count" | "fill" => strategy.options().scatter == Scatter::Raster,
         _ => false,
     }
 }

@@ -1,7 +1,7 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
 use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage};
-use assign_clustered::{Normals, Slices, SpecularCut};
+use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
 
@@ -11,6 +11,8 @@ use super::{Options, specular};
 const EVEN: &str = "even";
 /// The prefix of a segment that gives the first slice a depth of its own.
 const NEAR: &str = "near";
+/// The prefix of a segment that sets the number of cascades.
+const CASCADES: &str = "cascades";
 /// The prefix of a segment that sets the bins of normals.
 const NORMALS: &str = "n";
 /// The prefix of a segment that sets the most lights of a list.
@@ -25,14 +27,18 @@ const REUSE: &str = "reuse";
 const KEEP: &str = "keep";
 /// The segment that makes only those lists again that a changed light touches.
 const TOUCHED: &str = "touched";
+/// The segment that lets the rasteriser add lights to cells.
+const RASTER: &str = "raster";
 /// The segment that turns the early exit off.
 const NO_EXIT: &str = "no-exit";
 
 /// An axis besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// How depth is cut into slices: `even`, or `near5`.
+    /// How depth is cut into slices: `even`, `near5`, or `cascades3`.
     Slices,
+    /// What adds lights to cells: `raster`.
+    Scatter,
     /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
     Box,
     /// Bins of normals that split clusters: `n6`.
@@ -64,8 +70,9 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Slices,
+        Self::Scatter,
         Self::Box,
         Self::Normals,
         Self::Specular,
@@ -85,8 +92,8 @@ impl Axis {
     pub fn accepted(self) -> &'static str {
         match self {
             Self::Slices => {
-                "even for slices that are equally deep, or near and where the first slice ends, in metres, such as \
-                 near5"
+                "even for slices that are equally deep; near and where the first slice ends, in metres, such as \
+                 near5; or cascades and a number from 2 to 4, such as cascades3, which makes near tiles larger"
             }
             Self::Tests => "a union of hs, sat-e, sat-n, sat-p and sat-v",
             Self::Source => "linear or bvh",
@@ -95,6 +102,7 @@ impl Axis {
                 "mask, which keeps a bit per light in place of a list, or prune, which lets the lanes of a subgroup \
                  leave out lights of the list that miss their samples"
             }
+            Self::Scatter => "raster, which lets the rasteriser find the tiles of each light",
             Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
             Self::Specular => {
@@ -130,8 +138,10 @@ impl Axis {
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
             NO_EXIT => Some(Self::Exit),
             EVEN => Some(Self::Slices),
+            RASTER => Some(Self::Scatter),
             _ if fewer_of(segment).is_some() => Some(Self::Fewer),
             _ if segment.starts_with(NEAR) => Some(Self::Slices),
+            _ if segment.starts_with(CASCADES) => Some(Self::Slices),
             MASK | PRUNE => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
@@ -169,11 +179,12 @@ impl Axis {
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
             Self::Slices => {
-                let slices = match segment.strip_prefix(NEAR) {
-                    None => Slices::Even,
-                    Some(end_m) => Slices::Near(end_m.parse().ok()?),
+                let slices = match (segment.strip_prefix(NEAR), segment.strip_prefix(CASCADES)) {
+                    (Some(end_m), _) => Slices::Near(end_m.parse().ok()?),
+                    (_, Some(count)) => Slices::Cascaded(count.parse().ok()?),
+                    (None, None) => Slices::Even,
                 };
-                slices.check().ok()?;
+                slices.check(Slices::MAX_CASCADES).ok()?;
                 options.slices = slices;
             }
             Self::Storage => {
@@ -182,6 +193,7 @@ impl Axis {
                     _ => Storage::Masks,
                 };
             }
+            Self::Scatter => options.scatter = Scatter::Raster,
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
         }
@@ -212,6 +224,7 @@ impl Axis {
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
+            Self::Scatter => options.scatter.segment().strip_prefix('/').map(str::to_owned),
             Self::Storage => storage_name(options.storage).map(str::to_owned),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
@@ -251,7 +264,9 @@ impl Axis {
                 Slices::Exponential => return None,
                 Slices::Even => ("slicing", EVEN.into()),
                 Slices::Near(end_m) => ("first_slice_end_m", shortest(end_m)),
+                Slices::Cascaded(count) => ("cascades", count.into()),
             },
+            Self::Scatter => ("scatter", self.segment(options)?.into()),
             Self::Storage => ("storage", storage_name(options.storage)?.into()),
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,

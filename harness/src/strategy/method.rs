@@ -1,7 +1,7 @@
 //! How a strategy lights its pixels, and the point on its axes at which it does.
 
 use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, Kept, LightSource, Storage};
-use assign_clustered::{Normals, Slices, SpecularCut};
+use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 
 /// How a strategy lights its pixels.
@@ -39,6 +39,8 @@ pub struct Options {
     pub area_bounds: AreaBounds,
     /// How depth is cut into slices.
     pub slices: Slices,
+    /// What adds lights to the cells that they reach.
+    pub scatter: Scatter,
     /// Where a group's lights are kept.
     pub storage: Storage,
     /// The box that a grid cuts into cells.

@@ -106,9 +106,12 @@ fn parameters_have_names() {
     assert_eq!(id("SC-E/ball").parameters()["area_bounds"], "ball");
     assert_eq!(id("G/touched").parameters()["touched"], true);
     assert_eq!(id("T-E/mask").parameters()["storage"], "mask");
-    for invalid in ["SC-E/near0", "SC-E/nearnan", "SC-E/near"] {
-        let read = StrategyId::read(invalid);
-        assert!(!read.parameters().contains_key("first_slice_end_m"), "{invalid}");
+    assert_eq!(id("HG/raster").parameters()["scatter"], "raster");
+    assert_eq!(id("DC-I/cascades3").parameters()["cascades"], 3);
+    for invalid in ["SC-E/near0", "SC-E/nearnan", "SC-E/near", "SC-E/cascades1", "SC-E/cascades"] {
+        let read = StrategyId::read(invalid).parameters();
+        let is_set = |name| read.contains_key(name);
+        assert!(!is_set("first_slice_end_m") && !is_set("cascades"), "{invalid}");
     }
     assert_eq!(id("DC-E/near0.5").parameters()["first_slice_end_m"], 0.5);
     assert_eq!(id("SC-E/bvh/even").as_str(), "SC-E/48x48x40/even/bvh");

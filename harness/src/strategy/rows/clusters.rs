@@ -6,8 +6,8 @@ use assign::{
     Gpu,
 };
 use assign_clustered::{
-    Clustered,
-    Occupancy::{self, Dense, Sparse},
+    ClusterOptions, Clustered,
+    Occupancy::{self, Dense, DepthAware, Sparse},
     ZBins,
 };
 
@@ -74,6 +74,25 @@ pub(super) const ROWS: &[Row] = &[
         make: |gpu, options| make(gpu, options, Explicit, Sparse),
         ..CLUSTERS
     },
+    Row {
+        family: "DA-I",
+        name: "depth-aware clusters, implicit bounds",
+        about: "the lists of SC-I; one workgroup per tile finds the slices that hold samples",
+        axes: FRUSTA,
+        colour: Colour { light: "#aa77cc", dark: "#8855aa" },
+        make: |gpu, options| make(gpu, options, Implicit, DepthAware),
+        ..DEPTH_AWARE
+    },
+    Row {
+        family: "DA-E",
+        name: "depth-aware clusters, explicit bounds",
+        about: "the lists of SC-E; one workgroup per tile finds the slices that hold samples, and the box around \
+                the samples of each",
+        axes: BOXES,
+        colour: Colour { light: "#9900ff", dark: "#b455ff" },
+        make: |gpu, options| make(gpu, options, Explicit, DepthAware),
+        ..DEPTH_AWARE
+    },
     Z_BINS,
 ];
 
@@ -104,6 +123,14 @@ const Z_BINS: Row = Row {
         let z_bins = ZBins::new(gpu, options.parameters.parse()?, options.settings())?;
         Ok(Method::lists(z_bins.with_slices(options.slices)?))
     },
+    ..CLUSTERS
+};
+
+const DEPTH_AWARE: Row = Row {
+    role: Role::Engine,
+    source: "Olsson, Billeter and Assarsson 2012, \"Clustered Deferred and Forward Shading\", High Performance \
+             Graphics: unique clusters per tile",
+    needs: NEEDS_DEPTH,
     ..CLUSTERS
 };
 
@@ -176,9 +203,8 @@ fn make(
     occupancy: Occupancy,
 ) -> Result<Method, AssignError> {
     let size = options.parameters.parse()?;
-    let Options { normals, specular, .. } = *options;
+    let Options { slices, normals, specular: cut, .. } = *options;
     let settings = options.settings();
-    let clusters =
-        Clustered::with_normals(gpu, size, bounds, occupancy, normals, specular, settings)?;
-    Ok(Method::lists(clusters.with_slices(options.slices)?))
+    let clusters = ClusterOptions { size, bounds, occupancy, slices, normals, cut, settings };
+    Ok(Method::lists(Clustered::with_options(gpu, clusters)?))
 }
