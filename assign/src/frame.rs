@@ -67,6 +67,9 @@ pub struct Frame<'a> {
     /// the surfaces and the models. Only a strategy that [updates groups](crate::Assignment::updates_groups)
     /// gets it, from [`Touched`](crate::Touched).
     pub changes: Option<&'a LightChanges>,
+    /// A number that differs from frame to frame, for what is random ([`Stochastic`](crate::Stochastic)). Shading must
+    /// get the same.
+    pub seed: u32,
 }
 
 impl<'a> Frame<'a> {
@@ -82,6 +85,7 @@ impl<'a> Frame<'a> {
             models: None,
             surface_bounds: None,
             changes: None,
+            seed: 0,
         }
     }
 
@@ -94,6 +98,13 @@ impl<'a> Frame<'a> {
     /// As [`light_bounds`](Self::light_bounds), around the lights' positions.
     pub fn light_position_bounds(&self) -> Option<(Vec3, Vec3)> {
         self.changes.map_or_else(|| self.lights.position_bounds(), LightChanges::position_bounds)
+    }
+
+    /// Sets the seed of what is random.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u32) -> Self {
+        self.seed = seed;
+        self
     }
 
     /// Adds the depth buffer.
@@ -176,7 +187,8 @@ impl FrameBindings {
     /// Checks and uploads the view, and binds the lights.
     pub fn update(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&frame.view.uniform()));
+        let uniform = ViewUniform { seed: frame.seed, ..frame.view.uniform() };
+        gpu.queue.write_buffer(&self.uniform, 0, bytes_of(&uniform));
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
             layout: &self.layout,

@@ -39,6 +39,7 @@ impl<'a> Shader<'a> {
             .module("package::sample", include_str!("shaders/sample.wesl"))
             .module("package::lights", include_str!("shaders/lights.wesl"))
             .module("package::volume", include_str!("shaders/volume.wesl"))
+            .module("package::stochastic", include_str!("shaders/stochastic.wesl"))
             .module("package::window", include_str!("shaders/window.wesl"))
             .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))

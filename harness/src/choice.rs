@@ -1,6 +1,8 @@
 //! A strategy that a command line asks for, ready to be made.
 
-use assign::{AssignError, Fewer, FrustumTests, Gpu, Keep, LightSource, Reuse, Touched};
+use assign::{
+    AssignError, Fewer, FrustumTests, Gpu, Keep, LightSource, Reuse, Stochastic, Touched,
+};
 use assign_clustered::SpecularCut;
 use shading::Mode;
 
@@ -50,15 +52,18 @@ impl Choice {
     pub fn make(&self, gpu: &Gpu) -> Result<Method, AssignError> {
         let options = self.id.options();
         let mut method = (self.row.make)(gpu, options)?;
-        if let Method::Lists { strategy, early_exit } = &mut method {
+        if let Method::Lists { strategy, early_exit, .. } = &mut method {
             *early_exit &= !options.evaluates_all;
             if let Some(most) = options.cap {
                 strategy.lists_mut().cap_lists(most);
             }
         }
-        let Method::Lists { mut strategy, early_exit } = method else { return Ok(method) };
+        let Method::Lists { mut strategy, early_exit, .. } = method else { return Ok(method) };
         if let Some((kept, most)) = options.fewer {
             strategy = Box::new(Fewer::new(gpu, strategy, kept, most)?);
+        }
+        if let Some(threshold) = options.stochastic {
+            strategy = Box::new(Stochastic::new(gpu, strategy, threshold)?);
         }
         if options.is_touched {
             strategy = Box::new(Touched::new(gpu, strategy)?);
@@ -69,7 +74,7 @@ impl Choice {
         if let Some(frames) = options.reuse {
             strategy = Box::new(Reuse::new(strategy, frames)?);
         }
-        Ok(Method::Lists { strategy, early_exit })
+        Ok(Method::Lists { strategy, early_exit, stochastic: options.stochastic })
     }
 
     /// The canonical id.

@@ -166,7 +166,7 @@ impl<'a> Contest<'a> {
         }
         let image = read(&self.gpu, stage)?;
         let lists = match &self.contenders[method].painter {
-            Painter::Lists { strategy, lighting } => {
+            Painter::Lists { strategy, lighting, .. } => {
                 let exposure = *self.exposure.get_or_insert_with(|| image.auto_exposure());
                 let seen = self.plan.operations.then(|| (lighting.options(), exposure));
                 Some(count(&self.gpu, stage, *strategy, self.mode, truth, seen)?)
@@ -272,7 +272,8 @@ pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrIm
     let lights: Vec<Light> = known_lights(gpu, &stage.lights)?.iter().map(unbounded).collect();
     let bounded = std::mem::replace(&mut stage.lights, LightBuffer::new(gpu, &lights)?);
     let bounce = stage.bounce.take();
-    let mut method = Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false };
+    let everything = Box::new(Everything::new(gpu)?);
+    let mut method = Method::Lists { strategy: everything, early_exit: false, stochastic: None };
     let image = stage.prepare().and_then(|()| {
         let mut painter = Painter::new(stage, &mut method, mode, Cut::Hard)?;
         draw_unclocked(gpu, stage, mode, &mut painter)?;

@@ -16,6 +16,8 @@ pub enum Painter<'a> {
         strategy: &'a mut dyn Assignment,
         /// Lighting with its look-up.
         lighting: Lighting,
+        /// The number of the frame, if it draws at random: its seed.
+        frame_ix: Option<u32>,
     },
     /// Light volumes.
     RasterSphere(RasterSpheres),
@@ -33,7 +35,7 @@ impl<'a> Painter<'a> {
     ) -> Result<Self, HarnessError> {
         let kinds = stage.lights.kinds();
         Ok(match method {
-            Method::Lists { strategy, early_exit } => {
+            Method::Lists { strategy, early_exit, stochastic } => {
                 let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
                 let options = LightingOptions {
                     kinds,
@@ -41,10 +43,12 @@ impl<'a> Painter<'a> {
                     cut,
                     area: stage.area_model,
                     compensation: stage.compensation,
+                    stochastic: *stochastic,
                     suns: stage.suns,
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
-                Self::Lists { strategy: strategy.as_mut(), lighting }
+                let frame_ix = stochastic.map(|_| 0);
+                Self::Lists { strategy: strategy.as_mut(), lighting, frame_ix }
             }
             Method::RasterSphere => Self::RasterSphere(raster_spheres(stage, cut)?),
             Method::Clay => Self::Clay,
@@ -86,7 +90,11 @@ impl<'a> Painter<'a> {
         if let (Some(bounce), Self::Lists { .. } | Self::RasterSphere(_)) = (bounce, &self) {
             bounce.prepare(gpu)?;
         }
-        let Self::Lists { strategy, .. } = self else { return Ok(true) };
+        let Self::Lists { strategy, frame_ix, .. } = self else { return Ok(true) };
+        if let Some(frame_ix) = frame_ix {
+            renderer.reseed(view, lights, *frame_ix)?;
+            *frame_ix = frame_ix.wrapping_add(1);
+        }
         strategy.prepare(gpu, &renderer.frame(view, lights))?;
         // These are the counters of the previous frame; `prepare` grew the pool to what it asked for.
         Ok(strategy.lists().stats().is_none_or(|c| c.overflowed_groups == 0))
@@ -103,7 +111,7 @@ impl<'a> Painter<'a> {
     ) -> Result<(), HarnessError> {
         let Stage { renderer, view, lights, bounce, .. } = stage;
         match self {
-            Self::Lists { strategy, lighting } => {
+            Self::Lists { strategy, lighting, .. } => {
                 record_lights(gpu, lights, bounce, strategy.needs().hierarchy, passes)?;
                 let frame = renderer.frame(view, lights);
                 record_before_lighting(renderer, mode, *strategy, &frame, passes);

@@ -60,6 +60,9 @@ impl Lighting {
             }
             .into());
         }
+        if let Some(threshold) = options.stochastic {
+            assign::check_threshold(threshold)?;
+        }
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();
         let gpu = &renderer.gpu;

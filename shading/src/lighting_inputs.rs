@@ -12,7 +12,7 @@ pub(crate) const LIGHTING_BINDING: u32 = 6;
 /// Binding of the table in group 2.
 pub(crate) const LTC_BINDING: u32 = 7;
 
-/// `lighting_uniform.wesl`, `struct LightingUniform`. 12 bytes.
+/// `lighting_uniform.wesl`, `struct LightingUniform`. 16 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct LightingRecord {
@@ -22,6 +22,8 @@ pub struct LightingRecord {
     pub area_samples: u32,
     /// [`LightingOptions::compensation`]; 0 if it is off.
     pub applicable_lights: f32,
+    /// [`LightingOptions::stochastic`]; 0 if it is off.
+    pub random_threshold: f32,
 }
 
 /// Binding of `Suns` in group 2.
@@ -100,6 +102,7 @@ impl LightingInputs {
             exit_weight: options.exit_weight,
             area_samples,
             applicable_lights: options.compensation.unwrap_or(0.0),
+            random_threshold: options.stochastic.unwrap_or(0.0),
         };
         gpu.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&record));
         let table = match options.area.table().filter(|_| options.kinds.areas) {

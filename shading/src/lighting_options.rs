@@ -28,6 +28,9 @@ pub struct LightingOptions {
     /// factor of 4. It hides where virtual point lights are dense or sparse. No light emits what it
     /// adds, so it is off (`None`) wherever errors are measured. Off, it changes no bit.
     pub compensation: Option<f32>,
+    /// The threshold of stochastic light culling, an irradiance, as in [`Stochastic`](assign::Stochastic). Off
+    /// (`None`), it changes no bit.
+    pub stochastic: Option<f32>,
     /// Suns light every sample in addition to its list. Without suns, none of their code is
     /// compiled and nothing is bound for them.
     pub suns: Suns,
@@ -64,6 +67,7 @@ impl LightingOptions {
             .light_kinds(self.kinds)
             .flag("hard_cut", self.cut == Cut::Hard)
             .flag("compensation", self.compensation.is_some())
+            .flag("stochastic", self.stochastic.is_some())
             .flag("suns", !self.suns.is_empty());
         let flags = self.area.flags().iter();
         flags.fold(shader, |shader, flag| shader.flag(flag, self.kinds.areas))

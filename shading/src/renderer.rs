@@ -27,6 +27,8 @@ pub struct Renderer {
     pub(crate) depth_mapping: DepthMapping,
     /// The prepared lights.
     pub(crate) lights: LightTotals,
+    /// [`Frame::seed`] of the next frame.
+    seed: u32,
     models: Vec<ModelBox>,
     surface_bounds: (Vec3, Vec3),
     depth: RasterPipelines,
@@ -62,6 +64,7 @@ impl Renderer {
             gpu: gpu.clone(),
             depth_mapping: view.depth,
             lights: LightTotals::default(),
+            seed: 0,
             frame,
             scene_group: scene.bind_group(gpu, &inputs),
             scene,
@@ -88,6 +91,7 @@ impl Renderer {
             targets,
             depth_mapping: view.depth,
             lights: LightTotals::default(),
+            seed: 0,
             models: self.models.clone(),
             surface_bounds: self.surface_bounds,
             depth,
@@ -112,6 +116,7 @@ impl Renderer {
     /// normals and base colours, the boxes of its models, and the box around its surfaces.
     pub fn frame<'a>(&'a self, view: &'a View, lights: &'a assign::LightBuffer) -> Frame<'a> {
         Frame::new(view, lights)
+            .with_seed(self.seed)
             .with_depth(&self.targets.depth)
             .with_normals(&self.targets.normal)
             .with_base_color(&self.targets.base_color)
@@ -140,9 +145,20 @@ impl Renderer {
                 self.depth = make(RasterPass::Depth)?;
             }
         }
-        self.frame.update(&self.gpu, &Frame::new(view, lights))?;
+        self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(self.seed))?;
         self.lights = LightTotals::of_buffer(lights);
         Ok(())
+    }
+
+    /// Sets the seed of what is random, for the next frame of the prepared view and lights.
+    pub fn reseed(
+        &mut self,
+        view: &View,
+        lights: &assign::LightBuffer,
+        seed: u32,
+    ) -> Result<(), ShadingError> {
+        self.seed = seed;
+        Ok(self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(seed))?)
     }
 
     /// Records the pass `depth`: the depth pre-pass.

@@ -21,6 +21,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "model_ids",
         "hard_cut",
         "compensation",
+        "stochastic",
         "suns",
         "area_point",
         "area_mrp",

@@ -49,7 +49,7 @@ fn material() {
 
 #[test]
 fn lighting_uniform() {
-    let rust = struct_layout!(LightingRecord: exit_weight, area_samples, applicable_lights);
+    let rust = struct_layout!(LightingRecord: exit_weight, area_samples, applicable_lights, random_threshold);
     assert_eq!(lighting().layout_of("LightingUniform"), rust, "WESL, then Rust");
 }
 

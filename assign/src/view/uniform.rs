@@ -35,12 +35,14 @@ pub struct ViewUniform {
     pub position_error: f32,
     /// The clip depth to which the depth buffer is cleared.
     pub depth_clear: f32,
+    /// [`Frame::seed`](crate::Frame::seed).
+    pub seed: u32,
     /// Pads to 256 bytes.
-    pub padding: [f32; 3],
+    pub padding: [f32; 2],
 }
 
 impl View {
-    /// The record shaders read.
+    /// The record shaders read, with seed 0.
     pub fn uniform(&self) -> ViewUniform {
         let (perspective, min, max) = self.window();
         ViewUniform {
@@ -56,7 +58,8 @@ impl View {
             perspective: if perspective { 1.0 } else { 0.0 },
             position_error: POSITION_ERROR,
             depth_clear: self.depth_clear(),
-            padding: [0.0; 3],
+            seed: 0,
+            padding: [0.0; 2],
         }
     }
 }

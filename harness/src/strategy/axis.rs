@@ -1,6 +1,6 @@
 //! The axes that a family can vary on besides its parameters, and the segments that set them.
 
-use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage};
+use assign::{AreaBounds, FrustumTests, Kept, LightSource, Storage, check_threshold};
 use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 use serde_json::Value;
@@ -21,6 +21,8 @@ const CAP: &str = "cap";
 const MASK: &str = "mask";
 /// The segment that lets subgroups prune lists while they read them.
 const PRUNE: &str = "prune";
+/// The prefix of a segment that makes ranges random below an irradiance.
+const STOCHASTIC: &str = "stochastic";
 /// The prefix of a segment that sets for how many frames lists are used.
 const REUSE: &str = "reuse";
 /// The prefix of a segment that sets for how many frames lists of larger lights are kept.
@@ -56,6 +58,8 @@ pub enum Axis {
     Storage,
     /// The most lights of a frame: `first256` or `nearest256`, the others dropped. Lossy.
     Fewer,
+    /// The irradiance below which lights stay at random: `stochastic0.01`. Lossy.
+    Stochastic,
     /// For how many frames lists are used: `reuse4`. Lossy where groups or lights move.
     Reuse,
     /// For how many frames lists are kept that hold all lights wherever they may move: `keep4`.
@@ -70,7 +74,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Slices,
         Self::Scatter,
         Self::Box,
@@ -81,6 +85,7 @@ impl Axis {
         Self::AreaBounds,
         Self::Storage,
         Self::Fewer,
+        Self::Stochastic,
         Self::Reuse,
         Self::Keep,
         Self::Touched,
@@ -115,6 +120,9 @@ impl Axis {
                 "first or nearest and the most lights of a frame, such as nearest256, which drops lights that are \
                  farther away"
             }
+            Self::Stochastic => {
+                "stochastic and the irradiance below which lights stay at random, such as stochastic0.01"
+            }
             Self::Reuse => {
                 "reuse and the number of frames for which lists are used, such as reuse4"
             }
@@ -145,6 +153,7 @@ impl Axis {
             MASK | PRUNE => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
+            _ if segment.starts_with(STOCHASTIC) => Some(Self::Stochastic),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
             _ if segment.starts_with(KEEP) => Some(Self::Keep),
             _ => segment.parse::<FrustumTests>().ok().map(|_| Self::Tests),
@@ -176,6 +185,11 @@ impl Axis {
             Self::Specular => options.specular = specular::parse(segment)?,
             Self::Cap => options.cap = Some(number_after(segment, CAP)?),
             Self::Fewer => options.fewer = Some(fewer_of(segment)?),
+            Self::Stochastic => {
+                let threshold = segment.strip_prefix(STOCHASTIC)?.parse().ok()?;
+                check_threshold(threshold).ok()?;
+                options.stochastic = Some(threshold);
+            }
             Self::Reuse => options.reuse = Some(number_after(segment, REUSE)?),
             Self::Keep => options.keep = Some(number_after(segment, KEEP)?),
             Self::Slices => {
@@ -221,6 +235,9 @@ impl Axis {
             Self::Specular => specular::segment(options.specular),
             Self::Cap => options.cap.map(|most| format!("{CAP}{most}")),
             Self::Fewer => options.fewer.map(|(kept, most)| format!("{}{most}", kept.name())),
+            Self::Stochastic => {
+                options.stochastic.map(|threshold| format!("{STOCHASTIC}{threshold}"))
+            }
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
@@ -258,6 +275,7 @@ impl Axis {
             },
             Self::Cap => ("list_cap", options.cap?.into()),
             Self::Fewer => ("frame_cap", self.segment(options)?.into()),
+            Self::Stochastic => ("stochastic_threshold", shortest(options.stochastic?)),
             Self::Reuse => ("reuse_frames", options.reuse?.into()),
             Self::Keep => ("keep_frames", options.keep?.into()),
             Self::Slices => match options.slices {

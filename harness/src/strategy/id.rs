@@ -141,9 +141,9 @@ impl StrategyId {
         self.row?.has_axis(Axis::Tests).then(|| self.options.settings().tests)
     }
 
-    /// The lossy knob: `cap8`, `reuse4`, `s0.001`, `cone45` or `dif`.
+    /// The lossy knob: `cap8`, `reuse4`, `stochastic0.01`, `s0.001`, `cone45` or `dif`.
     pub fn knob(&self) -> Option<String> {
-        [Axis::Specular, Axis::Reuse, Axis::Cap]
+        [Axis::Specular, Axis::Stochastic, Axis::Reuse, Axis::Cap]
             .into_iter()
             .find_map(|axis| axis.segment(&self.options))
     }
@@ -157,6 +157,7 @@ impl StrategyId {
     pub fn is_lossy(&self, lights: u64) -> bool {
         self.options.cap.is_some_and(|most| u64::from(most) < lights)
             || self.options.fewer.is_some_and(|(_, most)| u64::from(most) < lights)
+            || self.options.stochastic.is_some()
             || self.options.reuse.is_some_and(|frames| frames > 1)
             || self.options.specular != SpecularCut::None
     }

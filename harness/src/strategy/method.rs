@@ -12,6 +12,8 @@ pub enum Method {
         strategy: Box<dyn Assignment>,
         /// Whether shading leaves out lights that add nothing to a sample.
         early_exit: bool,
+        /// The irradiance below which lights stay at random.
+        stochastic: Option<f32>,
     },
     /// Light volumes are rasterised; deferred shading only.
     RasterSphere,
@@ -22,7 +24,7 @@ pub enum Method {
 impl Method {
     /// Lists that shading reads with the early exit.
     pub(super) fn lists(strategy: impl Assignment + 'static) -> Self {
-        Self::Lists { strategy: Box::new(strategy), early_exit: true }
+        Self::Lists { strategy: Box::new(strategy), early_exit: true, stochastic: None }
     }
 }
 
@@ -53,6 +55,8 @@ pub struct Options {
     pub cap: Option<u32>,
     /// Which lights of a frame have lists, and how many.
     pub fewer: Option<(Kept, u32)>,
+    /// The irradiance below which lights stay at random.
+    pub stochastic: Option<f32>,
     /// The number of frames for which lists are used.
     pub reuse: Option<u32>,
     /// The most frames for which lists of larger lights are kept.

@@ -79,6 +79,13 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             "`dif` cannot be combined with normal cones",
         ));
     }
+    if let Some(stochastic) = Axis::Stochastic.segment(options) {
+        let others = [Axis::Keep, Axis::Touched, Axis::Reuse];
+        if let Some(other) = others.into_iter().find_map(|axis| axis.segment(options)) {
+            let reason = "ranges that are random differ from frame to frame";
+            return Err(contradiction(id, &stochastic, &other, reason));
+        }
+    }
     if let (Some(fewer), Some(source)) = (
         Axis::Fewer.segment(options),
         Axis::Keep.segment(options).or_else(|| Axis::Touched.segment(options)),

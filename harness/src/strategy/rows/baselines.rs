@@ -16,7 +16,11 @@ pub(super) const NONE: Row = Row {
     krate: "assign",
     in_default: Some("None"),
     make: |gpu, _| {
-        Ok(Method::Lists { strategy: Box::new(Everything::new(gpu)?), early_exit: false })
+        Ok(Method::Lists {
+            strategy: Box::new(Everything::new(gpu)?),
+            early_exit: false,
+            stochastic: None,
+        })
     },
     ..Row::PLAIN
 };

@@ -22,6 +22,7 @@ pub(super) const ROWS: &[Row] = &[Row {
         Axis::AreaBounds,
         Axis::Storage,
         Axis::Fewer,
+        Axis::Stochastic,
         Axis::Cap,
         Axis::Reuse,
         Axis::Keep,
