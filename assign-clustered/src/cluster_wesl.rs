@@ -2,7 +2,7 @@
 
 use assign::{Bounds, LightReader, Storage, StrategyWesl};
 
-use crate::ClusterOptions;
+use crate::cluster_options::ClusterOptions;
 
 /// The shared froxel grid, to mount next to a main module that imports it.
 pub(crate) const FROXELS: (&str, &str) =

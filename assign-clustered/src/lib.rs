@@ -106,6 +106,7 @@
 //! DC-I serves look-ups at any depth, including transparent layers and volumes. The others serve only the opaque
 //! surfaces in the depth buffer, and refuse any other look-up.
 
+mod cluster_options;
 mod cluster_wesl;
 mod clustered;
 mod froxels;
@@ -118,11 +119,12 @@ mod slices;
 mod specular_cut;
 mod z_bins;
 
+pub use cluster_options::ClusterOptions;
 pub use cluster_wesl::{
     BINS_WESL, EXPLICIT_CASCADES_WESL, EXPLICIT_WESL, GLOSSY_BINS_WESL, IMPLICIT_CASCADES_WESL,
     IMPLICIT_WESL,
 };
-pub use clustered::{ClusterOptions, Clustered};
+pub use clustered::Clustered;
 pub use froxels::{FroxelSize, FroxelsUniform};
 pub use gather::{gather_source, marks_words};
 pub use hybrid::{HYBRID_WESL, HybridGrid, HybridParts, HybridShader, Scatter};

@@ -23,9 +23,12 @@ pub use verdict::{METRIC, Verdict, error_of, verdict};
 
 use std::time::Instant;
 
+use assign::{AssignError, Gpu};
+
 use crate::{
     bench::Bench,
     checks::check_motion,
+    choice::Choice,
     cli::{self, AdviseArgs, CliError, CompareArgs, Invocation},
     compare::compare_on,
     error::HarnessError,
@@ -92,7 +95,8 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
 
-    let families = search.round("families", &first_ids(), &["--source", "both"], 0)?;
+    let first = first_ids(search.bench.gpu()).join(",");
+    let families = search.round("families", &first, &["--source", "both"], 0)?;
     let best = fastest_by_family(&families);
     let finalists: Vec<StrategyId> =
         best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
@@ -232,12 +236,16 @@ fn listed(ids: &[StrategyId]) -> String {
     ids.iter().map(StrategyId::as_str).collect::<Vec<_>>().join(",")
 }
 
-/// What the first round compares: no culling, without and with the early exit, and every family with
-/// groups at its default parameters.
-fn first_ids() -> String {
-    let is_compared =
-        |row: &&Row| row.has_groups || matches!(row.role, Role::Baseline | Role::EarlyExit);
-    rows().filter(is_compared).flat_map(Row::overview_ids).collect::<Vec<_>>().join(",")
+/// What the first round compares: no culling, without and with the early exit, and every family that shows the same
+/// image and that the device can run, at its default parameters.
+fn first_ids(gpu: &Gpu) -> Vec<String> {
+    let is_compared = |row: &&Row| row.role != Role::Control && row.tolerance.is_none();
+    let is_unsupported = |id: &str| match Choice::parse(id).map(|choice| choice.make(gpu)) {
+        Ok(Err(error)) => matches!(error, AssignError::Unsupported { .. }),
+        Ok(Ok(_)) | Err(_) => false,
+    };
+    let ids = rows().filter(is_compared).flat_map(Row::overview_ids);
+    ids.filter(|id| !is_unsupported(id)).collect()
 }
 
 /// The same strategy at the other group sizes of its row, from the same source.

@@ -80,14 +80,17 @@ const QUICK: Extent = Extent {
 };
 
 /// The ids that are measured: families of the comparison paper with explicit bounds, and the other families that
-/// make lists. Clusters look for lights through the hierarchy if they can. Tiles read the plain list, which needs
+/// make lists, but those with implicit bounds. Clusters look for lights through the hierarchy if they can. Tiles read the plain list, which needs
 /// no order, but not a list of many lights: they would take 40 ms for four million on an H200.
 fn strategies(has_many_lights: bool) -> Vec<String> {
     let is_explicit = |row: &Row| row.role == Role::ComparisonPaper && row.family.ends_with("-E");
     // What has no list to cap has bit masks, which do not hold four million lights.
     let has_lists = |row: &Row| row.has_groups && row.has_axis(Axis::Cap);
-    let is_other =
-        |row: &Row| matches!(row.role, Role::OtherPaper | Role::Engine) && has_lists(row);
+    let is_other = |row: &Row| {
+        matches!(row.role, Role::OtherPaper | Role::Engine)
+            && has_lists(row)
+            && !row.family.ends_with("-I")
+    };
     let id = |row: &Row| {
         let is_large = row.parameters.contains(&"slices") || has_many_lights;
         let through = is_large && row.has_axis(Axis::Source);
@@ -269,6 +272,7 @@ mod tests {
                 "T-25D/28x28",
                 "DC-E/64x64x40/bvh",
                 "SC-E/48x48x40/bvh",
+                "DA-E/48x48x40/bvh",
                 "HG/48x48x40"
             ]
         );
