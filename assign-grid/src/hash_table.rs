@@ -1,4 +1,4 @@
-//! The table of cells of HC: which cells there are, and the pass `fill` that finds those with visible samples.
+//! The table of cells of HC: which cells there are, and the pass `bounds` that finds those with visible samples.
 
 use assign::{
     AssignError, Frame, FrameBindings, Gpu, LightReader, LiveGroups, Passes, Projection, Readback,
@@ -220,10 +220,10 @@ impl HashTable {
         Ok(self.slots)
     }
 
-    /// Records the pass `fill`: inside the clock.
+    /// Records the pass `bounds`: inside the clock.
     pub(crate) fn record(&mut self, view: &View, passes: &mut dyn Passes) {
         let Some([table, live]) = &self.bind_groups else { return };
-        passes.compute("fill", &mut |pass| {
+        passes.compute("bounds", &mut |pass| {
             pass.set_bind_group(0, self.frame.bind_group(), &[]);
             pass.set_bind_group(FILL_GROUP, table, &[]);
             pass.set_bind_group(LIVE_GROUP, live, &[]);

@@ -46,7 +46,7 @@
 //!
 //! 1. `bounds` (`G/…/visible`): finds the box around the samples in the depth buffer, then makes the cells. The CPU
 //!    waits for nothing.
-//! 2. `fill` (HC): clears the table, then puts each sample's cell into it. A slot holds the whole key, so no two
+//! 2. `bounds` (HC): clears the table, then puts each sample's cell into it. A slot holds the whole key, so no two
 //!    cells share a slot. Within rounding of a border, a sample puts the cells on both sides into the table, because
 //!    shading may round it across.
 //! 3. `cull`: one workgroup per cell tests lights against the cell's box and writes the cell's
@@ -59,7 +59,7 @@
 //! # Cost
 //!
 //! `cull` grows with cells times lights. For G, pixels and view do not matter to it. Memory is 8 bytes per cell
-//! and 4 bytes per listed light. `bounds` and `fill` grow with pixels. HC has 16 bytes per slot, and 16 slots per
+//! and 4 bytes per listed light. `bounds` grows with pixels. HC has 16 bytes per slot, and 16 slots per
 //! square of the screen of the cell's width, at least 4,096: 262 kB for `HC/48` at 1920x1080.
 //!
 //! Times in ms for 10,000 lights in Sponza at 1920x1080 (H200, 2026-11-25;
@@ -91,7 +91,7 @@
 //!   which are deeper than wide, and their lists are shorter. But there are more of them: a slanted surface passes
 //!   through many. Use wider cells where `cull` takes longer than shading.
 //! - Where levels meet, cells overlap, and both are culled.
-//! - The number of visible cells is not known before the pass `fill`. If a cell finds no free slot within 64 tries,
+//! - The number of visible cells is not known before the pass `bounds`. If a cell finds no free slot within 64 tries,
 //!   its samples read all lights in that frame. Tries without a slot are counted ([`TableUse`]), and the table
 //!   doubles a frame or two later. It also grows as soon as more than half of the slots are filled.
 //! - Samples more than 2^31 times as far away as the near plane read all lights.

@@ -6,7 +6,7 @@ mod first_view;
 
 use assign::{
     AssignError, Assignment, CullSettings, EncoderPasses, Frame, Gpu, Keep, Light, LightBuffer,
-    LightSource, SampleDomain, StrategyWesl, Touched, View,
+    LightSource, SampleDomain, Storage, StrategyWesl, Touched, View,
     conformance::{
         self, Breach, ConformanceError, Outcome, Reworded, faulty::Fault, flat_depth, reword,
     },
@@ -40,6 +40,17 @@ fn the_smallest_and_the_largest_cells_conform() {
 }
 
 #[test]
+fn masks_conform() {
+    let settings = CullSettings { storage: Storage::Masks, ..CullSettings::default() };
+    let make = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
+        Ok(Box::new(HashedCells::new(gpu, 8, settings)?))
+    };
+    for case in ["33-lights", "5000-lights", "resize"] {
+        conformance::run_case(case, &make).expect(case);
+    }
+}
+
+#[test]
 fn kept_and_touched_lists_conform() {
     let make = hashed(8, LightSource::Linear);
     let kept = |gpu: &Gpu| -> Result<Box<dyn Assignment>, AssignError> {
@@ -57,7 +68,13 @@ fn kept_and_touched_lists_conform() {
 #[test]
 fn planted_faults_are_rejected() {
     let make = hashed(8, LightSource::Linear);
-    assert_eq!(conformance::rejects_faults(&make).expect("rejects"), Fault::all(false));
+    let loses_light = |fault: &Fault| *fault != Fault::Unrecorded;
+    for fault in Fault::all(false).into_iter().filter(loses_light) {
+        conformance::rejects_fault(fault, &make).unwrap_or_else(|error| panic!("{error}"));
+    }
+    // A table that no pass filled holds no cell, so all samples read all lights.
+    let error = conformance::rejects_fault(Fault::Unrecorded, &make).expect_err("loses no light");
+    assert!(matches!(error, ConformanceError::FaultPassed { .. }), "{error}");
 }
 
 /// A table that was filled for another view serves its own cells, and no others.

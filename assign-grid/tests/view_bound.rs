@@ -141,8 +141,9 @@ fn occupied(depth: f32, size: [u32; 2]) -> u32 {
 fn any_depth_buffer_has_cells() {
     // A wall at 4 m has one layer of cells.
     assert_eq!(occupied(0.125 / 4.0, [64, 48]), 16);
-    // Only background, one sample, and depths that are no numbers.
-    assert_eq!(occupied(0.0, [64, 48]), 1);
+    // Background has one cell, in a corner of the lights' box, where no light reaches.
+    assert_eq!(occupied(0.0, [64, 48]), 0);
+    assert_eq!(occupied(f32::NAN, [64, 48]), 0);
     assert_eq!(occupied(0.125 / 4.0, [1, 1]), 1);
     // Farther away than any light reaches.
     assert!(occupied(1e-9, [64, 48]) <= 64);

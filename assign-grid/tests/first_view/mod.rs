@@ -5,13 +5,13 @@ use assign::{
 };
 
 /// Its lists are of the first frame's surfaces and of every frame's lights.
-pub struct FirstView {
+pub(crate) struct FirstView {
     inner: Box<dyn Assignment>,
     first: Option<(View, Option<wgpu::TextureView>)>,
 }
 
 impl FirstView {
-    pub fn new(inner: Box<dyn Assignment>) -> Self {
+    pub(crate) fn new(inner: Box<dyn Assignment>) -> Self {
         Self { inner, first: None }
     }
 }

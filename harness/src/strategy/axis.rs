@@ -33,7 +33,7 @@ const NO_EXIT: &str = "no-exit";
 pub enum Axis {
     /// How depth is cut into slices: `even`, or `near5`.
     Slices,
-    /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
+    /// The box that is cut into cells: `positions`, `supports`, `surfaces`, `frustum` or `visible`.
     Box,
     /// Bins of normals that split clusters: `n6`.
     Normals,
@@ -95,7 +95,7 @@ impl Axis {
                 "mask, which keeps a bit per light in place of a list, or prune, which lets the lanes of a subgroup \
                  leave out lights of the list that miss their samples"
             }
-            Self::Box => "positions, supports or surfaces",
+            Self::Box => "positions, supports, surfaces, frustum or visible",
             Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
             Self::Specular => {
                 "the specular light to leave out: s and a radiance, such as s0.001; cone and the half \
@@ -124,7 +124,7 @@ impl Axis {
     pub(super) fn of_segment(segment: &str) -> Option<Self> {
         match segment {
             "linear" | "bvh" => Some(Self::Source),
-            "positions" | "supports" | "lights" | "surfaces" => Some(Self::Box),
+            _ if segment.parse::<GridBox>().is_ok() => Some(Self::Box),
             "ball" | "outline" => Some(Self::AreaBounds),
             _ if segment.starts_with(CAP) => Some(Self::Cap),
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
