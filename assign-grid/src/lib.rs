@@ -68,6 +68,17 @@
 //! sample. Through the hierarchy it takes 0.046 to assign. The box of the supports has 3.1 times
 //! the volume of the box of the positions.
 //!
+//! Cells of HC are cubes. Clusters are as wide, but their depth is another one. Lights per sample with 500 lights in
+//! the atrium at 320x180 pixels, of which 0.96 reach a sample (`lightbench compare --scene atrium --size 320x180
+//! --lights 500 --strategies SC-I/16x16x40,SC-I,SC-E,HC/16,HC/48,G,G/frustum,G/visible`):
+//!
+//! | strategy | listed per sample |
+//! |---|---|
+//! | HC/16, HC/48 | 2.16, 7.02 |
+//! | SC-I/16x16x40, SC-I/48x48x40 | 2.91, 7.22 |
+//! | SC-E/48x48x40 | 5.60 |
+//! | G/20x20x20, with `/frustum`, with `/visible` | 2.03, 2.21, 1.95 |
+//!
 //! # Where it fails
 //!
 //! G:
@@ -87,9 +98,9 @@
 //!
 //! HC:
 //!
-//! - Cells are cubes, about as deep as wide. So they are much smaller than clusters of the same width (SC-I/48x48x40),
-//!   which are deeper than wide, and their lists are shorter. But there are more of them: a slanted surface passes
-//!   through many. Use wider cells where `cull` takes longer than shading.
+//! - A slanted surface passes through many cells, and each is culled. Use wider cells where `cull` takes longer than
+//!   shading.
+//! - Lists are those of whole cells. Boxes around the samples in a cluster, as in SC-E, are smaller than cells.
 //! - Where levels meet, cells overlap, and both are culled.
 //! - The number of visible cells is not known before the pass `bounds`. If a cell finds no free slot within 64 tries,
 //!   its samples read all lights in that frame. Tries without a slot are counted ([`TableUse`]), and the table

@@ -143,7 +143,8 @@ fn any_depth_buffer_has_cells() {
     assert_eq!(occupied(0.125 / 4.0, [64, 48]), 16);
     // Background has one cell, in a corner of the lights' box, where no light reaches.
     assert_eq!(occupied(0.0, [64, 48]), 0);
-    assert_eq!(occupied(f32::NAN, [64, 48]), 0);
+    // So far away that positions are no numbers.
+    assert_eq!(occupied(1e-40, [64, 48]), 0);
     assert_eq!(occupied(0.125 / 4.0, [1, 1]), 1);
     // Farther away than any light reaches.
     assert!(occupied(1e-9, [64, 48]) <= 64);
