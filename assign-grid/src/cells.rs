@@ -10,6 +10,9 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellCounts(pub [u32; 3]);
 
+/// The WESL module of G: `group_of` and `group_bounds`.
+pub const GRID_WESL: &str = include_str!("shaders/grid.wesl");
+
 /// The most cells. Their records take 128 MiB.
 const MAX_CELLS: u64 = 1 << 24;
 
@@ -59,7 +62,7 @@ impl FromStr for CellCounts {
     }
 }
 
-/// The cells as shaders read them: `struct Cells` of `grid.wesl`. 80 bytes.
+/// The cells as shaders read them: `struct Cells` of `grid.wesl`. 112 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CellsUniform {
@@ -75,8 +78,8 @@ pub struct CellsUniform {
     pub counts: [u32; 3],
     /// Pads to 48 bytes.
     pub padding_2: u32,
-    /// Lowest corner of the box around all lights' supports, world space, metres. Cells at the
-    /// border extend to it.
+    /// Lowest corner of the box around all lights' supports, world space, metres. No light reaches a
+    /// sample outside it, so any cell serves such a sample.
     pub lights_min: [f32; 3],
     /// Pads to 64 bytes.
     pub padding_3: f32,
@@ -84,6 +87,15 @@ pub struct CellsUniform {
     pub lights_max: [f32; 3],
     /// Pads to 80 bytes.
     pub padding_4: f32,
+    /// Lowest corner of the box that the cells serve, world space, metres. Cells at the border extend to
+    /// it. A sample that lights may reach outside this box reads all lights.
+    pub reach_min: [f32; 3],
+    /// Pads to 96 bytes.
+    pub padding_5: f32,
+    /// Highest corner of the box that the cells serve.
+    pub reach_max: [f32; 3],
+    /// Pads to 112 bytes.
+    pub padding_6: f32,
 }
 
 /// Bound of the rounding of a sample's place among the cells, as a share of the largest coordinate
@@ -98,7 +110,10 @@ const LEAST_CELL: f32 = 32.0 * f32::EPSILON;
 impl CellsUniform {
     /// Cuts the box `cut` into cells. `lights` is the box around all lights' supports, `None`
     /// without lights. An axis along which the box has no extent gets one cell, because only the
-    /// first and the last of several cells would hold samples.
+    /// first and the last of several cells would hold samples. Cells at the border extend to the end of
+    /// `lights`, so every sample has a cell.
+    ///
+    /// `cells_of_box` of `visible.wesl` computes the same on the GPU.
     pub fn new(counts: CellCounts, cut: (Vec3, Vec3), lights: Option<(Vec3, Vec3)>) -> Self {
         let finite = |v: Vec3| v.clamp(Vec3::splat(-1e30), Vec3::splat(1e30));
         let (min, max) = (finite(cut.0.min(cut.1)), finite(cut.1.max(cut.0)));
@@ -120,6 +135,25 @@ impl CellsUniform {
             padding_3: 0.0,
             lights_max: finite(lights.1).to_array(),
             padding_4: 0.0,
+            reach_min: finite(lights.0).to_array(),
+            padding_5: 0.0,
+            reach_max: finite(lights.1).to_array(),
+            padding_6: 0.0,
+        }
+    }
+
+    /// The same cells, which extend no further than the box `within`. `slack_m` bounds how far rounding
+    /// moves a sample, metres: `within` and the box of the lights are widened by it.
+    #[must_use]
+    pub fn within(self, within: (Vec3, Vec3), slack_m: f32) -> Self {
+        let lights_min = Vec3::from_array(self.lights_min) - slack_m;
+        let lights_max = Vec3::from_array(self.lights_max) + slack_m;
+        Self {
+            lights_min: lights_min.to_array(),
+            lights_max: lights_max.to_array(),
+            reach_min: lights_min.max(within.0 - slack_m).to_array(),
+            reach_max: lights_max.min(within.1 + slack_m).to_array(),
+            ..self
         }
     }
 
@@ -176,5 +210,17 @@ mod tests {
         let top = max + Vec3::Y * 0.01;
         let thin = CellsUniform::new(counts, (min, top), Some((min - reach, top + reach)));
         assert_eq!(thin.counts, [20; 3]);
+    }
+
+    #[test]
+    fn cells_end_where_they_are_told_to() {
+        let lights = Some((Vec3::ZERO, Vec3::splat(8.0)));
+        let cut = (Vec3::ZERO, Vec3::splat(4.0));
+        let all = CellsUniform::new(CellCounts([4; 3]), cut, lights);
+        assert_eq!((all.reach_min, all.reach_max), ([0.0; 3], [8.0; 3]));
+        let some = all.within((Vec3::splat(-9.0), Vec3::splat(4.0)), 0.5);
+        assert_eq!((some.reach_min, some.reach_max), ([-0.5; 3], [4.5; 3]));
+        assert_eq!((some.lights_min, some.lights_max), ([-0.5; 3], [8.5; 3]));
+        assert_eq!((some.cell_m, some.counts), (all.cell_m, all.counts));
     }
 }

@@ -1,7 +1,5 @@
 //! The strategy G: a grid of cells in world space.
 
-use std::str::FromStr;
-
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
     Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule,
@@ -10,55 +8,12 @@ use assign::{
 use bytemuck::bytes_of;
 use glam::Vec3;
 
-use crate::cells::{CellCounts, CellsUniform};
-
-/// The box that is cut into cells. Look-ups outside the box stay exact: a sample belongs to the
-/// nearest cell, and cells at the border extend outwards as far as any light reaches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum GridBox {
-    /// The box around the lights' positions, as in the comparison paper (Enhuber 2019, sections 3.3
-    /// and 4.1).
-    ///
-    /// Extending a border cell adds no point light to its list: the light's centre lies in the box,
-    /// so the nearest point of the extended cell lies in the box as well.
-    #[default]
-    Positions,
-    /// The box around the lights' supports. No light reaches a sample outside it. It is larger than
-    /// the box of the positions by a range on each side, so cells are coarser.
-    Supports,
-    /// The intersection of the box around the supports and the box around the surfaces.
-    Surfaces,
-}
-
-impl GridBox {
-    /// The name in ids: `positions`, `supports` or `surfaces`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Positions => "positions",
-            Self::Supports => "supports",
-            Self::Surfaces => "surfaces",
-        }
-    }
-}
-
-impl FromStr for GridBox {
-    type Err = AssignError;
-
-    /// Reads `positions`, `supports` or `surfaces`. Also reads `lights`, the former name of
-    /// `supports`.
-    fn from_str(text: &str) -> Result<Self, AssignError> {
-        match text {
-            "positions" => Ok(Self::Positions),
-            "supports" | "lights" => Ok(Self::Supports),
-            "surfaces" => Ok(Self::Surfaces),
-            _ => Err(AssignError::Parameter {
-                field: "grid box".into(),
-                value: text.into(),
-                accepted: "positions, supports or surfaces".into(),
-            }),
-        }
-    }
-}
+use crate::{
+    cells::{CellCounts, CellsUniform, GRID_WESL},
+    grid_box::{GridBox, frustum_box, position_slack_m},
+    surface::depth_of,
+    visible::{AskedCells, VisibleBox},
+};
 
 /// The grid strategy: each cell has a list of lights.
 #[derive(Debug)]
@@ -67,11 +22,10 @@ pub struct Grid {
     grid_box: GridBox,
     settings: CullSettings,
     cells: wgpu::Buffer,
+    /// Makes the cells on the GPU; only for [`GridBox::Visible`].
+    visible: Option<VisibleBox>,
     culler: Culler,
 }
-
-/// The strategy's WESL module: `group_of` and `group_bounds`.
-pub const GRID_WESL: &str = include_str!("shaders/grid.wesl");
 
 impl Grid {
     /// Makes the strategy. Checks `counts`.
@@ -88,6 +42,10 @@ impl Grid {
             grid_box,
             settings,
             cells: gpu.uniform("cells", size_of::<CellsUniform>() as u64),
+            visible: match grid_box {
+                GridBox::Visible => Some(VisibleBox::new(gpu)?),
+                _ => None,
+            },
             culler: Culler::new(
                 gpu,
                 &CullerDescriptor {
@@ -105,15 +63,27 @@ impl Grid {
         })
     }
 
-    /// The box to cut, world space; a unit box without lights.
-    fn cut(&self, frame: &Frame<'_>) -> Result<(Vec3, Vec3), AssignError> {
-        let none = (Vec3::ZERO, Vec3::ONE);
-        let lights = frame.light_bounds().unwrap_or(none);
-        match self.grid_box {
-            GridBox::Positions => return Ok(frame.light_position_bounds().unwrap_or(none)),
-            GridBox::Supports => return Ok(lights),
-            GridBox::Surfaces => {}
-        }
+    /// The cells that the CPU makes. Without lights they divide a unit box.
+    fn cells(&self, frame: &Frame<'_>) -> Result<CellsUniform, AssignError> {
+        let lights = frame.light_bounds();
+        let supports = lights.unwrap_or((Vec3::ZERO, Vec3::ONE));
+        let overlap = |(low, high): (Vec3, Vec3)| (supports.0.max(low), supports.1.min(high));
+        let cells = |cut| CellsUniform::new(self.counts, cut, lights);
+        Ok(match self.grid_box {
+            GridBox::Positions => cells(frame.light_position_bounds().unwrap_or(supports)),
+            GridBox::Supports | GridBox::Visible => cells(supports),
+            // If the boxes do not overlap, no light reaches a surface, and any cells are right.
+            GridBox::Surfaces => cells(overlap(self.surfaces(frame)?)),
+            GridBox::Frustum => {
+                let frustum = frustum_box(frame.view, supports);
+                let slack_m = position_slack_m(frame.view, frustum);
+                cells(overlap(frustum)).within(frustum, slack_m)
+            }
+        })
+    }
+
+    /// The box around all surfaces, world space.
+    fn surfaces(&self, frame: &Frame<'_>) -> Result<(Vec3, Vec3), AssignError> {
         let missing = || AssignError::Missing { strategy: self.id(), missing: "surface_bounds" };
         let surfaces = frame.surface_bounds.ok_or_else(missing)?;
         if surfaces.0.is_nan() || surfaces.1.is_nan() {
@@ -123,8 +93,21 @@ impl Grid {
                 accepted: "two corners, in numbers".into(),
             });
         }
-        // If the boxes do not overlap, no light reaches a surface, and any cells are right.
-        Ok((lights.0.max(surfaces.0), lights.1.min(surfaces.1)))
+        Ok(surfaces)
+    }
+
+    /// Makes the cells on the CPU, or has the GPU make them. Returns the number of groups.
+    fn prepare_cells(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<u32, AssignError> {
+        let id = self.id();
+        let Some(visible) = &mut self.visible else {
+            let cells = self.cells(frame)?;
+            gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));
+            return Ok(cells.group_count());
+        };
+        let depth = depth_of(frame, || id.clone())?;
+        let lights = frame.light_bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
+        visible.prepare(gpu, frame, depth, AskedCells::new(self.counts, lights))?;
+        Ok(self.counts.0.iter().product())
     }
 }
 
@@ -138,11 +121,15 @@ impl Assignment for Grid {
     }
 
     fn needs(&self) -> Needs {
-        Needs { hierarchy: self.culler.reads_hierarchy(), ..Needs::default() }
+        Needs {
+            depth: self.visible.is_some(),
+            hierarchy: self.culler.reads_hierarchy(),
+            ..Needs::default()
+        }
     }
 
     fn is_view_bound(&self) -> bool {
-        false
+        self.grid_box.is_view_bound()
     }
 
     fn updates_groups(&self) -> bool {
@@ -151,17 +138,21 @@ impl Assignment for Grid {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let cells = CellsUniform::new(self.counts, self.cut(frame)?, frame.light_bounds());
-        gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));
+        let count = self.prepare_cells(gpu, frame)?;
         self.culler.prepare(
             gpu,
             frame,
-            Groups::All(cells.group_count()),
+            Groups::All(count),
             &[entry(FIRST_STRATEGY_BINDING, &self.cells)],
         )
     }
 
-    fn record(&mut self, _frame: &Frame<'_>, passes: &mut dyn Passes) {
+    fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
+        if let Some(visible) = &self.visible
+            && frame.changes.is_none()
+        {
+            visible.record(frame.view, &self.cells, passes);
+        }
         self.culler.record(passes);
     }
 
@@ -182,7 +173,8 @@ impl Assignment for Grid {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.cells.size() + self.culler.memory_bytes()
+        let visible = self.visible.as_ref().map_or(0, VisibleBox::bytes);
+        self.cells.size() + visible + self.culler.memory_bytes()
     }
 }
 
@@ -207,15 +199,23 @@ mod tests {
         ] {
             let settings = CullSettings::default();
             let grid = Grid::new(&gpu, CellCounts([4, 4, 4]), grid_box, settings).unwrap();
-            let cut = (Vec3::splat(low), Vec3::splat(high));
-            assert_eq!((grid.cut(&frame).unwrap(), grid.id().as_str()), (cut, id));
-            assert_eq!(grid_box.name().parse::<GridBox>().unwrap(), grid_box);
+            let cells = grid.cells(&frame).unwrap();
+            let cut = CellsUniform::new(
+                grid.counts,
+                (Vec3::splat(low), Vec3::splat(high)),
+                lights.bounds(),
+            );
+            assert_eq!((cells, grid.id().as_str()), (cut, id));
             // Samples outside the box find every light that may reach them.
-            let cells = CellsUniform::new(grid.counts, cut, lights.bounds());
-            assert_eq!((cells.lights_min, cells.lights_max), ([-2.0; 3], [10.0; 3]), "{id}");
+            assert_eq!((cells.reach_min, cells.reach_max), ([-2.0; 3], [10.0; 3]), "{id}");
+            assert!(!grid.is_view_bound() && !grid.needs().depth, "{id}");
         }
-        assert_eq!("lights".parse::<GridBox>().unwrap(), GridBox::Supports);
-        let error = "cells".parse::<GridBox>().unwrap_err().to_string();
-        assert!(error.contains("positions, supports or surfaces"), "{error}");
+        for grid_box in [GridBox::Frustum, GridBox::Visible] {
+            let settings = CullSettings::default();
+            let grid = Grid::new(&gpu, CellCounts([4, 4, 4]), grid_box, settings).unwrap();
+            assert_eq!(grid.id(), format!("G/4x4x4/{}", grid_box.name()));
+            assert_eq!(grid.needs().depth, grid_box == GridBox::Visible);
+            assert!(grid.is_view_bound());
+        }
     }
 }

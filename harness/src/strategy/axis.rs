@@ -41,7 +41,7 @@ pub enum Axis {
     Slices,
     /// What adds lights to cells: `raster`.
     Scatter,
-    /// The box that is cut into cells: `positions`, `supports` or `surfaces`.
+    /// The box that is cut into cells: `positions`, `supports`, `surfaces`, `frustum` or `visible`.
     Box,
     /// Bins of normals that split clusters: `n6`.
     Normals,
@@ -108,7 +108,7 @@ impl Axis {
                  leave out lights of the list that miss their samples"
             }
             Self::Scatter => "raster, which lets the rasteriser find the tiles of each light",
-            Self::Box => "positions, supports or surfaces",
+            Self::Box => "positions, supports, surfaces, frustum or visible",
             Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
             Self::Specular => {
                 "the specular light to leave out: s and a radiance, such as s0.001; cone and the half \
@@ -140,7 +140,7 @@ impl Axis {
     pub(super) fn of_segment(segment: &str) -> Option<Self> {
         match segment {
             "linear" | "bvh" => Some(Self::Source),
-            "positions" | "supports" | "lights" | "surfaces" => Some(Self::Box),
+            _ if segment.parse::<GridBox>().is_ok() => Some(Self::Box),
             "ball" | "outline" => Some(Self::AreaBounds),
             _ if segment.starts_with(CAP) => Some(Self::Cap),
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),

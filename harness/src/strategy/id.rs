@@ -118,7 +118,7 @@ impl StrategyId {
     /// Whether it reads the depth of the surfaces before it assigns lights, so that a renderer without
     /// a depth pre-pass must draw one for it.
     pub fn reads_depth(&self) -> bool {
-        self.row.is_some_and(|row| row.needs.depth)
+        self.row.is_some_and(|row| row.needs.depth) || self.options.grid_box == GridBox::Visible
     }
 
     /// Whether the pass that lights pixels rasterises triangles in every mode.
@@ -198,7 +198,7 @@ impl StrategyId {
         self.row?.stand_ins.iter().find(|known| has(known.segment))
     }
 
-    /// Whether the comparison paper has it: whole models, and grids that do not look at the surfaces. Only
+    /// Whether the comparison paper has it: whole models, and grids over boxes of the lights. Only
     /// sizes, tests and the box of a grid may differ from their defaults. Its stand-ins count too.
     pub fn is_of_the_paper(&self) -> bool {
         let free = [Axis::Tests, Axis::Box];
@@ -206,7 +206,7 @@ impl StrategyId {
         self.role() == Some(Role::ComparisonPaper)
             && self.is_runnable
             && !self.is_parted()
-            && self.options.grid_box != GridBox::Surfaces
+            && matches!(self.options.grid_box, GridBox::Positions | GridBox::Supports)
             && fixed.all(|axis| axis.segment(&self.options).is_none())
     }
 

@@ -18,6 +18,9 @@ fn ids_in_any_case_and_order_become_canonical() {
         ("G/positions", "G/20x20x20"),
         ("G/8x8x8/lights", "G/8x8x8/supports"),
         ("G/Supports/bvh", "G/20x20x20/supports/bvh"),
+        ("G/bvh/FRUSTUM", "G/20x20x20/frustum/bvh"),
+        ("G/visible/4x4x4", "G/4x4x4/visible"),
+        ("hc/mask/024", "HC/24/mask"),
         ("sc-e/cap32/bvh", "SC-E/48x48x40/bvh/cap32"),
         ("T-E/cap8/reuse4/linear", "T-E/28x28/reuse4/cap8"),
         ("T-I/outline/bvh/hs+sat-n", "T-I/28x28/bvh"),
@@ -44,6 +47,7 @@ fn parts_of_ids_are_methods() {
     assert_eq!(id("T-I/hs").tests().map(|tests| tests.to_string()).as_deref(), Some("hs"));
     assert_eq!(id("DC-E").tests(), None);
     assert!(id("SC-E").reads_depth() && !id("T-I").reads_depth());
+    assert!(id("G/visible").reads_depth() && !id("G/frustum").reads_depth());
     assert_eq!((id("M/bvh").segment_count(), id("SC-E/bvh/cap8").segment_count()), (1, 2));
 }
 
@@ -83,6 +87,9 @@ fn only_the_comparison_papers_strategies_are_counted_as_its_own() {
         "HG",
         "M/2",
         "G/surfaces",
+        "G/frustum",
+        "G/visible",
+        "HC",
         "SC-E/bvh",
         "SC-E/n24",
         "SC-E/no-exit",
@@ -225,6 +232,8 @@ fn errors_say_what_an_id_may_be() {
         ("DC-E/cap0", "cap32"),
         ("T-I/28x28/16x16", "16x16"),
         ("T-I/28", "tile_width_px x tile_height_px"),
+        ("HC/48x48", "cell_px"),
+        ("HC/visible", "linear or bvh"),
         ("T-I/axb", "tile_width_px x tile_height_px"),
         ("T-I/surfaces", "hs"),
         ("T-I/", "tile_width_px"),
