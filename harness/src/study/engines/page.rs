@@ -3,15 +3,19 @@
 
 use super::cases::{Case, Method, cases, size_px};
 use crate::report::column::{Better, Column};
+use crate::report::error_words;
 use crate::report::finding::lights;
-use crate::report::format::{ABSENT, difference, factor, mebibytes, number, percent, significant};
-use crate::report::frontier::{TIME_AND_MEMORY, TIME_AND_MEMORY_NOTE, time_against_memory};
+use crate::report::format::{ABSENT, difference, factor, mebibytes, number, percent};
+use crate::report::frontier::{TIME_AND_MEMORY_NOTE, time_against_memory};
 use crate::report::markup::{Html, html, with_names_whole};
 use crate::report::metrics::interval;
 use crate::report::rank::competes;
 use crate::report::table::{Look, Row, Table};
 use crate::results::Record;
-use crate::strategy::engines::{ENGINES, engine_of};
+use crate::strategy::{
+    StrategyId,
+    engines::{ENGINES, Engine, engine_of},
+};
 use crate::study::manifest::Done;
 use crate::study::page::errors_plot::Plot;
 use crate::study::page::figure::{Charts, panels};
@@ -24,13 +28,13 @@ const TABLE_NOTE: &str = "Each engine\u{2019}s row is one of our strategies with
      path. Listed lights and lost pairs are those of the still camera. A pair is a sample and a light that reaches it. \
      A pair is lost if the light is missing from the list of the sample. Missing energy is the luminance that is lost, \
      as a share of all luminance. The last three columns show the same strategy without the limits that lose light, \
-     and its time as a multiple of the default\u{2019}s. Lossy methods are not ranked: the fastest of the others is \
-     bold.";
+     and its time as a multiple of the default\u{2019}s. Lossy methods are not ranked: only figures of lossless ones \
+     are bold as the best of their column.";
 
-const PICTURES_NOTE: &str = "The defaults that lose light, from the still camera. Black in the difference means no \
-                             difference.";
+const PICTURES_NOTE: &str = "The defaults that lose light, from the still camera: the image, the image without culling, and the light that the \
+     first lacks. All three have the same exposure and tone curve.";
 
-const ERRORS_NOTE: &str = "An error is the difference from the image without culling, mean over the compared poses of the path. A grey line \
+const ERRORS_NOTE: &str = "An error is the difference from the image without culling, mean over the compared poses of the path. A line \
      joins each default to the same strategy without limits, which lies in the strip at error 0. The staircase joins \
      the settings that no other setting beats in both time and error.";
 
@@ -43,7 +47,8 @@ pub(crate) fn parts(
 ) -> Vec<Part> {
     let cases = cases(done, scene);
     let by_lights = |show: &mut dyn FnMut(&Case<'_>) -> Html| {
-        let shown = cases.iter().map(|case| (lights(case.lights), show(case)));
+        // The most lights show the most.
+        let shown = cases.iter().rev().map(|case| (lights(case.lights), show(case)));
         let shown: Vec<(String, Html)> = shown.filter(|(_, body)| !body.is_empty()).collect();
         panels("Lights", &shown)
     };
@@ -55,7 +60,7 @@ pub(crate) fn parts(
         Part::new("defaults", "What the defaults cost", TABLE_NOTE, tables),
         Part::new("pictures", "What is lost", PICTURES_NOTE, pictures),
         Part::new("errors", "Speed against accuracy", ERRORS_NOTE, errors),
-        Part::new("memory", TIME_AND_MEMORY, TIME_AND_MEMORY_NOTE, memory),
+        Part::new("memory", "Speed against memory", TIME_AND_MEMORY_NOTE, memory),
     ]
 }
 
@@ -65,7 +70,7 @@ fn table(case: &Case<'_>) -> Html {
     methods.retain(|method| method.timed.is_some());
     let name = |method: &Method<'_>| match method.engine {
         Some(engine) => engine.title.to_owned(),
-        None => method.id.to_string(),
+        None => method.id.row().map_or_else(String::new, |row| row.name.to_owned()),
     };
     let rows: Vec<Row<Method<'_>>> =
         methods.into_iter().map(|method| Row::new(name(&method), method)).collect();
@@ -76,10 +81,7 @@ fn table(case: &Case<'_>) -> Html {
     let table = Table::new("engine", columns(), rows)
         .competing(|method| method.timed.is_some_and(competes))
         .dotted(|method| method.id.class())
-        .noted(|method| match method.engine {
-            Some(_) => html!("<br><small>{}</small>", with_names_whole(method.id.as_str())),
-            None => Html::default(),
-        })
+        .noted(|method| small_id(method.id))
         .html(&format!("Defaults of engines at {title}"), Look::Sortable);
     html!("<h4>{}</h4>\n{}", title, table)
 }
@@ -131,33 +133,40 @@ fn columns<'a>() -> Vec<Column<'a, Method<'a>>> {
     ]
 }
 
-/// The image of each default that loses light, the image without culling, and their difference.
+/// The image of each default that loses light, the image without culling, and the light that is lost.
 fn pictures(case: &Case<'_>, shots: &mut Shots<'_>) -> Html {
     let mut shown = Html::default();
     for method in case.defaults() {
         let Some(entry) = method.seen.filter(|entry| !entry.record.is_lossless()) else { continue };
-        let files = &entry.record.image.files;
-        let mut keep = |name: &Option<String>| shots.file(&entry.job.name, name.as_deref()?);
-        let [image, truth, differs] =
-            [&files.tone_mapped, &files.baseline, &files.difference].map(&mut keep);
-        if image.is_none() {
-            continue;
-        }
-        let gain = files.difference_amplification.map_or_else(String::new, |gain| {
-            format!("in linear light, brightened {} times", significant(gain))
+        let (job, files) = (entry.job.name.as_str(), &entry.record.image.files);
+        let mut keep = |name: &Option<String>| shots.file(job, name.as_deref()?);
+        let Some(image) = keep(&files.tone_mapped) else { continue };
+        let truth = keep(&files.baseline);
+        let raw = files.raw.as_deref().zip(files.raw_baseline.as_deref());
+        let lost = raw.zip(files.exposure).and_then(|((image, reference), exposure)| {
+            shots.lost(job, [image, reference], exposure)
         });
-        let errors = crate::report::error_words(entry.record);
-        let name = method.name();
+        let (name, errors) = (method.name(), error_words(entry.record));
         shown += html!(
-            "<h4>{} <small>{}</small></h4>\n<div class=\"views\">{}{}{}</div>\n",
+            "<h4>{}{}</h4>\n<div class=\"views\">{}{}{}</div>\n",
             name,
-            with_names_whole(method.id.as_str()),
-            figure(image, &name, &format!("{errors}.")),
+            small_id(method.id),
+            figure(Some(image), &name, &format!("{errors}.")),
             figure(truth, "No culling", "every light."),
-            figure(differs, "Difference", &format!("{gain}."))
+            figure(lost, "Lost light", "exposed as the other two.")
         );
     }
     shown
+}
+
+/// An id in small, below a name. It may be broken at its slashes.
+fn small_id(id: &StrategyId) -> Html {
+    let part = |(ix, part): (usize, &str)| match ix {
+        0 => Html::from(part),
+        _ => html!("/<wbr>{}", part),
+    };
+    let parts: Html = id.as_str().split('/').enumerate().map(part).collect();
+    html!("<small class=\"interval\">{}</small>", parts)
 }
 
 /// Errors against times: a series per engine, which holds its default and the lossless setting of that.
@@ -198,7 +207,7 @@ pub(crate) fn differences(done: &Done) -> Html {
     if done.results.is_empty() {
         return Html::default();
     }
-    let entry = |engine: &crate::strategy::engines::Engine| {
+    let entry = |engine: &Engine| {
         html!(
             "<dt>{}</dt><dd>{}.<br><small>Settings: {}.</small></dd>\n",
             engine.title,

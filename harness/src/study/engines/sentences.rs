@@ -20,30 +20,38 @@ pub(crate) fn headline(done: &Done) -> Option<String> {
         parts.push(format!("in {scene}, {}", summary(&case)));
     }
     let adapter = done.results.values().next().map_or("", |r| short_adapter(&r.machine.adapter));
-    Some(format!(
-        "On {adapter} at {}, {}. Each default is one of our strategies with the engine\u{2019}s settings.",
-        lights(most?),
-        parts.join("; ")
-    ))
+    Some(format!("On {adapter} at {}, {}.", lights(most?), parts.join("; ")))
 }
 
-/// `3 of 9 engines' defaults lose light: 1.0 to 12 % of it. Settings that lose none take ...`.
-fn summary(case: &Case<'_>) -> String {
+/// `3 of 9 stand-ins for engines' defaults lose light`.
+fn count(case: &Case<'_>) -> String {
     let defaults = case.defaults();
-    let losing: Vec<&Method<'_>> = defaults.iter().filter(|method| method.loses_light()).collect();
-    let all = defaults.len();
-    let mut text = match losing.len() {
-        0 => return format!("none of {all} engines\u{2019} defaults loses light"),
-        1 => format!("1 of {all} engines\u{2019} defaults loses light"),
-        count => format!("{count} of {all} engines\u{2019} defaults lose light"),
-    };
+    let losing = defaults.iter().filter(|method| method.loses_light()).count();
+    let of_all = format!("of {} stand-ins for engines\u{2019} defaults", defaults.len());
+    match losing {
+        0 => format!("none {of_all} loses light"),
+        1 => format!("1 {of_all} loses light"),
+        _ => format!("{losing} {of_all} lose light"),
+    }
+}
+
+/// The count, how much light is lost, and what not losing it costs: `... lose light (1.0 to 12 % of the energy)
+/// and take 1.1 to 2.0 times as long without their limits`.
+fn summary(case: &Case<'_>) -> String {
+    let mut losing = case.defaults();
+    losing.retain(Method::loses_light);
+    let mut text = count(case);
     let missing = losing.iter().map(|method| method.error("missing_energy"));
     if let Some(missing) = span(missing, percent) {
-        text += &format!(" ({missing} % of the energy is missing)");
+        text += &format!(" ({missing} % of the energy)");
     }
     let ratios = losing.iter().map(|method| method.cost().map(|cost| cost.ratio));
     if let Some(ratios) = span(ratios, significant) {
-        text += &format!(", and without their limits they take {ratios} times as long");
+        let [take, their] = match losing.len() {
+            1 => ["takes", "its limits"],
+            _ => ["take", "their limits"],
+        };
+        text += &format!(" and {take} {ratios} times as long without {their}");
     }
     text
 }
@@ -61,12 +69,13 @@ pub(crate) fn findings(done: &Done, scene: &str) -> Vec<String> {
     cases(done, scene).iter().rev().map(|case| finding(scene, case)).collect()
 }
 
-/// How many defaults lose light, what each that does loses and saves, and which is fastest without a loss.
+/// How many defaults lose light, what each of them loses, what not losing it costs, and which method is fastest
+/// without a loss.
 fn finding(scene: &str, case: &Case<'_>) -> String {
     let methods = case.methods();
     let defaults = methods.iter().filter(|method| method.engine.is_some());
     let losing: Vec<&Method<'_>> = defaults.filter(|method| method.loses_light()).collect();
-    let mut text = format!("In {scene} at {}, {}.", lights(case.lights), summary(case));
+    let mut text = format!("In {scene} at {}, {}.", lights(case.lights), count(case));
     text.extend(losing.iter().filter_map(|method| loss(method)));
     let exact = methods.iter().filter_map(|method| method.timed);
     if let Some(lead) = Lead::from_ranks(&ranks(exact)) {
