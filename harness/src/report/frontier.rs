@@ -45,11 +45,12 @@ pub(crate) fn time_against_memory(records: &[&Record]) -> Option<XyChart> {
     let mut series: Vec<Series> = placed
         .iter()
         .map(|(record, place)| {
+            // The legend names those whose names find no room beside them.
             let is_best = best.contains(place);
-            let label = if is_best { record.strategy.to_string() } else { String::new() };
-            let points = vec![Point { label, ..point(record, *place) }];
-            let series = Series::new("", record.strategy.class(), Marks::Points, points);
-            Series { faded: !is_best, shape: Some(0), ..series }
+            let name = if is_best { record.strategy.as_str() } else { "" };
+            let points = vec![point(record, *place)];
+            let series = Series::new(name, record.strategy.class(), Marks::Points, points);
+            Series { faded: !is_best, shape: (!is_best).then_some(0), ..series }
         })
         .collect();
     let steps = best.iter().map(|&(x, y)| Point { x, y, ..Point::default() }).collect();
@@ -111,15 +112,14 @@ mod tests {
         ];
         let all: Vec<&Record> = all.iter().collect();
         let chart = time_against_memory(&all).expect("three points");
-        let points = |faded: bool| -> Vec<&Point> {
-            let of_kind =
-                chart.series.iter().filter(|s| s.faded == faded && s.marks == Marks::Points);
-            of_kind.flat_map(|series| &series.points).collect()
+        let shown = |faded: bool| -> Vec<(&str, &str)> {
+            let is_kind = |s: &&Series| s.faded == faded && s.marks == Marks::Points;
+            let of_kind = chart.series.iter().filter(is_kind);
+            of_kind.map(|series| (series.name.as_str(), series.points[0].tip.as_str())).collect()
         };
-        let names: Vec<&str> = points(false).iter().map(|point| point.label.as_str()).collect();
+        let names: Vec<&str> = shown(false).iter().map(|(name, _)| *name).collect();
         assert_eq!(names, ["SC-E/48x48x40", "G/20x20x20"]);
-        assert_eq!(points(true).len(), 1);
-        assert!(points(true)[0].label.is_empty() && points(true)[0].tip.contains("9.00 MiB"));
+        assert_eq!(shown(true), [("", "T-I/28x28\n3.00 ms\n9.00 MiB")]);
         let steps = chart.series.last().expect("the staircase");
         let steps: Vec<(f64, f64)> = steps.points.iter().map(|point| (point.x, point.y)).collect();
         assert_eq!(steps, [(1.0, 8.0), (2.0, 4.0)]);
