@@ -178,6 +178,8 @@ fn names_of_foreign_results_are_text() {
                 ("comparison", _) => job.section.clone(),
                 ("culling", 0) => "deferred".into(),
                 ("endless", 0) => "a".into(),
+                ("engines", 0) => "path".into(),
+                ("engines", 1) => "view".into(),
                 ("area" | "cdi", 0) => "models".into(),
                 ("area", 1) => "cost".into(),
                 ("cdi", 1) => "steps".into(),

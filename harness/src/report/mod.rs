@@ -11,6 +11,7 @@ pub(crate) mod finding;
 pub(crate) mod fit;
 pub(crate) mod format;
 pub(crate) mod frames;
+pub(crate) mod frontier;
 pub(crate) mod html;
 pub(crate) mod lead;
 pub(crate) mod living;

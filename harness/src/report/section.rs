@@ -1,10 +1,11 @@
-//! The section of a comparison on its page: table, passes, pictures, lengths of lists, samples.
+//! The section of a comparison on its page: table, passes, memory, pictures, lengths of lists, samples.
 
 use std::collections::BTreeSet;
 
 use super::bill::{bill_html, build_note};
 use super::colours::Colours;
 use super::comparison::{Comparison, comparisons};
+use super::frontier::{TIME_AND_MEMORY, TIME_AND_MEMORY_NOTE, time_against_memory};
 use super::looks::{list_lengths, pictures};
 use super::loss::columns;
 use super::markup::{Html, html};
@@ -30,6 +31,7 @@ pub(crate) fn sections(results: &Results, kept: &BTreeSet<&str>) -> Html {
         let body = result_table(&format!("Results: {heading}"), comparison)
             + frame_times(&records, &colours)
             + bill_html(&format!("What each pass costs: {heading}"), comparison)
+            + memory(&records)
             + pictures(comparison, kept)
             + list_lengths(comparison)
             + samples(&records, &colours);
@@ -74,4 +76,18 @@ fn frame_times(records: &[&Record], colours: &Colours<'_>) -> Html {
         shown.reverse();
     }
     panels("Axis", &html!("<h3>{}</h3>", TITLE), &shown)
+}
+
+/// Time against memory; empty where fewer than two methods without a loss have both.
+fn memory(records: &[&Record]) -> Html {
+    let Some(chart) = time_against_memory(records) else { return Html::default() };
+    // Charts escape their text themselves.
+    let drawing = Html::trusted(chart.to_svg());
+    html!(
+        "<h3>{0}</h3>\n<p class=\"note\">{1}</p>\n<figure class=\"bars plot\"><div class=\"scroll\" \
+         role=\"region\" tabindex=\"0\" aria-label=\"{0}\">{2}</div></figure>\n",
+        TIME_AND_MEMORY,
+        TIME_AND_MEMORY_NOTE,
+        drawing
+    )
 }

@@ -161,6 +161,15 @@ pub fn engines_of(id: &StrategyId, size_px: [u32; 2]) -> impl Iterator<Item = &'
     })
 }
 
+/// The engine whose default an id is, or is without what loses light, at a size.
+pub fn engine_of(id: &StrategyId, size_px: [u32; 2]) -> Option<&'static Engine> {
+    let is_whole = |engine: &&Engine| {
+        let default = StrategyId::parse(&engine.id(size_px)).ok();
+        default.and_then(|default| default.nearest_lossless()).is_some_and(|whole| whole == *id)
+    };
+    engines_of(id, size_px).next().or_else(|| ENGINES.iter().find(is_whole))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,6 +197,16 @@ mod tests {
                 let parsed = StrategyId::parse(&id).unwrap_or_else(|e| panic!("{id}: {e}"));
                 assert_eq!(parsed.to_string(), id, "{}", engine.name);
                 assert!(engines_of(&parsed, size).any(|found| found.name == engine.name), "{id}");
+            }
+            for size in [[1, 1], [1920, 1080]] {
+                let default = StrategyId::parse(&engine.id(size)).expect("an id");
+                let whole = default.nearest_lossless();
+                assert_eq!(whole.is_some(), default.is_lossy(u64::MAX), "{default}");
+                let Some(whole) = whole else { continue };
+                assert!(!whole.is_lossy(u64::MAX) && whole.nearest_lossless().is_none(), "{whole}");
+                assert_eq!((whole.family(), whole.size()), (default.family(), default.size()));
+                assert_eq!(whole.options().slices, default.options().slices, "{whole}");
+                assert_eq!(engine_of(&whole, size).map(|found| found.name), Some(engine.name));
             }
             for text in [engine.title, engine.differs, engine.source] {
                 assert!(!text.is_empty() && !text.contains("  ") && !text.ends_with('.'), "{text}");

@@ -162,6 +162,17 @@ impl StrategyId {
             || self.options.specular != SpecularCut::None
     }
 
+    /// The same without what [`is_lossy`](Self::is_lossy) counts as a loss: its nearest lossless setting.
+    /// `None` where it has no such knob, and where this program cannot run it.
+    pub fn nearest_lossless(&self) -> Option<Self> {
+        let lossless = self.with(|options| {
+            (options.cap, options.fewer, options.reuse) = (None, None, None);
+            options.stochastic = None;
+            options.specular = SpecularCut::None;
+        });
+        lossless.ok().filter(|lossless| lossless != self)
+    }
+
     /// Whether its groups are parts of what the family has whole where no parameters are given.
     fn is_parted(&self) -> bool {
         self.row.is_some_and(|row| row.default.is_empty()) && !self.size().is_empty()

@@ -1,11 +1,18 @@
 //! The list of all studies: the one place that names them.
 
-use super::{area, cdi, comparison, culling, endless, living, slice::Study};
+use super::{area, cdi, comparison, culling, endless, engines, living, slice::Study};
 use crate::cli::CliError;
 
 /// All studies, in the order in which the command line lists them.
-pub(crate) const STUDIES: &[Study] =
-    &[comparison::STUDY, culling::STUDY, living::STUDY, area::STUDY, endless::STUDY, cdi::STUDY];
+pub(crate) const STUDIES: &[Study] = &[
+    comparison::STUDY,
+    culling::STUDY,
+    living::STUDY,
+    area::STUDY,
+    endless::STUDY,
+    cdi::STUDY,
+    engines::STUDY,
+];
 
 /// Name of each study, and what it answers.
 pub fn studies() -> impl Iterator<Item = (&'static str, &'static str)> {

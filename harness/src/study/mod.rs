@@ -17,6 +17,7 @@ mod comparison;
 mod culling;
 mod data;
 mod endless;
+mod engines;
 mod job;
 mod list;
 mod living;

@@ -52,6 +52,23 @@ fn parts_of_ids_are_methods() {
 }
 
 #[test]
+fn the_nearest_lossless_setting_keeps_all_that_loses_no_light() {
+    for (given, lossless) in [
+        ("SC-E/48x48x40/n6/bvh/first256/cap32", Some("SC-E/48x48x40/n6/bvh")),
+        ("DC-I/72x72x16/near5/nearest256", Some("DC-I/72x72x16/near5")),
+        ("T-E/28x28/reuse4/no-exit", Some("T-E/28x28/no-exit")),
+        ("SC-E/n24/s0.001", Some("SC-E/48x48x40/n24")),
+        ("DC-I/stochastic0.01/bvh", Some("DC-I/128x128x64/bvh")),
+        ("T-E/28x28/keep4", None),
+        ("SC-E", None),
+    ] {
+        let found = id(given).nearest_lossless();
+        assert_eq!(found.as_ref().map(StrategyId::as_str), lossless, "{given}");
+    }
+    assert!(StrategyId::read("Unknown/7/cap4").nearest_lossless().is_none());
+}
+
+#[test]
 fn short_names_say_what_differs_from_the_paper() {
     for (given, short, stand_in) in [
         ("M/2/bvh", "M/2", None),

@@ -90,7 +90,7 @@ pub(super) const ROWS: &[Row] = &[
         about: "the lists of SC-E; one workgroup per tile finds the slices that hold samples, and the box around \
                 the samples of each",
         axes: BOXES,
-        colour: Colour { light: "#9900ff", dark: "#b455ff" },
+        colour: Colour { light: "#5500dd", dark: "#33ffcc" },
         make: |gpu, options| make(gpu, options, Explicit, DepthAware),
         ..DEPTH_AWARE
     },

@@ -4,6 +4,7 @@
 use crate::chart::{Axis, Marks, Point, Scale, Series, XyChart};
 use crate::image_errors::{ERROR_METRICS, ErrorMetric};
 use crate::report::format::{difference, significant};
+use crate::report::frontier::frontier;
 use crate::report::markup::{Html, html};
 use crate::results::{Errors, Record};
 use crate::study::data::Entry;
@@ -185,31 +186,5 @@ impl Plot<'_> {
             key: key.unwrap_or_default(),
             tip,
         }
-    }
-}
-
-/// The points that no other beats in one and equals in the other, from left to right.
-pub(crate) fn frontier(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
-    let mut points: Vec<(f64, f64)> =
-        points.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut best: Vec<(f64, f64)> = Vec::new();
-    for point in points {
-        if best.last().is_none_or(|last| point.1 < last.1) {
-            best.push(point);
-        }
-    }
-    best
-}
-
-#[cfg(test)]
-mod tests {
-    use super::frontier;
-
-    #[test]
-    fn the_frontier_holds_what_nothing_beats() {
-        let points = [(3.0, 0.0), (1.0, 5.0), (2.0, 2.0), (2.5, 2.0), (4.0, 0.0), (2.0, 9.0)];
-        assert_eq!(frontier(points.into_iter()), [(1.0, 5.0), (2.0, 2.0), (3.0, 0.0)]);
-        assert!(frontier([(f64::NAN, 1.0), (1.0, f64::INFINITY)].into_iter()).is_empty());
     }
 }

@@ -18,6 +18,7 @@ use crate::results::{Errors, Record};
 use crate::study::against_truth::truth_of;
 use crate::study::data::Entry;
 use crate::study::manifest::Done;
+use crate::study::page::pictures::linear;
 
 /// Pictures are at most this wide, pixels: as wide as the page shows them.
 const WIDEST: u32 = 960;
@@ -143,19 +144,29 @@ impl<'a> Shots<'a> {
 
     /// Keeps a linear image, tone-mapped as the others.
     pub(crate) fn linear(&mut self, job: &str, name: &str, exposure: f64) -> Option<String> {
-        self.picture(job, name, |path| {
-            let image = HdrImage::read_exr(path).ok()?;
-            if image.width <= WIDEST {
-                return image.to_png(exposure as f32).ok();
+        self.picture(job, name, |path| tone_mapped_png(&HdrImage::read_exr(path).ok()?, exposure))
+    }
+
+    /// Keeps a picture of the light that a linear image of a job lacks against another one, tone-mapped as both.
+    pub(crate) fn lost(
+        &mut self,
+        job: &str,
+        [image, reference]: [&str; 2],
+        exposure: f64,
+    ) -> Option<String> {
+        let done = self.done;
+        self.drawn(format!("{job}/{image} lacks"), || {
+            let [image, reference] = [image, reference].map(|name| linear(done, job, Some(name)));
+            let (image, reference) = (image?, reference?);
+            let size = |image: &HdrImage| (image.width, image.height);
+            if size(&image) != size(&reference) {
+                return None;
             }
-            let rgb = image.tone_mapped(exposure as f32);
-            let picture = image::RgbImage::from_raw(image.width, image.height, rgb)?;
-            let height = u64::from(image.height) * u64::from(WIDEST) / u64::from(image.width);
-            let height = height.max(1) as u32;
-            let small = image::imageops::resize(&picture, WIDEST, height, FilterType::Triangle);
-            let mut png = Cursor::new(Vec::new());
-            small.write_to(&mut png, ImageFormat::Png).ok()?;
-            Some(png.into_inner())
+            let pairs = reference.pixels.iter().zip(&image.pixels);
+            let lack =
+                |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|ix| (a[ix] - b[ix]).max(0.0));
+            let pixels = pairs.map(lack).collect();
+            tone_mapped_png(&HdrImage { pixels, ..*image }, exposure)
         })
     }
 
@@ -213,6 +224,21 @@ impl<'a> Shots<'a> {
     pub(crate) fn view(self) -> Value {
         json!({ "pictures": self.pictures, "uris": self.uris })
     }
+}
+
+/// A linear image as a picture, at most as wide as the page shows it.
+fn tone_mapped_png(image: &HdrImage, exposure: f64) -> Option<Vec<u8>> {
+    if image.width <= WIDEST {
+        return image.to_png(exposure as f32).ok();
+    }
+    let rgb = image.tone_mapped(exposure as f32);
+    let picture = image::RgbImage::from_raw(image.width, image.height, rgb)?;
+    let height = u64::from(image.height) * u64::from(WIDEST) / u64::from(image.width);
+    let height = height.max(1) as u32;
+    let small = image::imageops::resize(&picture, WIDEST, height, FilterType::Triangle);
+    let mut png = Cursor::new(Vec::new());
+    small.write_to(&mut png, ImageFormat::Png).ok()?;
+    Some(png.into_inner())
 }
 
 /// A shot beside what it should look like, with its time and its errors.

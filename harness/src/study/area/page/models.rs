@@ -2,6 +2,7 @@
 
 use crate::report::column::{Better, Column};
 use crate::report::format::{ABSENT, difference, percent, significant};
+use crate::report::frontier::frontier;
 use crate::report::markup::Html;
 use crate::report::rank::listed;
 use crate::report::table::{Look, Row, Table};
@@ -10,7 +11,7 @@ use crate::study::against_truth::{MODELS, truth_of};
 use crate::study::data::{Entry, entries};
 use crate::study::manifest::Done;
 use crate::study::page::error_columns::error_columns;
-use crate::study::page::errors_plot::{FIRST, Plot, frontier};
+use crate::study::page::errors_plot::{FIRST, Plot};
 use crate::study::page::figure::Charts;
 use crate::study::page::part::Part;
 use crate::study::page::shots::{Shots, Wanted};
