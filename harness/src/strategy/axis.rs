@@ -15,10 +15,6 @@ const NEAR: &str = "near";
 const NORMALS: &str = "n";
 /// The prefix of a segment that sets the most lights of a list.
 const CAP: &str = "cap";
-/// The segment that keeps a bit per light in place of a list.
-const MASK: &str = "mask";
-/// The segment that lets subgroups prune lists while they read them.
-const PRUNE: &str = "prune";
 /// The prefix of a segment that sets for how many frames lists are used.
 const REUSE: &str = "reuse";
 /// The prefix of a segment that sets for how many frames lists of larger lights are kept.
@@ -45,8 +41,9 @@ pub enum Axis {
     Source,
     /// What bounds the reach of an area light: `ball` instead of its outline.
     AreaBounds,
-    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list; `prune`, a list that subgroups
-    /// prune while they read it.
+    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list; `scalar`, masks whose words
+    /// subgroups read together; `prune`, a list that subgroups prune while they read it; `tree`, a list with a tree of
+    /// the depths that its lights reach.
     Storage,
     /// The most lights of a frame: `first256` or `nearest256`, the others dropped. Lossy.
     Fewer,
@@ -92,8 +89,9 @@ impl Axis {
             Self::Source => "linear or bvh",
             Self::AreaBounds => "ball or outline",
             Self::Storage => {
-                "mask, which keeps a bit per light in place of a list, or prune, which lets the lanes of a subgroup \
-                 leave out lights of the list that miss their samples"
+                "mask, which keeps a bit per light in place of a list, scalar, which lets the lanes of a subgroup \
+                 read masks together, prune, which lets them leave out lights of the list that miss their samples, \
+                 or tree, which leaves out lights of the list that lie before or behind a sample"
             }
             Self::Box => "positions, supports or surfaces",
             Self::Normals => "n and the number of normal bins: n1, n6, n24 or n54",
@@ -132,7 +130,7 @@ impl Axis {
             EVEN => Some(Self::Slices),
             _ if fewer_of(segment).is_some() => Some(Self::Fewer),
             _ if segment.starts_with(NEAR) => Some(Self::Slices),
-            MASK | PRUNE => Some(Self::Storage),
+            _ if storage_of(segment).is_some() => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(REUSE) => Some(Self::Reuse),
@@ -176,12 +174,7 @@ impl Axis {
                 slices.check().ok()?;
                 options.slices = slices;
             }
-            Self::Storage => {
-                options.storage = match segment {
-                    PRUNE => Storage::PrunedLists,
-                    _ => Storage::Masks,
-                };
-            }
+            Self::Storage => options.storage = storage_of(segment)?,
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
         }
@@ -212,7 +205,7 @@ impl Axis {
             Self::Reuse => options.reuse.map(|frames| format!("{REUSE}{frames}")),
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
-            Self::Storage => storage_name(options.storage).map(str::to_owned),
+            Self::Storage => options.storage.name().map(str::to_owned),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
         }
@@ -252,7 +245,7 @@ impl Axis {
                 Slices::Even => ("slicing", EVEN.into()),
                 Slices::Near(end_m) => ("first_slice_end_m", shortest(end_m)),
             },
-            Self::Storage => ("storage", storage_name(options.storage)?.into()),
+            Self::Storage => ("storage", options.storage.name()?.into()),
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
@@ -271,13 +264,9 @@ fn number_after(segment: &str, prefix: &str) -> Option<u32> {
     segment.strip_prefix(prefix)?.parse().ok().filter(|number| *number > 0)
 }
 
-/// The segment of a storage; `None` for lists.
-fn storage_name(storage: Storage) -> Option<&'static str> {
-    match storage {
-        Storage::Lists => None,
-        Storage::Masks => Some(MASK),
-        Storage::PrunedLists => Some(PRUNE),
-    }
+/// The storage that a segment names.
+fn storage_of(segment: &str) -> Option<Storage> {
+    Storage::NAMED.into_iter().find(|storage| storage.name() == Some(segment))
 }
 
 /// What a segment such as `nearest256` says.
