@@ -6,8 +6,8 @@ use assign::{
     Light, LightBuffer, LightKinds, LightReader, LightSource, Shader, Storage, StrategyWesl,
     Touched, View,
     conformance::{
-        self, Bound, Breach, LinkedModule, Reworded, download, faulty::Fault, reword, run_kernel,
-        upload,
+        self, Bound, Breach, CASES, LinkedModule, Reworded, download, faulty::Fault, reword,
+        run_kernel, upload,
     },
     kernel::Slot,
 };
@@ -38,7 +38,10 @@ fn scalar_masks_conform() {
         ("16x16", Bounds::Implicit, LightSource::Linear),
         ("13x9", Bounds::Explicit, LightSource::Hierarchy),
     ] {
-        conformance::run(&scalar(size, bounds, source)).expect("conforms");
+        // The probe reads at most 16,384 lights of a sample. Here, samples of several tiles read more together.
+        for case in CASES.iter().filter(|case| case.name != "65537-lights") {
+            conformance::run_case(case.name, &scalar(size, bounds, source)).expect(case.name);
+        }
     }
 }
 
@@ -100,11 +103,15 @@ fn faults_of_the_look_up_are_rejected() {
             "subgroupOr(select(0u, low",
             "subgroupBroadcastFirst(select(0u, low",
         ),
-        ("the last node of all", "subgroupMin(own)", "subgroupMax(own)"),
-        ("bits of another node", "subgroupOr(select(0u, high, own == node))", "high"),
+        (
+            "lights of others count",
+            "extractBits(select((*cursor).own_high, (*cursor).own_low, is_low), bit, 1u)",
+            "1u",
+        ),
     ] {
         let make = reworded(reword(LOOK_UP, part, other));
-        conformance::rejects_in(what, "5000-lights", Breach::MissedPair, &make).expect("rejects");
+        let breach = Breach::MissedPair;
+        conformance::rejects_in(what, "5000-lights", breach, &make).expect("rejects");
     }
 }
 
@@ -118,7 +125,7 @@ import package::lists::ENTRY_LIGHT;
 import package::look_up::{next_light, open_lights};
 import package::sample::sample_at;
 @group(2) @binding(0) var<storage, read_write> found: array<u32>;
-@compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(64) fn gather(@builtin(global_invocation_id) id: vec3u) {
   let pixel = vec2f(f32(id.x) + 0.5, 24.5);
   var cursor = open_lights(sample_at(pixel, 0.05, vec3f(0.0), 0u));
   var count = 0u;
@@ -157,12 +164,12 @@ fn read(make: &dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError>) -> Vec<
         Bound::Group(lookup.layout, strategy.bind_group().expect("lists")),
         Bound::Buffers(&[(0, Slot::Write, &found)]),
     ];
-    run_kernel(&gpu, &module, "read", &groups, 1);
+    run_kernel(&gpu, &module, "gather", &groups, 1);
     let found: Vec<u32> = download(&gpu, &found, 64 * 1024).expect("lights");
     found.chunks(1024).map(|lane| lane[..lane[1023] as usize].to_vec()).collect()
 }
 
-/// The share of lanes that read all their lights once and in order, and how many lights all lanes read.
+/// The number of lanes that read all lights of their masks once and in order.
 fn right_lanes(masks: &[Vec<u32>], found: &[Vec<u32>]) -> usize {
     let is_right = |(mask, found): &(&Vec<u32>, &Vec<u32>)| {
         found.is_sorted_by(|a, b| a < b) && mask.iter().all(|light| found.contains(light))
@@ -177,9 +184,15 @@ fn lanes_at_different_places_read_all_their_lights_once_and_in_order() {
     assert_eq!(right_lanes(&masks, &masks), 64);
     let found = read(&scalar("16x16", Bounds::Implicit, LightSource::Linear));
     assert_eq!(right_lanes(&masks, &found), 64);
-    // Lanes that do not wait for others read their lights twice.
-    let hasty = read(&reworded(reword(LOOK_UP, "is_ahead && node <", "false && node <")));
-    assert!(right_lanes(&masks, &hasty) < 64);
+    for (part, other) in [
+        // Lanes that do not wait for others read their lights twice.
+        ("is_ahead && node <", "false && node <"),
+        // Lanes that go on with the last node of all read others after it.
+        ("subgroupMin(own)", "subgroupMax(own)"),
+    ] {
+        let found = read(&reworded(reword(LOOK_UP, part, other)));
+        assert!(right_lanes(&masks, &found) < 64, "{other}");
+    }
 }
 
 /// Fragment shaders read plain masks.
@@ -192,7 +205,10 @@ fn without_subgroups_the_shader_is_that_of_plain_masks() {
             let shader = Shader::new(1).module("package::reader", READER).strategy(wesl);
             let shader = shader.light_kinds(kinds);
             let linked = shader.link("package::reader").expect("links");
-            LinkedModule::new(&format!("{storage:?}"), &linked);
+            match storage {
+                Storage::Masks => LinkedModule::new("plain masks", &linked),
+                _ => LinkedModule::with_subgroups("scalarised masks", &linked),
+            };
             [linked, shader.without_subgroups().link("package::reader").expect("links")]
         });
         assert_eq!(plain[0], plain[1]);

@@ -86,16 +86,16 @@ impl<'a> LightReader<'a> {
     }
 
     /// The most loop rounds of an invocation that looks so many lights up, besides those of its own loop over the
-    /// lights.
+    /// lights. llvmpipe counts a round if any of 8 lanes takes it, and one for each loop that no lane enters.
     pub const fn loop_rounds(self, lights: u64) -> u64 {
         match self {
             // One round to test a light at most, and one to return it; 64 lights below a box take two more.
             Self::Stored(Storage::PrunedLists) | Self::Walk { .. } => 2 * lights + lights / 16 + 16,
-            // One round to test a light.
-            Self::Stored(Storage::Trees) => lights,
-            // One for each 64 lights, and a few while a lane waits for others.
+            // One round to test a light, for each lane at another time.
+            Self::Stored(Storage::Trees) => 8 * lights,
+            // One for each light, one for each 64 lights and for each 2,048, and a few while a lane waits for others.
             Self::Stored(Storage::Masks | Storage::ScalarMasks) | Self::BothMasks => {
-                lights / 16 + 64
+                lights + lights / 4 + 64
             }
             Self::Stored(Storage::Lists) | Self::Own(_) => 0,
         }

@@ -17,13 +17,13 @@
 //! 3. Each lane takes the joined words, also one that wants a later node. It evaluates their lights, and then goes
 //!    back to phase 1.
 //!
-//! A lane whose mask has no node left leaves the subgroup. Lanes may also part for other reasons, which the look-up
+//! A lane that has read all lights of its own mask leaves the subgroup. Lanes may also part for other reasons, which the look-up
 //! does not control. So lanes form a new team at each node (`look_up_mask.wesl`). A lane that has read the node
 //! before waits for those that have not. So each lane reads every light of its own mask once, in ascending order,
 //! whichever lanes run with it.
 //!
 //! Worked example: the masks of lanes A and B hold lights 1 and 70, and light 3. Both want node 0, and join its bits:
-//! both evaluate lights 1 and 3. B has no node left. A reads node 1 alone, and evaluates light 70.
+//! both evaluate lights 1 and 3. B has read its only light. A reads node 1 alone, and evaluates light 70.
 //!
 //! A lane evaluates lights that are not in its own mask. These add exactly 0, because a mask holds every light that
 //! reaches one of its group's samples. So the image stays the same in every bit. Skipping such lights inside the
@@ -41,7 +41,6 @@
 //! - With small groups, such as clusters, a subgroup crosses several of them. It evaluates the lights of all.
 //! - Where all lanes are of one group, the plain mask already reads the same words in each lane.
 //! - It needs `wgpu::Features::SUBGROUP`. Fragment shaders read plain masks.
-//! - A limit on the lights of a list (`/cap32`) would not hold, because neighbours may bring a dropped light back.
 
 #[cfg(test)]
 mod tests {

@@ -116,11 +116,6 @@ fn check_storage(id: &str, options: &Options) -> Result<(), IdError> {
     let later = "the depths of a tree hold for the view and the lights of the frame that made it";
     for (other, is_refused, reason) in [
         (Axis::Specular, storage.is_mask(), "a mask cannot store which terms to leave out"),
-        (
-            Axis::Cap,
-            storage == Storage::ScalarMasks,
-            "a light that a mask drops may be in the mask of a neighbour, with which it is read together",
-        ),
         (Axis::Reuse, !storage.serves_later_frames(), later),
         (Axis::Keep, !storage.serves_later_frames(), later),
         (Axis::Touched, !storage.serves_later_frames(), later),

@@ -250,7 +250,6 @@ fn contradictions_name_both_segments() {
         ("T-E/touched/cap8", "touched", "cap8"),
         ("SC-E/dif/mask", "mask", "dif"),
         ("SC-E/dif/scalar", "scalar", "dif"),
-        ("T-E/scalar/cap8", "scalar", "cap8"),
         ("T-E/scalar/tree", "scalar", "tree"),
         ("T-E/tree/reuse4", "tree", "reuse4"),
         ("G/tree/keep4", "tree", "keep4"),
