@@ -45,8 +45,9 @@ fn planted_faults_are_rejected() {
     assert!(left_out.all(Fault::needs_entries), "{planted:?}");
 }
 
-/// The look-up of both masks.
-const LOOK_UP: &str = include_str!("../../assign/src/shaders/look_up_both_masks.wesl");
+/// The look-up of masks, and its flags for both masks of a sample.
+const LOOK_UP: &str = include_str!("../../assign/src/shaders/look_up_mask.wesl");
+const FLAGS: &[(&str, bool)] = &[("both_masks", true), ("subgroups", false)];
 
 #[test]
 fn faults_of_the_look_up_are_rejected() {
@@ -61,11 +62,18 @@ fn faults_of_the_look_up_are_rejected() {
     };
     let word = |wesl| StrategyWesl {
         // The second half of each node is lost.
+        reader: LightReader::Own(reword(LOOK_UP, "word_at(cursor, 2u * own + 1u)", "0u")),
+        flags: FLAGS,
+        ..wesl
+    };
+    let first = |wesl| StrategyWesl {
+        // The lights of the slice are not asked.
         reader: LightReader::Own(reword(
             LOOK_UP,
-            "entries[place + 1u] & entries[other + 1u]",
-            "0u",
+            "list_of(second_group_of(sample))",
+            "list_of(0u)",
         )),
+        flags: FLAGS,
         ..wesl
     };
     let rejects = |what: &str, other: &dyn Fn(StrategyWesl<'static>) -> StrategyWesl<'static>| {
@@ -76,6 +84,7 @@ fn faults_of_the_look_up_are_rejected() {
     };
     rejects("the slice behind", &slice);
     rejects("half of each node", &word);
+    rejects("the mask of another slice", &first);
 }
 
 #[test]

@@ -95,7 +95,7 @@ impl Variant {
         }
         // What the others leave out of lists, they mark in an entry's flags.
         if !matches!(self.facing, Facing::Unknown | Facing::Horizon)
-            && self.settings.storage == Storage::Masks
+            && self.settings.storage.is_mask()
         {
             return Err(AssignError::Unsupported {
                 strategy: strategy.into(),
@@ -355,6 +355,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
     Shader::new(LISTS_GROUP)
         .module("package::cull", include_str!("shaders/cull.wesl"))
         .module("package::walk", include_str!("shaders/walk.wesl"))
+        .module("package::tree", include_str!("shaders/tree.wesl"))
         .module("package::terms", include_str!("shaders/terms.wesl"))
         .module("package::bounds", bounds)
         .module("package::facing", include_str!("shaders/facing.wesl"))
@@ -378,6 +379,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .flag("grandparents", levels > 2)
         .flag("area_balls", variant.settings.area_bounds == AreaBounds::Ball)
         .flag("sparse", variant.sparse)
-        .flag("masks", variant.settings.storage == Storage::Masks)
+        .flag("masks", variant.settings.storage.is_mask())
+        .flag("trees", variant.settings.storage == Storage::Trees)
         .light_kinds(lights.kinds)
 }

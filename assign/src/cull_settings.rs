@@ -134,8 +134,8 @@ pub struct CullSettings {
 }
 
 impl CullSettings {
-    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, `/mask`, `/prune`. Defaults add
-    /// nothing, and tests appear only if groups are frusta.
+    /// The part of an id that names these settings: `/hs`, `/bvh`, `/hs/bvh`, `/ball`, and the storage's name:
+    /// `/mask`, `/tree`. Defaults add nothing, and tests appear only if groups are frusta.
     pub fn suffix(&self, shape: GroupShape) -> String {
         let mut suffix = String::new();
         let is_frustum = matches!(shape, GroupShape::Frustum | GroupShape::MaskedFrustum);
@@ -148,11 +148,10 @@ impl CullSettings {
         if self.area_bounds == AreaBounds::Ball {
             suffix += "/ball";
         }
-        suffix += match self.storage {
-            Storage::Lists => "",
-            Storage::Masks => "/mask",
-            Storage::PrunedLists => "/prune",
-        };
+        if let Some(name) = self.storage.name() {
+            suffix += "/";
+            suffix += name;
+        }
         suffix
     }
 }

@@ -71,7 +71,7 @@ impl Keep {
     /// # Errors
     ///
     /// [`AssignError::Parameter`] if `frames` is 0, and [`AssignError::Unsupported`] if the strategy tests
-    /// lights against normals, which do not know larger balls.
+    /// lights against normals, which do not know larger balls, or if lists have [trees](crate::Storage::Trees).
     pub fn new(gpu: &Gpu, inner: Box<dyn Assignment>, frames: u32) -> Result<Self, AssignError> {
         if frames == 0 {
             return Err(AssignError::Parameter {
@@ -89,6 +89,7 @@ impl Keep {
                     .into(),
             });
         }
+        inner.lists().check_later_frames(inner.id(), &format!("keep{frames}"))?;
         Ok(Self {
             inner,
             frames,

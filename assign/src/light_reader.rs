@@ -56,13 +56,17 @@ impl<'a> LightReader<'a> {
 
     /// Whether it tests lights while it looks them up.
     const fn tests_lights(self) -> bool {
-        matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { .. })
+        matches!(self, Self::Stored(Storage::PrunedLists | Storage::Trees) | Self::Walk { .. })
     }
 
     /// Whether its shaders use subgroup operations. Fragment shaders must not: mount them with
     /// [`Shader::without_subgroups`](crate::Shader::without_subgroups).
     pub const fn needs_subgroups(self) -> bool {
-        matches!(self, Self::Stored(Storage::PrunedLists) | Self::Walk { team: Team::Subgroup, .. })
+        matches!(
+            self,
+            Self::Stored(Storage::PrunedLists | Storage::ScalarMasks)
+                | Self::Walk { team: Team::Subgroup, .. }
+        )
     }
 
     /// Checks that a device can run it. `strategy` is the strategy's id.
@@ -82,10 +86,19 @@ impl<'a> LightReader<'a> {
     }
 
     /// The most loop rounds of an invocation that looks so many lights up, besides those of its own loop over the
-    /// lights. A reader that tests lights takes one round to test a light at most, and one to return it; 64
-    /// lights below a box take two more.
+    /// lights. llvmpipe counts a round if any of 8 lanes takes it, and one for each loop that no lane enters.
     pub const fn loop_rounds(self, lights: u64) -> u64 {
-        if self.tests_lights() { 2 * lights + lights / 16 + 16 } else { 0 }
+        match self {
+            // One round to test a light at most, and one to return it; 64 lights below a box take two more.
+            Self::Stored(Storage::PrunedLists) | Self::Walk { .. } => 2 * lights + lights / 16 + 16,
+            // One round to test a light, for each lane at another time.
+            Self::Stored(Storage::Trees) => 8 * lights,
+            // One for each light, one for each 64 lights and for each 2,048, and a few while a lane waits for others.
+            Self::Stored(Storage::Masks | Storage::ScalarMasks) | Self::BothMasks => {
+                lights + lights / 4 + 64
+            }
+            Self::Stored(Storage::Lists) | Self::Own(_) => 0,
+        }
     }
 
     /// Checks that a device can read so many lights for a sample. llvmpipe ends an invocation's loops silently
@@ -119,10 +132,12 @@ impl<'a> LightReader<'a> {
             Self::Stored(Storage::Lists) => {
                 vec![look_up(include_str!("shaders/look_up_list.wesl"))]
             }
-            Self::Stored(Storage::Masks) => {
+            Self::Stored(Storage::Masks | Storage::ScalarMasks) | Self::BothMasks => {
                 vec![look_up(include_str!("shaders/look_up_mask.wesl"))]
             }
-            Self::BothMasks => vec![look_up(include_str!("shaders/look_up_both_masks.wesl"))],
+            Self::Stored(Storage::Trees) => {
+                vec![look_up(include_str!("shaders/look_up_tree.wesl"))]
+            }
             Self::Stored(Storage::PrunedLists) | Self::Walk { .. } => vec![
                 look_up(include_str!("shaders/look_up_walk.wesl")),
                 ("package::lane_bounds", BOUNDS_BOX_WESL),
@@ -141,12 +156,15 @@ impl<'a> LightReader<'a> {
                 ("listed", listed),
             ]
         };
+        let mask = |subgroups, both| vec![("subgroups", subgroups), ("both_masks", both)];
         match self {
             Self::Stored(Storage::PrunedLists) => walk(Team::Subgroup, LightSource::Linear, true),
             Self::Walk { team, source } => walk(team, source, false),
-            Self::Stored(Storage::Lists | Storage::Masks) | Self::BothMasks | Self::Own(_) => {
-                Vec::new()
+            Self::Stored(storage @ (Storage::Masks | Storage::ScalarMasks)) => {
+                mask(storage == Storage::ScalarMasks, false)
             }
+            Self::BothMasks => mask(false, true),
+            Self::Stored(Storage::Lists | Storage::Trees) | Self::Own(_) => Vec::new(),
         }
     }
 }

@@ -27,7 +27,7 @@ pub struct LightList {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Counters {
-    /// Entries taken from the pool, plus the entries of lists that no longer fitted.
+    /// Words taken from the pool, plus the words of lists that no longer fitted.
     pub cursor: u32,
     /// Requested entries, low 32 bits.
     pub requested_low: u32,
@@ -74,12 +74,13 @@ pub struct CullUniform {
     pub mask_summary: u32,
 }
 
-/// Lists copied to the CPU. Bit masks are copied as the lists that they stand for.
+/// Lists copied to the CPU. Bit masks are copied as the lists that they stand for. Words of trees stay between the
+/// lists, which do not point to them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ListsSnapshot {
     /// Record 0 (all lights), then one record per group.
     pub lists: Vec<LightList>,
-    /// All entries.
+    /// All entries, and the words of trees.
     pub entries: Vec<u32>,
     /// The counters of the last frame.
     pub counters: Counters,

@@ -5,6 +5,8 @@
 //! list does not fit gets the record `(0, light_count)`, which is slow but correct, and the
 //! overflow is counted.
 //!
+//! Other storages than plain lists have essays of their own: `masks.rs`, `scalar_masks.rs` and `trees.rs`.
+//!
 //! Worked example: 5 lights, capacity for 8, lists of 2, 0 and 3 entries:
 //! `lists = [(0, 5), (8, 2), (0, 0), (10, 3)]`, `entries = [0 1 2 3 4 - - - | a b c d e]`.
 
@@ -94,9 +96,12 @@ impl LightLists {
         self.room = room;
     }
 
-    /// Entries for which the pool needs room, as far as the counters that have arrived tell.
+    /// Words for which the pool needs room, as far as the counters that have arrived tell.
     fn asked(&self) -> u64 {
-        self.readback.latest().map_or(0, |c| c.requested()) * u64::from(self.room)
+        let words = |counters: Counters| {
+            self.storage.pool_words(counters.requested(), counters.occupied_groups.into())
+        };
+        self.readback.latest().map_or(0, words) * u64::from(self.room)
     }
 
     /// The most entries that the pool may have, behind those of all lights.
@@ -109,11 +114,26 @@ impl LightLists {
     /// tell. Until then, lists that did not fit stay all lights.
     pub(crate) fn wants_growth(&mut self, gpu: &Gpu) -> bool {
         self.readback.poll(gpu);
-        if self.storage == Storage::Masks {
+        if self.storage.is_mask() {
             return false;
         }
         self.asked().min(self.most_entries(gpu, self.light_capacity))
             > u64::from(self.pool_capacity)
+    }
+
+    /// Rejects lists that serve only the frame that made them. `strategy` is the strategy's id, and `asked` is what
+    /// needs lists in later frames.
+    pub(crate) fn check_later_frames(
+        &self,
+        strategy: String,
+        asked: &str,
+    ) -> Result<(), AssignError> {
+        if self.storage.serves_later_frames() {
+            return Ok(());
+        }
+        let reason =
+            "the depths of a tree hold for the view and the lights of the frame that made it";
+        Err(AssignError::Unsupported { strategy, asked: asked.into(), reason: reason.into() })
     }
 
     /// Whether lists lose lights beyond a number.
@@ -149,11 +169,10 @@ impl LightLists {
         } else {
             None
         };
-        let mut changed = match self.storage {
-            Storage::Lists | Storage::PrunedLists => {
-                self.size_entries(gpu, light_count, group_count, asked)?
-            }
-            Storage::Masks => self.size_masks(gpu, light_count, records)?,
+        let mut changed = if self.storage.is_mask() {
+            self.size_masks(gpu, light_count, records)?
+        } else {
+            self.size_entries(gpu, light_count, group_count, asked)?
         };
         if let Some(lists) = larger {
             self.lists = lists;
@@ -175,6 +194,9 @@ impl LightLists {
     fn upload(&self, gpu: &Gpu, levels: NodeLevels) {
         let (light_count, group_count) = self.counts;
         let records = u64::from(group_count) + 1;
+        let all_pairs = u64::from(light_count) * records;
+        let most_words =
+            self.storage.pool_words(all_pairs, records) + u64::from(self.pool_capacity);
         // In every frame, because a number that the GPU wrote may have replaced it.
         let all = LightList { first: self.masks.summary, count: light_count };
         gpu.queue.write_buffer(&self.lists, 0, bytemuck::bytes_of(&all));
@@ -184,10 +206,7 @@ impl LightLists {
             pool_first: self.light_capacity,
             pool_capacity: self.pool_capacity,
             // Frames that make only some lists begin anywhere in the pool.
-            guard_cursor: u32::from(
-                u32::try_from(u64::from(light_count) * records + u64::from(self.pool_capacity))
-                    .is_err(),
-            ),
+            guard_cursor: u32::from(u32::try_from(most_words).is_err()),
             list_cap: self.list_cap,
             first_parent: levels.first_parent,
             first_grandparent: levels.first_grandparent,
@@ -216,7 +235,9 @@ impl LightLists {
         }
         // A guess until a frame has counted: 16 entries per group, or every (light, group) pair if
         // those are fewer.
-        let guess = (u64::from(group_count) * u64::from(light_count.min(16))).min(MAX_GUESS);
+        let groups = u64::from(group_count);
+        let pairs = groups * u64::from(light_count.min(16));
+        let guess = self.storage.pool_words(pairs, groups).min(MAX_GUESS);
         let has = u64::from(self.pool_capacity);
         // A quarter more than requested, so that a moving camera does not grow the pool each frame.
         let grown = if asked > has { asked + asked / 4 } else { has };
@@ -308,16 +329,16 @@ impl LightLists {
         let counters = gpu.read(&self.counters, COUNTERS_BYTES)?;
         let counters: Counters = bytemuck::pod_read_unaligned(&counters);
         let lists: Vec<LightList> = pod_collect_to_vec(&lists);
-        let used = match self.storage {
-            Storage::Lists | Storage::PrunedLists => {
-                self.light_capacity + counters.cursor.min(self.pool_capacity)
-            }
-            Storage::Masks => (self.counts.1 + 1) * self.masks.stride,
+        let used = if self.storage.is_mask() {
+            (self.counts.1 + 1) * self.masks.stride
+        } else {
+            self.light_capacity + counters.cursor.min(self.pool_capacity)
         };
         let entries: Vec<u32> = pod_collect_to_vec(&gpu.read(&self.entries, u64::from(used) * 4)?);
-        let (lists, entries) = match self.storage {
-            Storage::Lists | Storage::PrunedLists => (lists, entries),
-            Storage::Masks => self.masks.decode(&lists, &entries),
+        let (lists, entries) = if self.storage.is_mask() {
+            self.masks.decode(&lists, &entries)
+        } else {
+            (lists, entries)
         };
         Ok(ListsSnapshot { lists, entries, counters })
     }

@@ -25,21 +25,7 @@
 
 use crate::{AssignError, LightList, light_nodes::NODE_LIGHTS, list_records::ALL_TERMS};
 
-/// Where the lights that may reach a group are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Storage {
-    /// As a list of entries in a pool.
-    #[default]
-    Lists,
-    /// As a bit per light.
-    Masks,
-    /// As a list of entries in a pool, of which the subgroup that reads it leaves out what misses the box around
-    /// its samples (Mikkelsen 2016 prunes lists of large tiles for small ones, before shading).
-    PrunedLists,
-}
-
-/// Words of summary that a workgroup holds while it culls: `MOST_SUMMARY` of `cull.wesl` and of
-/// `look_up_mask.wesl`.
+/// Words of summary that a workgroup holds while it culls: `MOST_SUMMARY` of `cull.wesl`.
 const MOST_SUMMARY: u32 = 512;
 
 /// The sizes of a region.

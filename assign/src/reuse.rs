@@ -29,6 +29,11 @@ struct Made {
 
 impl Reuse {
     /// Wraps a strategy. With `frames` 1 it makes its lists every frame.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Parameter`] if `frames` is 0, and [`AssignError::Unsupported`] if lists have
+    /// [trees](crate::Storage::Trees).
     pub fn new(inner: Box<dyn Assignment>, frames: u32) -> Result<Self, AssignError> {
         if frames == 0 {
             return Err(AssignError::Parameter {
@@ -37,6 +42,7 @@ impl Reuse {
                 accepted: "1 or more".into(),
             });
         }
+        inner.lists().check_later_frames(inner.id(), &format!("reuse{frames}"))?;
         Ok(Self { inner, frames, age: None, made: None })
     }
 }

@@ -44,6 +44,7 @@ impl<'a> Shader<'a> {
             .module("package::keys", include_str!("shaders/keys.wesl"))
             .module("package::lists", include_str!("shaders/lists.wesl"))
             .module("package::depth_slices", include_str!("shaders/depth_slices.wesl"))
+            .module("package::tree_depths", include_str!("shaders/tree_depths.wesl"))
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
             .flag("hard_cut", false)

@@ -60,8 +60,8 @@ impl Touched {
     /// # Errors
     ///
     /// [`AssignError::Unsupported`] if the strategy does not [update groups](Assignment::updates_groups), or
-    /// reads normals or triangles, by which a list may change though no volume does; or if the device has too few
-    /// storage buffers.
+    /// reads normals or triangles, by which a list may change though no volume does; if lists have
+    /// [trees](crate::Storage::Trees); or if the device has too few storage buffers.
     pub fn new(gpu: &Gpu, mut inner: Box<dyn Assignment>) -> Result<Self, AssignError> {
         let needs = inner.needs();
         if !inner.updates_groups() || needs.normals || needs.triangles {
@@ -73,6 +73,7 @@ impl Touched {
                     .into(),
             });
         }
+        inner.lists().check_later_frames(inner.id(), "touched")?;
         let has = gpu.device.limits().max_storage_buffers_per_shader_stage;
         if has < STORAGE_BUFFERS {
             return Err(AssignError::Unsupported {

@@ -58,6 +58,9 @@ fn permutations() -> Vec<Permutation> {
             all.push((GroupShape::MaskedFrustum, bounds, settings, sparse));
         }
         all.extend(BOXES.map(|(shape, bounds)| (shape, bounds, masks, sparse)));
+        let trees = CullSettings { storage: Storage::Trees, ..masks };
+        all.push((FRUSTUM.0, FRUSTUM.1, trees, sparse));
+        all.extend(BOXES.map(|(shape, bounds)| (shape, bounds, trees, sparse)));
     }
     all
 }

@@ -82,7 +82,7 @@ pub use violation::{
     Breach, CaseReport, ConformanceError, Figures, Outcome, Place, Report, SamplePlace, Violation,
 };
 
-use crate::{AssignError, Assignment, Gpu, Storage};
+use crate::{AssignError, Assignment, Gpu};
 
 /// Makes a new instance of the strategy under test.
 pub type Make<'a> = dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError> + 'a;
@@ -135,7 +135,7 @@ pub fn rejects_faults(make: &Make<'_>) -> Result<Vec<Fault>, ConformanceError> {
     let has_groups = session::has_groups(rig, plain, make).map_err(|e| failed(plain, e))?;
     let strategy = make(&rig.gpu).map_err(setup)?;
     let normals = strategy.needs().normals;
-    let entries = strategy.lists().storage() != Storage::Masks;
+    let entries = !strategy.lists().storage().is_mask();
     let mut planted = Vec::new();
     for fault in Fault::ALL {
         let applies = (has_groups || !fault.needs_groups())

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     AssignError, Assignment, EncoderPasses, Frame, FrameBindings, Light, LightBuffer, LightKinds,
-    LightOrder, SampleDomain, Storage,
+    LightOrder, SampleDomain,
 };
 
 /// The number of frames after which the pool must fit all lists.
@@ -194,7 +194,7 @@ impl Run<'_> {
             let seen = self.frame(&mut session, lit, wipe, true)?;
             // Bit masks have no pool.
             let lists = session.strategy.lists();
-            let has_pool = lists.storage() != Storage::Masks && lists.group_count() > 0;
+            let has_pool = !lists.storage().is_mask() && lists.group_count() > 0;
             if has_pool && !seen.overflowed() {
                 let detail =
                     format!("with {} lights and a pool of {TINY_POOL} entries", seen.light_count);

@@ -17,10 +17,6 @@ const CASCADES: &str = "cascades";
 const NORMALS: &str = "n";
 /// The prefix of a segment that sets the most lights of a list.
 const CAP: &str = "cap";
-/// The segment that keeps a bit per light in place of a list.
-const MASK: &str = "mask";
-/// The segment that lets subgroups prune lists while they read them.
-const PRUNE: &str = "prune";
 /// The prefix of a segment that makes ranges random below an irradiance.
 const STOCHASTIC: &str = "stochastic";
 /// The prefix of a segment that sets for how many frames lists are used.
@@ -53,8 +49,9 @@ pub enum Axis {
     Source,
     /// What bounds the reach of an area light: `ball` instead of its outline.
     AreaBounds,
-    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list; `prune`, a list that subgroups
-    /// prune while they read it.
+    /// Where a group's lights are kept: `mask`, a bit per light, in place of a list; `scalar`, masks whose words
+    /// subgroups read together; `prune`, a list that subgroups prune while they read it; `tree`, a list with a tree of
+    /// the depths that its lights reach.
     Storage,
     /// The most lights of a frame: `first256` or `nearest256`, the others dropped. Lossy.
     Fewer,
@@ -104,8 +101,9 @@ impl Axis {
             Self::Source => "linear or bvh",
             Self::AreaBounds => "ball or outline",
             Self::Storage => {
-                "mask, which keeps a bit per light in place of a list, or prune, which lets the lanes of a subgroup \
-                 leave out lights of the list that miss their samples"
+                "mask, which keeps a bit per light in place of a list, scalar, which lets the lanes of a subgroup \
+                 read masks together, prune, which lets them leave out lights of the list that miss their samples, \
+                 or tree, which leaves out lights of the list that lie before or behind a sample"
             }
             Self::Scatter => "raster, which lets the rasteriser find the tiles of each light",
             Self::Box => "positions, supports, surfaces, frustum or visible",
@@ -150,7 +148,7 @@ impl Axis {
             _ if fewer_of(segment).is_some() => Some(Self::Fewer),
             _ if segment.starts_with(NEAR) => Some(Self::Slices),
             _ if segment.starts_with(CASCADES) => Some(Self::Slices),
-            MASK | PRUNE => Some(Self::Storage),
+            _ if storage_of(segment).is_some() => Some(Self::Storage),
             TOUCHED => Some(Self::Touched),
             _ if specular::parse(segment).is_some() => Some(Self::Specular),
             _ if segment.starts_with(STOCHASTIC) => Some(Self::Stochastic),
@@ -201,13 +199,8 @@ impl Axis {
                 slices.check(Slices::MAX_CASCADES).ok()?;
                 options.slices = slices;
             }
-            Self::Storage => {
-                options.storage = match segment {
-                    PRUNE => Storage::PrunedLists,
-                    _ => Storage::Masks,
-                };
-            }
             Self::Scatter => options.scatter = Scatter::Raster,
+            Self::Storage => options.storage = storage_of(segment)?,
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
         }
@@ -242,7 +235,7 @@ impl Axis {
             Self::Keep => options.keep.map(|frames| format!("{KEEP}{frames}")),
             Self::Slices => options.slices.segment().strip_prefix('/').map(str::to_owned),
             Self::Scatter => options.scatter.segment().strip_prefix('/').map(str::to_owned),
-            Self::Storage => storage_name(options.storage).map(str::to_owned),
+            Self::Storage => options.storage.name().map(str::to_owned),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
         }
@@ -285,7 +278,7 @@ impl Axis {
                 Slices::Cascaded(count) => ("cascades", count.into()),
             },
             Self::Scatter => ("scatter", self.segment(options)?.into()),
-            Self::Storage => ("storage", storage_name(options.storage)?.into()),
+            Self::Storage => ("storage", options.storage.name()?.into()),
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
@@ -304,13 +297,9 @@ fn number_after(segment: &str, prefix: &str) -> Option<u32> {
     segment.strip_prefix(prefix)?.parse().ok().filter(|number| *number > 0)
 }
 
-/// The segment of a storage; `None` for lists.
-fn storage_name(storage: Storage) -> Option<&'static str> {
-    match storage {
-        Storage::Lists => None,
-        Storage::Masks => Some(MASK),
-        Storage::PrunedLists => Some(PRUNE),
-    }
+/// The storage that a segment names.
+fn storage_of(segment: &str) -> Option<Storage> {
+    Storage::NAMED.into_iter().find(|storage| storage.name() == Some(segment))
 }
 
 /// What a segment such as `nearest256` says.

@@ -1,6 +1,6 @@
 //! Reads ids, and rejects segments that contradict each other.
 
-use assign::{AreaBounds, LightSource, Storage};
+use assign::{AreaBounds, LightSource};
 use assign_clustered::SpecularCut;
 use thiserror::Error;
 
@@ -105,18 +105,31 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             return Err(contradiction(id, "touched", &segment, reason));
         }
     }
-    if options.storage == Storage::Masks
-        && let Some(segment) = Axis::Specular.segment(options)
-    {
-        let reason = "a mask cannot store which terms to leave out";
-        return Err(contradiction(id, "mask", &segment, reason));
-    }
+    check_storage(id, options)?;
     let settings = options.settings();
     let is_ball = settings.area_bounds == AreaBounds::Ball;
     if is_ball && settings.source == LightSource::Hierarchy && row.has_axis(Axis::Source) {
         // Its lists would not be those of balls.
         let reason = "the hierarchy's nodes bound the lights' outlines, not their balls";
         return Err(contradiction(id, "ball", "bvh", reason));
+    }
+    Ok(())
+}
+
+/// Rejects options that contradict where lights are kept.
+fn check_storage(id: &str, options: &Options) -> Result<(), IdError> {
+    let storage = options.storage;
+    let Some(name) = storage.name() else { return Ok(()) };
+    let later = "the depths of a tree hold for the view and the lights of the frame that made it";
+    for (other, is_refused, reason) in [
+        (Axis::Specular, storage.is_mask(), "a mask cannot store which terms to leave out"),
+        (Axis::Reuse, !storage.serves_later_frames(), later),
+        (Axis::Keep, !storage.serves_later_frames(), later),
+        (Axis::Touched, !storage.serves_later_frames(), later),
+    ] {
+        if is_refused && let Some(segment) = other.segment(options) {
+            return Err(contradiction(id, name, &segment, reason));
+        }
     }
     Ok(())
 }

@@ -129,7 +129,9 @@ fn parameters_have_names() {
     assert_eq!(id("SC-E/n24").parameters()["normal_bins"], 24);
     assert_eq!(id("SC-E/ball").parameters()["area_bounds"], "ball");
     assert_eq!(id("G/touched").parameters()["touched"], true);
-    assert_eq!(id("T-E/mask").parameters()["storage"], "mask");
+    for storage in ["mask", "scalar", "prune", "tree"] {
+        assert_eq!(id(&format!("T-E/{storage}")).parameters()["storage"], storage);
+    }
     assert_eq!(id("HG/raster").parameters()["scatter"], "raster");
     assert_eq!(id("DC-I/cascades3").parameters()["cascades"], 3);
     for invalid in ["SC-E/near0", "SC-E/nearnan", "SC-E/near", "SC-E/cascades1", "SC-E/cascades"] {
@@ -276,6 +278,11 @@ fn contradictions_name_both_segments() {
         ("SC-E/ball/bvh", "ball", "bvh"),
         ("T-E/touched/cap8", "touched", "cap8"),
         ("SC-E/dif/mask", "mask", "dif"),
+        ("SC-E/dif/scalar", "scalar", "dif"),
+        ("T-E/scalar/tree", "scalar", "tree"),
+        ("T-E/tree/reuse4", "tree", "reuse4"),
+        ("G/tree/keep4", "tree", "keep4"),
+        ("T-E/tree/touched", "tree", "touched"),
         ("SC-E/keep4/touched", "touched", "keep4"),
     ] {
         let error = StrategyId::parse(id).expect_err(id).to_string();

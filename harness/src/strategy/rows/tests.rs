@@ -75,6 +75,8 @@ fn ids_are_those_of_the_strategies() {
         "W/bvh",
         "T-E1/16x16/hs/bvh",
         "T-I/prune",
+        "T-I/tree",
+        "SC-E/bvh/scalar",
         "SC-E/96x96x16/bvh/prune",
         "ZB/hs/bvh",
         "W1",
