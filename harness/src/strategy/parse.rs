@@ -1,6 +1,6 @@
 //! Reads ids, and rejects segments that contradict each other.
 
-use assign::{AreaBounds, LightSource, Storage};
+use assign::{AreaBounds, LightSource};
 use assign_clustered::SpecularCut;
 use thiserror::Error;
 
