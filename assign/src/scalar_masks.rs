@@ -34,7 +34,9 @@
 //!
 //! - Memory and culling: those of `/mask`.
 //! - Shading: one minimum, two ORs and two votes of the subgroup for each node that its lanes read. The lists get longer
-//!   by the lights of neighbouring groups, where a subgroup has pixels of several groups.
+//!   by the lights of neighbouring groups, where a subgroup has pixels of several groups. In the atrium with 500
+//!   lights at 320x180, with subgroups of 8 pixels, a sample evaluates 11.4 lights in place of 10.6 with
+//!   `T-E/28x28`, and 7.4 in place of 5.6 with `SC-E/48x48x40/bvh`.
 //!
 //! # Where it fails
 //!

@@ -48,9 +48,13 @@
 //! - Culling: a group computes one depth interval per light of its list, and has two more barriers.
 //! - Shading: a sample reads n / 8 intervals of runs, and 8 more for each run that it does not skip.
 //!
+//! In the atrium with 500 lights at 320x180, a sample evaluates 3.3 lights in place of 17.6 with `T-I/28x28`, 3.2 in
+//! place of 10.6 with `T-E/28x28`, and 3.3 in place of 5.6 with `SC-E/48x48x40/bvh`. The lists take 1.8 to 2 times
+//! the bytes.
+//!
 //! # Where it fails
 //!
-//! - Lists of clusters are already cut by depth, so their trees skip little, and cost as much.
+//! - Lists of clusters are already cut by depth and short. Their trees skip less, and cost as much per light.
 //! - Pixels of one subgroup that lie at different depths skip different lights, and wait for each other.
 //! - If the lights are in no order, the 8 lights of a run lie anywhere, and runs are rarely skipped. Single lights still
 //!   are.
