@@ -38,7 +38,7 @@ impl Occupancy {
         }
         if slices.is_cascaded() {
             return Err(AssignError::Unsupported {
-                strategy: "DA".into(),
+                strategy: "DA-I and DA-E".into(),
                 asked: "cascades".into(),
                 reason: "one workgroup reads one tile, and cascades join tiles".into(),
             });

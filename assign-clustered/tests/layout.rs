@@ -8,9 +8,9 @@ use assign::{
     LightSource, conformance::LinkedModule, struct_layout,
 };
 use assign_clustered::{
-    BINS_WESL, ClusterOptions, EXPLICIT_WESL, FroxelsUniform, GLOSSY_BINS_WESL, HybridShader,
-    IMPLICIT_WESL, NormalBinsUniform, Normals, Occupancy, Slices, SpecularCut, gather_source,
-    marks_words,
+    BINS_WESL, ClusterOptions, EXPLICIT_CASCADES_WESL, EXPLICIT_WESL, FroxelsUniform,
+    GLOSSY_BINS_WESL, HybridShader, IMPLICIT_CASCADES_WESL, IMPLICIT_WESL, NormalBinsUniform,
+    Normals, Occupancy, Slices, SpecularCut, gather_source, marks_words,
 };
 
 /// The culling kernel of clusters, validated.
@@ -26,6 +26,17 @@ fn kernel(bounds: Bounds, sparse: bool, source: LightSource, kinds: LightKinds) 
     LinkedModule::new(&what, &source)
 }
 
+/// The same with cascades.
+fn cascaded_kernel(bounds: Bounds, source: LightSource, kinds: LightKinds) -> LinkedModule {
+    let (shape, module) = match bounds {
+        Bounds::Implicit => (GroupShape::Frustum, IMPLICIT_CASCADES_WESL),
+        Bounds::Explicit => (GroupShape::Box, EXPLICIT_CASCADES_WESL),
+    };
+    let settings = CullSettings { source, ..CullSettings::default() };
+    let linked = Culler::kernel_source(shape, settings, true, module, kinds).unwrap();
+    LinkedModule::new(&format!("cascades, {bounds:?}, {source:?}, {kinds:?}"), &linked)
+}
+
 #[test]
 fn kernels_validate() {
     for bounds in [Bounds::Implicit, Bounds::Explicit] {
@@ -33,6 +44,7 @@ fn kernels_validate() {
             for kinds in LightKinds::ALL {
                 kernel(bounds, false, source, kinds);
                 kernel(bounds, true, source, kinds);
+                cascaded_kernel(bounds, source, kinds);
             }
         }
     }
@@ -113,7 +125,13 @@ fn froxel_shaders() -> Vec<(String, LinkedModule)> {
     );
     shaders.push(("bounds, by tile".to_owned(), module));
     // `sort` reads only lists.
-    for shader in [HybridShader::Occupancy, HybridShader::Scatter, HybridShader::Reserve] {
+    let hybrid = [
+        HybridShader::Occupancy,
+        HybridShader::Scatter,
+        HybridShader::Raster,
+        HybridShader::Reserve,
+    ];
+    for shader in hybrid {
         let what = format!("HG, {shader:?}");
         let module = LinkedModule::new(&what, &shader.source(LightKinds::ALL[3]).unwrap());
         shaders.push((what, module));

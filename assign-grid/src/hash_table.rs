@@ -183,6 +183,12 @@ impl HashTable {
         })
     }
 
+    /// Whether the table was too small in an earlier frame, and may grow.
+    pub(crate) fn wants_growth(&self) -> bool {
+        let needed = self.readback.latest().map_or(0, TableUse::needed);
+        needed.min(self.most_slots) > self.slots
+    }
+
     /// Sizes the table for a frame and binds it: outside the clock. Returns the number of slots. In frames that
     /// keep their groups, the table stays as it is.
     pub(crate) fn prepare(

@@ -24,8 +24,8 @@ pub struct HashedCells {
 }
 
 impl HashedCells {
-    /// Makes the strategy. The edge of a cell is at most `cell_px` pixels, and more than half of that. Smaller
-    /// cells have shorter lists, but more lists are made.
+    /// Makes the strategy. The edge of a cell is at most `cell_px` pixels, and more than half of that, but at least a
+    /// 252th of the distance to the eye. Smaller cells have shorter lists, but more lists are made.
     ///
     /// # Errors
     ///
@@ -100,6 +100,9 @@ impl Assignment for HashedCells {
     fn record(&mut self, frame: &Frame<'_>, passes: &mut dyn Passes) {
         if frame.changes.is_none() {
             self.table.record(frame.view, passes);
+        } else if self.table.wants_growth() {
+            // The next frame fills a larger table.
+            self.culler.lists_mut().expire();
         }
         self.culler.record(passes);
     }

@@ -28,7 +28,9 @@
 //! table. Hash tables of the cells of an unbounded grid are from collision detection (Teschner et al. 2003,
 //! "Optimized Spatial Hashing for Collision Detection of Deformable Objects"). Cells that grow with their distance
 //! to the eye are from path space filtering (Binder et al. 2018, "Fast Path Space Filtering by Jittered Spatial
-//! Hashing"). Their use for lists of lights is this workspace's.
+//! Hashing"). Hashed shading (Tegelaers 2018, in Enhuber 2019, section 2.3) keeps lists of still lights in a linkless
+//! octree of the world. HC differs from it: the visible samples fill the table in every frame, and the distance sets the
+//! size of cells.
 //!
 //! `HC/48` has cells whose edge is at most 48 pixels and more than 24. At the distance `d` from the eye,
 //!

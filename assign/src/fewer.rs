@@ -66,12 +66,14 @@ impl Fewer {
 
     /// Copies the lights, and leaves those beyond the limit without a reach.
     fn copy_lights(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        if matches!(frame.lights.order(), LightOrder::Gpu { .. }) {
+        let is_known = frame.lights.lights().len() == frame.lights.count() as usize;
+        if !is_known || matches!(frame.lights.order(), LightOrder::Gpu { .. }) {
             return Err(AssignError::Unsupported {
                 strategy: self.id(),
-                asked: "lights that the GPU orders".into(),
-                reason: "the CPU chooses the lights of a frame, and does not know their places"
-                    .into(),
+                asked: "lights that the GPU orders or widens".into(),
+                reason:
+                    "the CPU chooses the lights of a frame, and must know them and their places"
+                        .into(),
             });
         }
         let mut copy = frame.lights.lights().to_vec();
@@ -204,6 +206,6 @@ mod tests {
         let view = View::look_at(Vec3::ZERO, Vec3::X, 1.0, 0.1, [64, 48]);
         let mut fewer = Fewer::new(&gpu, everything(), Kept::First, 2).expect("a limit");
         let error = fewer.prepare(&gpu, &Frame::new(&view, &lights)).expect_err("refuses");
-        assert!(error.to_string().contains("lights that the GPU orders"), "{error}");
+        assert!(error.to_string().contains("lights that the GPU orders or widens"), "{error}");
     }
 }

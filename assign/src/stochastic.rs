@@ -20,7 +20,8 @@
 //!
 //! # Cost
 //!
-//! The ranges are computed on the CPU and uploaded, off the clock, as lights that move are. Lists are shorter: with
+//! The CPU computes, checks and uploads the lights with their ranges in every frame, in `prepare`, which no clock
+//! counts: that takes about as long as uploading lights that the CPU moves. Lists are shorter: with
 //! `r = sqrt(I / t)`, the cube of a range `R` is `3 r^2 R - 2 r^3` on average, in place of `R^3`.
 //!
 //! # Where it fails
@@ -109,13 +110,12 @@ impl Assignment for Stochastic {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        if matches!(frame.lights.order(), LightOrder::Gpu { .. }) {
+        let is_known = frame.lights.lights().len() == frame.lights.count() as usize;
+        if !is_known || matches!(frame.lights.order(), LightOrder::Gpu { .. }) {
             return Err(AssignError::Unsupported {
                 strategy: self.id(),
-                asked: "lights that the GPU orders".into(),
-                reason:
-                    "the CPU computes the ranges of a frame, and does not know the lights' places"
-                        .into(),
+                asked: "lights that the GPU orders or widens".into(),
+                reason: "the CPU computes the ranges of a frame, and must know the lights and their places".into(),
             });
         }
         let lights = frame.lights.lights().iter().zip(0..);
@@ -211,6 +211,6 @@ mod tests {
         let order = LightOrder::Gpu { every: 1 };
         let moving = LightBuffer::ordered(&gpu, lights.lights(), order).expect("lights");
         let error = strategy.prepare(&gpu, &Frame::new(&view, &moving)).expect_err("refuses");
-        assert!(error.to_string().contains("lights that the GPU orders"), "{error}");
+        assert!(error.to_string().contains("lights that the GPU orders or widens"), "{error}");
     }
 }

@@ -37,7 +37,7 @@ use crate::{
     report::{self, needs_built_hierarchy},
     results::{Record, Results},
     sight::untested,
-    strategy::{BASELINE, EARLY_EXIT, Role, Row, StrategyId, rows},
+    strategy::{BASELINE, EARLY_EXIT, Method, Role, Row, StrategyId, rows},
 };
 
 /// Families that go on to the second round.
@@ -95,14 +95,17 @@ pub fn advise(args: &AdviseArgs, command: Vec<String>) -> Result<String, Harness
     let mut bench = Bench::open(args.adapter.as_deref())?;
     let mut search = Search::new(args, &mut bench, &command)?;
 
-    let first = first_ids(search.bench.gpu()).join(",");
+    let lights = search.bench.stage(&args.stage)?.lights.count();
+    let first = first_ids(search.bench.gpu(), lights).join(",");
     let families = search.round("families", &first, &["--source", "both"], 0)?;
     let best = fastest_by_family(&families);
-    let finalists: Vec<StrategyId> =
-        best.iter().take(FINALISTS).flat_map(|record| variants(&record.strategy)).collect();
-    if finalists.is_empty() {
+    if best.is_empty() {
         return Err(CliError::new("advise: no strategy gave the image of no culling").into());
     }
+    // Families of one size have no second round, and take no places in it.
+    let searched =
+        best.iter().map(|record| variants(&record.strategy)).filter(|ids| !ids.is_empty());
+    let finalists: Vec<StrategyId> = searched.take(FINALISTS).flatten().collect();
     let parameters = search.round("parameters", &listed(&finalists), &[], 0)?;
 
     let ids = last_ids(&families, &parameters, args.error_budget);
@@ -237,11 +240,15 @@ fn listed(ids: &[StrategyId]) -> String {
 }
 
 /// What the first round compares: no culling, without and with the early exit, and every family that shows the same
-/// image and that the device can run, at its default parameters.
-fn first_ids(gpu: &Gpu) -> Vec<String> {
+/// image and that the device can run with so many lights, at its default parameters.
+fn first_ids(gpu: &Gpu, lights: u32) -> Vec<String> {
     let is_compared = |row: &&Row| row.role != Role::Control && row.tolerance.is_none();
     let is_unsupported = |id: &str| match Choice::parse(id).map(|choice| choice.make(gpu)) {
         Ok(Err(error)) => matches!(error, AssignError::Unsupported { .. }),
+        Ok(Ok(Method::Lists { strategy, .. })) => {
+            let reader = strategy.lookup().module.wesl().reader;
+            reader.check_lights(gpu, id, lights).is_err()
+        }
         Ok(Ok(_)) | Err(_) => false,
     };
     let ids = rows().filter(is_compared).flat_map(Row::overview_ids);

@@ -59,11 +59,11 @@ impl Choice {
             }
         }
         let Method::Lists { mut strategy, early_exit, .. } = method else { return Ok(method) };
-        if let Some((kept, most)) = options.fewer {
-            strategy = Box::new(Fewer::new(gpu, strategy, kept, most)?);
-        }
         if let Some(threshold) = options.stochastic {
             strategy = Box::new(Stochastic::new(gpu, strategy, threshold)?);
+        }
+        if let Some((kept, most)) = options.fewer {
+            strategy = Box::new(Fewer::new(gpu, strategy, kept, most)?);
         }
         if options.is_touched {
             strategy = Box::new(Touched::new(gpu, strategy)?);

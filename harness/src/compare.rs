@@ -207,7 +207,7 @@ impl Run<'_> {
             let words = "images were not compared with no culling (--checks 0)";
             self.results.warnings.push(words.to_owned());
         }
-        if choices.iter().any(|choice| choice.id().is_bvh()) {
+        if choices.iter().any(|choice| choice.id().reads_hierarchy()) {
             self.results.warnings.extend(self.uneven_sorts());
         }
         let name = &self.stage.scene.name;

@@ -62,6 +62,15 @@ impl Lighting {
         }
         if let Some(threshold) = options.stochastic {
             assign::check_threshold(threshold)?;
+            if options.compensation.is_some() {
+                return Err(AssignError::Parameter {
+                    field: "compensation".into(),
+                    value: "on".into(),
+                    accepted: "off with stochastic light culling, whose number of lights is random"
+                        .into(),
+                }
+                .into());
+            }
         }
         let lists = Lists { lookup: strategy.lookup(), options };
         let needs = strategy.needs();

@@ -224,6 +224,10 @@ fn deferred() {
             images.sort_unstable();
             check_compute("deferred", &flags, look_up, look_up.2, &images);
         }
+        for flags in [Flags::from(["stochastic"]), Flags::from(["stochastic", "spots", "hard_cut"])]
+        {
+            check_compute("deferred", &flags, look_up, look_up.2, &[0, 1, 2, 4, 6]);
+        }
     }
 }
 
@@ -236,6 +240,8 @@ fn operations() {
             images.sort_unstable();
             check_compute("operations", &flags, look_up, look_up.2, &images);
         }
+        let flags = Flags::from(["stochastic", "spots"]);
+        check_compute("operations", &flags, look_up, look_up.2, &[0, 1, 2, 6, 8, 9]);
     }
 }
 

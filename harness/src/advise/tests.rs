@@ -58,7 +58,7 @@ fn named(results: &Results, budget: f64) -> &str {
 #[test]
 fn the_first_round_has_every_family_that_a_device_can_run() {
     let gpu = Gpu::noop().expect("a device");
-    let ids = first_ids(&gpu);
+    let ids = first_ids(&gpu, 1_000);
     let families: Vec<&str> =
         ids.iter().map(|id| id.split('/').next().expect("a family")).collect();
     for row in rows() {
@@ -273,7 +273,7 @@ fn the_last_round_holds_what_the_answer_needs() {
 fn a_new_row_joins_the_search() {
     let family = crate::strategy::made_up::FAMILY;
     let id = StrategyId::read(family);
-    let first = first_ids(&Gpu::noop().expect("a device"));
+    let first = first_ids(&Gpu::noop().expect("a device"), 1_000);
     assert!(first.iter().any(|known| known == id.as_str()), "{first:?}");
     assert_eq!(variants(&id), ["Made-Up/5", "Made-Up/9"]);
 }

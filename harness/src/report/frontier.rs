@@ -25,7 +25,7 @@ pub(crate) const TIME_AND_MEMORY: &str = "Time against memory, without a loss";
 /// How to read that chart.
 pub(crate) const TIME_AND_MEMORY_NOTE: &str = "Each point is a strategy that culls without a loss. Points at the lower left are best. The staircase joins the \
      strategies that no other beats in both time and memory; the others are faded. Two times that tie may change \
-     places.";
+     places. Strategies with /bvh hold for still lights where the CPU built their hierarchy beforehand.";
 
 const MIB: f64 = 1_048_576.0;
 

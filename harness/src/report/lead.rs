@@ -164,7 +164,7 @@ impl<'a> Lead<'a> {
 pub fn needs_built_hierarchy(record: &Record) -> bool {
     let setting = &record.setting;
     let is_on_gpu = setting.order().is_some_and(LightOrder::is_on_gpu);
-    record.strategy.is_bvh() && setting.motion.is_none() && !is_on_gpu
+    record.strategy.reads_hierarchy() && setting.motion.is_none() && !is_on_gpu
 }
 
 /// The least and the greatest of a figure over some records, as text: `15.9 to 16.1`. `None` if the figure is

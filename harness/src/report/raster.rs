@@ -1,7 +1,8 @@
 //! Marks rows whose times are limited by rasterisation, on chips that are weak at it.
 //!
 //! Data-centre GPUs run fragment shaders on only a few of their processors. A row is marked if a pass on its
-//! bill draws triangles: lighting in forward shading, light volumes, and model ids. The report computes the
+//! bill draws triangles: lighting in forward shading, light volumes, model ids,
+//! and lights that the rasteriser adds to cells. The report computes the
 //! mark, so stored results get it too.
 
 use super::rank::listed;

@@ -218,6 +218,9 @@ mod tests {
         assert_eq!(passes_of("RasterSphere", Mode::Deferred, &deferred), "shade");
         let ids = [("depth", 1.0), ("model-ids", 1.0), ("cull", 1.0), ("shade", 1.0)];
         assert_eq!(passes_of("M/2/bvh", Mode::Deferred, &ids), "model-ids");
+        let hybrid = [("depth", 1.0), ("count", 1.0), ("sort", 1.0), ("fill", 1.0), ("shade", 1.0)];
+        assert_eq!(passes_of("HG/48x48x40", Mode::Deferred, &hybrid), "");
+        assert_eq!(passes_of("HG/48x48x40/raster", Mode::Deferred, &hybrid), "count,fill");
         assert_eq!(passes_of("T-E/28x28", Mode::Forward, &deferred), "gbuffer,shade");
         assert_eq!(passes_of("T-E/28x28", Mode::ForwardNoPrepass, &ids[..1]), "depth");
     }

@@ -126,7 +126,12 @@ impl StrategyId {
         self.row.is_some_and(|row| row.shade_rasterises)
     }
 
-    /// Whether it finds lights through the hierarchy.
+    /// Whether it reads the hierarchy over the lights: because its id says so, or always.
+    pub fn reads_hierarchy(&self) -> bool {
+        self.is_bvh() || self.row.is_some_and(|row| row.needs.hierarchy)
+    }
+
+    /// Whether its id says that it finds lights through the hierarchy.
     pub fn is_bvh(&self) -> bool {
         self.options.source == Some(LightSource::Hierarchy)
     }

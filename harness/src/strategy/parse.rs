@@ -1,6 +1,6 @@
 //! Reads ids, and rejects segments that contradict each other.
 
-use assign::{AreaBounds, LightSource};
+use assign::{AreaBounds, LightSource, Storage};
 use assign_clustered::SpecularCut;
 use thiserror::Error;
 
@@ -78,6 +78,22 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
             &normals,
             "`dif` cannot be combined with normal cones",
         ));
+    }
+    if let (true, Some(cascades)) = (options.slices.is_cascaded(), Axis::Slices.segment(options)) {
+        if ["DA-I", "DA-E", "ZB"].contains(&row.family) {
+            let reason = "its tiles have one size in all slices";
+            return Err(contradiction(id, row.family, &cascades, reason));
+        }
+        if let Some(normals) = Axis::Normals.segment(options) {
+            let reason = "clusters that are split by normals have tiles of one size";
+            return Err(contradiction(id, &cascades, &normals, reason));
+        }
+    }
+    if options.storage == Storage::ScalarMasks
+        && let Some(other) = Axis::Cap.segment(options).or_else(|| Axis::Reuse.segment(options))
+    {
+        let reason = "pixels would read lights that are only in the lists of others";
+        return Err(contradiction(id, "scalar", &other, reason));
     }
     if let Some(stochastic) = Axis::Stochastic.segment(options) {
         let others = [Axis::Keep, Axis::Touched, Axis::Reuse];

@@ -145,6 +145,14 @@ fn parameters_have_names() {
 }
 
 #[test]
+fn what_reads_the_hierarchy_need_not_say_so() {
+    for (given, reads) in [("SC-E/bvh", true), ("W1", true), ("SC-E", false), ("W", false)] {
+        assert_eq!(id(given).reads_hierarchy(), reads, "{given}");
+    }
+    assert!(!id("W1").is_bvh());
+}
+
+#[test]
 fn knobs_make_an_id_lossy() {
     for lossy in ["SC-E/n24/s0.001", "SC-E/n24/cone45", "SC-E/dif", "T-E/reuse2", "T-E/cap8"] {
         assert!(id(lossy).is_lossy(9), "{lossy}");

@@ -129,7 +129,7 @@ const Z_BINS: Row = Row {
 };
 
 const DEPTH_AWARE: Row = Row {
-    role: Role::Engine,
+    role: Role::OtherPaper,
     source: "Olsson, Billeter and Assarsson 2012, \"Clustered Deferred and Forward Shading\", High Performance \
              Graphics: unique clusters per tile",
     needs: NEEDS_DEPTH,

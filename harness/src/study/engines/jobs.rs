@@ -13,7 +13,7 @@ pub(crate) const PATH: &str = "path";
 /// The section of lists and pictures from the still camera.
 pub(crate) const VIEW: &str = "view";
 
-/// Fast strategies without a loss: the best in the README's table with many lights and with few.
+/// Fast strategies without a loss: the best with many lights and with few (`docs/tuning.md`).
 const OURS: [&str; 2] = ["SC-E/48x48x40/bvh", "T-E1/48x48"];
 
 /// How much the study looks at.

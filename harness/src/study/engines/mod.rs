@@ -21,7 +21,9 @@ pub(crate) const STUDY: Study = Study {
     name: "engines",
     answers: "What the defaults of engines cost with 1,000 and 10,000 lights: time, lists, and light that is lost",
     jobs: jobs::jobs,
-    motion: TakesMotion::AllBut(&[]),
+    motion: TakesMotion::None(
+        "the CPU chooses lights for the engines' limits, and does not know the order of lights that move",
+    ),
     after_run: |_| Ok(()),
     headline: sentences::headline,
     findings: sentences::findings,

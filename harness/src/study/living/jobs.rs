@@ -80,7 +80,7 @@ const QUICK: Extent = Extent {
 };
 
 /// The ids that are measured: families of the comparison paper with explicit bounds, and the other families that
-/// make lists, but those with implicit bounds. Clusters look for lights through the hierarchy if they can. Tiles read the plain list, which needs
+/// make lists, except those with implicit bounds. Clusters look for lights through the hierarchy if they can. Tiles read the plain list, which needs
 /// no order, but not a list of many lights: they would take 40 ms for four million on an H200.
 fn strategies(has_many_lights: bool) -> Vec<String> {
     let is_explicit = |row: &Row| row.role == Role::ComparisonPaper && row.family.ends_with("-E");
