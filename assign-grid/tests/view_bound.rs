@@ -146,8 +146,8 @@ fn any_depth_buffer_has_cells() {
     // So far away that positions are no numbers.
     assert_eq!(occupied(1e-40, [64, 48]), 0);
     assert_eq!(occupied(0.125 / 4.0, [1, 1]), 1);
-    // Farther away than any light reaches.
-    assert_eq!(occupied(1e-9, [64, 48]), 0);
+    // Farther away than any light reaches: one thin cell at the end of the lights' box.
+    assert_eq!(occupied(1e-9, [64, 48]), 1);
 }
 
 /// `key_of` of `keys.wesl`.

@@ -141,7 +141,7 @@ import package::sample::sample_at;
 }";
 
 /// The lights that each of 64 lanes reads.
-fn read(make: &dyn Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError>) -> Vec<Vec<u32>> {
+fn read(make: &impl Fn(&Gpu) -> Result<Box<dyn Assignment>, AssignError>) -> Vec<Vec<u32>> {
     let gpu = Gpu::open(None).expect("a GPU");
     let mut strategy = make(&gpu).expect("tiles");
     let place = |ix: usize| Vec3::new((ix % 37) as f32 / 10.0 - 1.8, (ix % 11) as f32 / 10.0, 0.0);

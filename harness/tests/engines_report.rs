@@ -175,6 +175,7 @@ fn a_default_that_loses_light_stands_beside_its_error_and_what_not_losing_costs(
 fn ties_idle_limits_and_few_laps_are_said() {
     let tie = write(&study(Change { tie: true, ..Change::default() }));
     assert!(tie.text.contains("takes 0.250 ms, 1.00 times as long: the two tie."), "{}", tie.text);
+    assert!(tie.text.contains("without their limits (one is a tie)"), "{}", tie.text);
     assert!(row(part(&tie.page, "defaults"), "Filament, froxels").contains(">tie<"));
     let idle = write(&study(Change { idle: true, ..Change::default() }));
     assert!(

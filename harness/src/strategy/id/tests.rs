@@ -14,6 +14,7 @@ fn ids_in_any_case_and_order_become_canonical() {
         ("M/2.0", "M/2"),
         ("m/0.50/bvh", "M/0.5/bvh"),
         ("HG/32x032x8/CAP8", "HG/32x32x8/cap8"),
+        ("T-E/first9/Stochastic0.010", "T-E/28x28/stochastic0.01/first9"),
         ("g/surfaces/8x8x2", "G/8x8x2/surfaces"),
         ("G/positions", "G/20x20x20"),
         ("G/8x8x8/lights", "G/8x8x8/supports"),

@@ -52,6 +52,11 @@ fn summary(case: &Case<'_>) -> String {
             _ => ["take", "their limits"],
         };
         text += &format!(" and {take} {ratios} times as long without {their}");
+        match losing.iter().filter(|method| method.cost().is_some_and(|cost| cost.ties)).count() {
+            0 => {}
+            1 => text += " (one is a tie)",
+            ties => text += &format!(" ({ties} are ties)"),
+        }
     }
     text
 }
