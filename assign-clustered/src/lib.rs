@@ -33,15 +33,15 @@
 //!    the cluster's frustum (by default HS and SAT-N) or box (NP), and writes the cluster's list.
 //!
 //! Worked example: a view's samples lie in clusters 2, 5 and 6 of clusters 0 to 7. Dense strategies cull all
-//! eight clusters. Sparse ones append `[5, 2, 6]`, in any order, and cull three; shading never looks up the
-//! lists of the others.
+//! eight clusters. Sparse ones append `[5, 2, 6]`, in any order, and cull three. The other clusters hold
+//! no samples, so shading never looks them up.
 //!
 //! # Cascades
 //!
-//! A tile covers a small window of the world near the camera, and a large one far away. `/cascades3` cuts the slices
-//! into three cascades. The farthest has tiles of the grid's size; each nearer one has tiles of twice the sides, so
-//! near clusters are fewer, and hold more samples each (Billeter 2015; Enhuber 2019, section 2.2). The paper chooses a
-//! number of slices per cascade too; here, all have about as many.
+//! Near the camera, a tile covers little of the world; far away, it covers much. `/cascades3` cuts the slices into
+//! three cascades. The farthest has tiles of the grid's size. In each nearer cascade, tiles are twice as wide and
+//! twice as high, so near clusters are fewer and hold more samples each (Billeter 2015; Enhuber 2019, section 2.2).
+//! In the original, each cascade also has its own number of slices. Here, all cascades have about the same number.
 //!
 //! # Normals
 //!

@@ -17,7 +17,7 @@ pub enum Slices {
     /// (Persson 2013, "Practical Clustered Shading"). Where the others would have less than an octave, or there is
     /// only one slice, slices are exponential.
     Near(f32),
-    /// Exponential, in this many cascades of about as many slices each. The farthest cascade has tiles of the grid's
+    /// Exponential slices, divided into this many cascades with about the same number of slices each. The farthest cascade has tiles of the grid's
     /// size, and each nearer one has tiles of twice the sides of the one behind it (Billeter 2015,
     /// "Many-Light Rendering on Mobile Hardware"; Enhuber 2019, section 2.2): with tiles of one size, near clusters
     /// are small in the world, and hold few samples each.
@@ -57,7 +57,7 @@ impl Slices {
         }
     }
 
-    /// Its segment of an id: `/even`, `/near5`, or nothing.
+    /// Its segment of an id: `/even`, `/near5`, `/cascades3`, or nothing.
     pub fn segment(self) -> String {
         match self {
             Self::Exponential => String::new(),

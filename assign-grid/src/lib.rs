@@ -21,8 +21,9 @@
 //! A sample outside the box belongs to the nearest cell. With the first three boxes, cells at the border extend
 //! outwards to the end of the lights' supports. With the box of the positions this adds no point light to any
 //! list, because every light's centre lies in the box. These cells are exactly the paper's. With the last two
-//! boxes, cells end with the box, and lists of the border hold no lights from outside the view. A sample outside
-//! the box that a light may reach reads all lights. The box holds all that the view shows, so there are none.
+//! boxes, cells end with the box, so lists at the border hold no lights from outside the view. A sample outside the
+//! box reads all lights if any light may reach it. The box holds everything that the view shows, so no visible sample
+//! lies outside it.
 //!
 //! **HC** makes cells that grow with the distance to the eye, and keeps those that hold visible samples in a hash
 //! table. Hash tables of the cells of an unbounded grid are from collision detection (Teschner et al. 2003,
@@ -40,8 +41,8 @@
 //!
 //! where `p` is the size of a pixel at a distance of 1 m, in metres. In an orthographic view it is `max(48 p, d /
 //! 126)`, where `p` is the size of a pixel. The second term keeps places of cells within 9 bits per axis. At
-//! 1080p and a field of view of 60 degrees, it is 7.4 pixels. Cells also are so large that rounding cannot move a
-//! sample across one. An edge that is a power of two makes cell borders free of rounding. The exponent of the edge
+//! 1080p and a field of view of 60 degrees, it is 7.4 pixels. Cells are also wider than the rounding error of a
+//! position, so rounding can move a sample into a neighbouring cell, but not across one. An edge that is a power of two makes cell borders free of rounding. The exponent of the edge
 //! is the cell's *level*. Level and place, counted from the cell of the eye, make a key of 32 bits.
 //!
 //! # Phases

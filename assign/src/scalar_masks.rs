@@ -17,10 +17,10 @@
 //! 3. Each lane takes the joined words, also one that wants a later node. It evaluates their lights, and then goes
 //!    back to phase 1.
 //!
-//! A lane that has read all lights of its own mask leaves the subgroup. Lanes may also part for other reasons, which the look-up
-//! does not control. So lanes form a new team at each node (`look_up_mask.wesl`). A lane that has read the node
-//! before waits for those that have not. So each lane reads every light of its own mask once, in ascending order,
-//! whichever lanes run with it.
+//! A lane that has read all lights of its own mask leaves the loop. Lanes may also diverge for other reasons, which
+//! the look-up does not control. So the lanes that run together form a new team at each node (`look_up_mask.wesl`). A
+//! lane that is already past a node waits for those that are not. So each lane reads every light of its own mask
+//! once, in ascending order, whichever lanes run with it.
 //!
 //! Worked example: the masks of lanes A and B hold lights 1 and 70, and light 3. Both want node 0, and join its bits:
 //! both evaluate lights 1 and 3. B has read its only light. A reads node 1 alone, and evaluates light 70.
@@ -33,8 +33,8 @@
 //! # Cost
 //!
 //! - Memory and culling: those of `/mask`.
-//! - Shading: one minimum, two ORs and two votes of the subgroup for each node that its lanes read. The lists get longer
-//!   by the lights of neighbouring groups, where a subgroup has pixels of several groups. In the atrium with 500
+//! - Shading: one minimum, two ORs and two votes of the subgroup for each node that its lanes read. Where a subgroup
+//!   has pixels of several groups, each pixel also evaluates lights of the other groups. In the atrium with 500
 //!   lights at 320x180, with subgroups of 8 pixels, a sample evaluates 11.4 lights in place of 10.6 with
 //!   `T-E/28x28`, and 7.4 in place of 5.6 with `SC-E/48x48x40/bvh`.
 //!
@@ -46,7 +46,8 @@
 
 #[cfg(test)]
 mod tests {
-    /// What a lane does in a round: the light that it evaluates, or nothing while it waits.
+    /// Reads masks as the look-up does, and returns the lights that each lane evaluates, in order. `running` tells
+    /// which lanes run in a round.
     fn read(masks: &[&[u32]], running: impl Fn(usize, usize) -> bool) -> Vec<Vec<u32>> {
         let mut unread: Vec<Vec<u32>> = masks.iter().map(|mask| mask.to_vec()).collect();
         let mut next_node = vec![0; masks.len()];

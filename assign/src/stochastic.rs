@@ -1,5 +1,5 @@
-//! Stochastic light culling: each light's range is random, anew in each frame. **Lossy**: the image is noisy, and right
-//! on average.
+//! Stochastic light culling: each light gets a new random range in each frame. **Lossy**: the image is noisy, but
+//! correct on average.
 //!
 //! # Idea
 //!
@@ -15,14 +15,14 @@
 //!
 //! # Example
 //!
-//! A light of intensity 1 and a threshold of 0.01: it always reaches 10 m. With a chance of a quarter it reaches
-//! 20 m or more, and there it counts as if it were 10 m away.
+//! With an intensity of 1 and a threshold of 0.01, a light always reaches 10 m. With a probability of a quarter it
+//! reaches 20 m or more, and wherever it reaches beyond 10 m it counts as if it were 10 m away.
 //!
 //! # Cost
 //!
-//! The CPU computes, checks and uploads the lights with their ranges in every frame, in `prepare`, which no clock
-//! counts: that takes about as long as uploading lights that the CPU moves. Lists are shorter: with
-//! `r = sqrt(I / t)`, the cube of a range `R` is `3 r^2 R - 2 r^3` on average, in place of `R^3`.
+//! In every frame, `prepare` computes, checks and uploads the lights with their ranges on the CPU. No measured time
+//! includes this. It takes about as long as uploading lights that the CPU moves. Lists are shorter: with
+//! `r = sqrt(I / t)`, the mean of the cubed range falls from `R^3` to `3 r^2 R - 2 r^3`, for a light of range `R`.
 //!
 //! # Where it fails
 //!

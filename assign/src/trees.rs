@@ -7,9 +7,9 @@
 //! hybrid of tiles and clusters: they have the few groups of tiles, and lists as short as those of clusters with
 //! very thin slices.
 //!
-//! O'Donnell and Chajdas 2017, "Tiled Light Trees", I3D. Their trees sort the lights of a tile by depth. Ours
-//! **depart** from that. A tree sorted by depth returns the lights of a sample in another order, so the last bits of
-//! its sum would change. Here, the list stays in ascending light index, and a run is 8 lights that follow each
+//! This follows O'Donnell and Chajdas 2017, "Tiled Light Trees", I3D, with one difference. Their trees sort the
+//! lights of a tile by depth. That would return the lights of a sample in another order, so the last bits of its
+//! sum would change. Here, the list stays in ascending light index, and a run is 8 lights that follow each
 //! other in the list. The renderer orders lights by Morton code or by a hierarchy, so lights of one run lie close
 //! together, and their depths do too.
 //!

@@ -21,9 +21,10 @@
 //! 3. `reserve` gives each cell one lane. The cell's list takes a place in the pool, or becomes all lights.
 //! 4. `fill` runs the pipeline of `count` once more, so both find the same pairs to the bit. Each cell's
 //!    cursor now points to places instead of counting.
-//! 5. `sort` gives each list one workgroup. Atomic cursors leave lists in a different order on every run;
-//!    sorted by light they are the same. Lists are copied sorted from a second pool. Short ones are sorted by
-//!    rank, long ones by one bit per light, which is enough because no light comes twice.
+//! 5. `sort` gives each list one workgroup. The atomic cursors of `fill` write the entries in a different order on
+//!    every run. Sorting by light index makes the lists the same in every run. The workgroup reads the unsorted
+//!    entries from a second pool. It sorts short lists by rank, and long ones by one bit per light, which is enough
+//!    because no light comes twice.
 //!
 //! Worked example: there are lights 0 to 2. Lights 0 and 2 reach cell 5, light 1 reaches cell 6. The cursors
 //! of cells 5 and 6 count to 2 and 1, so their places are 0 to 1 and 2. `fill` may leave `[2 0 | 1]`, and

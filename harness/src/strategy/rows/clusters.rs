@@ -78,7 +78,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "DA-I",
         name: "depth-aware clusters, implicit bounds",
-        about: "the lists of SC-I; one workgroup per tile finds the slices that hold samples",
+        about: "makes the same lists as SC-I, but one workgroup per tile finds the slices that hold samples",
         axes: FRUSTA,
         colour: Colour { light: "#aa77cc", dark: "#8855aa" },
         make: |gpu, options| make(gpu, options, Implicit, DepthAware),
@@ -87,8 +87,8 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "DA-E",
         name: "depth-aware clusters, explicit bounds",
-        about: "the lists of SC-E; one workgroup per tile finds the slices that hold samples, and the box around \
-                the samples of each",
+        about: "makes the same lists as SC-E, but one workgroup per tile finds the slices that hold samples, and \
+                the box around the samples of each",
         axes: BOXES,
         colour: Colour { light: "#5500dd", dark: "#33ffcc" },
         make: |gpu, options| make(gpu, options, Explicit, DepthAware),
@@ -100,7 +100,7 @@ pub(super) const ROWS: &[Row] = &[
 const Z_BINS: Row = Row {
     family: "ZB",
     name: "z-bins",
-    about: "a bit mask per tile and one per depth slice of the whole view; a sample's lights are those of both",
+    about: "a bit mask per tile and one per depth slice of the whole view; a sample evaluates the lights that are in both",
     role: Role::Engine,
     source: "Drobot 2017, \"Improved Culling for Tiled and Clustered Rendering\", SIGGRAPH Advances in Real-Time \
              Rendering",

@@ -9,7 +9,7 @@ pub(super) const ROWS: &[Row] = &[Row {
     family: "HG",
     name: "hybrid grid of Archer 2019",
     about: "each light adds itself to the lists of the sparse clusters that it reaches. With /raster, the \
-            rasteriser finds the tiles that it covers (Örtegren and Persson 2016)",
+            rasteriser finds the tiles that each light covers (Örtegren and Persson 2016)",
     role: Role::OtherPaper,
     source: "Archer 2019, section 3.2",
     krate: "assign-clustered",

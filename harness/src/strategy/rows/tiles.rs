@@ -37,8 +37,8 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         family: "T-E1",
         name: "tiles, explicit bounds, in one pass",
-        about: "as T-E, but the workgroup that culls a tile first finds its nearest and its farthest sample: one pass \
-                less",
+        about: "as T-E, but the workgroup that culls a tile first finds its nearest and farthest samples, which \
+                saves a pass",
         role: Role::Engine,
         default: "32x32",
         sizes: Sizes {
