@@ -8,6 +8,7 @@ use super::raster::{self, MARK};
 use super::table::{Look, Row, Table};
 use crate::grouping::grouped_by;
 use crate::results::{Bill, FrameKind, Machine, Record, Results};
+use shading::Mode;
 
 /// The heading of a kind of frame, and what strategies pay for in it.
 fn words(kind: FrameKind) -> (&'static str, &'static str) {
@@ -54,12 +55,26 @@ fn modes(records: &[&Record]) -> usize {
     modes.len()
 }
 
+/// Whether a kind of frame that is derived from the records of other kinds draws triangles for the method. With ids in
+/// the G-buffer, `model-ids` is not drawn.
+fn derived_rasterises(kind: FrameKind, own: &[&Record]) -> bool {
+    let in_deferred = |record: &&&Record| record.setting.mode == Mode::Deferred;
+    match kind {
+        FrameKind::NoPrepass => true,
+        FrameKind::DeferredIds => own
+            .iter()
+            .filter(in_deferred)
+            .any(|record| record.raster_passes().iter().any(|name| *name != "model-ids")),
+        FrameKind::Prepass | FrameKind::Deferred => false,
+    }
+}
+
 fn cell(kind: FrameKind, own: &[&Record], machine: &Machine) -> Html {
     let Some(bill) = Bill::in_frame(kind, own) else { return super::format::ABSENT.into() };
     let measured = own.iter().find(|record| record.setting.mode == kind.mode());
     let is_marked = match measured {
         Some(record) => raster::is_marked(machine, record),
-        None => kind == FrameKind::NoPrepass && machine.weak_raster().is_some(),
+        None => machine.weak_raster().is_some() && derived_rasterises(kind, own),
     };
     let mark = if is_marked { format!(" {MARK}") } else { String::new() };
     let span = bill.span_ms.map_or_else(String::new, |ms| format!("; span {}", significant(ms)));
@@ -139,4 +154,41 @@ pub(crate) fn sections(results: &Results) -> Html {
         })
     };
     groups.iter().enumerate().filter_map(section).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{PassKind, PassTimes};
+
+    /// A deferred record of these passes, 1 ms each.
+    fn record(strategy: &str, passes: &[&'static str]) -> Record {
+        let example: Results =
+            serde_json::from_str(include_str!("../results/example.json")).expect("the example");
+        let mut record = example.records[0].clone();
+        record.strategy = strategy.into();
+        record.setting.mode = Mode::Deferred;
+        record.times.passes = Default::default();
+        for name in passes {
+            record.times.passes.insert(*name, PassTimes::new(PassKind::Assign, vec![1.0]));
+        }
+        record
+    }
+
+    #[test]
+    fn frames_with_ids_are_marked_for_what_they_still_rasterise() {
+        for (strategy, passes, marked) in [
+            ("M/2", &["model-ids", "cull"][..], false),
+            ("HG/48x48x40", &["count", "fill"], false),
+            ("HG/48x48x40/raster", &["count", "fill"], true),
+            ("RasterSphere", &["shade"], true),
+        ] {
+            let record = record(strategy, passes);
+            assert_eq!(
+                derived_rasterises(FrameKind::DeferredIds, &[&record]),
+                marked,
+                "{strategy}"
+            );
+        }
+    }
 }
