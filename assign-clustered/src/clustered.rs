@@ -2,8 +2,7 @@
 
 use assign::{
     AssignError, Assignment, Bounds, CullSettings, Culler, CullerDescriptor, Frame, Gpu, Groups,
-    LightLists, Lookup, Needs, Passes, SampleDomain, StrategyModule, entry, storage_entry,
-    uniform_entry,
+    LightLists, Lookup, Needs, Passes, StrategyModule, entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -127,16 +126,10 @@ impl Assignment for Clustered {
         let mut resources = vec![entry(FROXELS_BINDING, &self.froxels)];
         let id = self.id();
         if let Some(gather) = &mut self.gather {
-            if frame.samples == SampleDomain::AnyDepth {
-                return Err(AssignError::Unsupported {
-                    strategy: id,
-                    asked: "look-ups at any depth".into(),
-                    reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
-                });
-            }
+            let depth = frame.surface_depth(&id)?;
             let missing = |missing| AssignError::Missing { strategy: id.clone(), missing };
             let images = Images {
-                depth: frame.depth.ok_or_else(|| missing("depth"))?,
+                depth,
                 normals: match self.options.normals {
                     Normals::None => None,
                     Normals::Bins(_) => Some(frame.normals.ok_or_else(|| missing("normals"))?),

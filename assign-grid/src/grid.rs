@@ -11,7 +11,6 @@ use glam::Vec3;
 use crate::{
     cells::{CellCounts, CellsUniform, GRID_WESL},
     grid_box::{GridBox, frustum_box, position_slack_m},
-    surface::depth_of,
     visible::{AskedCells, VisibleBox},
 };
 
@@ -104,7 +103,7 @@ impl Grid {
             gpu.queue.write_buffer(&self.cells, 0, bytes_of(&cells));
             return Ok(cells.group_count());
         };
-        let depth = depth_of(frame, || id.clone())?;
+        let depth = frame.surface_depth(&id)?;
         let lights = frame.light_bounds().unwrap_or((Vec3::ZERO, Vec3::ONE));
         visible.prepare(gpu, frame, depth, AskedCells::new(self.counts, lights))?;
         Ok(self.counts.0.iter().product())

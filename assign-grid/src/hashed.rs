@@ -6,10 +6,7 @@ use assign::{
     entry, storage_entry,
 };
 
-use crate::{
-    hash_table::{HASHED_WESL, HashTable, TableUse},
-    surface::depth_of,
-};
+use crate::hash_table::{HASHED_WESL, HashTable, TableUse};
 
 /// The widest cells, pixels.
 const MAX_CELL_PX: u32 = 16_384;
@@ -87,8 +84,8 @@ impl Assignment for HashedCells {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
         frame.view.check()?;
-        let id = self.id();
-        let count = self.table.prepare(gpu, frame, depth_of(frame, || id.clone())?)?;
+        let depth = frame.surface_depth(&self.id())?;
+        let count = self.table.prepare(gpu, frame, depth)?;
         self.culler.prepare(
             gpu,
             frame,

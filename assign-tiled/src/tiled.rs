@@ -2,8 +2,8 @@
 
 use assign::{
     AssignError, Assignment, CullSettings, Culler, CullerDescriptor, FIRST_STRATEGY_BINDING,
-    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, SampleDomain,
-    StrategyModule, entry, storage_entry, uniform_entry,
+    Facing, Frame, Gpu, GroupShape, Groups, LightLists, Lookup, Needs, Passes, StrategyModule,
+    entry, storage_entry, uniform_entry,
 };
 use bytemuck::bytes_of;
 
@@ -102,16 +102,7 @@ impl Assignment for Tiled {
         let mut tiles = TilesUniform::new(self.size, frame.view);
         let mut resources = vec![entry(FIRST_STRATEGY_BINDING, &self.tiles)];
         if self.is_explicit() {
-            let strategy = self.id();
-            if frame.samples == SampleDomain::AnyDepth {
-                return Err(AssignError::Unsupported {
-                    strategy,
-                    asked: "look-ups at any depth".into(),
-                    reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
-                });
-            }
-            let missing = || AssignError::Missing { strategy, missing: "depth" };
-            let depth = frame.depth.ok_or_else(missing)?;
+            let depth = frame.surface_depth(&self.id())?;
             tiles.surfaces_only = 1;
             if let Some(tile_bounds) = &mut self.tile_bounds {
                 tile_bounds.prepare(gpu, frame, depth, &self.tiles, tiles.counts)?;

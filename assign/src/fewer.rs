@@ -3,8 +3,8 @@
 use glam::Vec4;
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightOrder, LightShape,
-    Lookup, MIN_RANGE_M, Needs, Passes, View,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup,
+    MIN_RANGE_M, Needs, Passes, View,
 };
 
 /// Which lights of a frame have lists if there are too many.
@@ -66,17 +66,8 @@ impl Fewer {
 
     /// Copies the lights, and leaves those beyond the limit without a reach.
     fn copy_lights(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        let is_known = frame.lights.lights().len() == frame.lights.count() as usize;
-        if !is_known || matches!(frame.lights.order(), LightOrder::Gpu { .. }) {
-            return Err(AssignError::Unsupported {
-                strategy: self.id(),
-                asked: "lights that the GPU orders or widens".into(),
-                reason:
-                    "the CPU chooses the lights of a frame, and must know them and their places"
-                        .into(),
-            });
-        }
-        let mut copy = frame.lights.lights().to_vec();
+        let lights = frame.lights_by_slot(self.id(), "chooses the lights of a frame")?;
+        let mut copy = lights.to_vec();
         let planes = sides_of(frame.view);
         let is_seen = |light: &Light| {
             let center = light.position.extend(1.0);
@@ -165,7 +156,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::Everything;
+    use crate::{Everything, LightOrder};
 
     fn lights() -> Vec<Light> {
         // Behind the eye, far, near, in between, and as far as the second.

@@ -5,7 +5,7 @@ use bytemuck::bytes_of;
 use glam::Vec3;
 
 use crate::{
-    AssignError, Gpu, LightBuffer, LightChanges, ModelBox, View, ViewUniform,
+    AssignError, Gpu, Light, LightBuffer, LightChanges, LightOrder, ModelBox, View, ViewUniform,
     entries::{entry, storage_entry, uniform_entry},
 };
 
@@ -140,6 +140,43 @@ impl<'a> Frame<'a> {
     pub fn with_surface_bounds(mut self, min_world: Vec3, max_world: Vec3) -> Self {
         self.surface_bounds = Some((min_world, max_world));
         self
+    }
+
+    /// The depth buffer, for a strategy that serves only the surfaces in it. `strategy` is its id.
+    ///
+    /// # Errors
+    ///
+    /// [`AssignError::Unsupported`] if shading looks lists up at any depth, and [`AssignError::Missing`] without a depth
+    /// buffer.
+    pub fn surface_depth(&self, strategy: &str) -> Result<&'a wgpu::TextureView, AssignError> {
+        if self.samples == SampleDomain::AnyDepth {
+            return Err(AssignError::Unsupported {
+                strategy: strategy.into(),
+                asked: "look-ups at any depth".into(),
+                reason: "its lists serve only the opaque surfaces in the depth buffer".into(),
+            });
+        }
+        self.depth
+            .ok_or_else(|| AssignError::Missing { strategy: strategy.into(), missing: "depth" })
+    }
+
+    /// The lights, if the CPU knows them all and their order is that of the slots. `strategy` is the id of what asks, and
+    /// `task` is what the CPU does with them.
+    pub(crate) fn lights_by_slot(
+        &self,
+        strategy: String,
+        task: &str,
+    ) -> Result<&'a [Light], AssignError> {
+        let lights = self.lights.lights();
+        let is_known = lights.len() == self.lights.count() as usize;
+        if is_known && !matches!(self.lights.order(), LightOrder::Gpu { .. }) {
+            return Ok(lights);
+        }
+        Err(AssignError::Unsupported {
+            strategy,
+            asked: "lights that the GPU orders or widens".into(),
+            reason: format!("the CPU {task}, and must know the lights and their places"),
+        })
     }
 
     /// Sets where shading looks up lists.

@@ -32,8 +32,8 @@
 //! - Area lights keep their ranges.
 
 use crate::{
-    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightOrder, LightShape,
-    Lookup, MIN_RANGE_M, Needs, Passes,
+    AssignError, Assignment, Frame, Gpu, Light, LightBuffer, LightLists, LightShape, Lookup,
+    MIN_RANGE_M, Needs, Passes,
 };
 
 /// A strategy that makes its lists for random ranges. Shading must know the threshold, and [`Frame::seed`].
@@ -110,15 +110,8 @@ impl Assignment for Stochastic {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), AssignError> {
-        let is_known = frame.lights.lights().len() == frame.lights.count() as usize;
-        if !is_known || matches!(frame.lights.order(), LightOrder::Gpu { .. }) {
-            return Err(AssignError::Unsupported {
-                strategy: self.id(),
-                asked: "lights that the GPU orders or widens".into(),
-                reason: "the CPU computes the ranges of a frame, and must know the lights and their places".into(),
-            });
-        }
-        let lights = frame.lights.lights().iter().zip(0..);
+        let lights = frame.lights_by_slot(self.id(), "computes the ranges of a frame")?;
+        let lights = lights.iter().zip(0..);
         let ranged = lights.map(|(light, place)| {
             with_random_range(light, self.threshold, random_of(place, frame.seed))
         });
@@ -156,7 +149,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::{Everything, View};
+    use crate::{Everything, LightOrder, View};
 
     #[test]
     fn random_numbers_are_even_and_differ_between_lights_and_frames() {
