@@ -86,7 +86,8 @@ impl HashCellsUniform {
 /// The size of a pixel, metres: at view depth 1, or in an orthographic view everywhere. Pixels need not be square.
 fn pixel_m(view: &View) -> f32 {
     let uniform = view.uniform();
-    let [width, height] = [0, 1].map(|i| 2.0 * uniform.ray_scale[i] / uniform.viewport_size[i]);
+    let [width, height] =
+        [0, 1].map(|i| 2.0 * uniform.ray_scale[i].abs() / uniform.viewport_size[i]);
     (width * height).sqrt()
 }
 

@@ -12,6 +12,9 @@ use thiserror::Error;
 pub use uniform::ViewUniform;
 
 /// The window that the camera looks through.
+///
+/// Where a coordinate of `min` exceeds that of `max`, the image is flipped along this axis, as the image of a
+/// planar mirror is ([`View::is_mirrored`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Perspective. The bounds are tangents: the window's corners at view depth 1.
@@ -128,11 +131,12 @@ impl View {
             );
         }
         let (perspective, min, max) = self.window();
-        if !(min.is_finite() && max.is_finite() && (max - min).min_element() > 0.0) {
+        let is_open = (max - min).abs().min_element() > 0.0;
+        if !(min.is_finite() && max.is_finite() && is_open) {
             return fail(
                 "projection",
                 format!("{min} to {max}"),
-                "a window of positive width and height",
+                "a finite window whose width and height are not 0",
             );
         }
         let near_ok =
@@ -188,6 +192,13 @@ impl View {
         // To move the image right, the window moves left. Image y points down.
         let shift = Vec2::new(-self.jitter.x, self.jitter.y) * (max - min) / size;
         (perspective, min + shift, max + shift)
+    }
+
+    /// Whether the image is that of a mirror: its window is flipped along one axis. The front of a triangle then
+    /// appears clockwise in the image.
+    pub fn is_mirrored(&self) -> bool {
+        let (_, min, max) = self.window();
+        (max.x < min.x) != (max.y < min.y)
     }
 
     /// The eye, world space.
@@ -268,6 +279,30 @@ mod tests {
             let error = View { world_to_view: bad * view.world_to_view, ..view }.check();
             assert_eq!(error.map_err(|e| e.field), Err("world_to_view"), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_flipped_window_mirrors_the_image() {
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0, 0.1, [64, 48]);
+        let Projection::Perspective { min, max } = view.projection else { panic!() };
+        let flipped = |x: bool, y: bool| {
+            let pick = |flip: bool, a: f32, b: f32| if flip { (b, a) } else { (a, b) };
+            let ((x_min, x_max), (y_min, y_max)) = (pick(x, min.x, max.x), pick(y, min.y, max.y));
+            let (min, max) = (Vec2::new(x_min, y_min), Vec2::new(x_max, y_max));
+            View { projection: Projection::Perspective { min, max }, ..view }
+        };
+        let right = Vec4::new(0.5, 0.2, -2.0, 1.0);
+        let seen = |view: &View| (view.view_to_clip() * right).truncate().truncate();
+        for (x, y) in [(true, false), (false, true), (true, true)] {
+            let flipped = flipped(x, y);
+            assert_eq!(flipped.check(), Ok(()));
+            assert_eq!(flipped.is_mirrored(), x != y);
+            let sign = Vec2::new(if x { -1.0 } else { 1.0 }, if y { -1.0 } else { 1.0 });
+            assert_eq!(seen(&flipped), sign * seen(&view));
+        }
+        let flat = Projection::Perspective { min, max: Vec2::new(min.x, max.y) };
+        let error = View { projection: flat, ..view }.check().map_err(|error| error.field);
+        assert_eq!(error, Err("projection"));
     }
 
     #[test]

@@ -163,7 +163,7 @@ enum Command {
     Cdi(CdiArgs),
     /// Fit linearly transformed cosines to the BRDF, and compare them with those in use
     FitLtc(FitLtcArgs),
-    /// List the names of strategies, engines, scenes, adapters or studies
+    /// List the names of strategies, engines, scenes, scenarios, adapters or studies
     List {
         /// What to list
         what: Listing,
@@ -179,6 +179,8 @@ pub enum Listing {
     Engines,
     /// Every scene that needs no file
     Scenes,
+    /// Every scene in which methods fail, for --scene stability:NAME
+    Scenarios,
     /// Every adapter that wgpu can drive; the first is the default
     Adapters,
     /// Every study, and what it answers

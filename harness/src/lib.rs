@@ -37,6 +37,7 @@ pub mod range_errors;
 pub mod record;
 pub mod report;
 pub mod results;
+pub mod scenarios;
 pub mod schedule;
 pub mod sight;
 pub mod stage;

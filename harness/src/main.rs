@@ -13,6 +13,7 @@ use harness::{
     fit_ltc::fit_ltc,
     interrupted,
     messages::{print, say_error},
+    scenarios,
     stored_report::report_stored,
     strategy::{self, engines},
     study::{studies, study},
@@ -42,6 +43,7 @@ fn run() -> Result<(), HarnessError> {
         Invocation::List(Listing::Strategies) => strategy::list(),
         Invocation::List(Listing::Engines) => engines::list(),
         Invocation::List(Listing::Scenes) => scenes(),
+        Invocation::List(Listing::Scenarios) => scenarios::list(),
         Invocation::List(Listing::Adapters) => adapters()?,
         Invocation::List(Listing::Studies) => {
             studies().map(|(name, answers)| format!("{name:<16} {answers}\n")).collect()
@@ -107,5 +109,9 @@ fn scenes() -> String {
     let row = |entry: &scenes::SceneEntry| format!("{:<16} {}\n", entry.id, entry.summary);
     let mut rows: String = scenes::list().iter().map(row).collect();
     rows += &format!("{:<16} any glTF 2.0 scene\n", "FILE.gltf|.glb");
+    rows += &format!(
+        "{:<16} a scene in which methods fail: lightbench list scenarios\n",
+        "stability:NAME"
+    );
     rows
 }

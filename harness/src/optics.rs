@@ -2,6 +2,9 @@
 //!
 //! A camera of the scene's file sets all three. `--near` and `--far` replace its planes.
 //!
+//! A stability scenario also says where the image lies in its window and in the target, whether it is mirrored, and
+//! which way depth runs ([`Framing`]).
+//!
 //! Without these, the planes cut away no triangle. The near plane lies at 1/500 of the scene's size. If this
 //! would cut away a visible surface, such as a floor under the lens, it lies at half the depth of the nearest
 //! one. Along a path, all poses have the same near plane. The far plane lies just beyond the farthest corner
@@ -12,7 +15,7 @@
 
 use assign::{Projection, View};
 use glam::Vec2;
-use scenes::{DepthSpan, Lens, Pose, Scene};
+use scenes::{DepthSpan, Framing, Lens, Pose, Scene};
 
 use crate::{
     camera::file_camera,
@@ -51,6 +54,7 @@ const COARSE: f32 = 0.25;
 #[derive(Clone, Copy, Debug)]
 pub struct Optics {
     lens: Option<Lens>,
+    framing: Framing,
     near_m: f32,
     near_from: PlaneSource,
     /// The near plane if no surface is nearer, metres.
@@ -66,7 +70,7 @@ enum Far {
     /// Just beyond the scene.
     Bounds,
     /// No far plane.
-    Infinite,
+    Infinite(PlaneSource),
 }
 
 impl Optics {
@@ -80,7 +84,10 @@ impl Optics {
         let camera = file_camera(scene, args)?;
         let far = match (args.far, camera.and_then(|camera| camera.far_m)) {
             (Some(FarPlane::At(far)), _) => Far::At(far as f32, PlaneSource::Option),
-            (Some(FarPlane::Infinite), _) => Far::Infinite,
+            (Some(FarPlane::Infinite), _) => Far::Infinite(PlaneSource::Option),
+            (None, None) if camera.is_some_and(|camera| camera.framing.is_endless) => {
+                Far::Infinite(PlaneSource::File)
+            }
             (None, Some(far)) => Far::At(far, PlaneSource::File),
             (None, None) => Far::Bounds,
         };
@@ -94,14 +101,15 @@ impl Optics {
             }
         };
         let lens = camera.map(|camera| camera.lens);
-        let optics = Self { lens, near_m, near_from, usual_m: near_m, far };
+        let framing = camera.map_or(Framing::PLAIN, |camera| camera.framing);
+        let optics = Self { lens, framing, near_m, near_from, usual_m: near_m, far };
         optics.check()?;
         Ok(optics)
     }
 
     fn check(&self) -> Result<(), CliError> {
         match self.far {
-            Far::Infinite if matches!(self.lens, Some(Lens::Orthographic { .. })) => {
+            Far::Infinite(_) if matches!(self.lens, Some(Lens::Orthographic { .. })) => {
                 let accepted = "a number of metres, because the file's camera is orthographic";
                 Err(CliError::out_of_range("--far", "infinite", accepted))
             }
@@ -134,8 +142,10 @@ impl Optics {
         self.near_m = wanted.clamp(self.usual_m * LEAST_NEAR, self.usual_m);
     }
 
-    /// The view from a pose.
+    /// The view from a pose, for an image of a size in pixels.
     pub fn view(&self, scene: &Scene, pose: Pose, size: [u32; 2]) -> View {
+        let less = self.framing.less_px;
+        let size = [0, 1].map(|axis| size[axis].saturating_sub(less[axis]).max(1));
         let fov_y = match self.lens {
             Some(Lens::Perspective { fov_y }) => fov_y,
             _ => FOV_Y,
@@ -155,9 +165,40 @@ impl Optics {
                 let farthest = if farthest.is_finite() { farthest } else { 0.0 };
                 Some(farthest.max(2.0 * self.near_m).max(f32::MIN_POSITIVE))
             }
-            Far::Infinite => None,
+            Far::Infinite(_) => None,
         };
+        self.framed(view)
+    }
+
+    /// A view around the axis, moved, mirrored and jittered as the camera's framing says.
+    fn framed(&self, mut view: View) -> View {
+        let Framing { shift, jitter_px, is_mirrored, before_px: [x, y], depth, .. } = self.framing;
+        let window = |min: Vec2, max: Vec2| {
+            let shift = shift * (max - min);
+            let (mut min, mut max) = (min + shift, max + shift);
+            if is_mirrored {
+                std::mem::swap(&mut min.x, &mut max.x);
+            }
+            (min, max)
+        };
+        match &mut view.projection {
+            Projection::Perspective { min, max } | Projection::Orthographic { min, max } => {
+                (*min, *max) = window(*min, *max);
+            }
+        }
+        (view.viewport.x, view.viewport.y) = (x, y);
+        (view.jitter, view.depth) = (jitter_px, depth);
         view
+    }
+
+    /// A view whose viewport covers the whole target of one of its views, also what lies to the right of the image
+    /// and below it.
+    pub fn target(&self, view: &View) -> View {
+        let mut target = *view;
+        let [right, below] = self.framing.after_px;
+        target.viewport.width = target.viewport.width.saturating_add(right);
+        target.viewport.height = target.viewport.height.saturating_add(below);
+        target
     }
 
     /// Notes, one sentence each, for planes that cut away surfaces and for positions too large for f32.
@@ -220,7 +261,7 @@ impl Optics {
             far_from: match self.far {
                 Far::At(_, source) => source,
                 Far::Bounds => PlaneSource::Scene,
-                Far::Infinite => PlaneSource::Option,
+                Far::Infinite(source) => source,
             },
         }
     }

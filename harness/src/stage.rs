@@ -55,6 +55,8 @@ pub struct Stage {
     /// Virtual point lights that the GPU found faulty.
     faulty_vpls: u32,
     optics: Optics,
+    /// The size of the image that the arguments ask for, pixels.
+    size: [u32; 2],
     /// The diagonal of the scene's core before it was scaled, metres.
     unscaled_m: f32,
     /// Whether the camera walks along the scene's path.
@@ -127,7 +129,8 @@ impl Stage {
             bounce: None,
             vpl_maker: VplMaker::default(),
             faulty_vpls: 0,
-            renderer: Renderer::new(gpu, &scene, &view)?,
+            renderer: Renderer::new(gpu, &scene, &optics.target(&view))?,
+            size: [args.size.width, args.size.height],
             scene,
             view,
             notes,
@@ -154,6 +157,7 @@ impl Stage {
         self.view = view;
         self.notes = notes;
         self.optics = optics;
+        self.size = [args.size.width, args.size.height];
         self.bounce(gpu, args)?;
         self.move_lights(0)
     }
@@ -197,8 +201,8 @@ impl Stage {
     /// [follows](Self::follow_path) it, and the lights, if they move.
     pub fn go_to(&mut self, frame: u32, count: u32) -> Result<(), HarnessError> {
         if self.walks {
-            let size = [self.view.viewport.width, self.view.viewport.height];
-            self.view = self.optics.view(&self.scene, self.scene.path.pose(frame, count), size);
+            let pose = self.scene.path.pose(frame, count);
+            self.view = self.optics.view(&self.scene, pose, self.size);
         }
         self.move_lights(frame)?;
         self.prepare()
@@ -208,10 +212,9 @@ impl Stage {
     /// option or the file sets it.
     pub fn follow_path(&mut self, count: u32) {
         self.walks = true;
-        let size = [self.view.viewport.width, self.view.viewport.height];
         let pose = |frame| self.scene.path.pose(frame, count);
         let mut views: Vec<View> =
-            (0..count).map(|frame| self.optics.view(&self.scene, pose(frame), size)).collect();
+            (0..count).map(|frame| self.optics.view(&self.scene, pose(frame), self.size)).collect();
         views.push(self.view);
         self.optics.fit_near(&self.scene, &views);
         self.view.near_m = self.optics.near_m();

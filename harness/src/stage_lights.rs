@@ -70,18 +70,18 @@ impl Lit {
         let own = lights.len();
         let copies_of = u64::from(args.replicate) * u64::from(args.replicate);
         // The scene's own lights are copied already.
-        let total = u64::from(args.lights) * copies_of + lights.len() as u64;
+        let total = u64::from(args.scattered()) * copies_of + lights.len() as u64;
         if total > u64::from(scenes::MAX_LIGHTS) {
             let message = format!(
                 "--lights is {} and --replicate makes {copies_of} copies: with the scene's own lights there \
                  are {total}, and at most {} are possible",
-                args.lights,
+                args.scattered(),
                 scenes::MAX_LIGHTS
             );
             return Err(CliError::new(message).into());
         }
         let scattered = scatter_lights(&LightSpec {
-            count: args.lights,
+            count: args.scattered(),
             seed: args.seed,
             radius_scale: radius_scale as f32,
             radii: args.radii,

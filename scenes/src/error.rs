@@ -88,6 +88,16 @@ pub enum SceneError {
         /// What would be accepted.
         accepted: &'static str,
     },
+    /// A scenario whose camera does not move as its id asks.
+    #[error("move of {id} is \"{}\": it must be {accepted}", quoted(asked))]
+    Move {
+        /// The id of the scenario's scene.
+        id: String,
+        /// The move that the id asks for.
+        asked: String,
+        /// What would be accepted.
+        accepted: String,
+    },
     /// A name that is neither the id of a scene nor the path of a glTF file.
     #[error(
         "scene is \"{}\": it must be a path that ends in .gltf or .glb, or one of {known}{nearest}",
@@ -163,6 +173,7 @@ mod tests {
             SceneError::Image { file: file.clone(), image: text(), reason: text() },
             SceneError::Empty { name: text() },
             SceneError::Unknown { name: text(), known: String::new(), nearest: String::new() },
+            SceneError::Move { id: String::new(), asked: text(), accepted: String::new() },
         ];
         for error in errors {
             let line = error.to_string();
@@ -184,6 +195,7 @@ mod tests {
             },
             SceneError::Image { file: file.clone(), image: long(), reason: long() },
             SceneError::ReadPart { file, field: long(), part: long().into(), source: source() },
+            SceneError::Move { id: String::new(), asked: long(), accepted: String::new() },
         ];
         for error in errors {
             assert!(error.to_string().chars().count() < 1200, "{error}");

@@ -1,10 +1,10 @@
 //! Hashes of a scene's content and of its path, for provenance.
 
-use assign::LightShape;
+use assign::{DepthMapping, LightShape};
 use blake3::Hasher;
 use glam::Vec3;
 
-use crate::{Dielectric, Encoding, Lens, Pose, Scene, TextureRef};
+use crate::{Dielectric, Encoding, Framing, Lens, Pose, Scene, TextureRef};
 
 /// Increases whenever the values in the hash, or their order, change.
 const VERSION: u32 = 1;
@@ -178,6 +178,20 @@ impl Scene {
             feed.int(LIGHT_ANIMATION);
             animation.feed(|values| feed.floats(values));
         }
+        if self.cameras.iter().any(|camera| camera.framing != Framing::PLAIN) {
+            feed.int(FRAMINGS);
+            for camera in &self.cameras {
+                let Framing { shift, jitter_px, before_px, after_px, less_px, .. } = camera.framing;
+                feed.floats(&[shift.x, shift.y, jitter_px.x, jitter_px.y]);
+                for [x, y] in [before_px, after_px, less_px] {
+                    feed.int(u64::from(x) << 32 | u64::from(y));
+                }
+                let is_standard = camera.framing.depth == DepthMapping::Standard;
+                for flag in [camera.framing.is_mirrored, camera.framing.is_endless, is_standard] {
+                    feed.int(u64::from(flag));
+                }
+            }
+        }
     }
 
     fn hash_cameras(&self, feed: &mut Feed) {
@@ -199,6 +213,7 @@ const COLORS: u64 = 0x636f_6c6f_7273;
 const SUNS: u64 = 0x7375_6e73;
 const LIGHT_ANIMATION: u64 = 0x616e_696d_6174_6564;
 const REFLECTANCES: u64 = 0x0066_3066_3930;
+const FRAMINGS: u64 = 0x6672_616d_696e_6773;
 
 #[cfg(test)]
 mod tests {

@@ -121,6 +121,7 @@ impl Window {
             Projection::Perspective { min, max } => (true, min.as_dvec2(), max.as_dvec2()),
             Projection::Orthographic { min, max } => (false, min.as_dvec2(), max.as_dvec2()),
         };
+        let (min, max) = (min.min(max), min.max(max));
         // A side at `edge` metres, or at `edge` metres for each metre of depth.
         let side = |axis: DVec2, sign: f64, edge: f64| match perspective {
             true => DVec4::new(sign * axis.x, sign * axis.y, -sign * edge, 0.0),

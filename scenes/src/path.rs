@@ -1,6 +1,6 @@
 //! Where the camera is, as a function of the frame number.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use crate::{Pose, animated_node::AnimatedNode};
 
@@ -15,6 +15,14 @@ enum Way {
     Loop(Vec<(Vec3, Vec3)>),
     /// A glTF camera's animation, scaled by the factor.
     Animated(Box<AnimatedNode>, f32),
+    /// Equal small steps away from a pose and back: metres and radians per frame.
+    Steps {
+        start: Pose,
+        step_m: Vec3,
+        turn: f32,
+    },
+    /// A cut in every frame: frame F shows pose F, and so on in turn.
+    Cuts(Vec<Pose>),
 }
 
 impl CameraPath {
@@ -33,6 +41,18 @@ impl CameraPath {
         } else {
             Self(Way::Loop(knots))
         }
+    }
+
+    /// Moves by `step_m` metres (world space) and turns by `turn` radians to the left per frame. In the second
+    /// half of a run it goes the same way back, so that the last frame is one step from the first.
+    pub fn steps(start: Pose, step_m: Vec3, turn: f32) -> Self {
+        Self(Way::Steps { start, step_m, turn })
+    }
+
+    /// Jumps in every frame: frame F shows the pose F modulo their number. Without poses, the camera stays at
+    /// `fallback`.
+    pub fn cuts(poses: Vec<Pose>, fallback: Pose) -> Self {
+        if poses.is_empty() { Self::still(fallback) } else { Self(Way::Cuts(poses)) }
     }
 
     pub(crate) fn animated(node: AnimatedNode) -> Self {
@@ -63,6 +83,12 @@ impl CameraPath {
                 let t = f64::from(frame) / f64::from((count - 1).max(1));
                 node.pose(t as f32).scaled(*scale)
             }
+            Way::Steps { start, step_m, turn } => {
+                let steps = frame.min(count - frame) as f32;
+                let forward = Quat::from_axis_angle(start.up.normalize(), steps * turn);
+                Pose::looking(start.eye + steps * step_m, forward * start.forward(), start.up)
+            }
+            Way::Cuts(poses) => poses[frame as usize % poses.len()],
         }
     }
 
@@ -93,6 +119,12 @@ impl CameraPath {
                 Way::Loop(knots)
             }
             Way::Animated(node, scale) => Way::Animated(node, scale * factor),
+            Way::Steps { start, step_m, turn } => {
+                Way::Steps { start: start.scaled(factor), step_m: step_m * factor, turn }
+            }
+            Way::Cuts(poses) => {
+                Way::Cuts(poses.into_iter().map(|pose| pose.scaled(factor)).collect())
+            }
         })
     }
 }
@@ -152,6 +184,30 @@ mod tests {
             let bend = (eye(2) - 2.0 * eye(1) + eye(0)).length();
             assert!(bend < 1e-3, "frame {frame}: {bend}");
         }
+    }
+
+    #[test]
+    fn steps_are_equal_and_the_last_frame_is_one_step_from_the_first() {
+        let start = Pose::new(Vec3::ZERO, Vec3::NEG_Z);
+        let path = CameraPath::steps(start, Vec3::new(0.01, 0.0, 0.0), 1e-3).scaled(2.0);
+        assert_eq!(path.pose(0, 9), start);
+        for frame in 0..10 {
+            let (here, next) = (path.pose(frame, 10), path.pose(frame + 1, 10));
+            assert!((here.eye.distance(next.eye) - 0.02).abs() < 1e-6, "frame {frame}");
+            let turn = here.forward().angle_between(next.forward());
+            assert!((turn - 1e-3).abs() < 2e-4, "frame {frame}: {turn}");
+        }
+        // It turns to the left.
+        assert!(path.pose(3, 10).forward().x < 0.0);
+    }
+
+    #[test]
+    fn cuts_show_their_poses_in_turn() {
+        let [a, b] = [1.0, 2.0].map(|x| Pose::new(Vec3::X * x, Vec3::ZERO));
+        let path = CameraPath::cuts(vec![a, a, b], b);
+        let eyes: Vec<f32> = (0..6).map(|frame| path.pose(frame, 1200).eye.x).collect();
+        assert_eq!(eyes, [1.0, 1.0, 2.0, 1.0, 1.0, 2.0]);
+        assert_eq!(CameraPath::cuts(Vec::new(), b).pose(0, 1), b);
     }
 
     #[test]

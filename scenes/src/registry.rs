@@ -4,7 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use crate::{Scene, SceneError, TownSize, atrium, gltf_import::load_gltf_lights, load_gltf, town};
+use crate::{
+    Scene, SceneError, TownSize, atrium, gltf_import::load_gltf_lights, load_gltf, stability, town,
+};
 
 /// A procedural scene.
 #[derive(Clone, Copy, Debug)]
@@ -42,15 +44,20 @@ pub fn list() -> &'static [SceneEntry] {
     ENTRIES
 }
 
-/// Opens the procedural scene with that id, or the glTF file at that path.
+/// Opens the procedural scene with that id, the stability scenario with that id
+/// ([`stability`](crate::stability)), or the glTF file at that path.
 ///
 /// # Errors
 ///
-/// [`SceneError::Unknown`] if the name is not an id and does not end in `.gltf` or `.glb`. For a
-/// file, the errors of [`load_gltf`].
+/// [`SceneError::Unknown`] if the name is not an id and does not end in `.gltf` or `.glb`,
+/// [`SceneError::Move`] if a scenario does not move as its id asks. For a file, the errors of
+/// [`load_gltf`].
 pub fn open(name_or_path: &str) -> Result<Scene, SceneError> {
     if let Some(entry) = ENTRIES.iter().find(|entry| entry.id == name_or_path) {
         return Ok((entry.make)());
+    }
+    if name_or_path.starts_with(stability::PREFIX) {
+        return stability::open(name_or_path, SEED)?.ok_or_else(|| unknown(name_or_path));
     }
     match gltf_path(name_or_path) {
         Some(path) => load_gltf(path),
@@ -87,18 +94,25 @@ fn gltf_path(name_or_path: &str) -> Option<&Path> {
 /// How similar an id must be to be suggested, by Jaro-Winkler.
 const NEAR: f64 = 0.7;
 
+/// The error for a name that no scene has. It offers scenarios as well, with or without their prefix.
 fn unknown(name: &str) -> SceneError {
-    let ids: Vec<_> = ENTRIES.iter().map(|entry| entry.id).collect();
-    let mut near: Vec<_> = ids
-        .iter()
-        .map(|id| (strsim::jaro_winkler(id, &name.to_lowercase()), *id))
-        .filter(|(likeness, _)| *likeness >= NEAR)
-        .collect();
+    let wanted = name.to_lowercase();
+    let scenes =
+        ENTRIES.iter().map(|entry| (strsim::jaro_winkler(entry.id, &wanted), entry.id.to_owned()));
+    let scenarios = stability::list().iter().map(|scenario| {
+        let id = scenario.id();
+        // Every id starts alike, so that only the rest tells them apart.
+        let rest = wanted.strip_prefix(stability::PREFIX).unwrap_or(&wanted);
+        (strsim::jaro_winkler(scenario.name, rest), id)
+    });
+    let mut near: Vec<_> =
+        scenes.chain(scenarios).filter(|(likeness, _)| *likeness >= NEAR).collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let near: Vec<_> = near.iter().take(3).map(|(_, id)| *id).collect();
+    let near: Vec<_> = near.into_iter().take(3).map(|(_, id)| id).collect();
+    let ids: Vec<_> = ENTRIES.iter().map(|entry| entry.id).collect();
     SceneError::Unknown {
         name: name.into(),
-        known: ids.join(", "),
+        known: format!("{}, {}NAME", ids.join(", "), stability::PREFIX),
         nearest: if near.is_empty() {
             String::new()
         } else {
@@ -115,6 +129,12 @@ mod tests {
     fn unknown_names_list_similar_ids() {
         let error = open("Atrum").expect_err("no such scene").to_string();
         assert!(error.contains("nearest: atrium"), "{error}");
+        for name in ["stability:depth-discontinuty", "depth-discontinuity"] {
+            let error = open(name).expect_err("no such scene").to_string();
+            assert!(error.contains("nearest: stability:depth-discontinuity"), "{error}");
+        }
+        let error = open("stability:depth-discontinuity:dolly").expect_err("still").to_string();
+        assert!(error.contains("dolly") && error.contains("does not move"), "{error}");
         let error = open("xyz").expect_err("no such scene").to_string();
         assert!(error.contains("one of atrium") && !error.contains("nearest"), "{error}");
         let error = open("a\nb\t\u{1b}[1m").expect_err("no such scene").to_string();

@@ -4,7 +4,7 @@ use assign::{Light, LightShape, Sun};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4, Vec3};
 
-use crate::{Aabb, CameraPath, Image, LightAnimation, Material, Pose, SceneError};
+use crate::{Aabb, CameraPath, Framing, Image, LightAnimation, Material, Pose, SceneError};
 
 /// Everything that is drawn, lit, and looked from. World space is right-handed with +Y up, in
 /// metres.
@@ -156,6 +156,8 @@ pub struct Camera {
     pub near_m: f32,
     /// Distance of the far plane, metres; `None` is infinitely far.
     pub far_m: Option<f32>,
+    /// Where its image lies in the window and in the target.
+    pub framing: Framing,
 }
 
 /// A camera's projection.

@@ -53,6 +53,12 @@ pub enum ShadingError {
         /// The kinds of the prepared lights.
         lights: LightKinds,
     },
+    /// Depth or winding runs otherwise in the view than in the one that a lighting pass was compiled for.
+    #[error(
+        "the lighting pass was compiled for another direction of depth, or for a view that is not mirrored \
+         alike: create a new pass"
+    )]
+    Orientation,
     /// A sample's look-up returned another number of lights than before.
     #[error(
         "two look-ups of the same frame returned different lights: {strategy} must return the same"

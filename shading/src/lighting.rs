@@ -6,7 +6,7 @@ use crate::{
     LightingOptions, Mode, Renderer, ShadingError,
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     lighting_inputs::{Bound, LightingInputs},
-    raster::{Lists, RasterPass, RasterPipelines},
+    raster::{Lists, Orientation, RasterPass, RasterPipelines},
     shaders::{LISTS_GROUP, lighting_modules},
     targets::RADIANCE_FORMAT,
 };
@@ -30,6 +30,7 @@ enum Kind {
 #[derive(Debug)]
 struct Forward {
     pipelines: RasterPipelines,
+    orientation: Orientation,
     scene: wgpu::BindGroup,
     /// Whether depth is drawn before lighting.
     has_depth: bool,
@@ -37,7 +38,7 @@ struct Forward {
 
 impl Lighting {
     /// Compiles the strategy's look-up into the pipeline's shader. The pass is for the renderer's
-    /// present mapping of depth; another mapping needs a new pass.
+    /// present view: another direction of depth, or a view that is mirrored, needs a new pass.
     pub fn new(
         renderer: &Renderer,
         strategy: &dyn Assignment,
@@ -86,11 +87,12 @@ impl Lighting {
                     gpu,
                     &renderer.frame,
                     &renderer.scene,
-                    renderer.depth_mapping,
+                    renderer.orientation,
                     RasterPass::Forward { lists, has_depth },
                 )?;
                 let scene = renderer.scene.bind_group(gpu, &inputs);
-                Kind::Forward(Forward { pipelines, scene, has_depth })
+                let orientation = renderer.orientation;
+                Kind::Forward(Forward { pipelines, orientation, scene, has_depth })
             }
         };
         Ok(Self { kind, options })
@@ -102,7 +104,7 @@ impl Lighting {
     }
 
     /// Records the pass `shade`, after the strategy's own passes. Returns an error if the prepared
-    /// lights are of a kind for which the shader was not compiled.
+    /// lights are of a kind for which the shader was not compiled, or if depth or winding are.
     pub fn record(
         &self,
         renderer: &Renderer,
@@ -118,7 +120,10 @@ impl Lighting {
         lights.check(&renderer.gpu, self.options, strategy.lookup().module.wesl().reader)?;
         match &self.kind {
             Kind::Deferred(deferred) => deferred.record(renderer, view, strategy, passes),
-            Kind::Forward(Forward { pipelines, scene, has_depth }) => {
+            Kind::Forward(Forward { pipelines, orientation, scene, has_depth }) => {
+                if *orientation != renderer.orientation {
+                    return Err(ShadingError::Orientation);
+                }
                 let groups = (strategy.bind_group(), scene);
                 renderer.record_radiance(("shade", *has_depth), view, pipelines, groups, passes);
             }

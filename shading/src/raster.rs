@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use assign::{DepthMapping, FrameBindings, Gpu, Shader};
+use assign::{DepthMapping, FrameBindings, Gpu, Shader, View};
 
 use crate::{
     LightingOptions, ShadingError,
@@ -49,6 +49,21 @@ impl RasterPass<'_> {
     }
 }
 
+/// What the pipelines of a pass depend on in a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Orientation {
+    /// Direction of clip depth.
+    pub(crate) depth: DepthMapping,
+    /// Whether the view reverses the winding of triangles.
+    pub(crate) is_mirrored: bool,
+}
+
+impl Orientation {
+    pub(crate) fn of_view(view: &View) -> Self {
+        Self { depth: view.depth, is_mirrored: view.is_mirrored() }
+    }
+}
+
 /// The strategy's part of a lighting shader.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lists<'a> {
@@ -67,12 +82,12 @@ impl RasterPipelines {
         gpu: &Gpu,
         frame: &FrameBindings,
         scene: &SceneGpu,
-        depth: DepthMapping,
+        orientation: Orientation,
         pass: RasterPass<'_>,
     ) -> Result<Self, ShadingError> {
         let mut pipelines = HashMap::new();
         for key in scene.keys() {
-            pipelines.insert(key, pipeline(gpu, frame, scene, depth, pass, key)?);
+            pipelines.insert(key, pipeline(gpu, frame, scene, orientation, pass, key)?);
         }
         Ok(Self { pipelines })
     }
@@ -132,7 +147,7 @@ fn pipeline(
     gpu: &Gpu,
     frame: &FrameBindings,
     scene: &SceneGpu,
-    depth: DepthMapping,
+    orientation: Orientation,
     pass: RasterPass<'_>,
     key: DrawKey,
 ) -> Result<wgpu::RenderPipeline, ShadingError> {
@@ -159,7 +174,7 @@ fn pipeline(
     let without_colors = [Some(vertex_layout())];
     let with_colors = [Some(vertex_layout()), Some(color_layout())];
     let is_depth = pass.writes_depth();
-    let nearer = match depth {
+    let nearer = match orientation.depth {
         DepthMapping::Standard => wgpu::CompareFunction::LessEqual,
         DepthMapping::Reversed => wgpu::CompareFunction::GreaterEqual,
     };
@@ -175,7 +190,11 @@ fn pipeline(
             buffers: if key.material.vertex_colors { &with_colors } else { &without_colors },
         },
         primitive: wgpu::PrimitiveState {
-            front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+            front_face: if key.mirrored == orientation.is_mirrored {
+                wgpu::FrontFace::Ccw
+            } else {
+                wgpu::FrontFace::Cw
+            },
             cull_mode: (!key.material.double_sided).then_some(wgpu::Face::Back),
             ..Default::default()
         },

@@ -16,6 +16,7 @@ use crate::{
     gbuffer_inputs::{GBufferInputs, PIXELS_GROUP},
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
+    raster::Orientation,
     shaders::{LISTS_GROUP, lighting_modules},
     targets::{DEPTH_FORMAT, RADIANCE_FORMAT},
 };
@@ -35,6 +36,7 @@ pub struct RasterSpheres {
     triangles: wgpu::Buffer,
     vertex_count: u32,
     options: LightingOptions,
+    orientation: Orientation,
     images: GBufferInputs,
     inputs: LightingInputs,
 }
@@ -86,6 +88,7 @@ impl RasterSpheres {
             }),
             layout,
             options,
+            orientation: renderer.orientation,
             images,
             inputs,
         })
@@ -102,6 +105,9 @@ impl RasterSpheres {
         let made = self.options.kinds;
         if !made.cover(lights.kinds()) {
             return Err(ShadingError::Kinds { made, lights: lights.kinds() });
+        }
+        if self.orientation != renderer.orientation {
+            return Err(ShadingError::Orientation);
         }
         // Each fragment adds only one light, so each is checked separately.
         for light in LightTotals::of_each(lights) {
@@ -175,7 +181,7 @@ fn pipeline(
         attributes: &wgpu::vertex_attr_array![0 => Float32x3],
     };
     // The back face of a volume lies behind the surfaces that it may light.
-    let behind = match renderer.depth_mapping {
+    let behind = match renderer.orientation.depth {
         DepthMapping::Standard => wgpu::CompareFunction::GreaterEqual,
         DepthMapping::Reversed => wgpu::CompareFunction::LessEqual,
     };
@@ -190,6 +196,11 @@ fn pipeline(
             buffers: if volumes { &buffers } else { &[] },
         },
         primitive: wgpu::PrimitiveState {
+            front_face: if renderer.orientation.is_mirrored {
+                wgpu::FrontFace::Cw
+            } else {
+                wgpu::FrontFace::Ccw
+            },
             cull_mode: volumes.then_some(wgpu::Face::Front),
             ..Default::default()
         },

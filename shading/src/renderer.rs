@@ -1,8 +1,6 @@
 //! Draws one scene into one set of targets: the passes that all strategies share.
 
-use assign::{
-    AssignError, Assignment, DepthMapping, Frame, FrameBindings, Gpu, ModelBox, Passes, View,
-};
+use assign::{AssignError, Assignment, Frame, FrameBindings, Gpu, ModelBox, Passes, View};
 use glam::Vec3;
 use scenes::{Aabb, Model, Scene};
 
@@ -11,7 +9,7 @@ use crate::{
     geometry::SceneGpu,
     lighting_inputs::LightingInputs,
     loop_rounds::LightTotals,
-    raster::{RasterPass, RasterPipelines},
+    raster::{Orientation, RasterPass, RasterPipelines},
     targets::Targets,
 };
 
@@ -24,13 +22,19 @@ pub struct Renderer {
     /// Bind group 2 of the passes without lighting.
     scene_group: wgpu::BindGroup,
     pub(crate) targets: Targets,
-    pub(crate) depth_mapping: DepthMapping,
+    pub(crate) orientation: Orientation,
     /// The prepared lights.
     pub(crate) lights: LightTotals,
     /// [`Frame::seed`] of the next frame.
     seed: u32,
     models: Vec<ModelBox>,
     surface_bounds: (Vec3, Vec3),
+    shared: SharedPasses,
+}
+
+/// The pipelines of the passes that all strategies share. Clones share them.
+#[derive(Clone, Debug)]
+struct SharedPasses {
     depth: RasterPipelines,
     model_ids: RasterPipelines,
     gbuffer: RasterPipelines,
@@ -38,8 +42,26 @@ pub struct Renderer {
     clay: RasterPipelines,
 }
 
+impl SharedPasses {
+    fn new(
+        gpu: &Gpu,
+        frame: &FrameBindings,
+        scene: &SceneGpu,
+        orientation: Orientation,
+    ) -> Result<Self, ShadingError> {
+        let pipelines = |pass| RasterPipelines::new(gpu, frame, scene, orientation, pass);
+        Ok(Self {
+            depth: pipelines(RasterPass::Depth)?,
+            gbuffer: pipelines(RasterPass::GBuffer { ids: false })?,
+            gbuffer_ids: pipelines(RasterPass::GBuffer { ids: true })?,
+            model_ids: pipelines(RasterPass::ModelIds)?,
+            clay: pipelines(RasterPass::Clay)?,
+        })
+    }
+}
+
 impl Renderer {
-    /// Uploads `scene` and creates targets for views with the viewport and depth mapping of `view`.
+    /// Uploads `scene` and creates targets and pipelines for views like `view`.
     pub fn new(gpu: &Gpu, scene: &Scene, view: &View) -> Result<Self, ShadingError> {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(gpu);
@@ -52,17 +74,13 @@ impl Renderer {
         let scene = SceneGpu::new(gpu, scene)?;
         let targets = Targets::new(gpu, view, &scene)?;
         let inputs = LightingInputs::new(gpu, LightingOptions::default())?;
-        let pipelines = |pass| RasterPipelines::new(gpu, &frame, &scene, view.depth, pass);
+        let orientation = Orientation::of_view(view);
         Ok(Self {
-            depth: pipelines(RasterPass::Depth)?,
-            gbuffer: pipelines(RasterPass::GBuffer { ids: false })?,
-            gbuffer_ids: pipelines(RasterPass::GBuffer { ids: true })?,
-            model_ids: pipelines(RasterPass::ModelIds)?,
+            shared: SharedPasses::new(gpu, &frame, &scene, orientation)?,
             models,
             surface_bounds,
-            clay: pipelines(RasterPass::Clay)?,
             gpu: gpu.clone(),
-            depth_mapping: view.depth,
+            orientation,
             lights: LightTotals::default(),
             seed: 0,
             frame,
@@ -78,10 +96,11 @@ impl Renderer {
         view.check().map_err(AssignError::from)?;
         let frame = FrameBindings::new(&self.gpu);
         let targets = Targets::new(&self.gpu, view, &self.scene)?;
-        let depth = if view.depth == self.depth_mapping {
-            self.depth.clone()
+        let orientation = Orientation::of_view(view);
+        let shared = if orientation == self.orientation {
+            self.shared.clone()
         } else {
-            RasterPipelines::new(&self.gpu, &frame, &self.scene, view.depth, RasterPass::Depth)?
+            SharedPasses::new(&self.gpu, &frame, &self.scene, orientation)?
         };
         Ok(Self {
             gpu: self.gpu.clone(),
@@ -89,16 +108,12 @@ impl Renderer {
             scene: self.scene.clone(),
             scene_group: self.scene_group.clone(),
             targets,
-            depth_mapping: view.depth,
+            orientation,
             lights: LightTotals::default(),
             seed: 0,
             models: self.models.clone(),
             surface_bounds: self.surface_bounds,
-            depth,
-            model_ids: self.model_ids.clone(),
-            gbuffer: self.gbuffer.clone(),
-            gbuffer_ids: self.gbuffer_ids.clone(),
-            clay: self.clay.clone(),
+            shared,
         })
     }
 
@@ -125,7 +140,7 @@ impl Renderer {
     }
 
     /// Uploads the view and the lights. This is not part of the measured time. Targets are replaced
-    /// if the view does not fit them.
+    /// if the view does not fit them, and pipelines if depth or winding are reversed.
     pub fn prepare(
         &mut self,
         view: &View,
@@ -135,15 +150,13 @@ impl Renderer {
         let [width, height] = self.targets.size;
         let fits = viewport.x.saturating_add(viewport.width) <= width
             && viewport.y.saturating_add(viewport.height) <= height;
-        if !fits || view.depth != self.depth_mapping {
+        if !fits {
             self.targets = Targets::new(&self.gpu, view, &self.scene)?;
-            let remade = view.depth != self.depth_mapping;
-            self.depth_mapping = view.depth;
-            if remade {
-                let (gpu, frame, scene) = (&self.gpu, &self.frame, &self.scene);
-                let make = |pass| RasterPipelines::new(gpu, frame, scene, view.depth, pass);
-                self.depth = make(RasterPass::Depth)?;
-            }
+        }
+        let orientation = Orientation::of_view(view);
+        if orientation != self.orientation {
+            self.shared = SharedPasses::new(&self.gpu, &self.frame, &self.scene, orientation)?;
+            self.orientation = orientation;
         }
         self.frame.update(&self.gpu, &Frame::new(view, lights).with_seed(self.seed))?;
         self.lights = LightTotals::of_buffer(lights);
@@ -168,7 +181,7 @@ impl Renderer {
             ..Default::default()
         };
         let scene = &self.scene_group;
-        self.record_raster("depth", view, &descriptor, &self.depth, (None, scene), passes);
+        self.record_raster("depth", view, &descriptor, &self.shared.depth, (None, scene), passes);
     }
 
     /// Records the pass `gbuffer`, after `depth`.
@@ -187,7 +200,7 @@ impl Renderer {
         colors.push(targets.emissive.as_ref().map(cleared));
         colors.push(ids.then(|| cleared(&targets.model_ids)));
         colors.extend(targets.dielectric.as_ref().map(|view| Some(cleared(view))));
-        let pipelines = if ids { &self.gbuffer_ids } else { &self.gbuffer };
+        let pipelines = if ids { &self.shared.gbuffer_ids } else { &self.shared.gbuffer };
         let descriptor = wgpu::RenderPassDescriptor {
             color_attachments: &colors,
             depth_stencil_attachment: Some(self.depth_attachment(None)),
@@ -205,13 +218,20 @@ impl Renderer {
             ..Default::default()
         };
         let scene = &self.scene_group;
-        self.record_raster("model-ids", view, &descriptor, &self.model_ids, (None, scene), passes);
+        self.record_raster(
+            "model-ids",
+            view,
+            &descriptor,
+            &self.shared.model_ids,
+            (None, scene),
+            passes,
+        );
     }
 
     /// Records the pass `clay`, after `depth`: the scene without any light, as a control.
     pub fn record_clay(&self, view: &View, passes: &mut dyn Passes) {
         let groups = (None, &self.scene_group);
-        self.record_radiance(("clay", true), view, &self.clay, groups, passes);
+        self.record_radiance(("clay", true), view, &self.shared.clay, groups, passes);
     }
 
     /// A pass over the triangles into the radiance image, with the bind groups of lists and scene.

@@ -101,6 +101,9 @@ pub const CASES: &[Case] = &[
     case("off-centre", "a window that does not hold the axis", |r| {
         still(r, &views::off_centre(), 300, default_mix)
     }),
+    case("mirrored", "the flipped window of a planar mirror", |r| {
+        still(r, &views::mirrored(), 300, default_mix)
+    }),
     case("jitter", "sub-pixel jitter", |r| still(r, &views::jittered(), 300, default_mix)),
     case("viewport-offset", "a viewport inside a larger target", offset),
     case("odd-size", "83 x 57 pixels: no multiple of any tile", |r| {

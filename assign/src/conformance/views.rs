@@ -48,6 +48,17 @@ pub(super) fn off_centre() -> View {
     }
 }
 
+/// The window of a planar mirror: left and right are swapped.
+pub(super) fn mirrored() -> View {
+    View {
+        projection: Projection::Perspective {
+            min: Vec2::new(0.7, -0.4),
+            max: Vec2::new(-0.8, 0.5),
+        },
+        ..sized(SIZE)
+    }
+}
+
 /// Half a pixel to the left and a third down.
 pub(super) fn jittered() -> View {
     View { jitter: Vec2::new(-0.5, 0.33), ..sized(SIZE) }

@@ -43,8 +43,9 @@ impl Frustum {
             let far = if bounded { depth_max } else { depth_min };
             lens.world_at(ndc, pick(4, depth_min, far))
         });
-        let low = lens.ray_scale * ndc_min + lens.ray_offset;
-        let high = lens.ray_scale * ndc_max + lens.ray_offset;
+        // In a flipped window, the least coordinate of the image is the greatest of the window.
+        let [at_min, at_max] = [ndc_min, ndc_max].map(|ndc| lens.ray_scale * ndc + lens.ray_offset);
+        let (low, high) = (at_min.min(at_max), at_min.max(at_max));
         let planes = [
             lens.side_plane(Vec3::X, low.x, -1.0),
             lens.side_plane(Vec3::X, high.x, 1.0),

@@ -15,7 +15,7 @@ pub struct ViewUniform {
     /// View to clip, jitter included.
     pub view_to_clip: [[f32; 4]; 4],
     /// `ray_scale * ndc + ray_offset` is the view-space position at view depth 1 (perspective), or
-    /// at every depth (orthographic).
+    /// at every depth (orthographic). It is negative where the window is flipped.
     pub ray_scale: [f32; 2],
     /// See `ray_scale`.
     pub ray_offset: [f32; 2],

@@ -47,7 +47,12 @@ fn projection() -> impl Strategy<Value = (Projection, f32, Option<f32>)> {
     let off_centre = window(2.0, 3.0).prop_map(|(min, max)| Projection::Perspective { min, max });
     let orthographic =
         window(100.0, 200.0).prop_map(|(min, max)| Projection::Orthographic { min, max });
-    let perspective = (prop_oneof![3 => symmetric, 1 => off_centre], near(), far())
+    // A planar mirror's window is flipped.
+    let mirrored = window(2.0, 3.0).prop_map(|(min, max)| Projection::Perspective {
+        min: Vec2::new(max.x, min.y),
+        max: Vec2::new(min.x, max.y),
+    });
+    let perspective = (prop_oneof![3 => symmetric, 1 => off_centre, 1 => mirrored], near(), far())
         .prop_map(|(window, near, far)| (window, near, far.map(|f| near * f)));
     prop_oneof![
         3 => perspective,

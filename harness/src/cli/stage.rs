@@ -16,13 +16,13 @@ use super::{
 /// What is drawn: the options that comparisons and truth images share.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct StageArgs {
-    /// Scene to draw: a name from `lightbench list scenes`, or a .gltf or .glb file
+    /// Scene to draw: a name from `lightbench list scenes` or `list scenarios`, or a .gltf or .glb file
     #[arg(long, display_order = 1, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
     pub scene: String,
 
-    /// Lights to scatter, in addition to the scene's own; 0 to 16,777,216
-    #[arg(long, display_order = 2, value_name = "N", default_value = "1000", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_LIGHTS))]
-    pub lights: u32,
+    /// Lights to scatter, in addition to the scene's own; 0 to 16,777,216 [default: 1000; a scenario: 0]
+    #[arg(long, display_order = 2, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_LIGHTS))]
+    pub lights: Option<u32>,
 
     /// Add the lights of another .gltf or .glb file
     #[arg(long, display_order = 3, value_name = "FILE", value_parser = values::text)]
@@ -145,7 +145,16 @@ pub struct StageArgs {
 /// in so few frames.
 const SORTED_EVERY: u32 = 8;
 
+/// Lights that are scattered in a scene, unless the command line gives a number.
+const SCATTERED_LIGHTS: u32 = 1_000;
+
 impl StageArgs {
+    /// The number of lights to scatter. A stability scenario brings all of its lights.
+    pub fn scattered(&self) -> u32 {
+        let is_scenario = self.scene.starts_with(scenes::stability::PREFIX);
+        self.lights.unwrap_or(if is_scenario { 0 } else { SCATTERED_LIGHTS })
+    }
+
     /// The order of the lights.
     pub fn light_order(&self) -> LightOrder {
         self.light_order.unwrap_or(match self.motion.motion {

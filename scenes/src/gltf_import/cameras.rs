@@ -12,7 +12,7 @@ use gltf::json::{
 };
 
 use super::{file::File, warnings::kept_name};
-use crate::{Camera, Lens, Pose, SceneError};
+use crate::{Camera, Framing, Lens, Pose, SceneError};
 
 /// Fields of view are larger than this, radians. In a smaller one, f32 could not separate the
 /// 16,384 pixels of an image.
@@ -41,7 +41,8 @@ pub(super) fn placed(
         (_, Some(lens), _) => check.perspective(lens)?,
         (_, None, _) => return Err(check.missing("perspective")),
     };
-    Ok(Camera { name, pose: Pose::of_node(to_world), lens, near_m, far_m })
+    let framing = Framing::PLAIN;
+    Ok(Camera { name, pose: Pose::of_node(to_world), lens, near_m, far_m, framing })
 }
 
 /// Checks the fields of one camera.
