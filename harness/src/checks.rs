@@ -10,7 +10,7 @@ use crate::{
     cli::{CliError, CompareArgs, MotionChoice, PicturesChoice, StageArgs},
     error::HarnessError,
     painter::raster_spheres,
-    results::ResultsError,
+    results::{RefusedStrategy, ResultsError},
     stage::Stage,
     strategy::Method,
 };
@@ -26,7 +26,7 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
     check_effect(args, choices)?;
     let is_still = !args.path && args.stage.motion.motion.is_none();
     check_motion(&args.stage)?;
-    if args.checks == Some(0) && (args.unbounded || args.pictures == PicturesChoice::All) {
+    if args.checks == Some(0) && (args.unbounded || args.pictures != PicturesChoice::None) {
         let accepted =
             "1 or more without --pictures none, and with --unbounded: both draw no culling";
         return Err(CliError::out_of_range("--checks", "0", accepted));
@@ -143,14 +143,14 @@ pub(crate) fn checked(choices: Vec<Choice>, gpu: &Gpu) -> Result<Vec<Choice>, Ha
     Ok(checked)
 }
 
-/// The choices that can serve the scene on this device, and a warning for each other one of `all`. An
+/// The choices that can serve the scene on this device, and the other ones of `all` with the reason. An
 /// error where the user named a choice that cannot.
 pub(crate) fn served(
     choices: Vec<Choice>,
     gpu: &Gpu,
     stage: &Stage,
     cut: Cut,
-) -> Result<(Vec<Choice>, Vec<String>), HarnessError> {
+) -> Result<(Vec<Choice>, Vec<RefusedStrategy>), HarnessError> {
     let mut served = Vec::new();
     let mut left_out = Vec::new();
     for choice in choices {
@@ -182,7 +182,8 @@ pub(crate) fn served(
         match check() {
             Ok(()) => served.push(choice),
             Err(error) if !choice.is_named => {
-                left_out.push(format!("{} was left out: {error}", choice.id()));
+                let (strategy, reason) = (choice.id().to_string(), error.to_string());
+                left_out.push(RefusedStrategy { strategy, mode: None, reason });
             }
             Err(error) => return Err(error),
         }

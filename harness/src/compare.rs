@@ -25,7 +25,7 @@ use crate::{
     record::{Seen, record},
     report,
     report::listed,
-    results::{Clock, Record, Results, Truth, TruthLevel, Untested},
+    results::{Clock, Record, RefusedStrategy, Results, Truth, TruthLevel, Untested},
     schedule::DEFAULT_FRAMES,
     sight::untested,
     stage::Stage,
@@ -95,7 +95,10 @@ pub fn compare_on(
         untested: None,
     };
     run.follow_path();
-    run.results.warnings.extend(left_out);
+    for RefusedStrategy { strategy, reason, .. } in &left_out {
+        run.results.warnings.push(format!("{strategy} was left out: {reason}"));
+    }
+    run.results.refused.extend(left_out);
     run.warn(&choices);
     remove_stale(&args.out)?;
     run.look()?;
@@ -247,6 +250,9 @@ impl Run<'_> {
             served.retain(|choice| choice.refuses_mode(mode).is_none());
             for choice in choices {
                 let Some(words) = choice.row().refusal(mode) else { continue };
+                let reason = choice.row().refuses_mode(mode).unwrap_or_default().to_owned();
+                let (strategy, mode) = (choice.id().to_string(), Some(mode));
+                self.results.refused.push(RefusedStrategy { strategy, mode, reason });
                 self.results.warnings.push(words);
                 bar.inc(per_method);
             }

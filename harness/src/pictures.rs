@@ -42,7 +42,7 @@ impl Reference {
         let exposure = image.auto_exposure();
         let mut picture = None;
         let mut pictures = Pictures::new();
-        if args.pictures == PicturesChoice::All {
+        if args.pictures != PicturesChoice::None {
             let out = &args.out;
             let name = format!("{}-None.png", mode.name());
             let images = [
@@ -139,7 +139,8 @@ pub(crate) fn see(
         images.difference_amplification = Some(f64::from(gain));
     }
     let lengths = &seen.lists.lengths.per_pixel;
-    if !lengths.is_empty() {
+    let is_wanted = args.pictures == PicturesChoice::All || !is_same;
+    if is_wanted && !lengths.is_empty() {
         let name = format!("{stem}-heat.png");
         let png = heat_map_png(&reference.image, exposure, lengths)?;
         pictures.push(keep(&args.out, &name, png, None)?);

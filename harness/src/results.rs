@@ -88,6 +88,9 @@ pub struct Results {
     /// Lights left out because a field was NaN, infinite or out of range.
     #[serde(default)]
     pub rejected_lights: Vec<RejectedLight>,
+    /// Strategies that were asked for and not run, because they cannot serve the scene, the device or the mode.
+    #[serde(default)]
+    pub refused: Vec<RefusedStrategy>,
     /// Warnings for readers of the figures, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -119,6 +122,18 @@ pub struct RejectedLight {
     /// Its index among all lights of the run.
     pub index: u64,
     /// The faulty field and its value.
+    pub reason: String,
+}
+
+/// A strategy that took no part in the run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RefusedStrategy {
+    /// Its id.
+    pub strategy: String,
+    /// The mode that it refuses; `null` for all of them.
+    #[serde(default)]
+    pub mode: Option<Mode>,
+    /// Why, in words.
     pub reason: String,
 }
 
@@ -155,6 +170,7 @@ impl Results {
             truth_image: None,
             deep_images: None,
             rejected_lights: Vec::new(),
+            refused: Vec::new(),
             warnings: Vec::new(),
         }
     }

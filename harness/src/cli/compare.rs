@@ -150,6 +150,8 @@ const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
 pub enum PicturesChoice {
     /// Each method's image (PNG and linear EXR), its difference to no culling, and its heat map
     All,
+    /// The same, of methods whose image is not that of no culling in every bit
+    Differing,
     /// No pictures; images are still compared
     None,
 }

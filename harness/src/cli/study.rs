@@ -48,7 +48,9 @@ pub struct StudyArgs {
     pub study: String,
 
     /// Scene: a name or a .gltf or .glb file; give --scene again for each further scene
-    #[arg(long, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
+    ///
+    /// [default: atrium; of the study stability, all its scenarios]
+    #[arg(long, value_name = "NAME|FILE", value_parser = values::text)]
     pub scene: Vec<String>,
 
     /// Factor on the size of a scene, 1e-6 to 1e6; one per scene, in their order [default: 1]
@@ -105,6 +107,12 @@ impl StudyArgs {
         })
     }
 
+    /// These arguments, with the scenes that the study has by itself where they name none.
+    pub(crate) fn with_scenes(&self, known: fn(&Self) -> Vec<String>) -> Self {
+        let scene = if self.scene.is_empty() { known(self) } else { self.scene.clone() };
+        Self { scene, ..self.clone() }
+    }
+
     /// Whether a job of that name is to run.
     pub fn wants(&self, name: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|word| name.contains(word.as_str()))
@@ -142,7 +150,9 @@ mod tests {
             let words =
                 ["lightbench", "study", "culling"].into_iter().chain(line.split_whitespace());
             match crate::cli::parse(words) {
-                Ok(crate::cli::Invocation::Study(args)) => args.identity().join(" "),
+                Ok(crate::cli::Invocation::Study(args)) => {
+                    args.with_scenes(|_| vec!["atrium".to_owned()]).identity().join(" ")
+                }
                 other => panic!("{line}: {other:?}"),
             }
         };

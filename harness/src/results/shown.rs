@@ -22,6 +22,7 @@ impl Results {
         all.extend(&mut self.truth.notes);
         all.extend(&mut self.warnings);
         all.extend(self.rejected_lights.iter_mut().flat_map(|l| [&mut l.scene, &mut l.reason]));
+        all.extend(self.refused.iter_mut().flat_map(|r| [&mut r.strategy, &mut r.reason]));
         all.extend(self.truth_image.iter_mut().map(|image| &mut image.scene));
         if let Some(run) = &mut self.deep_images {
             all.extend([&mut run.scene, &mut run.deep.build, &mut run.deep.spread]);

@@ -17,6 +17,13 @@ pub(crate) struct Entry<'a> {
     machine: &'a Machine,
 }
 
+impl<'a> Entry<'a> {
+    /// A record of a job that ran on a machine.
+    pub(crate) fn new(job: &'a Job, record: &'a Record, machine: &'a Machine) -> Self {
+        Self { job, record, machine }
+    }
+}
+
 impl Entry<'_> {
     /// ` \u{2020}` where rasterisation limits its times, else nothing.
     pub(crate) fn mark(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! The list of all studies: the one place that names them.
 
-use super::{area, cdi, comparison, culling, endless, engines, living, slice::Study};
+use super::{area, cdi, comparison, culling, endless, engines, living, slice::Study, stability};
 use crate::cli::CliError;
 
 /// All studies, in the order in which the command line lists them.
@@ -12,6 +12,7 @@ pub(crate) const STUDIES: &[Study] = &[
     endless::STUDY,
     cdi::STUDY,
     engines::STUDY,
+    stability::STUDY,
 ];
 
 /// Name of each study, and what it answers.

@@ -28,6 +28,7 @@ mod report;
 mod run;
 mod scene;
 mod slice;
+mod stability;
 
 pub use against_truth::{MODELS, TRUTH, truth_of};
 pub use area::BOUNDS;

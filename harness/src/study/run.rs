@@ -27,6 +27,7 @@ use crate::{
 /// line; a process that wants the same folder is shown it.
 pub fn study(args: &StudyArgs, command: &[String]) -> Result<String, HarnessError> {
     let study = list::named(&args.study)?;
+    let args = &args.with_scenes(study.scenes);
     let scenes = StudyScene::all(args)?;
     let out = &args.folder();
     let _held = OutFolder::hold(out, command)?;

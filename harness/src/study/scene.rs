@@ -42,6 +42,7 @@ impl StudyScene {
             };
             let plain =
                 |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+            let name = name.strip_prefix(scenes::stability::PREFIX).unwrap_or(&name);
             let mut name: String = name.chars().map(plain).collect();
             while all.iter().any(|known| known.name == name) {
                 name += &format!("-{}", ix + 1);

@@ -25,6 +25,8 @@ pub(crate) struct Study {
     pub(crate) name: &'static str,
     /// What it answers, in one sentence without a full stop.
     pub(crate) answers: &'static str,
+    /// The scenes that it measures where the command line names none.
+    pub(crate) scenes: fn(&StudyArgs) -> Vec<String>,
     /// Makes the jobs of one scene, in the order in which they run. An error names what is wrong with the
     /// scene or with an option.
     pub(crate) jobs: fn(&mut Bench, &StudyArgs, &StudyScene) -> Result<Vec<Job>, HarnessError>,
@@ -37,12 +39,19 @@ pub(crate) struct Study {
     pub(crate) headline: fn(&Done) -> Option<String>,
     /// What a scene found, one sentence each, the most important first.
     pub(crate) findings: fn(&Done, &str) -> Vec<String>,
+    /// What the page shows of all scenes together, above their sections.
+    pub(crate) front: fn(&Done) -> Html,
     /// The parts of a scene's section, in the order in which a reader sees them.
     pub(crate) parts: fn(&Done, &str, &mut Charts, &mut Shots<'_>) -> Vec<Part>,
-    /// What the page shows of all scenes together, below them.
+    /// What the page shows of all scenes together, below their sections.
     pub(crate) overall: fn(&Done) -> Html,
     /// The paper whose claims the study judges.
     pub(crate) paper: &'static Paper,
     /// What a reader must know before trusting a figure; the frame of the page adds its own notices.
     pub(crate) notices: fn(&Done) -> Vec<String>,
+}
+
+/// The scene of a study that a reader can run without a file.
+pub(crate) fn atrium(_: &StudyArgs) -> Vec<String> {
+    vec!["atrium".to_owned()]
 }

@@ -9,7 +9,7 @@ pub use self::jobs::BOUNDS;
 use self::page::{cost, models, pictures};
 use super::{
     against_truth::{MODELS, compare_with_truth},
-    slice::{Study, TakesMotion},
+    slice::{Study, TakesMotion, atrium},
 };
 use crate::report::markup::Html;
 
@@ -17,11 +17,13 @@ use crate::report::markup::Html;
 pub(crate) const STUDY: Study = Study {
     name: "area",
     answers: "How far each model of area lights is from the truth, what it costs, and what area lights cost beside spots",
+    scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::AllBut(&[MODELS]),
     after_run: compare_with_truth,
     headline: models::headline,
     findings: |done, scene| [models::findings(done, scene), cost::findings(done, scene)].concat(),
+    front: |_| Html::default(),
     parts: |done, scene, charts, shots| {
         let mut parts = models::models(done, scene, charts, shots);
         parts.extend(pictures::pictures(done, scene, shots));

@@ -14,7 +14,7 @@ use self::against_builds::compare_builds;
 use self::page::tables;
 use super::{
     against_truth::compare_with_truth,
-    slice::{Study, TakesMotion},
+    slice::{Study, TakesMotion, atrium},
 };
 use crate::report::markup::Html;
 
@@ -22,11 +22,13 @@ use crate::report::markup::Html;
 pub(crate) const STUDY: Study = Study {
     name: "cdi",
     answers: "What deep images cost, how exact their ranges are, and how near indirect light by them is to a path-traced image",
+    scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::None("its lights are virtual ones, or the one primary light"),
     after_run: |done| compare_with_truth(done).and_then(|()| compare_builds(done)),
     headline: tables::headline,
     findings: tables::findings,
+    front: |_| Html::default(),
     parts: tables::parts,
     overall: |_| Html::default(),
     paper: &claims::PAPER,

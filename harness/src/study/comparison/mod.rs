@@ -9,7 +9,8 @@ mod jobs;
 mod page;
 
 use self::page::{accuracy, frames, overview, path, scaling, sizes, views};
-use super::slice::{Study, TakesMotion};
+use crate::report::markup::Html;
+use super::slice::{Study, TakesMotion, atrium};
 
 /// The greatest relMSE at which a lossy knob is called cheap.
 const CHEAP_REL_MSE: f64 = 1e-2;
@@ -18,6 +19,7 @@ const CHEAP_REL_MSE: f64 = 1e-2;
 pub(crate) const STUDY: Study = Study {
     name: "comparison",
     answers: "Which strategy is fastest: the comparison paper, more lights, other radii, and speed against accuracy",
+    scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::AllBut(&[]),
     after_run: |_| Ok(()),
@@ -27,6 +29,7 @@ pub(crate) const STUDY: Study = Study {
         all.extend(accuracy::cheapest(done, scene, CHEAP_REL_MSE));
         all
     },
+    front: |_| Html::default(),
     parts: |done, scene, charts, shots| {
         let mut parts = Vec::from(accuracy::accuracy(done, scene, charts, shots));
         parts.extend(scaling::scaling(done, scene, charts));

@@ -117,6 +117,7 @@ fn command(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::slice::atrium;
     use crate::cli::{Invocation, parse};
 
     #[test]
@@ -124,7 +125,7 @@ mod tests {
         let Ok(Invocation::Study(args)) = parse(["lightbench", "study", "culling"]) else {
             panic!("a study")
         };
-        let scene = &StudyScene::all(&args).unwrap()[0];
+        let scene = &StudyScene::all(&args.with_scenes(atrium)).unwrap()[0];
         let jobs = plan(&args, scene);
         for mode in ["deferred", "forward"] {
             let of_mode: Vec<&Job> = jobs.iter().filter(|job| job.section == mode).collect();

@@ -7,18 +7,20 @@ mod claims;
 mod jobs;
 mod page;
 
-use super::slice::{Study, TakesMotion};
+use super::slice::{Study, TakesMotion, atrium};
 use crate::report::markup::Html;
 
 /// The study of many polygon lights.
 pub(crate) const STUDY: Study = Study {
     name: "endless",
     answers: "What normal cones gain under many polygon lights: light operations and times",
+    scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::AllBut(&[]),
     after_run: |_| Ok(()),
     headline: page::headline,
     findings: page::findings,
+    front: |_| Html::default(),
     parts: page::places,
     overall: |_| Html::default(),
     paper: &claims::PAPER,

@@ -97,12 +97,13 @@ fn strategies(size_px: [u32; 2]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::slice::atrium;
     use crate::cli::{Invocation, parse};
 
     fn planned(line: &str) -> Vec<Job> {
         let words = ["lightbench", "study", "engines"].into_iter().chain(line.split_whitespace());
         let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: a study") };
-        let scene = &StudyScene::all(&args).expect("scenes")[0];
+        let scene = &StudyScene::all(&args.with_scenes(atrium)).expect("scenes")[0];
         plan(&args, scene)
     }
 

@@ -14,12 +14,14 @@ mod page;
 mod sentences;
 
 use super::claims::Paper;
-use super::slice::{Study, TakesMotion};
+use crate::report::markup::Html;
+use super::slice::{Study, TakesMotion, atrium};
 
 /// The study of engines.
 pub(crate) const STUDY: Study = Study {
     name: "engines",
     answers: "What the defaults of engines cost with 1,000 and 10,000 lights: time, lists, and light that is lost",
+    scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::None(
         "the CPU chooses lights for the engines' limits, and does not know the order of lights that move",
@@ -27,6 +29,7 @@ pub(crate) const STUDY: Study = Study {
     after_run: |_| Ok(()),
     headline: sentences::headline,
     findings: sentences::findings,
+    front: |_| Html::default(),
     parts: page::parts,
     overall: page::differences,
     paper: &NO_PAPER,

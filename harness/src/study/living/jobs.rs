@@ -236,13 +236,14 @@ impl Plan<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::slice::atrium;
     use crate::checks::check_options;
     use crate::cli::{CompareArgs, Invocation, parse};
 
     fn planned(line: &str) -> Vec<(Job, CompareArgs)> {
         let words = ["lightbench", "study", "living"].into_iter().chain(line.split_whitespace());
         let Ok(Invocation::Study(args)) = parse(words) else { panic!("{line}: no study") };
-        let scene = &StudyScene::all(&args).unwrap()[0];
+        let scene = &StudyScene::all(&args.with_scenes(atrium)).unwrap()[0];
         let parsed = |job: Job| match parse(&job.command) {
             Ok(Invocation::Compare(args)) => {
                 check_options(&args, &args.choices().unwrap()).unwrap();

@@ -7,18 +7,20 @@ mod movement;
 mod page;
 
 use self::page::{bill, density, images, times};
-use super::slice::{Study, TakesMotion};
+use super::slice::{Study, TakesMotion, atrium};
 use crate::report::markup::Html;
 
 /// The study of the living frame.
 pub(crate) const STUDY: Study = Study {
     name: "living",
     answers: "What lights that move cost in each frame, from 1,000 lights to 4,000,000",
+    scenes: atrium,
     jobs: jobs::jobs,
     motion: TakesMotion::BySection,
     after_run: |_| Ok(()),
     headline: times::headline,
     findings: times::findings,
+    front: |_| Html::default(),
     parts: |done, scene, charts, _| {
         vec![
             times::times(done, scene, charts),

@@ -66,6 +66,7 @@ pub(crate) fn page(study: &Study, done: &Done) -> Page {
             sections.push(section(scene, &texts, &parts));
         }
     }
+    body += (study.front)(done);
     body += legend(done);
     if !done.results.is_empty() {
         let claims = claims::judge(done, study.paper);

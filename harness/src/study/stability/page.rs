@@ -1,0 +1,200 @@
+//! What was seen in one scenario: what breaks there, its picture, and each method with the command that shows it.
+
+use scenes::stability::{Figure, Scenario};
+
+use super::cells::{Case, Cell, Method, STILL, cell, flawed_methods, methods};
+use super::jobs::scenario_of;
+use super::matrix::anchor;
+use super::outcome::Outcome;
+use super::sentences::has_failed;
+use crate::report::format::{ABSENT, significant};
+use crate::report::markup::{Html, html};
+use crate::report::page::shell_words;
+use crate::results::{Mode, Record, mean, standard_deviation};
+use crate::study::manifest::Done;
+use crate::study::page::figure::Charts;
+use crate::study::page::part::Part;
+use crate::study::page::pictures::figure;
+use crate::study::page::shots::{Shots, Wanted};
+
+const NOTE: &str = "Each row is a method in one mode. Open it for the command that shows it again, and for its pictures \
+                    where the image differs.";
+
+/// The parts of a scenario's section.
+pub(crate) fn parts(
+    done: &Done,
+    scene: &str,
+    _: &mut Charts,
+    shots: &mut Shots<'_>,
+) -> Vec<Part> {
+    let Some(scenario) = scenario_of(scene) else { return Vec::new() };
+    let mut body = about(done, scenario, shots);
+    for (title, methods) in
+        [("Methods", methods(done)), ("Methods that fail on purpose", flawed_methods(done))]
+    {
+        let all: Vec<Cell<'_>> = methods.iter().map(|method| cell(done, scene, method)).collect();
+        let rows: Html = all.iter().map(|cell| shown(scene, cell, shots)).collect();
+        if !rows.is_empty() {
+            body += html!("<h4>{}</h4>\n<div class=\"cells\">\n{}</div>\n", title, rows);
+        }
+    }
+    vec![Part::new("cells", scenario.breaks, NOTE, body)]
+}
+
+/// The picture of the scenario, and the figure that says more than "exact".
+fn about(done: &Done, scenario: &Scenario, shots: &mut Shots<'_>) -> Html {
+    let none = methods(done).into_iter().find(|method| method.name() == crate::strategy::BASELINE);
+    let picture = none.and_then(|none| {
+        let cell = cell(done, scenario.name, &none);
+        let case = cell.cases.iter().find(|case| case.job.section == STILL)?;
+        let file = case.entry?.record.image.files.tone_mapped.clone()?;
+        shots.file(&case.job.name, &file)
+    });
+    figure(picture, "No culling", scenario.figure_words()) + figures(done, scenario)
+}
+
+/// What the figure of a scenario is about.
+trait FigureWords {
+    fn figure_words(&self) -> &'static str;
+}
+
+impl FigureWords for Scenario {
+    fn figure_words(&self) -> &'static str {
+        match self.figure {
+            Figure::None => "",
+            Figure::FalsePositives => "the figure below is what lists hold beyond the lights that reach their samples.",
+            Figure::ListedOverContributing => "the figure below is listed lights over contributing ones.",
+            Figure::TemporalError => "the figure below is how much the error changes from frame to frame.",
+            Figure::FrameTime => "the figure below is the spread of the time to assign and shade.",
+        }
+    }
+}
+
+/// The figure of each method, where one figure says more.
+fn figures(done: &Done, scenario: &Scenario) -> Html {
+    let value = |record: &Record| -> Option<String> {
+        match scenario.figure {
+            Figure::None => None,
+            Figure::FalsePositives | Figure::ListedOverContributing => {
+                let listed = record.lists.listed_per_sample?;
+                let needed = record.lists.contributing_per_sample.filter(|needed| *needed > 0.0)?;
+                Some(format!("{} listed per contributing light", significant(listed / needed)))
+            }
+            Figure::TemporalError => temporal(record),
+            Figure::FrameTime => {
+                let frames = record.frames_ms();
+                let (mean, deviation) = (mean(&frames), standard_deviation(&frames));
+                let worst = frames.iter().copied().fold(0.0, f64::max);
+                (frames.len() > 1 && mean > 0.0).then(|| {
+                    format!(
+                        "mean {} ms, SD {} ms, worst {} ms",
+                        significant(mean),
+                        significant(deviation),
+                        significant(worst)
+                    )
+                })
+            }
+        }
+    };
+    let line = |method: &Method| {
+        let cell = cell(done, scenario.name, method);
+        let deferred = |case: &&Case<'_>| case.mode == Some(Mode::Deferred);
+        let mut values = cell.cases.iter().filter(deferred).filter_map(|case| value(case.entry?.record));
+        let value = values.next()?;
+        Some(html!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", method.name(), value))
+    };
+    let all = [methods(done), flawed_methods(done)].concat();
+    let rows: Html = all.iter().filter_map(line).collect();
+    if rows.is_empty() {
+        return Html::default();
+    }
+    html!(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{0}\"><table class=\"figures\">\
+         <thead><tr><th scope=\"col\">method</th><th scope=\"col\">{0}</th></tr></thead><tbody>\n{1}</tbody></table>\
+         </div>\n",
+        scenario.figure.name(),
+        rows
+    )
+}
+
+/// How much the error of an image changes from one frame to the next.
+fn temporal(record: &Record) -> Option<String> {
+    let _ = record;
+    None
+}
+
+/// A method: a line, and below it each of its runs.
+fn shown(scene: &str, cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
+    let (Some(outcome), Some(worst)) = (cell.outcome(), cell.worst()) else {
+        return Html::default();
+    };
+    let runs: Html = cell.cases.iter().map(run).collect();
+    let flaw = match &cell.method {
+        Method::Sound(_) => Html::default(),
+        Method::Flawed(flaw) => html!("<p>{} <small>Source: {}.</small></p>\n", flaw.fails, flaw.source),
+    };
+    let pictures = if has_failed(cell) { pictures(cell, shots) } else { Html::default() };
+    html!(
+        "<details id=\"{}\"><summary><i class=\"cell {}\">{}</i> <b>{}</b> {}</summary>\n{}<ul>{}</ul>\n{}</details>\n",
+        anchor(scene, &cell.method),
+        outcome.name(),
+        outcome.sign(),
+        cell.method.name(),
+        worst.words,
+        flaw,
+        runs,
+        pictures
+    )
+}
+
+/// One run: where, what was seen, and the command.
+fn run(case: &Case<'_>) -> Html {
+    let mode = case.mode.map_or("both modes", Mode::name);
+    let command = command(case);
+    html!(
+        "<li><i class=\"cell {}\">{}</i> {}, {}: {}<pre class=\"command\"><code>{}</code></pre></li>\n",
+        case.outcome.name(),
+        case.outcome.sign(),
+        case.job.section.replace('-', " "),
+        mode,
+        if case.words.is_empty() { ABSENT.to_owned() } else { case.words.clone() },
+        command
+    )
+}
+
+/// The command that shows a run again: that of its job, with its method only.
+fn command(case: &Case<'_>) -> String {
+    let mut words = case.job.command.clone();
+    let mut set = |option: &str, value: &str| {
+        if let Some(at) = words.iter().position(|word| word == option).filter(|at| at + 1 < words.len()) {
+            words[at + 1] = value.to_owned();
+        }
+    };
+    if let Some(entry) = case.entry {
+        set("--strategies", &format!("None,{}", entry.record.strategy));
+    }
+    if let Some(mode) = case.mode {
+        set("--mode", mode.name());
+    }
+    set("--pictures", "all");
+    shell_words(&words)
+}
+
+/// The pictures of the run that shows the failure best.
+fn pictures(cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
+    let failed = |case: &&Case<'_>| matches!(case.outcome, Outcome::Lossy | Outcome::Wrong);
+    let error = |case: &&Case<'_>| {
+        case.entry.and_then(|entry| entry.record.image.errors.get("rel_mse").copied().flatten()).unwrap_or(0.0)
+    };
+    let kept = |case: &&Case<'_>| {
+        case.entry.is_some_and(|entry| entry.record.image.files.difference.is_some())
+    };
+    let shown = cell.cases.iter().filter(failed).filter(kept);
+    let Some(entry) = shown.max_by(|a, b| error(a).total_cmp(&error(b))).and_then(|case| case.entry) else {
+        return Html::default();
+    };
+    let Some(pair) = shots.pair(entry, Wanted::Pair) else { return Html::default() };
+    let heat = entry.record.image.files.heat_map.as_deref();
+    let heat = heat.and_then(|file| shots.file(&entry.job.name, file));
+    pair + html!("<div class=\"views\">{}</div>\n", figure(heat, "Lights per sample", "blue is 0, red 150 or more."))
+}
