@@ -104,11 +104,11 @@ pub struct CompareArgs {
     #[arg(long, value_name = "LEVEL", default_value = "full", value_parser = named(TRUTH_LEVELS, TruthLevel::name), help_heading = CHECKS, hide_short_help = true)]
     pub truth: TruthLevel,
 
-    /// With --path, --motion or --temporal, frames to compare with no culling; 0 to 8 [default: 8]
+    /// Frames to compare with --path, --motion or --temporal, 0 to 8 [default: 8]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_CHECKS), help_heading = CHECKS, hide_short_help = true)]
     pub checks: Option<u32>,
 
-    /// Compare frames that follow each other; reports how much the error changes from frame to frame
+    /// Compare frames in a row, and report how much the error changes between them
     #[arg(long, help_heading = CHECKS, hide_short_help = true)]
     pub temporal: bool,
 
@@ -153,7 +153,7 @@ const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
 /// Which pictures are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PicturesChoice {
-    /// Each method's image (PNG and linear EXR), its difference to no culling, and its heat map
+    /// Each method's image (PNG, linear EXR), its difference to no culling, and heat map
     All,
     /// No pictures; images are still compared
     None,

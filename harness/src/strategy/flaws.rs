@@ -166,7 +166,7 @@ mod tests {
                 assert!(!text.is_empty() && !text.contains("  "), "{text}");
             }
             assert!(flaw.fails.ends_with('.') && !flaw.source.ends_with('.'), "{}", flaw.id);
-            assert!(super::list().contains(flaw.fails), "{}", flaw.id);
+            assert!(list().contains(flaw.fails), "{}", flaw.id);
         }
     }
 
