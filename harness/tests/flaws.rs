@@ -215,7 +215,7 @@ fn culling_in_half_precision_loses_lights_far_from_the_origin() {
             assert!(error(flawed, "rel_mse") < 1e-6, "{:?}", flawed.image);
         } else {
             assert_fails_as_stated(&results, "T-E/8x8/half");
-            assert!(flawed.lists.missed_pairs > Some(100), "{:?}", flawed.lists);
+            assert!(flawed.lists.missed_pairs > Some(50), "{:?}", flawed.lists);
             assert!(error(flawed, "tile") > 0.2, "{}", error(flawed, "tile"));
         }
     }
@@ -253,12 +253,12 @@ fn thresholds_of_diffuse_light_lose_highlights_on_a_mirror() {
     let lost = |results: &Results| {
         let culled = record(results, "SC-E/16x16x16");
         assert!(culled.is_lossy, "the range is stated to lose light");
-        (error(culled, "highlights"), error(culled, "pixels_off"))
+        (error(culled, "highlights"), error(culled, "missing_energy"))
     };
-    // Lights of 60 cd end after 4.5 m, or after 775 m.
+    // Lights of 60 cd end after 3.2 m, or after 775 m. The floor mirrors them from 4.3 m away.
     let one = "--strategies None,SC-E/16x16x16 --cut never --threshold";
-    let (highlights, pixels) = lost(&runs.run("gloss", &floor, &format!("{one} 3")));
-    assert!(highlights > 0.5 && pixels > 0.1, "{highlights}, {pixels}");
+    let (highlights, energy) = lost(&runs.run("gloss", &floor, &format!("{one} 6")));
+    assert!(highlights > 2.0 && energy > 0.9, "{highlights}, {energy}");
     let long = lost(&runs.run("gloss-long", &floor, &format!("{one} 1e-4")));
     assert_eq!(long, (0.0, 0.0));
 }

@@ -74,8 +74,8 @@ const FLAWS: &[Flaw] = &[
         name: "ranges from a threshold of diffuse light on glossy surfaces",
         id: "SC-E/48x48x40",
         options: &["--cut", "never", "--threshold", "0.1"],
-        fails: "On a mirror-like floor, the highlights of lights that end before the floor does vanish, or are cut off \
-                at the edge of a cluster.",
+        fails: "A mirror-like floor shows lights from beyond the reach of their diffuse light, so these highlights \
+                vanish, or are cut off at the edge of a cluster.",
         source: "Watrous 2024, Results, figure 3a",
     },
     Flaw {
