@@ -374,6 +374,7 @@ fn kernel_shader<'a>(variant: Variant, wesl: StrategyWesl<'a>, lights: LightTrai
         .flag("sat_n", tests.sat_n)
         .flag("sat_p", tests.sat_p)
         .flag("sat_v", tests.sat_v)
+        .flag("rect", variant.settings.screen_rectangle)
         .flag("hierarchy", is_hierarchy)
         .flag("parents", levels > 1)
         .flag("grandparents", levels > 2)

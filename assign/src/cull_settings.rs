@@ -119,7 +119,7 @@ pub enum AreaBounds {
     Ball,
 }
 
-/// The user's settings of the culling driver. Lists are complete under any settings.
+/// The user's settings of the culling driver. Lists are complete under any settings but `screen_rectangle`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CullSettings {
     /// Tests of groups that are frusta. Boxes use the nearest point (NP, NPT), which is exact for
@@ -131,6 +131,11 @@ pub struct CullSettings {
     pub area_bounds: AreaBounds,
     /// Where the lights that reach a group are kept.
     pub storage: Storage,
+    /// **A flaw that loses lights**, to show what it does: a light must also touch the group inside a rectangle on
+    /// the screen, its centre ± radius / depth. The projection of a ball is an ellipse, which reaches farther towards
+    /// the border of a wide view (Mara and McGuire 2013, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D
+    /// Sphere"). Groups that are boxes ignore it.
+    pub screen_rectangle: bool,
 }
 
 impl CullSettings {
@@ -151,6 +156,9 @@ impl CullSettings {
         if let Some(name) = self.storage.name() {
             suffix += "/";
             suffix += name;
+        }
+        if is_frustum && self.screen_rectangle {
+            suffix += "/rect";
         }
         suffix
     }

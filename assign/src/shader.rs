@@ -29,6 +29,7 @@ impl<'a> Shader<'a> {
     /// - `lanes_reserve`: with it, every lane of workgroups of 256 may reserve a list at once
     ///   (`package::reserve`); without it, one lane per workgroup.
     /// - `hard_cut`: with it, lights end at their range without a window (`package::window`).
+    /// - `no_cut`: with it, lights do not end, though lists do: every strategy that culls loses light.
     pub fn new(lists_group: u32) -> Self {
         let slots = format!("const LISTS_GROUP: u32 = {lists_group}u;\n");
         let empty = Self { modules: Vec::new(), flags: Vec::new(), strategy_flags: &[] };
@@ -48,6 +49,7 @@ impl<'a> Shader<'a> {
             .module("package::reserve", include_str!("shaders/reserve.wesl"))
             .flag("lanes_reserve", false)
             .flag("hard_cut", false)
+            .flag("no_cut", false)
             .light_kinds(LightKinds::default())
     }
 

@@ -1,7 +1,8 @@
 //! The window that bounds a light's reach, and inverse-square fall-off inside it, in f64.
 //!
 //! `window.wesl` has the same functions in f32. A plugged-in renderer imports them from
-//! `package::window`; with the flag `hard_cut`, lights end at their range without a window.
+//! `package::window`; with the flag `hard_cut`, lights end at their range without a window. With the flag
+//! `no_cut` they do not end at all, which only a test of what culling then loses should use.
 
 /// The least squared distance of inverse-square fall-off, square metres.
 pub const MIN_DISTANCE_2: f64 = 1e-4;

@@ -4,7 +4,7 @@
 
 use assign::{
     AreaBounds, CullSettings, Culler, GroupShape, LightChanges, LightKinds, LightSource, Storage,
-    conformance::LinkedModule,
+    Unordered, conformance::LinkedModule,
 };
 
 const GROUP_OF: &str = "
@@ -124,6 +124,32 @@ fn every_kernel_of_touched_groups_validates() {
         let bytes = module.layout_of("Known").bytes;
         assert_eq!(bytes, if plain { 16 } else { 80 }, "{kinds:?}");
     }
+}
+
+/// The flawed test of a rectangle links for every kind of light, and only shapes that are frusta have it.
+#[test]
+fn the_flawed_test_of_a_rectangle_validates() {
+    let frustum = (FRUSTUM.0, FRUSTUM.1, true);
+    let masked = (GroupShape::MaskedFrustum, "vec2f(-1.0), vec2f(1.0), 1.0, 2.0, 5u", true);
+    for (shape, bounds, has_test) in [frustum, masked, (BOXES[0].0, BOXES[0].1, false)] {
+        for kinds in LightKinds::ALL {
+            let settings = CullSettings { screen_rectangle: true, ..CullSettings::default() };
+            let what = format!("{shape:?}, {kinds:?}");
+            let source =
+                Culler::kernel_source(shape, settings, false, strategy(bounds).as_str(), kinds)
+                    .unwrap_or_else(|e| panic!("{what}: {e}"));
+            LinkedModule::new(&what, &source);
+            assert_eq!(source.contains("rectangle_misses"), has_test, "{what}");
+        }
+    }
+}
+
+#[test]
+fn the_kernel_that_shuffles_lists_validates() {
+    let source = Unordered::kernel_source().unwrap();
+    let linked = LinkedModule::new("the kernel that shuffles lists", &source);
+    let entry_points: Vec<_> = linked.module().entry_points.iter().map(|e| &e.name).collect();
+    assert_eq!(entry_points, ["shuffle_lists"]);
 }
 
 /// The pool has 2^30 entries, and each of 65,535 workgroups adds one list of up to `CAREFUL`

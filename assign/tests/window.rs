@@ -40,15 +40,13 @@ fn tolerance(expected: f64) -> f64 {
 /// Window and fall-off at each distance.
 fn on_the_gpu(
     gpu: &Gpu,
-    hard_cut: bool,
+    flag: Option<&str>,
     (range_m, least_2): (f64, f64),
     distances_m: &[f32],
 ) -> Vec<[f32; 2]> {
-    let module = Shader::new(1)
-        .module("package::kernel", KERNEL)
-        .flag("hard_cut", hard_cut)
-        .create(gpu, "package::kernel")
-        .unwrap();
+    let shader = Shader::new(1).module("package::kernel", KERNEL);
+    let shader = flag.into_iter().fold(shader, |shader, flag| shader.flag(flag, true));
+    let module = shader.create(gpu, "package::kernel").unwrap();
     let input = upload(gpu, "distances", distances_m).unwrap();
     let output = upload(gpu, "found", &vec![[0.0_f32; 2]; distances_m.len()]).unwrap();
     let parameters = [range_m as f32, least_2 as f32, 0.0, 0.0];
@@ -67,10 +65,11 @@ fn wesl_window_and_fall_off_equal_rust() {
     let gpu = Gpu::open(None).unwrap_or_else(|e| panic!("this test runs shaders: {e}"));
     let distances_m: Vec<f32> = (0..=250).map(|ix| 0.01 * ix as f32).collect();
     for (range_m, least_2) in PARAMETERS {
-        let found = [false, true]
-            .map(|hard_cut| on_the_gpu(&gpu, hard_cut, (range_m, least_2), &distances_m));
-        let [smooth, hard] = found;
-        for ((&distance_m, smooth), hard) in distances_m.iter().zip(smooth).zip(hard) {
+        let found = [None, Some("hard_cut"), Some("no_cut")]
+            .map(|flag| on_the_gpu(&gpu, flag, (range_m, least_2), &distances_m));
+        let [smooth, hard, endless] = found;
+        let windowed = distances_m.iter().zip(smooth);
+        for (((&distance_m, smooth), hard), endless) in windowed.zip(hard).zip(endless) {
             let distance_m = f64::from(distance_m);
             let distance_2 = distance_m.powi(2);
             let check = |what: &str, found: f32, expected: f64| {
@@ -81,6 +80,8 @@ fn wesl_window_and_fall_off_equal_rust() {
             };
             check("window", smooth[0], range_window(distance_2, range_m));
             check("fall-off", smooth[1], fall_off(distance_2, range_m, least_2));
+            check("endless window", endless[0], 1.0);
+            check("endless fall-off", endless[1], 1.0 / distance_2.max(least_2));
             // At the range itself rounding decides on which side of the cut a sample lies.
             if (distance_m - range_m).abs() > 1e-3 {
                 let inside = if distance_m < range_m { 1.0 } else { 0.0 };

@@ -31,8 +31,22 @@ pub(crate) fn check_options(args: &CompareArgs, choices: &[Choice]) -> Result<()
             "1 or more without --pictures none, and with --unbounded: both draw no culling";
         return Err(CliError::out_of_range("--checks", "0", accepted));
     }
-    if let Some(checks) = args.checks.filter(|_| is_still) {
-        let accepted = "left out without --path and --motion, because all frames are the same";
+    if args.temporal && args.checks.is_some_and(|checks| checks < 2) {
+        let checks = args.checks.unwrap_or_default().to_string();
+        let accepted = "2 to 8 with --temporal, which compares a frame with the one before";
+        return Err(CliError::out_of_range("--checks", &checks, accepted));
+    }
+    if args.temporal && !is_still && args.frames == Some(1) {
+        let accepted = "2 or more with --temporal, which compares a frame with the one before";
+        return Err(CliError::out_of_range("--frames", "1", accepted));
+    }
+    if args.unbounded && args.cut == Cut::Never {
+        let accepted = "windowed or hard with --unbounded: with never, no culling shows lights without a range";
+        return Err(CliError::out_of_range("--cut", args.cut.name(), accepted));
+    }
+    if let Some(checks) = args.checks.filter(|_| is_still && !args.temporal) {
+        let accepted =
+            "left out without --path, --motion and --temporal, because all frames are the same";
         return Err(CliError::out_of_range("--checks", &checks.to_string(), accepted));
     }
     if let Some(laps) = args.laps {
@@ -157,7 +171,7 @@ pub(crate) fn served(
         let check = || -> Result<(), HarnessError> {
             match choice.make(gpu)? {
                 Method::Lists { mut strategy, .. } => {
-                    if cut == Cut::Hard && choice.is_specular_cut() {
+                    if cut != Cut::Windowed && choice.is_specular_cut() {
                         let accepted = format!("windowed for {}", choice.id());
                         return Err(CliError::out_of_range("--cut", cut.name(), &accepted).into());
                     }
@@ -255,6 +269,10 @@ mod tests {
             ("--path --checks 0", "--checks is 0: "),
             ("--path --checks 0 --pictures none --unbounded", "--checks is 0: "),
             ("--checks 0 --pictures none", "--checks is 0: "),
+            ("--checks 4", "--checks is 4: "),
+            ("--temporal --checks 1", "--checks is 1: "),
+            ("--temporal --path --frames 1", "--frames is 1: "),
+            ("--unbounded --cut never", "--cut is never: "),
         ] {
             let error = check(line).expect_err(line).to_string();
             assert!(error.starts_with(refused), "{line}: {error}");
@@ -264,6 +282,8 @@ mod tests {
             "--motion drift --moved-by gpu --unbounded",
             "--motion drift --light-order given --laps 2 --checks 3",
             "--path --checks 0 --pictures none",
+            "--temporal --checks 2 --frames 1",
+            "--temporal --path --frames 2 --cut never",
         ] {
             assert_eq!(check(line), Ok(()), "{line}");
         }

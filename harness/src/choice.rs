@@ -1,7 +1,8 @@
 //! A strategy that a command line asks for, ready to be made.
 
 use assign::{
-    AssignError, Fewer, FrustumTests, Gpu, Keep, LightSource, Reuse, Stochastic, Touched,
+    AssignError, Fewer, FrustumTests, Gpu, Half, Keep, LightSource, Reuse, Stochastic, Touched,
+    Unordered,
 };
 use assign_clustered::SpecularCut;
 use shading::Mode;
@@ -54,11 +55,15 @@ impl Choice {
         let mut method = (self.row.make)(gpu, options)?;
         if let Method::Lists { strategy, early_exit, .. } = &mut method {
             *early_exit &= !options.evaluates_all;
-            if let Some(most) = options.cap {
+            // Which lights a cap drops from lists without an order is random, so they cap themselves.
+            if let Some(most) = options.cap.filter(|_| !options.is_unordered) {
                 strategy.lists_mut().cap_lists(most);
             }
         }
         let Method::Lists { mut strategy, early_exit, .. } = method else { return Ok(method) };
+        if options.is_half {
+            strategy = Box::new(Half::new(gpu, strategy)?);
+        }
         if let Some(threshold) = options.stochastic {
             strategy = Box::new(Stochastic::new(gpu, strategy, threshold)?);
         }
@@ -74,7 +79,11 @@ impl Choice {
         if let Some(frames) = options.reuse {
             strategy = Box::new(Reuse::new(strategy, frames)?);
         }
-        Ok(Method::Lists { strategy, early_exit, stochastic: options.stochastic })
+        if options.is_unordered {
+            strategy = Box::new(Unordered::new(gpu, strategy, options.cap)?);
+        }
+        let is_random = options.is_unordered || options.stochastic.is_some();
+        Ok(Method::Lists { strategy, early_exit, stochastic: options.stochastic, is_random })
     }
 
     /// The canonical id.
@@ -145,6 +154,12 @@ impl Choice {
     /// Whether it is the reference of all images.
     pub fn is_reference(&self) -> bool {
         self.row.role == Role::Baseline
+    }
+
+    /// Whether it leaves out lights before shading: all but no culling, with or without the early exit, and the
+    /// control.
+    pub fn culls(&self) -> bool {
+        !matches!(self.row.role, Role::Baseline | Role::EarlyExit | Role::Control)
     }
 
     /// Whether it is the control, whose images are not compared.

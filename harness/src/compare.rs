@@ -12,12 +12,12 @@ use crate::{
     checks::{check_area_options, check_options, checked, remove_stale, served},
     choice::Choice,
     cli::{CompareArgs, MAX_CHECKS},
-    described::note_faults,
+    described::{note_faults, note_flaws},
     drift::unsteady,
     error::HarnessError,
     image_errors::ImagePair,
     machine::machine,
-    measure::{Contest, Plan, Timetable, checked_poses, unbounded_image},
+    measure::{Contest, Plan, Timetable, unbounded_image},
     messages::say,
     moving::{Moving, lights_by_slot},
     out_folder::OutFolder,
@@ -120,6 +120,7 @@ fn plan(gpu: &Gpu, args: &CompareArgs) -> Plan {
         timed: args.frames.unwrap_or(defaults[kind]),
         laps: if args.path || moves { args.laps.unwrap_or(1) } else { 0 },
         checks: args.checks.unwrap_or(MAX_CHECKS),
+        is_temporal: args.temporal,
         seed: args.stage.seed,
         cut: args.cut,
         operations: args.operations,
@@ -158,9 +159,8 @@ impl Run<'_> {
 
     /// Looks whether the run puts anything to a test, and says loudly where it does not.
     fn look(&mut self) -> Result<(), HarnessError> {
-        let Plan { timed, checks, .. } = self.plan;
-        let poses = if self.args.path { checked_poses(timed, checks) } else { Vec::new() };
-        self.untested = untested(&self.gpu, self.stage, &poses, timed)?;
+        let poses = if self.args.path { self.plan.compared_frames() } else { Vec::new() };
+        self.untested = untested(&self.gpu, self.stage, &poses, self.plan.timed)?;
         if self.args.path {
             self.reset()?;
         }
@@ -176,6 +176,7 @@ impl Run<'_> {
     /// Notes what a reader of the figures has to know.
     fn warn(&mut self, choices: &[Choice]) {
         note_faults(&mut self.results, self.stage);
+        note_flaws(&mut self.results, choices, self.plan.cut);
         if self.args.strategies.0.iter().any(|id| engines::is_engine(id)) {
             let size = [self.args.stage.size.width, self.args.stage.size.height];
             for choice in choices {
@@ -331,7 +332,8 @@ impl Run<'_> {
         let exposure = reference.as_ref().map_or(1.0, |reference| reference.exposure);
         let mut compared = |images: &[HdrImage], reference: &HdrImage| {
             all_seen.par_iter_mut().zip(images).try_for_each(|(seen, image)| {
-                seen.compare(&ImagePair { image, reference, exposure })
+                let pair = ImagePair { image, reference, exposure };
+                if args.temporal { seen.follow(&pair) } else { seen.compare(&pair) }
             })
         };
         let tick = &mut || bar.inc(1);

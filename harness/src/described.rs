@@ -1,6 +1,9 @@
 //! Describes a stage and its faults, on the terminal and in the results.
 
+use shading::Cut;
+
 use crate::{
+    choice::Choice,
     messages::say,
     report::significant,
     results::{RejectedLight, Results},
@@ -23,6 +26,21 @@ pub(crate) fn note_faults(results: &mut Results, stage: &Stage) {
             reason: rejected.fault.to_string(),
         })
         .collect();
+}
+
+/// Says which methods fail on purpose, and how.
+pub(crate) fn note_flaws(results: &mut Results, choices: &[Choice], cut: Cut) {
+    for choice in choices {
+        if let Some(flaw) = choice.id().flaw() {
+            let words = format!("{} fails on purpose: {}", choice.id(), flaw.fails);
+            results.warnings.push(words);
+        }
+    }
+    if cut == Cut::Never && choices.iter().any(Choice::culls) {
+        let words = "with --cut never lights go on beyond the ranges that lists are made for, so every strategy \
+                     that culls loses light on purpose";
+        results.warnings.push(words.to_owned());
+    }
 }
 
 /// Prints the contents and the faults of a stage.

@@ -46,6 +46,7 @@ pub mod stored;
 pub mod stored_report;
 pub mod strategy;
 pub mod study;
+pub mod temporal;
 pub mod truth;
 mod truth_level;
 pub mod visible;

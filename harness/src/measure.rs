@@ -3,11 +3,9 @@
 
 mod laps;
 
-pub(crate) use laps::checked_poses;
+use laps::checked_poses;
 
-use assign::{
-    Assignment, Counters, EncoderPasses, Everything, Gpu, Light, LightBuffer, MAX_RANGE_M,
-};
+use assign::{Assignment, Counters, EncoderPasses, Gpu, Light, LightBuffer, MAX_RANGE_M};
 use shading::{
     Cut, HdrImage, LightBvh, LightingOptions, ListsTruth, Mode, Operations, count_operations,
     record_for_probe, visit_lists,
@@ -90,14 +88,27 @@ pub struct Plan {
     pub timed: u32,
     /// How often the camera goes along its path, one pose per frame; 0: it stands still.
     pub laps: u32,
-    /// Frames that differ whose images are compared, 8 at most.
+    /// Frames whose images are compared, 8 at most. They differ, or follow each other.
     pub checks: u32,
+    /// Whether the frames whose images are compared follow each other.
+    pub is_temporal: bool,
     /// Decides the order of methods in each round.
     pub seed: u64,
     /// How fall-off ends.
     pub cut: Cut,
     /// Whether light operations are counted.
     pub operations: bool,
+}
+
+impl Plan {
+    /// The frames whose images are compared: poses of a lap.
+    pub(crate) fn compared_frames(&self) -> Vec<u32> {
+        match (self.is_temporal, self.laps) {
+            (true, 0) => (0..self.checks).collect(),
+            (true, _) => (0..self.checks.min(self.timed)).collect(),
+            (false, _) => checked_poses(self.timed, self.checks),
+        }
+    }
 }
 
 /// Frames in which the pool of a method may grow to what its lists ask for.
@@ -177,8 +188,8 @@ impl<'a> Contest<'a> {
     }
 
     /// Takes the times of some methods: round after round, each in turn. `tick` is called after each
-    /// frame. Along the path, `seen` gets the images at some poses: those of the timed methods, in
-    /// their order, and that of the reference.
+    /// frame. Along the path, and where frames that follow each other are compared, `seen` gets the images of
+    /// some frames: those of the timed methods, in their order, and that of the reference.
     pub fn time(
         &mut self,
         stage: &mut Stage,
@@ -191,6 +202,9 @@ impl<'a> Contest<'a> {
         if self.plan.laps > 0 {
             self.compare_along_path(stage, timetable, seen)?;
             return self.time_along_path(stage, timed, &mut orders, tick);
+        }
+        if self.plan.is_temporal {
+            self.compare_along_path(stage, timetable, seen)?;
         }
         self.warm_up(stage, timed)?;
         let count = self.plan.timed;
@@ -272,8 +286,7 @@ pub fn unbounded_image(gpu: &Gpu, stage: &mut Stage, mode: Mode) -> Result<HdrIm
     let lights: Vec<Light> = known_lights(gpu, &stage.lights)?.iter().map(unbounded).collect();
     let bounded = std::mem::replace(&mut stage.lights, LightBuffer::new(gpu, &lights)?);
     let bounce = stage.bounce.take();
-    let everything = Box::new(Everything::new(gpu)?);
-    let mut method = Method::Lists { strategy: everything, early_exit: false, stochastic: None };
+    let mut method = Method::everything(gpu)?;
     let image = stage.prepare().and_then(|()| {
         let mut painter = Painter::new(stage, &mut method, mode, Cut::Hard)?;
         draw_unclocked(gpu, stage, mode, &mut painter)?;

@@ -35,7 +35,7 @@ impl<'a> Painter<'a> {
     ) -> Result<Self, HarnessError> {
         let kinds = stage.lights.kinds();
         Ok(match method {
-            Method::Lists { strategy, early_exit, stochastic } => {
+            Method::Lists { strategy, early_exit, stochastic, is_random } => {
                 let exit_weight = if *early_exit { 0.0 } else { LightingOptions::EVALUATE_ALL };
                 let options = LightingOptions {
                     kinds,
@@ -47,7 +47,7 @@ impl<'a> Painter<'a> {
                     suns: stage.suns,
                 };
                 let lighting = Lighting::new(&stage.renderer, strategy.as_ref(), mode, options)?;
-                let frame_ix = stochastic.map(|_| 0);
+                let frame_ix = is_random.then_some(0);
                 Self::Lists { strategy: strategy.as_mut(), lighting, frame_ix }
             }
             Method::RasterSphere => Self::RasterSphere(raster_spheres(stage, cut)?),

@@ -16,6 +16,7 @@ use crate::{
     },
     schedule::rounds,
     stage::Stage,
+    temporal::Follower,
     visible::visible,
 };
 
@@ -37,6 +38,8 @@ pub struct Seen {
     differing_channels: u64,
     /// Errors against no culling, of each image that was compared.
     errors: Vec<(&'static str, Vec<f64>)>,
+    /// How the error changes over frames that follow each other.
+    follower: Follower,
 }
 
 impl Seen {
@@ -64,6 +67,15 @@ impl Seen {
         Ok(())
     }
 
+    /// Compares the image of the next frame with that of no culling, and with the error of the frame before.
+    pub fn follow(&mut self, pair: &ImagePair<'_>) -> Result<(), HarnessError> {
+        self.compare(pair)?;
+        if !self.is_control {
+            self.follower.follow(pair);
+        }
+        Ok(())
+    }
+
     /// Forgets the errors so far, not the differences.
     pub fn forget_errors(&mut self) {
         self.errors.clear();
@@ -82,14 +94,16 @@ pub fn record(
     seen: Seen,
     timed: Timed,
 ) -> Record {
-    let Seen { lists, images, unbounded_errors, errors, .. } = seen;
+    let Seen { lists, images, unbounded_errors, errors, ref follower, .. } = seen;
     let truth = lists.truth;
     let known = |value: f64| (seen.compared && value.is_finite()).then_some(value);
     let count = stage.light_count();
     let has_lists = lists.bytes > 0;
     let mut record = Record {
         strategy: choice.id().clone(),
-        is_lossy: choice.is_lossy(count) || loses_edges(choice, plan.cut),
+        is_lossy: choice.is_lossy(count)
+            || loses_edges(choice, plan.cut)
+            || (loses_ends(choice, plan.cut) && count > 0),
         setting: Setting {
             scene: visible(&stage.scene.name).into_owned(),
             scene_hash: stage.scene_hash.clone(),
@@ -164,6 +178,7 @@ pub fn record(
             overflowed_groups: u64::from(lists.counters.overflowed_groups),
         },
         image: ImageFigures {
+            temporal: follower.found(),
             errors: stored(errors.into_iter().map(|(id, all)| (id, mean(&all)))),
             unbounded_errors: stored(unbounded_errors),
             truth_errors: Errors::new(),
@@ -184,6 +199,11 @@ pub fn record(
 /// the light ends at once.
 fn loses_edges(choice: &Choice, cut: Cut) -> bool {
     choice.tolerance().is_some() && cut == Cut::Hard
+}
+
+/// Whether a method leaves out what lights add beyond their ranges, where they do not end there.
+fn loses_ends(choice: &Choice, cut: Cut) -> bool {
+    choice.culls() && cut == Cut::Never
 }
 
 /// What a reader of the record has to know.

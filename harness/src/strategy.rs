@@ -17,6 +17,8 @@
 //! | `bvh` | lights come from the hierarchy |
 //! | `cap32` | lists keep 32 lights at most: a lossy knob |
 //!
+//! Some segments are flaws, such as `rect`: methods with them fail on purpose ([`flaws`]).
+//!
 //! To add a family, write its crate and one row. A new file of rows also needs its `mod` line and its entry
 //! among the files in `strategy/rows.rs`; a new crate its line in `harness/Cargo.toml` and among the sources
 //! of `build.rs`, which tell whether a commit is clean. A new axis needs its arms in [`Axis`] and its field
@@ -24,6 +26,7 @@
 
 mod axis;
 pub mod engines;
+mod flaws;
 mod id;
 mod method;
 mod parse;
@@ -34,6 +37,7 @@ mod specular;
 mod table;
 
 pub use axis::Axis;
+pub use flaws::{Flaw, flaws};
 pub use id::StrategyId;
 pub use method::{Method, Options};
 pub use parse::IdError;

@@ -45,14 +45,18 @@ pub enum Cut {
     Windowed,
     /// Abruptly: inverse square up to the range, 0 beyond.
     Hard,
+    /// Not at all: inverse square at any distance. Lists still end at the range, so every strategy that culls
+    /// **loses light**, and the edges of its groups show (Watrous 2024, figure 3).
+    Never,
 }
 
 impl Cut {
-    /// The name in results: `windowed` or `hard`.
+    /// The name in results: `windowed`, `hard` or `never`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Windowed => "windowed",
             Self::Hard => "hard",
+            Self::Never => "never",
         }
     }
 }
@@ -66,6 +70,7 @@ impl LightingOptions {
         let shader = shader
             .light_kinds(self.kinds)
             .flag("hard_cut", self.cut == Cut::Hard)
+            .flag("no_cut", self.cut == Cut::Never)
             .flag("compensation", self.compensation.is_some())
             .flag("stochastic", self.stochastic.is_some())
             .flag("suns", !self.suns.is_empty());

@@ -20,6 +20,7 @@ pub(crate) fn lighting_modules<'a>(lists_group: u32) -> Shader<'a> {
         "write_model_ids",
         "model_ids",
         "hard_cut",
+        "no_cut",
         "compensation",
         "stochastic",
         "suns",

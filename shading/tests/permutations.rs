@@ -224,8 +224,12 @@ fn deferred() {
             images.sort_unstable();
             check_compute("deferred", &flags, look_up, look_up.2, &images);
         }
-        for flags in [Flags::from(["stochastic"]), Flags::from(["stochastic", "spots", "hard_cut"])]
-        {
+        for flags in [
+            Flags::from(["stochastic"]),
+            Flags::from(["stochastic", "spots", "hard_cut"]),
+            Flags::from(["no_cut"]),
+            Flags::from(["stochastic", "spots", "no_cut"]),
+        ] {
             check_compute("deferred", &flags, look_up, look_up.2, &[0, 1, 2, 4, 6]);
         }
     }

@@ -110,6 +110,7 @@ impl Tester {
             .flag("sat_n", tests.sat_n)
             .flag("sat_p", tests.sat_p)
             .flag("sat_v", tests.sat_v)
+            .flag("rect", false)
             .light_kinds(kinds)
             .create(gpu, "package::driver")
             .unwrap();

@@ -48,6 +48,7 @@ pub fn verdict(results: &Results, error_budget: f64) -> Option<Verdict<'_>> {
         .records
         .iter()
         .filter(|record| !record.is_control() && record.lists.untested.is_none())
+        .filter(|record| !record.strategy.has_flaw())
         .filter(|record| record.assign_and_shade_ms().is_finite())
         .filter(|record| error_of(record).is_some_and(|error| error <= error_budget))
         .collect();

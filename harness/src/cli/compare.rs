@@ -104,9 +104,13 @@ pub struct CompareArgs {
     #[arg(long, value_name = "LEVEL", default_value = "full", value_parser = named(TRUTH_LEVELS, TruthLevel::name), help_heading = CHECKS, hide_short_help = true)]
     pub truth: TruthLevel,
 
-    /// With --path or --motion, frames to compare with no culling; 0 to 8 [default: 8]
+    /// Frames to compare with --path, --motion or --temporal, 0 to 8 [default: 8]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::whole_from(0, values::MAX_CHECKS), help_heading = CHECKS, hide_short_help = true)]
     pub checks: Option<u32>,
+
+    /// Compare frames in a row, and report how much the error changes between them
+    #[arg(long, help_heading = CHECKS, hide_short_help = true)]
+    pub temporal: bool,
 
     /// Also compare each image with that of lights without a range: the error of their ranges
     #[arg(long, help_heading = CHECKS, hide_short_help = true)]
@@ -135,9 +139,10 @@ impl CompareArgs {
     }
 }
 
-const CUTS: [(Cut, &str); 2] = [
+const CUTS: [(Cut, &str); 3] = [
     (Cut::Windowed, "Smoothly: times (1 - (distance / range)^4)^2"),
     (Cut::Hard, "At once: inverse square up to the range, 0 beyond it"),
+    (Cut::Never, "Not at all, though lists end there: all that cull fail, on purpose"),
 ];
 
 const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
@@ -148,7 +153,7 @@ const TRUTH_LEVELS: [(TruthLevel, &str); 2] = [
 /// Which pictures are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PicturesChoice {
-    /// Each method's image (PNG and linear EXR), its difference to no culling, and its heat map
+    /// Each method's image (PNG, linear EXR), its difference to no culling, and heat map
     All,
     /// The same, of methods whose image is not that of no culling in every bit
     Differing,

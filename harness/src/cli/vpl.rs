@@ -118,10 +118,7 @@ const PRIMARY_RAYS: [(Primary, &str); 2] = [
 
 const SPREADS: [(Spread, &str); 2] = [
     (Spread::StacksAndSlices, "Stacks of equal solid angle, each cut into slices, as in the paper"),
-    (
-        Spread::Squares,
-        "A square grid, mapped to the hemisphere with equal areas: cells are as wide as high",
-    ),
+    (Spread::Squares, "A square grid, mapped with equal areas: cells are as wide as high"),
 ];
 
 /// How far a virtual point light reaches.

@@ -41,7 +41,7 @@ impl Contest<'_> {
             }
         }
         self.expire_lists(stage);
-        let checks = checked_poses(count, self.plan.checks);
+        let checks = self.plan.compared_frames();
         for pose in 0..=checks.last().copied().unwrap_or(0) {
             let is_checked = checks.contains(&pose);
             if !is_checked && remember.is_empty() {
@@ -103,7 +103,7 @@ impl Contest<'_> {
 
 /// The poses at which images are compared: an odd number of poses apart, so that lists used for 2, 4
 /// or 8 frames are seen at every age.
-pub(crate) fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
+pub(super) fn checked_poses(poses: u32, checks: u32) -> Vec<u32> {
     let step = (poses / MAX_CHECKS).saturating_sub(1).max(1) | 1;
     (0..poses).step_by(step as usize).take(checks as usize).collect()
 }

@@ -5,7 +5,8 @@ use super::column::{Better, Column};
 use super::comparison::Comparison;
 use super::format::{difference, number, percent};
 use super::metrics::{Metric, figure, metrics, table};
-use crate::results::Record;
+use super::rank::listed;
+use crate::results::{Record, TemporalError};
 
 /// The columns of errors against no culling.
 pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
@@ -36,9 +37,28 @@ pub(crate) fn error_columns<'a>() -> Vec<Metric<'a>> {
                 "Mean FLIP against no culling: the difference that an eye sees when it flips \
                  between the two images, from 0 to 1.",
             ),
+        figure(
+            "temporal",
+            "temporal error",
+            "",
+            Better::Zero,
+            |m| temporal(m.record).and_then(|found| found.worst),
+            difference,
+        )
+        .terminal("temporal")
+        .about(
+            "The largest change of a channel\u{2019}s error from one frame to the next, linear HDR. The error is \
+             the image minus that of no culling in the same frame. It is known where --temporal compared \
+             frames that follow each other.",
+        ),
     ]
     .map(Column::optional)
     .into()
+}
+
+/// The temporal error of a record; `None` where none was measured.
+fn temporal(record: &Record) -> Option<&TemporalError> {
+    record.image.temporal.as_ref()
 }
 
 /// An error against no culling: 0 where no bit differs.
@@ -94,13 +114,19 @@ pub(crate) fn loss(record: &Record) -> Option<String> {
         }
         _ => None,
     };
-    let parts: Vec<String> = [missed, differs].into_iter().flatten().collect();
+    let flickers = temporal(record).filter(|found| found.changes()).map(|found| {
+        let [x, y] = found.worst_pixel;
+        let frame = found.worst_frame;
+        let worst = found.worst.map_or_else(|| "more than is finite".to_owned(), difference);
+        format!("changes its error from frame to frame, by {worst} at most, at pixel {x},{y} of frame {frame}")
+    });
+    let parts: Vec<String> = [missed, differs, flickers].into_iter().flatten().collect();
     if parts.is_empty() {
         return None;
     }
     let errors = error_words(record);
     let errors = if errors.is_empty() { errors } else { format!(" ({errors})") };
-    Some(parts.join(" and ") + &errors)
+    Some(listed(&parts) + &errors)
 }
 
 /// What the range of the lights loses in a record, whatever its strategy; `None` where it was not measured.

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::TemporalError;
+
 /// The differences and errors of an image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageFigures {
@@ -21,6 +23,9 @@ pub struct ImageFigures {
     /// identical bits.
     #[serde(default)]
     pub tolerance: Option<f64>,
+    /// How much the error changes from frame to frame; `null` unless frames that follow each other were compared.
+    #[serde(default)]
+    pub temporal: Option<TemporalError>,
     /// Errors against no culling with the same shader, by metric; along a path, means over the compared
     /// frames.
     #[serde(default)]

@@ -29,6 +29,12 @@ const TOUCHED: &str = "touched";
 const RASTER: &str = "raster";
 /// The segment that turns the early exit off.
 const NO_EXIT: &str = "no-exit";
+/// The segment that tests a wrong rectangle on the screen. A flaw.
+const RECTANGLE: &str = "rect";
+/// The segment that culls by positions and ranges in half precision. A flaw.
+const HALF: &str = "half";
+/// The segment that puts lists into a random order. A flaw.
+const UNORDERED: &str = "unordered";
 
 /// An axis besides the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +59,10 @@ pub enum Axis {
     /// subgroups read together; `prune`, a list that subgroups prune while they read it; `tree`, a list with a tree of
     /// the depths that its lights reach.
     Storage,
+    /// Whether lights must also touch a rectangle on the screen that is too small: `rect`. A flaw.
+    Rectangle,
+    /// Whether lists are made for positions and ranges in half precision: `half`. A flaw.
+    Half,
     /// The most lights of a frame: `first256` or `nearest256`, the others dropped. Lossy.
     Fewer,
     /// The irradiance below which lights stay at random: `stochastic0.01`. Lossy.
@@ -63,6 +73,8 @@ pub enum Axis {
     Keep,
     /// Whether only those lists are made again that a changed light touches: `touched`.
     Touched,
+    /// Whether lists have a random order in each frame: `unordered`. A flaw.
+    Order,
     /// The most lights of a list, the others dropped: `cap32`. Lossy.
     Cap,
     /// Whether shading evaluates every listed light, also where it adds nothing: `no-exit`.
@@ -71,7 +83,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of their segments in an id.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::Slices,
         Self::Scatter,
         Self::Box,
@@ -81,14 +93,22 @@ impl Axis {
         Self::Source,
         Self::AreaBounds,
         Self::Storage,
+        Self::Rectangle,
+        Self::Half,
         Self::Stochastic,
         Self::Fewer,
         Self::Reuse,
         Self::Keep,
         Self::Touched,
+        Self::Order,
         Self::Cap,
         Self::Exit,
     ];
+
+    /// Whether its segment is a flaw: a method with it fails on purpose.
+    pub(super) fn is_flaw(self) -> bool {
+        matches!(self, Self::Rectangle | Self::Half | Self::Order)
+    }
 
     /// What its segment may be.
     pub fn accepted(self) -> &'static str {
@@ -131,6 +151,11 @@ impl Axis {
                 "touched, which makes only those lists again that a changed light touches"
             }
             Self::Exit => "no-exit, which evaluates every listed light",
+            Self::Rectangle => {
+                "rect, a flaw: lights must touch a rectangle on the screen that is too small"
+            }
+            Self::Half => "half, a flaw: lists are made for positions and ranges in half precision",
+            Self::Order => "unordered, a flaw: lists have another order in each frame",
         }
     }
 
@@ -143,6 +168,9 @@ impl Axis {
             _ if segment.starts_with(CAP) => Some(Self::Cap),
             _ if number_after(segment, NORMALS).is_some() => Some(Self::Normals),
             NO_EXIT => Some(Self::Exit),
+            RECTANGLE => Some(Self::Rectangle),
+            HALF => Some(Self::Half),
+            UNORDERED => Some(Self::Order),
             EVEN => Some(Self::Slices),
             RASTER => Some(Self::Scatter),
             _ if fewer_of(segment).is_some() => Some(Self::Fewer),
@@ -203,6 +231,9 @@ impl Axis {
             Self::Storage => options.storage = storage_of(segment)?,
             Self::Touched => options.is_touched = true,
             Self::Exit => options.evaluates_all = true,
+            Self::Rectangle => options.is_rectangle = true,
+            Self::Half => options.is_half = true,
+            Self::Order => options.is_unordered = true,
         }
         Some(())
     }
@@ -238,6 +269,9 @@ impl Axis {
             Self::Storage => options.storage.name().map(str::to_owned),
             Self::Touched => options.is_touched.then(|| TOUCHED.to_owned()),
             Self::Exit => options.evaluates_all.then(|| NO_EXIT.to_owned()),
+            Self::Rectangle => options.is_rectangle.then(|| RECTANGLE.to_owned()),
+            Self::Half => options.is_half.then(|| HALF.to_owned()),
+            Self::Order => options.is_unordered.then(|| UNORDERED.to_owned()),
         }
     }
 
@@ -282,7 +316,10 @@ impl Axis {
             Self::Touched if options.is_touched => ("touched", true.into()),
             Self::Touched => return None,
             Self::Exit if options.evaluates_all => ("early_exit", false.into()),
-            Self::Exit => return None,
+            Self::Rectangle if options.is_rectangle => ("screen_rectangle", true.into()),
+            Self::Half if options.is_half => ("half_precision", true.into()),
+            Self::Order if options.is_unordered => ("random_order", true.into()),
+            Self::Exit | Self::Rectangle | Self::Half | Self::Order => return None,
         })
     }
 }

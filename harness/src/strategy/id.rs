@@ -165,6 +165,13 @@ impl StrategyId {
             || self.options.stochastic.is_some()
             || self.options.reuse.is_some_and(|frames| frames > 1)
             || self.options.specular != SpecularCut::None
+            || self.has_flaw()
+    }
+
+    /// Whether it fails on purpose: a segment of it is a flaw that renderers ship. [`flaw`](Self::flaw) says
+    /// which one.
+    pub fn has_flaw(&self) -> bool {
+        Axis::ALL.iter().any(|axis| axis.is_flaw() && axis.segment(&self.options).is_some())
     }
 
     /// The same without what [`is_lossy`](Self::is_lossy) counts as a loss: its nearest lossless setting.
@@ -172,6 +179,7 @@ impl StrategyId {
     pub fn nearest_lossless(&self) -> Option<Self> {
         let lossless = self.with(|options| {
             (options.cap, options.fewer, options.reuse) = (None, None, None);
+            (options.is_rectangle, options.is_half, options.is_unordered) = (false, false, false);
             options.stochastic = None;
             options.specular = SpecularCut::None;
         });

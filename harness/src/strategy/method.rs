@@ -1,6 +1,9 @@
 //! How a strategy lights its pixels, and the point on its axes at which it does.
 
-use assign::{AreaBounds, Assignment, CullSettings, FrustumTests, Kept, LightSource, Storage};
+use assign::{
+    AreaBounds, AssignError, Assignment, CullSettings, Everything, FrustumTests, Gpu, Kept,
+    LightSource, Storage,
+};
 use assign_clustered::{Normals, Scatter, Slices, SpecularCut};
 use assign_grid::GridBox;
 
@@ -14,6 +17,8 @@ pub enum Method {
         early_exit: bool,
         /// The irradiance below which lights stay at random.
         stochastic: Option<f32>,
+        /// Whether its lists are random, so that each frame needs a seed.
+        is_random: bool,
     },
     /// Light volumes are rasterised; deferred shading only.
     RasterSphere,
@@ -24,7 +29,14 @@ pub enum Method {
 impl Method {
     /// Lists that shading reads with the early exit.
     pub(super) fn lists(strategy: impl Assignment + 'static) -> Self {
-        Self::Lists { strategy: Box::new(strategy), early_exit: true, stochastic: None }
+        let strategy = Box::new(strategy);
+        Self::Lists { strategy, early_exit: true, stochastic: None, is_random: false }
+    }
+
+    /// No culling, by which all others are judged: every light is evaluated.
+    pub(crate) fn everything(gpu: &Gpu) -> Result<Self, AssignError> {
+        let strategy = Box::new(Everything::new(gpu)?);
+        Ok(Self::Lists { strategy, early_exit: false, stochastic: None, is_random: false })
     }
 }
 
@@ -65,6 +77,12 @@ pub struct Options {
     pub is_touched: bool,
     /// Whether shading evaluates every listed light.
     pub evaluates_all: bool,
+    /// Whether lights must also touch a rectangle on the screen that is too small.
+    pub is_rectangle: bool,
+    /// Whether lists are made for positions and ranges in half precision.
+    pub is_half: bool,
+    /// Whether lists have a random order in each frame.
+    pub is_unordered: bool,
 }
 
 impl Options {
@@ -75,6 +93,7 @@ impl Options {
             source: self.source.unwrap_or_default(),
             area_bounds: self.area_bounds,
             storage: self.storage,
+            screen_rectangle: self.is_rectangle,
         }
     }
 }

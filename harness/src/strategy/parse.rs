@@ -109,6 +109,22 @@ pub(super) fn check_pairs(id: &str, row: &Row, options: &Options) -> Result<(), 
         let reason = "a light that moves may leave the frame's lights, or enter them";
         return Err(contradiction(id, &fewer, &source, reason));
     }
+    for (flaw, other, reason) in [
+        (
+            Axis::Half,
+            Axis::Keep,
+            "lists that are kept hold larger lights, which hides the rounding",
+        ),
+        (Axis::Half, Axis::Touched, "both choose the lights that lists are made for"),
+        (Axis::Order, Axis::Storage, "only a plain list can be read in any order"),
+        (Axis::Order, Axis::Reuse, "both say what lists are in a frame"),
+        (Axis::Order, Axis::Keep, "both say what lists are in a frame"),
+        (Axis::Order, Axis::Touched, "both say what lists are in a frame"),
+    ] {
+        if let (Some(flaw), Some(other)) = (flaw.segment(options), other.segment(options)) {
+            return Err(contradiction(id, &flaw, &other, reason));
+        }
+    }
     for (other, reason) in [
         (Axis::Normals, "a list that is split by normals may change though its lights do not"),
         (Axis::Cap, "a list with a cap does not tell which lights it lacks"),

@@ -2,14 +2,16 @@
 
 use std::fmt::Write;
 
-use super::{Row, rows};
+use super::{Row, flaws, rows};
 
 /// The width of the column of ids, characters.
 const ID_WIDTH: usize = 16;
 
-/// What `lightbench list strategies` prints.
+/// What `lightbench list strategies` prints: all rows, and then the methods that fail on purpose.
 pub fn list() -> String {
-    rows().map(entry).collect()
+    let rows: String = rows().map(entry).collect();
+    let heading = "Fail on purpose (`all` includes none of them, and no ranking picks one):";
+    format!("{rows}\n{heading}\n{}", flaws::list())
 }
 
 fn entry(row: &Row) -> String {
@@ -25,7 +27,7 @@ fn entry(row: &Row) -> String {
     if !row.parameters.is_empty() {
         line(&format!("parameters: {}", row.parameters.join(" x ")));
     }
-    for axis in row.axes {
+    for axis in row.axes.iter().filter(|axis| !axis.is_flaw()) {
         line(&format!("/{}", axis.accepted()));
     }
     text

@@ -127,6 +127,7 @@ pub(crate) fn record(strategy: &str, mode: Mode, assign_ms: f64, shade_ms: f64) 
             lengths_read: if is_none { vec![] } else { vec![210, 96, 180, 402, 210, 4] },
         },
         image: ImageFigures {
+            temporal: None,
             max_abs_diff: Some(0.0),
             max_rel_diff: Some(0.0),
             differing_channels: Some(0),

@@ -15,13 +15,7 @@ pub(super) const NONE: Row = Row {
     source: "Watrous 2024, Methods (no light culling)",
     krate: "assign",
     in_default: Some("None"),
-    make: |gpu, _| {
-        Ok(Method::Lists {
-            strategy: Box::new(Everything::new(gpu)?),
-            early_exit: false,
-            stochastic: None,
-        })
-    },
+    make: |gpu, _| Method::everything(gpu),
     ..Row::PLAIN
 };
 

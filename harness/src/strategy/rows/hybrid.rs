@@ -15,7 +15,7 @@ pub(super) const ROWS: &[Row] = &[Row {
     krate: "assign-clustered",
     parameters: &["tile_width_px", "tile_height_px", "slices"],
     default: "48x48x40",
-    axes: &[Axis::Scatter, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit],
+    axes: &[Axis::Scatter, Axis::Order, Axis::Cap, Axis::Reuse, Axis::Keep, Axis::Exit],
     sizes: Sizes { few: FEW, many: &["32x32x40", "48x48x40", "64x64x40"] },
     has_groups: true,
     needs: NEEDS_DEPTH,

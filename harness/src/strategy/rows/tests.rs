@@ -79,6 +79,9 @@ fn ids_are_those_of_the_strategies() {
         "SC-E/bvh/scalar",
         "SC-E/96x96x16/bvh/prune",
         "ZB/hs/bvh",
+        "T-I/16x16/hs/bvh/rect",
+        "DC-I/mask/rect/half",
+        "SC-E/half/unordered",
         "W1",
     ] {
         let choice = Choice::parse(id).expect(id);

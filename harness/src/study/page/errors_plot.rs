@@ -92,7 +92,8 @@ impl Plot<'_> {
             })
             .filter(|(_, _, point)| point.x.is_finite())
             .collect();
-        let best = frontier(known.iter().map(|(_, _, point)| (point.x, point.y)));
+        let sound = known.iter().filter(|(_, record, _)| !record.strategy.has_flaw());
+        let best = frontier(sound.map(|(_, _, point)| (point.x, point.y)));
         let mut names: Vec<(&str, String, Option<usize>)> = Vec::new();
         for (name, record, _) in &known {
             if names.iter().all(|(known, ..)| known != name) {
