@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use harness::{
     advise::{answer, error_of, verdict},
-    report::{is_surely_faster, render_markdown},
+    report::{best_sizes_markdown, chosen_sizes_markdown, is_surely_faster, render_markdown},
     results::{Record, Results},
     strategy,
     study::{Done, claims_markdown, write_study},
@@ -88,73 +88,40 @@ fn the_full_tables_hold_the_figures_of_the_results() {
     check_fresh(&path, &refreshed(&document, &root()));
 }
 
-/// Starts the README's short table: one row per strategy, one column per number of lights.
-const TIMES: &str = "<!-- times of ";
+/// Stands before a table of methods against the number of lights. The stem of the files follows, a colon, and
+/// `best` or the ids of the rows.
+const METHODS: &str = "<!-- methods of ";
 
-/// The light counts of the short table, in the order of its columns.
-const LIGHT_COUNTS: [&str; 3] = ["100", "1000", "10000"];
+/// The light counts of these tables, in the order of their columns.
+const LIGHT_COUNTS: [u32; 4] = [100, 1_000, 10_000, 100_000];
 
-/// Stands in the short table where a strategy was not measured with that many lights.
-const NOT_MEASURED: &str = "–";
-
-/// The cells of one row of a Markdown table.
-fn cells(row: &str) -> Vec<&str> {
-    row.split('|').map(str::trim).collect()
-}
-
-/// The time to assign and shade of a strategy, as a Markdown table of results shows it.
-fn time_in<'a>(table: &'a str, strategy: &str) -> Option<&'a str> {
-    let column =
-        cells(table.lines().next()?).iter().position(|head| *head == "assign + shade ms")?;
-    let row = table.lines().map(cells).find(|row| row.get(1) == Some(&strategy))?;
-    row.get(column).copied()
-}
-
-/// The README with the figures of its short table read again from the jobs that the table names. Slow
-/// strategies have a job of their own, whose name ends in `-slow`.
-fn with_fresh_times(readme: &str, root: &Path) -> String {
-    let (before, rest) = readme.split_once(TIMES).expect("README.md has the short table");
-    let (jobs, rest) = rest.split_once(" -->\n").expect("the comment ends");
-    let (table, after) = rest.split_once(END).expect("the table ends");
-    let tables_of = |count: &str| {
-        ["", "-slow"].map(|kind| {
-            let file = root.join(format!("{jobs}-{count}{kind}/results.json"));
-            render_markdown(&Results::read(&file).expect("results"))
-        })
-    };
-    let tables = LIGHT_COUNTS.map(tables_of);
-    let mut fresh = format!("{before}{TIMES}{jobs} -->\n");
-    for (ix, row) in table.lines().enumerate() {
-        if ix < 2 {
-            fresh += &format!("{row}\n");
-            continue;
-        }
-        let [id, name] = [1, 2].map(|column| cells(row)[column]);
-        fresh += &format!("| {id} | {name} |");
-        let id_of_row = id.trim_matches('`');
-        let hierarchy = format!("{id_of_row}/bvh");
-        let mut is_measured = false;
-        // The last column is the greatest number of lights again, through the hierarchy.
-        for (tables, id) in tables
-            .iter()
-            .map(|tables| (tables, id_of_row))
-            .chain(tables.last().map(|tables| (tables, hierarchy.as_str())))
-        {
-            let time = tables.iter().find_map(|table| time_in(table, id));
-            is_measured |= time.is_some();
-            fresh += &format!(" {} |", time.unwrap_or(NOT_MEASURED));
-        }
-        assert!(is_measured, "{id} was not measured with any number of lights");
-        fresh.push('\n');
+/// A document with its tables of methods made anew from the results that they name.
+fn with_methods(document: &str, root: &Path) -> String {
+    let mut parts = document.split(METHODS);
+    let mut fresh = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (words, rest) = part.split_once(" -->").expect("the comment ends");
+        let (_, behind) = rest.split_once(END).expect("the table ends");
+        let (stem, chosen) = words.split_once(": ").expect("a stem and what to show");
+        let read = |count: u32| Results::read(&root.join(format!("{stem}-{count}.json")));
+        let columns = LIGHT_COUNTS.map(|count| read(count).expect("results"));
+        let table = match chosen {
+            "best" => best_sizes_markdown(&columns),
+            ids => chosen_sizes_markdown(&columns, &ids.split(',').collect::<Vec<_>>()),
+        };
+        fresh += &format!("{METHODS}{words} -->\n{table}{END}{behind}");
     }
-    fresh + END + after
+    fresh
 }
 
 #[test]
-fn the_short_table_holds_the_figures_of_the_results() {
-    let path = root().join("README.md");
-    let readme = std::fs::read_to_string(&path).expect("README.md");
-    check_fresh(&path, &with_fresh_times(&readme, &root()));
+fn the_tables_of_methods_hold_the_figures_of_the_results() {
+    for (name, least) in [("README.md", 1), ("docs/methods.md", 4)] {
+        let path = root().join(name);
+        let document = std::fs::read_to_string(&path).expect("the document");
+        assert!(document.matches(METHODS).count() >= least, "{name} has its tables");
+        check_fresh(&path, &with_methods(&document, &root()));
+    }
 }
 
 #[test]

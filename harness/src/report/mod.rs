@@ -7,6 +7,7 @@ pub(crate) mod bill;
 pub(crate) mod colours;
 pub(crate) mod column;
 pub(crate) mod comparison;
+mod families;
 pub(crate) mod finding;
 pub(crate) mod fit;
 pub(crate) mod format;
@@ -32,6 +33,7 @@ pub(crate) mod table;
 pub(crate) mod terminal;
 pub(crate) mod terms;
 
+pub use families::{best_sizes_markdown, chosen_sizes_markdown};
 pub use finding::{finding, lights, notices};
 pub use format::significant;
 pub use html::{render_html, write_html};
