@@ -60,6 +60,7 @@ impl From<FlatResults> for Results {
             truth_image: flat.truth_image,
             deep_images: flat.deep_images,
             rejected_lights: flat.rejected_lights,
+            refused: Vec::new(),
             warnings: flat.warnings,
         }
     }

@@ -6,6 +6,7 @@ use super::figure::Charts;
 use super::part::Part;
 use super::shots::Shots;
 use crate::report::finding::clock_notice;
+use crate::grouping::grouped_by;
 use crate::report::format::short_adapter;
 use crate::report::html::{PAGE, SCRIPT, fill, in_script, style};
 use crate::report::markup::{Html, html, with_names_whole};
@@ -27,6 +28,9 @@ const MOST_DATA: usize = 8_000_000;
 
 /// Names of jobs that a notice lists.
 const NAMES: usize = 12;
+
+/// A warning of more jobs than these is told once.
+const ALIKE: usize = 3;
 
 /// The file of all results.
 pub(crate) const DATA: &str = "study-data.json";
@@ -235,7 +239,15 @@ fn notices(study: &Study, done: &Done, pictures_left_out: usize) -> Vec<String> 
                 record.strategy
             ));
         }
-        notices.extend(results.warnings.iter().map(|warning| format!("{job}: {warning}")));
+    }
+    let of_job = |(job, results): (&'_ String, &'_ Results)| -> Vec<(String, String)> {
+        results.warnings.iter().map(|warning| (warning.clone(), job.clone())).collect()
+    };
+    for (warning, jobs) in grouped_by(done.results.iter().flat_map(of_job)) {
+        match jobs.len() {
+            0..=ALIKE => notices.extend(jobs.iter().map(|job| format!("{job}: {warning}"))),
+            count => notices.push(format!("{count} jobs: {warning}")),
+        }
     }
     notices.extend(motion::notices(study, done));
     notices.extend((study.notices)(done));

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use super::jobs::SEPARATOR;
 use super::outcome::{Outcome, words};
 use crate::cli::Size;
-use crate::results::{Mode, Results};
+use crate::results::{Mode, Record, Results};
 use crate::strategy::{Flaw, Role, StrategyId, engines, flaws, rows};
 use crate::study::data::Entry;
 use crate::study::job::Job;
@@ -69,6 +69,22 @@ impl Method {
         }
     }
 
+    /// The outcome of one of its records. A method that fails on purpose has failed if it lost light, stated or not.
+    fn outcome(&self, record: &Record) -> Outcome {
+        match (self, Outcome::of(record)) {
+            (Self::Flawed(_), Outcome::Lossy) => Outcome::Wrong,
+            (_, outcome) => outcome,
+        }
+    }
+
+    /// The head of its column.
+    pub(crate) fn head(&self) -> String {
+        match self {
+            Self::Sound(id) => id.family().to_owned(),
+            Self::Flawed(_) => self.name(),
+        }
+    }
+
     /// What the page calls it.
     pub(crate) fn name(&self) -> String {
         match self {
@@ -124,7 +140,7 @@ pub(crate) fn cell<'a>(done: &'a Done, scenario: &'a str, method: &Method) -> Ce
         let id = method.id_in(job);
         for record in results.records.iter().filter(|record| record.strategy == id) {
             let entry = Some(Entry::new(job, record, &results.machine));
-            let (outcome, words) = (Outcome::of(record), words(record));
+            let (outcome, words) = (method.outcome(record), words(record));
             cases.push(Case { job, mode: Some(record.setting.mode), outcome, words, entry });
         }
         let refused = results.refused.iter().filter(|refused| refused.strategy == id.as_str());

@@ -90,7 +90,8 @@ fn plan(args: &StudyArgs, scene: &StudyScene) -> Result<Vec<Job>, CliError> {
     for (ix, group) in by_options().into_iter().enumerate() {
         let ids: Vec<&str> = group.iter().map(|flaw| flaw.id).collect();
         let names: Vec<&str> = group.iter().map(|flaw| flaw.name).collect();
-        let options = [&["--strategies", &ids.join(",")], group[0].options, &["--truth", "full"]].concat();
+        let ids = ids.join(",");
+        let options = [&["--strategies", ids.as_str(), "--truth", "full"], group[0].options].concat();
         let options = [options, moved(way)].concat();
         let flawed = job(id.clone(), FLAWED, &(ix + 1).to_string(), &options);
         jobs.push(flawed.with("flaws", &names.join(SEPARATOR)));

@@ -15,7 +15,7 @@ pub(crate) enum Outcome {
     Exact,
     /// The method states a loss, and the image shows one.
     Lossy,
-    /// It loses light, or differs from no culling, and promises not to.
+    /// It loses light, or differs from no culling, and promises not to. Also: it fails on purpose, and did.
     Wrong,
 }
 
@@ -66,7 +66,7 @@ impl Outcome {
                  light volumes, within 0.1 %)"
             }
             Self::Lossy => "the method states that it loses light, and it did",
-            Self::Wrong => "light is lost, or the image differs, and the method promises that it does not",
+            Self::Wrong => "light is lost, or the image differs, and the method promises that it does not, or fails on purpose",
         }
     }
 }

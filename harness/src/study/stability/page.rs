@@ -7,15 +7,16 @@ use super::jobs::scenario_of;
 use super::matrix::anchor;
 use super::outcome::Outcome;
 use super::sentences::has_failed;
-use crate::report::format::{ABSENT, significant};
+use crate::report::format::{ABSENT, difference, significant};
 use crate::report::markup::{Html, html};
 use crate::report::page::shell_words;
+use crate::report::picture_pair::{PicturePair, verdict};
 use crate::results::{Mode, Record, mean, standard_deviation};
 use crate::study::manifest::Done;
 use crate::study::page::figure::Charts;
 use crate::study::page::part::Part;
 use crate::study::page::pictures::figure;
-use crate::study::page::shots::{Shots, Wanted};
+use crate::study::page::shots::Shots;
 
 const NOTE: &str = "Each row is a method in one mode. Open it for the command that shows it again, and for its pictures \
                     where the image differs.";
@@ -119,8 +120,17 @@ fn figures(done: &Done, scenario: &Scenario) -> Html {
 
 /// How much the error of an image changes from one frame to the next.
 fn temporal(record: &Record) -> Option<String> {
-    let _ = record;
-    None
+    let temporal = record.image.temporal.as_ref()?;
+    let worst = temporal.worst?;
+    if worst == 0.0 {
+        return Some("0".to_owned());
+    }
+    let ([x, y], frame) = (temporal.worst_pixel, temporal.worst_frame);
+    Some(format!(
+        "mean {}, worst {} at pixel {x}, {y} of frame {frame}",
+        difference(temporal.mean?),
+        difference(worst)
+    ))
 }
 
 /// A method: a line, and below it each of its runs.
@@ -193,8 +203,21 @@ fn pictures(cell: &Cell<'_>, shots: &mut Shots<'_>) -> Html {
     let Some(entry) = shown.max_by(|a, b| error(a).total_cmp(&error(b))).and_then(|case| case.entry) else {
         return Html::default();
     };
-    let Some(pair) = shots.pair(entry, Wanted::Pair) else { return Html::default() };
-    let heat = entry.record.image.files.heat_map.as_deref();
-    let heat = heat.and_then(|file| shots.file(&entry.job.name, file));
-    pair + html!("<div class=\"views\">{}</div>\n", figure(heat, "Lights per sample", "blue is 0, red 150 or more."))
+    let files = &entry.record.image.files;
+    let mut keep = |file: &Option<String>| shots.file(&entry.job.name, file.as_deref()?);
+    let (image, reference) = (keep(&files.tone_mapped), keep(&files.baseline));
+    let (difference, heat) = (keep(&files.difference), keep(&files.heat_map));
+    let pair = PicturePair {
+        scene: &entry.record.setting.scene,
+        name: &cell.method.name(),
+        size: [entry.record.setting.width, entry.record.setting.height],
+        image: image.as_deref(),
+        reference: reference.as_deref(),
+        reference_name: "no culling",
+        difference: difference.as_deref(),
+        gain: files.difference_amplification,
+        verdict: verdict(entry.record),
+    };
+    let stage = html!("<div class=\"stage\">{}{}</div>\n", pair.main(), pair.difference(false));
+    stage + html!("<div class=\"views\">{}</div>\n", figure(heat, "Lights per sample", "blue is 0, red 150 or more."))
 }
