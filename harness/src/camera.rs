@@ -112,6 +112,7 @@ mod tests {
                 lens: Lens::Perspective { fov_y: 1.0 },
                 near_m: 0.1,
                 far_m: None,
+                framing: scenes::Framing::PLAIN,
             })
             .collect();
         scene

@@ -281,7 +281,8 @@ fn finest_m(scene: &Scene, view: &View) -> f32 {
     let height = view.viewport.height as f32;
     match view.projection {
         Projection::Orthographic { min, max } => (max.y - min.y) / height,
-        Projection::Perspective { min, max } if away_m > 0.0 => {
+        // Nearer than the near plane, rounding may have moved the eye out of the core.
+        Projection::Perspective { min, max } if away_m > view.near_m => {
             ((max.y - min.y) / height * away_m).min(COARSE * view.near_m)
         }
         Projection::Perspective { .. } => COARSE * view.near_m,

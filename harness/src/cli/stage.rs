@@ -16,7 +16,7 @@ use super::{
 /// What is drawn: the options that comparisons and truth images share.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct StageArgs {
-    /// Scene to draw: a name from `lightbench list scenes` or `list scenarios`, or a .gltf or .glb file
+    /// Scene to draw: a name from `lightbench list scenes`, or a .gltf or .glb file
     #[arg(long, display_order = 1, value_name = "NAME|FILE", default_value = "atrium", value_parser = values::text)]
     pub scene: String,
 

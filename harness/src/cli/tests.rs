@@ -38,7 +38,7 @@ fn without_arguments_compare_runs_with_its_defaults() {
     let args = compare("");
     assert_eq!(args.stage.scene, "atrium");
     assert_eq!(args.strategies.0, ["None", "Sphere", "DC-I", "SC-E/bvh"]);
-    assert_eq!((args.stage.lights, args.stage.spots, args.stage.seed), (1000, 0.0, 1));
+    assert_eq!((args.stage.scattered(), args.stage.spots, args.stage.seed), (1000, 0.0, 1));
     assert_eq!((args.stage.scene_scale, args.stage.radius_scale), (1.0, None));
     assert_eq!(args.stage.size, Size { width: 640, height: 360 });
     assert_eq!((args.frames, args.warmup), (None, None));
@@ -69,16 +69,17 @@ fn list_takes_strategies_scenes_or_adapters() {
     assert_eq!(parse_line("list strategies"), Ok(Invocation::List(Listing::Strategies)));
     assert_eq!(parse_line("list engines"), Ok(Invocation::List(Listing::Engines)));
     assert_eq!(parse_line("list scenes"), Ok(Invocation::List(Listing::Scenes)));
+    assert_eq!(parse_line("list scenarios"), Ok(Invocation::List(Listing::Scenarios)));
     assert_eq!(parse_line("list adapters"), Ok(Invocation::List(Listing::Adapters)));
     assert_eq!(parse_line("list studies"), Ok(Invocation::List(Listing::Studies)));
     assert_eq!(
         error_of("list"),
-        "list needs <WHAT>: one of strategies, engines, scenes, adapters, studies"
+        "list needs <WHAT>: one of strategies, engines, scenes, scenarios, adapters, studies"
     );
     let unknown = error_of("list lights");
     assert!(
         unknown.ends_with(
-            "is lights: it must be one of strategies, engines, scenes, adapters, studies"
+            "is lights: it must be one of strategies, engines, scenes, scenarios, adapters, studies"
         ),
         "{unknown}"
     );

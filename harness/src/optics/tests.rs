@@ -16,7 +16,8 @@ fn args(line: &str) -> StageArgs {
 fn scene(lens: Option<Lens>, near_m: f32, far_m: Option<f32>) -> Scene {
     let mut scene = scenes::open("atrium").unwrap();
     let pose = scene.path.pose(0, 1);
-    let camera = |lens| SceneCamera { name: "a".into(), pose, lens, near_m, far_m };
+    let framing = Framing::PLAIN;
+    let camera = |lens| SceneCamera { name: "a".into(), pose, lens, near_m, far_m, framing };
     scene.cameras.extend(lens.map(camera));
     scene
 }
@@ -174,4 +175,52 @@ fn notes_name_the_planes_that_cut_surfaces_away() {
     assert!(coarse.len() == 1 && coarse[0].contains("apart"), "{coarse:?}");
     let flat = scene(Some(FLAT), 0.0, Some(1000.0));
     assert_eq!(notes(&flat, "", pose), [""; 0], "an orthographic near plane at the eye");
+}
+
+/// A stability scenario's camera moves, mirrors and crops the image, and may have no far plane.
+#[test]
+fn a_framing_reaches_the_view() {
+    let mut scene = scene(Some(WIDE), 0.1, None);
+    let view = |scene: &Scene, line: &str| {
+        let optics = Optics::new(scene, &args(line)).unwrap();
+        let view = optics.view(scene, scene.path.pose(0, 1), [64, 36]);
+        view.check().unwrap();
+        (view, optics.target(&view), optics.planes(&view))
+    };
+    let (plain, ..) = view(&scene, "");
+    scene.cameras[0].framing = Framing {
+        shift: Vec2::new(0.5, -0.25),
+        jitter_px: Vec2::new(0.25, 0.5),
+        is_mirrored: true,
+        before_px: [7, 3],
+        after_px: [5, 11],
+        less_px: [9, 2],
+        is_endless: true,
+        depth: assign::DepthMapping::Standard,
+    };
+    let (framed, target, planes) = view(&scene, "");
+    let Projection::Perspective { min, max } = framed.projection else { panic!("perspective") };
+    let Projection::Perspective { min: low, max: high } = plain.projection else { panic!() };
+    // 55 x 34 pixels show a little less width for their height than 64 x 36.
+    let half = Vec2::new(high.y * 55.0 / 34.0, high.y);
+    assert!((min - Vec2::new(2.0 * half.x, -1.5 * half.y)).length() < 1e-6, "{min} {low} {high}");
+    assert!((max - Vec2::new(0.0, 0.5 * half.y)).length() < 1e-6, "{max}");
+    assert!(framed.is_mirrored() && !plain.is_mirrored());
+    let viewport = assign::Viewport { x: 7, y: 3, width: 55, height: 34 };
+    assert_eq!(framed.viewport, viewport);
+    assert_eq!(target.viewport, assign::Viewport { width: 60, height: 45, ..viewport });
+    assert_eq!(
+        (framed.jitter, framed.depth),
+        (Vec2::new(0.25, 0.5), assign::DepthMapping::Standard)
+    );
+    assert_eq!((framed.far_m, planes.far_from), (None, PlaneSource::File));
+    // An option replaces the plane, and a pose leaves the whole camera out.
+    assert_eq!(view(&scene, "--far 50").0.far_m, Some(50.0));
+    let (posed, ..) = view(&scene, "--camera=0,2,0:1,2,0");
+    assert_eq!(posed.viewport, plain.viewport);
+    assert!(posed.far_m.is_some() && !posed.is_mirrored());
+    // No image is empty.
+    scene.cameras[0].framing.less_px = [1000, 1000];
+    let (tiny, ..) = view(&scene, "");
+    assert_eq!((tiny.viewport.width, tiny.viewport.height), (1, 1));
 }

@@ -162,13 +162,15 @@ fn thin_near_slices(kit: &mut Kit) {
 fn plain_with_houses(kit: &mut Kit, reach_m: f32) {
     kit.floor(STONE, [-reach_m, -reach_m], [reach_m, 50.0]);
     for _ in 0..90 {
-        let z = -kit.log_range(40.0, 0.95 * reach_m);
-        let x = kit.range(-0.9, 0.9) * -z;
+        let z = -kit.log_range(70.0, 0.95 * reach_m);
+        // A street leads to the horizon.
+        let side = if kit.range(-1.0, 1.0) < 0.0 { -1.0 } else { 1.0 };
+        let x = side * (30.0 + kit.range(0.0, 0.8) * -z);
         let size = Vec3::new(kit.range(12.0, 30.0), kit.range(15.0, 45.0), kit.range(12.0, 30.0));
         let material = if x > 0.0 { CLAY } else { GLAZE };
         kit.block(material, Vec3::new(x, 0.0, z), size);
     }
-    kit.look(Vec3::new(0.0, 14.0, 0.0), Vec3::new(0.0, 8.0, -200.0));
+    kit.look(Vec3::new(4.0, 22.0, 0.0), Vec3::new(0.0, 8.0, -200.0));
 }
 
 /// Lights over the plain: the farther, the larger.
@@ -242,17 +244,19 @@ fn behind_camera(kit: &mut Kit) {
 fn light_at_eye(kit: &mut Kit) {
     kit.hall();
     for range_m in [0.5, 2.0, 6.0, 15.0] {
-        let light = kit.point_light(kit.eye(), range_m);
+        let mut light = kit.point_light(kit.eye(), range_m);
+        light.intensity *= 0.1;
         kit.lights.push(light);
     }
     let eye = kit.eye();
     let axis = kit.ahead(Vec3::Z) - eye;
-    let spot = kit.spot(eye, axis, (0.2, 0.4), 12.0);
+    let mut spot = kit.spot(eye, axis, (0.2, 0.4), 12.0);
+    spot.intensity *= 0.3;
     kit.lights.push(spot);
     for _ in 0..80 {
         let on_floor =
             kit.point_in(Aabb::new(Vec3::new(-5.0, 0.0, -15.0), Vec3::new(5.0, 0.0, 1.0)));
-        let range_m = kit.log_range(0.1, 2.0);
+        let range_m = kit.log_range(0.2, 2.0);
         let light = kit.point_light(on_floor, range_m);
         kit.lights.push(light);
     }
@@ -266,7 +270,7 @@ fn light_at_eye(kit: &mut Kit) {
 fn one_covers_all(kit: &mut Kit) {
     kit.hall();
     kit.scatter(600, Kit::hall_box(), (0.1, 0.6));
-    let intensity = Vec3::splat(0.004 * 60.0 * 60.0 / 16.0);
+    let intensity = Vec3::splat(0.2);
     // In the middle of the list, so that neither end of it is special.
     kit.lights.insert(300, Light::point(Vec3::new(0.0, 4.0, -6.0), 5_000.0, intensity));
 }

@@ -89,7 +89,7 @@ fn curved_normals(kit: &mut Kit) {
     });
     let sheet = kit.material(Material {
         double_sided: true,
-        ..plain("corrugated sheet", [0.6, 0.62, 0.65], 0.3, 1.0)
+        ..plain("corrugated sheet", [0.6, 0.62, 0.65], 0.35, 0.0)
     });
     kit.floor(bumpy, [-6.0, -12.0], [6.0, 3.0]);
     kit.add("corrugated sheet", sheet, |b| {
