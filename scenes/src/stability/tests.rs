@@ -35,6 +35,13 @@ fn depth_m(scene: &Scene, point: Vec3) -> f32 {
     -view(scene).world_to_view.transform_point3(point).z
 }
 
+/// Points of a triangle, 28 in all.
+fn points_on([a, b, c]: [Vec3; 3]) -> impl Iterator<Item = DVec3> {
+    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+    let shares = (0..7).flat_map(|u| (0..7 - u).map(move |v| (f64::from(u), f64::from(v))));
+    shares.map(move |(u, v)| a + (b - a) * (u / 6.0) + (c - a) * (v / 6.0))
+}
+
 #[test]
 fn every_number_is_there_and_every_name_is_unique() {
     let names: BTreeSet<_> = list().iter().map(|scenario| scenario.name).collect();
@@ -62,14 +69,11 @@ fn every_scene_shows_geometry_and_its_lights_reach_it() {
         assert_eq!(view.check(), Ok(()), "{name}");
         let span = scene.depths_shown(&view).expect(name);
         assert!(span.nearest_m < f64::from(view.far_m.unwrap_or(f32::MAX)), "{name}: {span:?}");
-        let corners: Vec<DVec3> =
-            scene.world_triangles().flatten().map(|corner| corner.as_dvec3()).collect();
-        let is_near = |light: &assign::Light| {
-            let to = |corner: &DVec3| corner.distance(light.position.as_dvec3());
-            corners.iter().map(to).fold(f64::INFINITY, f64::min) < 12.0 + f64::from(light.range_m)
-        };
+        let points: Vec<DVec3> = scene.world_triangles().flat_map(points_on).collect();
+        let reaches = |light: &&assign::Light| points.iter().any(|point| light.reach(*point) > 0.0);
         let good = scene.lights.iter().filter(|light| light.check().is_ok());
-        let reaching = good.filter(|light| is_near(light)).count();
+        let (good, reaching) = (good.clone().count(), good.filter(reaches).count());
+        assert!(reaching * 5 >= good, "{name}: {reaching} of {good} lights reach a surface");
         assert!(reaching > 0 || *name == "count-0", "{name}: no light");
         for mesh in &scene.meshes {
             assert!(mesh.triangle_count() > 0, "{name}: {mesh:?}");
