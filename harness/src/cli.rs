@@ -10,6 +10,8 @@ mod cdi;
 mod compare;
 mod effect;
 mod error;
+mod explain;
+mod explain_command;
 mod fit_ltc;
 mod fold;
 mod headings;
@@ -33,6 +35,8 @@ pub use camera::{Camera, CameraPose};
 pub use cdi::CdiArgs;
 pub use compare::{CompareArgs, PicturesChoice, SourceChoice};
 pub use error::{BAD_INPUT, CliError};
+pub use explain::{ExplainArgs, Pixel};
+pub use explain_command::{Explained, explain_words};
 pub use fit_ltc::FitLtcArgs;
 pub use modes::Modes;
 pub use motion::{MotionArgs, MotionChoice, MovedBy};
@@ -98,6 +102,8 @@ pub enum Invocation {
     Study(StudyArgs),
     /// Write a report again, or join the shards of a study.
     Report(ReportArgs),
+    /// Explain a pixel.
+    Explain(ExplainArgs),
     /// Search for the best strategy and parameters.
     Advise(AdviseArgs),
     /// Fit linearly transformed cosines to the BRDF.
@@ -141,6 +147,9 @@ enum Command {
     /// Compare strategies on one scene (the default command)
     #[command(long_about = LONG_ABOUT, after_help = MORE_OPTIONS, after_long_help = EXAMPLES)]
     Compare(CompareArgs),
+    /// Explain one pixel: its list, what each light adds, and lights that the list misses
+    #[command(after_help = MORE_OPTIONS, after_long_help = "")]
+    Explain(ExplainArgs),
     /// Find the strategy and parameters to use for a scene on this GPU
     #[command(after_help = MORE_OPTIONS, after_long_help = "")]
     Advise(AdviseArgs),

@@ -33,7 +33,7 @@ use crate::{
 };
 
 /// Frames on the clock along a path: on a GPU, and on a software adapter.
-const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
+pub(crate) const DEFAULT_PATH_FRAMES: [u32; 2] = [1200, 60];
 /// Frames of lights that move before a still camera, likewise.
 const DEFAULT_MOVING_FRAMES: [u32; 2] = [240, 12];
 /// Frames before the clock, likewise.
@@ -323,9 +323,9 @@ impl Run<'_> {
         self.pictures.extend(pictures.into_iter().flatten());
         bar.set_message(format!("times, {}", mode.name()));
         let exposure = reference.as_ref().map_or(1.0, |reference| reference.exposure);
-        let mut compared = |images: &[HdrImage], reference: &HdrImage| {
+        let mut compared = |frame: u32, images: &[HdrImage], reference: &HdrImage| {
             all_seen.par_iter_mut().zip(images).try_for_each(|(seen, image)| {
-                seen.compare(&ImagePair { image, reference, exposure })
+                seen.compare(&ImagePair { image, reference, exposure }, Some(frame))
             })
         };
         let tick = &mut || bar.inc(1);

@@ -17,6 +17,7 @@ mod described;
 mod digits;
 pub mod drift;
 pub mod error;
+pub mod explain;
 pub mod fit_ltc;
 mod grouping;
 pub mod image_errors;

@@ -10,6 +10,7 @@ use harness::{
     compare::compare,
     deep_image_run::cdi,
     error::HarnessError,
+    explain::explain,
     fit_ltc::fit_ltc,
     interrupted,
     messages::{print, say_error},
@@ -47,6 +48,7 @@ fn run() -> Result<(), HarnessError> {
             studies().map(|(name, answers)| format!("{name:<16} {answers}\n")).collect()
         }
         Invocation::Compare(args) => compare(&args, command)?,
+        Invocation::Explain(args) => explain(&args)?,
         Invocation::Study(args) => study(&args, &command)?,
         Invocation::Report(args) => report_stored(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
@@ -72,7 +74,7 @@ fn set_interrupt_message(invocation: &Invocation) {
         Invocation::Advise(args) => lost(&args.out),
         Invocation::Truth(args) => lost(&args.out),
         Invocation::Cdi(args) => lost(&args.out),
-        Invocation::Report(_) | Invocation::FitLtc(_) => "the same command starts again".into(),
+        Invocation::Report(_) | Invocation::FitLtc(_) | Invocation::Explain(_) => "the same command starts again".into(),
         Invocation::List(_) | Invocation::Show(_) => return,
     });
 }

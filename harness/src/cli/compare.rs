@@ -135,7 +135,7 @@ impl CompareArgs {
     }
 }
 
-const CUTS: [(Cut, &str); 2] = [
+pub(super) const CUTS: [(Cut, &str); 2] = [
     (Cut::Windowed, "Smoothly: times (1 - (distance / range)^4)^2"),
     (Cut::Hard, "At once: inverse square up to the range, 0 beyond it"),
 ];
