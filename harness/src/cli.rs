@@ -21,6 +21,7 @@ mod named;
 mod names;
 mod parse;
 mod report;
+mod soak;
 mod stage;
 mod strategies;
 mod study;
@@ -44,6 +45,7 @@ pub use named::name_of;
 pub use names::{did_you_mean, nearest};
 pub use parse::{parse, parse_stored};
 pub use report::ReportArgs;
+pub use soak::SoakArgs;
 pub use stage::{LightBox, StageArgs};
 pub use strategies::ALL;
 pub use study::{Shard, StudyArgs};
@@ -108,6 +110,8 @@ pub enum Invocation {
     Advise(AdviseArgs),
     /// Fit linearly transformed cosines to the BRDF.
     FitLtc(FitLtcArgs),
+    /// Draw random frames and check each.
+    Soak(SoakArgs),
     /// Render what a view should look like.
     Truth(TruthArgs),
     /// Build deep images and cast rays through them.
@@ -170,6 +174,8 @@ enum Command {
     /// Build the deep images of a scene, and compare rays through them with exact rays
     #[command(after_help = MORE_OPTIONS, after_long_help = "")]
     Cdi(CdiArgs),
+    /// Draw many random frames, and check the lists and the image of each
+    Soak(SoakArgs),
     /// Fit linearly transformed cosines to the BRDF, and compare them with those in use
     FitLtc(FitLtcArgs),
     /// List the names of strategies, engines, scenes, adapters or studies

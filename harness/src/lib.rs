@@ -40,6 +40,7 @@ pub mod report;
 pub mod results;
 pub mod schedule;
 pub mod sight;
+pub mod soak;
 pub mod stage;
 mod stage_lights;
 pub mod stored;

@@ -14,6 +14,7 @@ use harness::{
     fit_ltc::fit_ltc,
     interrupted,
     messages::{print, say_error},
+    soak::soak_alone,
     stored_report::report_stored,
     strategy::{self, engines},
     study::{studies, study},
@@ -49,6 +50,7 @@ fn run() -> Result<(), HarnessError> {
         }
         Invocation::Compare(args) => compare(&args, command)?,
         Invocation::Explain(args) => explain(&args)?,
+        Invocation::Soak(args) => soak_alone(&args)?,
         Invocation::Study(args) => study(&args, &command)?,
         Invocation::Report(args) => report_stored(&args)?,
         Invocation::Advise(args) => advise(&args, command)?,
@@ -74,7 +76,7 @@ fn set_interrupt_message(invocation: &Invocation) {
         Invocation::Advise(args) => lost(&args.out),
         Invocation::Truth(args) => lost(&args.out),
         Invocation::Cdi(args) => lost(&args.out),
-        Invocation::Report(_) | Invocation::FitLtc(_) | Invocation::Explain(_) => "the same command starts again".into(),
+        Invocation::Report(_) | Invocation::FitLtc(_) | Invocation::Explain(_) | Invocation::Soak(_) => "the same command starts again".into(),
         Invocation::List(_) | Invocation::Show(_) => return,
     });
 }

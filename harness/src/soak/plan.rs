@@ -171,7 +171,10 @@ fn choices(rng: &mut impl Rng, mode: Mode, lights: u64) -> Vec<Choice> {
 fn choice_of(rng: &mut impl Rng, row: &Row, lights: u64) -> Option<Choice> {
     for _ in 0..TRIES {
         let mut id = row.id_of(&parameters_of(rng, row.default));
-        for axis in row.axes.iter().filter(|_| rng.random_bool(AXIS_SHARE)).copied() {
+        for &axis in row.axes {
+            if !rng.random_bool(AXIS_SHARE) {
+                continue;
+            }
             id.extend(segment_of(rng, axis).map(|segment| format!("/{segment}")));
         }
         if let Ok(choice) = Choice::parse(&id)
