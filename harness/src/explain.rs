@@ -30,9 +30,9 @@ use crate::{
 };
 
 use frame::{When, draw_all};
-pub use lights::LightSeen;
 pub use pixel::{
-    BoundsSeen, Difference, Explanation, GroupSeen, ListSeen, Material, SampleSeen, StrategySeen,
+    BoundsSeen, Difference, Explanation, GroupSeen, LightSeen, ListSeen, Material, SampleSeen,
+    StrategySeen,
 };
 pub use words::text_of;
 
@@ -74,6 +74,7 @@ pub fn explain_on(bench: &mut Bench, args: &ExplainArgs) -> Result<Explanation, 
     check(args)?;
     let choices = args.choices()?;
     let gpu = bench.gpu().clone();
+    check_frame(args, path_frames(&gpu, args))?;
     let stage = set_stage(bench, args)?;
     let (choices, left_out) = served(choices, &gpu, stage, args.cut)?;
     if let Some(choice) = choices.iter().find(|choice| choice.refuses_mode(args.mode).is_some()) {
@@ -139,19 +140,27 @@ fn check(args: &ExplainArgs) -> Result<(), CliError> {
         );
         return Err(CliError::out_of_range("--pixel", &pixel.to_string(), &accepted));
     }
-    match (args.frame, args.frames) {
-        (Some(frame), Some(frames)) if args.path && frame >= frames => {
+    args.frames.map_or(Ok(()), |frames| check_frame(args, frames))
+}
+
+/// Refuses a frame beyond the path.
+fn check_frame(args: &ExplainArgs, frames: u32) -> Result<(), CliError> {
+    match args.frame.filter(|frame| args.path && *frame >= frames) {
+        None => Ok(()),
+        Some(frame) => {
             let accepted = format!("0 to {}, because the path has {frames} frames", frames - 1);
             Err(CliError::out_of_range("--frame", &frame.to_string(), &accepted))
         }
-        _ => Ok(()),
     }
 }
 
 fn json(explanation: &Explanation) -> String {
     // Numbers that JSON cannot hold become null.
     let text = serde_json::to_string_pretty(explanation);
-    text.map_or_else(|error| format!("{{\"error\": {:?}}}\n", error.to_string()), |text| text + "\n")
+    text.map_or_else(
+        |error| format!("{{\"error\": {:?}}}\n", error.to_string()),
+        |text| text + "\n",
+    )
 }
 
 /// The words for a mode's inexactness: in forward modes shading rounds no normal, and the G-buffer does.

@@ -76,7 +76,10 @@ fn set_interrupt_message(invocation: &Invocation) {
         Invocation::Advise(args) => lost(&args.out),
         Invocation::Truth(args) => lost(&args.out),
         Invocation::Cdi(args) => lost(&args.out),
-        Invocation::Report(_) | Invocation::FitLtc(_) | Invocation::Explain(_) | Invocation::Soak(_) => "the same command starts again".into(),
+        Invocation::Report(_)
+        | Invocation::FitLtc(_)
+        | Invocation::Explain(_)
+        | Invocation::Soak(_) => "the same command starts again".into(),
         Invocation::List(_) | Invocation::Show(_) => return,
     });
 }

@@ -18,7 +18,8 @@ fn a_short_soak_finds_nothing() {
     assert!(text.starts_with("soak     20 frames of seed 1: nothing found\n"), "{text}");
     let number = |before: &str, after: &str| -> u64 {
         let (_, rest) = text.split_once(before).expect("the line");
-        rest.split_once(after).expect("the words").0.trim().parse().expect("a number")
+        let number = rest.split_once(after).expect("the words").0.replace(',', "");
+        number.trim().parse().expect("a number")
     };
     assert!(number("drawn    ", " images by ") > 30, "{text}");
     assert!(number("lists    ", " (light, sample) pairs, none missed") > 10_000, "{text}");

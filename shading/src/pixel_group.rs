@@ -128,10 +128,7 @@ pub fn groups_of_pixel(
 }
 
 /// Sets the flags that compile the reading of bounds.
-fn bounds_flags<'a>(
-    shader: Shader<'a>,
-    shape: Option<GroupShape>,
-) -> Shader<'a> {
+fn bounds_flags<'a>(shader: Shader<'a>, shape: Option<GroupShape>) -> Shader<'a> {
     let is_frustum = matches!(shape, Some(GroupShape::Frustum | GroupShape::MaskedFrustum));
     shader
         .flag("frustum_bounds", is_frustum)

@@ -88,7 +88,9 @@ impl FromStr for Pixel {
         let number = |text: &str| text.trim().parse::<u32>().ok();
         text.split_once(',')
             .and_then(|(x, y)| Some(Self { x: number(x)?, y: number(y)? }))
-            .ok_or_else(|| "X,Y: two whole numbers of pixels, from the upper left corner".to_owned())
+            .ok_or_else(|| {
+                "X,Y: two whole numbers of pixels, from the upper left corner".to_owned()
+            })
     }
 }
 

@@ -98,7 +98,8 @@ mod tests {
             let full = format!("{expected} 1,2");
             assert!(matches!(parse(full.split(' ')), Ok(Invocation::Explain(_))), "{full}");
         }
-        for other in ["lightbench advise --lights 3", "lightbench truth", "lightbench --unknown 3"] {
+        for other in ["lightbench advise --lights 3", "lightbench truth", "lightbench --unknown 3"]
+        {
             assert_eq!(words(other, &of), None, "{other}");
         }
     }

@@ -68,6 +68,7 @@ pub(super) fn draw_all(
         sample = sample.or(seen.sample);
         strategies.push(seen.strategy);
     }
+    let notes = [mode_note(args.mode), sample.as_ref().and_then(position_note)];
     Ok(Explanation {
         scene: visible(&stage.scene.name).into_owned(),
         lights: stage.light_count(),
@@ -78,7 +79,16 @@ pub(super) fn draw_all(
         pixel: [args.pixel.x, args.pixel.y],
         sample,
         strategies,
-        notes: mode_note(args.mode).into_iter().collect(),
+        notes: notes.into_iter().flatten().collect(),
+    })
+}
+
+/// The note for a sample without a position.
+fn position_note(sample: &SampleSeen) -> Option<String> {
+    let is_finite = sample.position_world.iter().all(|x| x.is_finite());
+    (!is_finite).then(|| {
+        "the sample's position is not a number, so no light can be said to reach it: `compare` counts it as missed"
+            .to_owned()
     })
 }
 

@@ -1,38 +1,18 @@
 //! The lights of a pixel: those that its list holds, and those that reach it.
 
-use assign::{ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightBuffer, LightKind, LightShape};
+use std::collections::{HashMap, HashSet};
+
+use assign::{
+    ENTRY_DIFFUSE, ENTRY_LIGHT, ENTRY_SPECULAR, Light, LightBuffer, LightKind, LightShape,
+};
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 use shading::{is_missed, luminance};
 
-use super::pixel::ListSeen;
+use super::pixel::{LightSeen, ListSeen};
 
 /// Both terms of a light.
 const ALL_TERMS: u32 = ENTRY_DIFFUSE | ENTRY_SPECULAR;
-
-/// A light at the pixel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LightSeen {
-    /// Its slot in the buffer, by which lists name it.
-    pub light: u32,
-    /// Its index among all lights of the run, before they were ordered; `null` if only the GPU knows.
-    pub given: Option<u32>,
-    /// Its kind: `point`, `spot`, `rectangle`, `polygon` or `vpl`.
-    pub kind: &'static str,
-    /// Distance from the sample to the nearest point of the emitter, as a share of the light's range.
-    pub distance_over_range: f64,
-    /// Radiance that it adds, or that it would add if it is missed: linear RGB.
-    pub radiance: [f32; 3],
-    /// Whether the list holds it.
-    pub is_listed: bool,
-    /// Whether it reaches the sample, decided in f64.
-    pub reaches: bool,
-    /// Whether it reaches the sample, and the list lacks it or a term of it.
-    pub is_missed: bool,
-    /// The terms that its entry names; empty if it is not listed.
-    pub terms: &'static str,
-}
 
 /// The sample as the check of lists sees it.
 #[derive(Clone, Copy)]
@@ -50,9 +30,11 @@ pub(super) fn entries_of(list: &[u32], lights: &[Light], place: Place) -> Vec<u3
             *terms |= entry & ALL_TERMS;
         }
     }
-    let missed = lights.par_iter().zip(&listed).enumerate().filter(|(_, (light, terms))| {
-        is_missed(light, **terms, place.point, place.normal)
-    });
+    let missed = lights
+        .par_iter()
+        .zip(&listed)
+        .enumerate()
+        .filter(|(_, (light, terms))| is_missed(light, **terms, place.point, place.normal));
     let missed: Vec<u32> = missed.map(|(slot, _)| slot as u32 | ALL_TERMS).collect();
     [list, &missed].concat()
 }
@@ -72,12 +54,14 @@ pub(super) fn list_seen(
     place: Place,
 ) -> ListSeen {
     let missed: Vec<u32> = entries[listed..].iter().map(|entry| entry & ENTRY_LIGHT).collect();
+    let known: HashSet<u32> = entries[..listed].iter().map(|entry| entry & ENTRY_LIGHT).collect();
+    let given = GivenIndex::new(buffer);
     let mut seen = Vec::new();
     for (ix, (&entry, &radiance)) in entries.iter().zip(radiance).enumerate() {
         let slot = entry & ENTRY_LIGHT;
         let is_listed = ix < listed;
         let is_missed = missed.binary_search(&slot).is_ok();
-        let lacks_a_term = !is_listed && entries[..listed].iter().any(|e| e & ENTRY_LIGHT == slot);
+        let lacks_a_term = !is_listed && known.contains(&slot);
         if is_listed && is_missed {
             // It follows with both terms.
             continue;
@@ -85,7 +69,7 @@ pub(super) fn list_seen(
         let light = lights.get(slot as usize);
         seen.push(LightSeen {
             light: slot,
-            given: light.and_then(|light| given_index(buffer, slot, light)),
+            given: light.and_then(|light| given.of(slot, light)),
             kind: light.map_or("unknown", |light| kind_name(light.kind())),
             distance_over_range: light.map_or(f64::NAN, |light| distance_share(light, place.point)),
             radiance,
@@ -114,14 +98,36 @@ pub(super) fn list_seen(
     ListSeen { listed, reaching, missed: missed.len(), lights: seen }
 }
 
-/// The index of a slot's light among all lights of the run. With an order of the GPU, equal lights share the first
-/// one's.
-fn given_index(buffer: &LightBuffer, slot: u32, light: &Light) -> Option<u32> {
-    if !buffer.order().is_on_gpu() {
-        return buffer.given_index(slot);
+/// The index of lights among all lights of the run, before they were ordered.
+enum GivenIndex<'a> {
+    /// The CPU ordered them: the buffer knows.
+    Ordered(&'a LightBuffer),
+    /// The GPU ordered them: the place of each light by its numbers. Equal lights share the last one's.
+    ByValue(HashMap<[u32; 7], u32>, &'a LightBuffer),
+}
+
+impl<'a> GivenIndex<'a> {
+    fn new(buffer: &'a LightBuffer) -> Self {
+        if !buffer.order().is_on_gpu() {
+            return Self::Ordered(buffer);
+        }
+        let places = buffer.lights().iter().zip(0..).map(|(light, place)| (key_of(light), place));
+        Self::ByValue(places.collect(), buffer)
     }
-    let place = buffer.lights().iter().position(|known| known == light)?;
-    buffer.given_index(place as u32)
+
+    /// The index of a slot's light; `None` if only the GPU knows.
+    fn of(&self, slot: u32, light: &Light) -> Option<u32> {
+        match self {
+            Self::Ordered(buffer) => buffer.given_index(slot),
+            Self::ByValue(places, buffer) => buffer.given_index(*places.get(&key_of(light))?),
+        }
+    }
+}
+
+/// The numbers by which lights are told apart.
+fn key_of(light: &Light) -> [u32; 7] {
+    let ([x, y, z], [r, g, b]) = (light.position.to_array(), light.intensity.to_array());
+    [x, y, z, light.range_m, r, g, b].map(f32::to_bits)
 }
 
 fn kind_name(kind: LightKind) -> &'static str {

@@ -3,8 +3,6 @@
 
 use serde::Serialize;
 
-use super::lights::LightSeen;
-
 /// A pixel explained.
 #[derive(Clone, Debug, Serialize)]
 pub struct Explanation {
@@ -152,4 +150,27 @@ pub struct ListSeen {
     pub missed: usize,
     /// All listed and all missed lights: missed ones first, then by brightness, then by distance.
     pub lights: Vec<LightSeen>,
+}
+
+/// A light at the pixel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LightSeen {
+    /// Its slot in the buffer, by which lists name it.
+    pub light: u32,
+    /// Its index among all lights of the run, before they were ordered; `null` if only the GPU knows.
+    pub given: Option<u32>,
+    /// Its kind: `point`, `spot`, `rectangle`, `polygon` or `vpl`.
+    pub kind: &'static str,
+    /// Distance from the sample to the nearest point of the emitter, as a share of the light's range.
+    pub distance_over_range: f64,
+    /// Radiance that it adds, or that it would add if it is missed: linear RGB.
+    pub radiance: [f32; 3],
+    /// Whether the list holds it.
+    pub is_listed: bool,
+    /// Whether it reaches the sample, decided in f64.
+    pub reaches: bool,
+    /// Whether it reaches the sample, and the list lacks it or a term of it.
+    pub is_missed: bool,
+    /// The terms that its entry names; empty if it is not listed.
+    pub terms: &'static str,
 }

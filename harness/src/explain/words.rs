@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{
-    lights::LightSeen,
-    pixel::{BoundsSeen, Difference, Explanation, GroupSeen, ListSeen, SampleSeen, StrategySeen},
+use super::pixel::{
+    BoundsSeen, Difference, Explanation, GroupSeen, LightSeen, ListSeen, SampleSeen, StrategySeen,
 };
 use crate::{
     digits::{grouped, rounded},
@@ -26,7 +25,7 @@ pub fn text_of(explanation: &Explanation, shows_all: bool) -> String {
         ),
     }
     for strategy in &explanation.strategies {
-        push_strategy(&mut text, strategy, explanation.sample.is_some(), shows_all);
+        push_strategy(&mut text, strategy, explanation, shows_all);
     }
     if explanation.sample.is_some() {
         text.push_str(
@@ -101,7 +100,7 @@ fn push_sample(text: &mut String, sample: &SampleSeen, lights: u64) {
     push_fact(text, "reached by", &format!("{reached} of {lights} lights"));
 }
 
-fn push_strategy(text: &mut String, seen: &StrategySeen, has_sample: bool, shows_all: bool) {
+fn push_strategy(text: &mut String, seen: &StrategySeen, of: &Explanation, shows_all: bool) {
     let lossy = if seen.is_lossy { " (it loses light on purpose)" } else { "" };
     let _ = writeln!(text, "\n{}{lossy}", seen.strategy);
     push_fact(text, "radiance", &colour(seen.radiance));
@@ -109,11 +108,13 @@ fn push_strategy(text: &mut String, seen: &StrategySeen, has_sample: bool, shows
         difference_lines(difference).iter().for_each(|line| push_fact(text, "", line));
     }
     for (ix, group) in seen.groups.iter().enumerate() {
-        push_group(text, if ix == 0 { "group" } else { "and group" }, group);
+        push_group(text, if ix == 0 { "group" } else { "and group" }, group, of.size);
     }
     match &seen.list {
         Some(list) => push_list(text, list, shows_all),
-        None if has_sample => push_fact(text, "list", "it has none: no list decides what it draws"),
+        None if of.sample.is_some() => {
+            push_fact(text, "list", "it has none: no list decides what it draws");
+        }
         None => {}
     }
 }
@@ -123,14 +124,16 @@ fn difference_lines(difference: &Difference) -> Vec<String> {
         return vec!["the same as without culling, in every bit".to_owned()];
     }
     let relative = match difference.relative.is_finite() {
-        true => format!("at most {} of a channel's value without culling", number(difference.relative)),
+        true => {
+            format!("at most {} of a channel's value without culling", number(difference.relative))
+        }
         false => "an amount that is not finite".to_owned(),
     };
     let off = colour(difference.radiance);
     vec![format!("differs from no culling by {off}"), format!("({relative})")]
 }
 
-fn push_group(text: &mut String, name: &str, group: &GroupSeen) {
+fn push_group(text: &mut String, name: &str, group: &GroupSeen, image: [u32; 2]) {
     let Some(index) = group.index else {
         let words = match group.count {
             0 => "none: every sample reads the list of all lights, or finds its lights itself",
@@ -140,10 +143,12 @@ fn push_group(text: &mut String, name: &str, group: &GroupSeen) {
         return;
     };
     let (index, count) = (grouped(&index.to_string()), grouped(&group.count.to_string()));
-    let place = group.bounds.as_ref().and_then(tile_words).unwrap_or_default();
+    let place =
+        group.bounds.as_ref().and_then(|bounds| tile_words(bounds, image)).unwrap_or_default();
     push_fact(text, name, &format!("{index} of {count}{place}"));
     if group.overflowed {
-        let words = "OVERFLOW: its list did not fit into the pool, so it reads the list of all lights";
+        let words =
+            "OVERFLOW: its list did not fit into the pool, so it reads the list of all lights";
         push_fact(text, "", words);
     }
     match &group.bounds {
@@ -155,8 +160,11 @@ fn push_group(text: &mut String, name: &str, group: &GroupSeen) {
 }
 
 /// `: tile (3,4)`, if the rectangle is one of a grid that starts at the upper left corner.
-fn tile_words(bounds: &BoundsSeen) -> Option<String> {
+fn tile_words(bounds: &BoundsSeen, image: [u32; 2]) -> Option<String> {
     let BoundsSeen::Frustum { low_px, high_px, .. } = bounds else { return None };
+    if [0, 1].iter().all(|&axis| low_px[axis] < 0.5 && high_px[axis] > image[axis] as f32 - 0.5) {
+        return Some(": the whole image".to_owned());
+    }
     let tile = [0, 1].map(|axis| {
         let size = high_px[axis] - low_px[axis];
         let tile = (low_px[axis] / size).round();
@@ -164,7 +172,11 @@ fn tile_words(bounds: &BoundsSeen) -> Option<String> {
         fits.then_some(tile as i64)
     });
     let [Some(x), Some(y)] = tile else { return None };
-    Some(format!(": tile ({x},{y}) of {} x {} pixels", size_of(low_px, high_px, 0), size_of(low_px, high_px, 1)))
+    Some(format!(
+        ": tile ({x},{y}) of {} x {} pixels",
+        size_of(low_px, high_px, 0),
+        size_of(low_px, high_px, 1)
+    ))
 }
 
 fn size_of(low: &[f32; 2], high: &[f32; 2], axis: usize) -> String {
@@ -204,10 +216,15 @@ fn bounds_lines(bounds: &BoundsSeen) -> Vec<String> {
 
 fn push_list(text: &mut String, list: &ListSeen, shows_all: bool) {
     let lights = if list.listed == 1 { "light" } else { "lights" };
+    let reach = if list.reaching == 1 { "reaches" } else { "reach" };
     push_fact(
         text,
         "list",
-        &format!("{} {lights}, {} of them reach the sample", count(list.listed), count(list.reaching)),
+        &format!(
+            "{} {lights}, {} of them {reach} the sample",
+            count(list.listed),
+            count(list.reaching)
+        ),
     );
     if list.missed > 0 {
         let words = if list.missed == 1 { "light reaches" } else { "lights reach" };

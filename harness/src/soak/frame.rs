@@ -14,6 +14,7 @@ use crate::{
     bench::Bench,
     choice::Choice,
     cli::{BAD_INPUT, CliError},
+    digits::grouped,
     error::HarnessError,
     measure::draw_unclocked,
     moving::lights_by_slot,
@@ -44,7 +45,10 @@ pub(super) struct Counts {
 impl Counts {
     /// The counts in words, one fact per line.
     pub(super) fn summary(&self, seed: u64, frames: u32) -> String {
-        let Self { strategies, refused, images, pairs, overflows } = self;
+        let Self { strategies, refused, images, pairs, overflows } = *self;
+        let [strategies, refused, images, pairs, overflows] =
+            [strategies, refused, images, pairs, overflows].map(|n| grouped(&n.to_string()));
+        let frames = grouped(&frames.to_string());
         format!(
             "soak     {frames} frames of seed {seed}: nothing found\n\
              drawn    {images} images by {strategies} strategies, all as without culling; {refused} more refused \
@@ -115,9 +119,11 @@ pub(super) fn draw_round(
                 counts.refuse(error)?;
                 continue;
             }
-            let check = Check { gpu: &gpu, stage, mode: round.mode, reference: &reference, bvh: &bvh };
+            let check =
+                Check { gpu: &gpu, stage, mode: round.mode, reference: &reference, bvh: &bvh };
             if let Some(words) = check.look(&contender, counts)? {
-                let words = format!("{}{} {words}", contender.choice.id(), pool_words(&contender, plan));
+                let words =
+                    format!("{}{} {words}", contender.choice.id(), pool_words(&contender, plan));
                 return Ok(Some(Found { frame, words }));
             }
             served.push(contender);

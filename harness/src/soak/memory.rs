@@ -27,7 +27,10 @@ impl Memory {
     /// The memory in use now.
     pub(super) fn now(gpu: &Gpu) -> Self {
         let report = gpu.device.generate_allocator_report();
-        Self { device: report.map(|report| report.total_allocated_bytes), process: resident_bytes() }
+        Self {
+            device: report.map(|report| report.total_allocated_bytes),
+            process: resident_bytes(),
+        }
     }
 }
 
@@ -66,7 +69,8 @@ impl MemoryWatch {
         if self.rounds >= SETTLING && self.settled.is_none() {
             self.settled = Some(after);
         }
-        if let (Some(settled), Some(now)) = (self.settled.and_then(|memory| memory.device), after.device)
+        if let (Some(settled), Some(now)) =
+            (self.settled.and_then(|memory| memory.device), after.device)
             && now > settled + DEVICE_SLACK
         {
             return Some(format!(
@@ -76,11 +80,13 @@ impl MemoryWatch {
             ));
         }
         match (before.process, after.process) {
-            (Some(before), Some(after)) if is_known && after > before + PROCESS_SLACK => Some(format!(
-                "memory of the process grows from {} to {} MiB in a round that was drawn before",
-                mebibytes(before as f64),
-                mebibytes(after as f64)
-            )),
+            (Some(before), Some(after)) if is_known && after > before + PROCESS_SLACK => {
+                Some(format!(
+                    "memory of the process grows from {} to {} MiB in a round that was drawn before",
+                    mebibytes(before as f64),
+                    mebibytes(after as f64)
+                ))
+            }
             _ => None,
         }
     }
@@ -111,11 +117,18 @@ mod tests {
     fn growth_is_found_on_the_device_and_in_the_process() {
         let mut watch = MemoryWatch::default();
         let start = memory(10, 100);
-        assert_eq!(watch.look(start, memory(90, 900), false), None, "the first rounds may allocate");
+        assert_eq!(
+            watch.look(start, memory(90, 900), false),
+            None,
+            "the first rounds may allocate"
+        );
         assert_eq!(watch.look(start, memory(20, 900), false), None);
         assert_eq!(watch.look(start, memory(27, 900), false), None);
         let found = watch.look(start, memory(29, 900), false).expect("a finding");
-        assert!(found.contains("29 MiB are in use") && found.contains("20 MiB were"), "{found}");
+        assert!(
+            found.contains("29.0 MiB are in use") && found.contains("20.0 MiB were"),
+            "{found}"
+        );
         assert_eq!(watch.look(memory(20, 900), memory(20, 950), true), None);
         let found = watch.look(memory(20, 900), memory(20, 970), true).expect("a finding");
         assert!(found.contains("from 900 to 970 MiB"), "{found}");

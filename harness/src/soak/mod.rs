@@ -31,7 +31,7 @@ use crate::{
     bench::Bench,
     cli::{SoakArgs, StageArgs},
     error::HarnessError,
-    report::significant,
+    report::{page::shell_words, significant},
     strategy::Method,
 };
 
@@ -132,7 +132,7 @@ fn altered(gpu: &Gpu, method: Method, alter: &Alter<'_>) -> Method {
 fn finding(args: &SoakArgs, frame: u32, round: &Round, words: &str) -> HarnessError {
     let scene = match args.scene == "town-small" {
         true => String::new(),
-        false => format!(" --scene {}", crate::report::page::shell_words(&[args.scene.clone()])),
+        false => format!(" --scene {}", shell_words(std::slice::from_ref(&args.scene))),
     };
     let again = format!(
         "lightbench soak --seed {} --from {} --frames {ROUND_FRAMES}{scene}",

@@ -111,12 +111,17 @@ impl Round {
 
 /// The options of a round's stage.
 fn stage_words(rng: &mut impl Rng, scene: &str) -> Vec<String> {
-    let side = |rng: &mut dyn Rng, most: u32| rng.random_range(1..=most);
-    let size = format!("{}x{}", side(rng, WIDEST), side(rng, HIGHEST));
+    // One round in eight has an image that may be smaller than a tile.
+    let divisor = if rng.random_range(0..8) == 0 { 8 } else { 1 };
+    let [width, height] = [WIDEST, HIGHEST].map(|most| {
+        let most = most / divisor;
+        rng.random_range((most / 3).max(1)..=most)
+    });
+    let size = format!("{width}x{height}");
     let lights = match rng.random_range(0..8) {
         0 => rng.random_range(0..3),
         1 => [31, 32, 33, 63, 64, 65][rng.random_range(0..6)],
-        _ => MOST_LIGHTS.powf(rng.random::<f64>()) as u32,
+        _ => MOST_LIGHTS.powf(rng.random_range(0.4..1.0)) as u32,
     };
     let seed = rng.random_range(0..1_000_000_u32);
     let mut words = ["--scene", scene].map(str::to_owned).to_vec();
@@ -124,7 +129,7 @@ fn stage_words(rng: &mut impl Rng, scene: &str) -> Vec<String> {
     add("--size", size);
     add("--lights", lights.to_string());
     add("--seed", seed.to_string());
-    add("--radius-scale", format!("{:.3}", 10_f64.powf(rng.random_range(-0.5..1.3))));
+    add("--radius-scale", format!("{:.3}", 10_f64.powf(rng.random_range(-0.2..1.4))));
     match rng.random_range(0..6) {
         0 | 1 => add("--spots", "0.4".to_owned()),
         2 => {
@@ -247,7 +252,7 @@ fn frames(rng: &mut impl Rng, is_moving: bool, strategies: usize) -> Vec<FramePl
                 _ => rng.random_range(0..10_000),
             };
         }
-        let pool = |rng: &mut dyn Rng| rng.random_bool(0.25).then(|| rng.random_range(0..200));
+        let pool = |rng: &mut dyn Rng| rng.random_bool(0.3).then(|| rng.random_range(0..60));
         let pools = (0..strategies).map(|_| pool(rng)).collect();
         plan.push(FramePlan { camera, lights_at, pools });
     }
@@ -294,12 +299,15 @@ mod tests {
             small_pools += frames.filter(|frame| frame.pools.iter().any(Option::is_some)).count();
         }
         let all: BTreeSet<&str> = rows()
-            .filter(|row| Choice::parse(row.family).is_ok_and(|c| is_exact(&c, 1) && !c.is_control()))
+            .filter(|row| {
+                Choice::parse(row.family).is_ok_and(|c| is_exact(&c, 1) && !c.is_control())
+            })
             .map(|row| row.family)
             .filter(|family| *family != BASELINE)
             .collect();
         assert_eq!(families, all);
-        let wanted = ["bvh", "mask", "scalar", "prune", "tree", "n6", "keep4", "touched", "even", "raster"];
+        let wanted =
+            ["bvh", "mask", "scalar", "prune", "tree", "n6", "keep4", "touched", "even", "raster"];
         for segment in wanted {
             assert!(segments.contains(segment), "{segment} of {segments:?}");
         }
